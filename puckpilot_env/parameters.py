@@ -7,10 +7,9 @@ them (one float64 field a row), so a set of parameters is always addressed by na
 from __future__ import annotations
 
 import difflib
-import tomllib
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -28,17 +27,20 @@ class Parameter:
     source: str
 
 
-_R = "report"
 _CHOICE = "not in the report; a documented choice (errata, last row)"
 _E2 = "report, appendix E.2"
 
 TABLE: tuple[Parameter, ...] = (
-    Parameter("length", "m", 2.0, 1.0, 4.0, "table length, x from the robot's end to the opponent's", "report, appendix J"),
+    Parameter(
+        "length", "m", 2.0, 1.0, 4.0, "table length, x from the robot's end to the opponent's", "report, appendix J"
+    ),
     Parameter("width", "m", 1.0, 0.5, 2.0, "table width, y from the robot's right to its left", _CHOICE),
     Parameter("goal_width", "m", 0.32, 0.1, 0.45, "width of the goal mouth, centred on the short walls", _CHOICE),
     Parameter("puck_radius", "m", 0.0309, 0.01, 0.045, "puck radius", "report, appendix C.2.3"),
     Parameter("mallet_radius", "m", 0.0505, 0.02, 0.1, "mallet radius", _CHOICE),
-    Parameter("friction", "m/s^2", 0.125, 0.0, 5.0, "sliding friction per unit mass, f/m", "report, appendix F.2 (ratio)"),
+    Parameter(
+        "friction", "m/s^2", 0.125, 0.0, 5.0, "sliding friction per unit mass, f/m", "report, appendix F.2 (ratio)"
+    ),
     Parameter("drag", "1/m", 0.125, 0.0, 5.0, "quadratic drag per unit mass, B/m", "report, appendix F.2 (ratio)"),
     Parameter("wall_restitution", "1", 0.7, 0.0, 1.0, "speed kept at walls and posts, both components", "report, F.3"),
     Parameter("mallet_restitution", "1", 0.7, 0.0, 1.0, "normal restitution against a mallet", _CHOICE),
@@ -50,4 +52,73 @@ TABLE: tuple[Parameter, ...] = (
     Parameter("b1", "V s^3", -1.7165e-6, -1e-3, 1e-3, "other-motor jerk coefficient b1", _E2),
     Parameter("b2", "V s^2", -0.002739, -1.0, 1.0, "other-motor acceleration coefficient b2", _E2),
     Parameter("b3", "V s", 0.0, -10.0, 10.0, "other-motor speed coefficient b3", _E2),
+    Parameter("gantry_spread", "1", 0.0, 0.0, 0.3, "each player's C5, C6, C7 differ by up to this share", _CHOICE),
+    Parameter("frame_rate", "Hz", 120.0, 10.0, 1000.0, "camera frames a second", "camera of the real table"),
+    Parameter(
+        "camera_latency", "s", 0.0134, 0.0, 0.06, "from exposure to a usable position", "measured on the real table"
+    ),
+    Parameter("camera_noise", "m", 0.0002, 0.0, 0.02, "white noise of a position", "measured on the real table"),
+    Parameter("beam_noise", "m", 0.0006, 0.0, 0.02, "white noise near the gantry beam", "measured on the real table"),
+    Parameter("beam_width", "m", 0.04, 0.0, 0.2, "width of the gantry beam over the robot's mallet", _CHOICE),
+    Parameter("camera_error", "m", 0.001, 0.0, 0.02, "rms of the smooth position-dependent error", "report, 2.2.2"),
+    Parameter("dropped_frames", "1", 0.01, 0.0, 0.9, "share of frames without a position", _CHOICE),
+    Parameter("held_frames", "1", 0.02, 0.0, 0.9, "share of frames that repeat the one before", _CHOICE),
+    Parameter("action_noise", "1", 0.0, 0.0, 0.5, "relative noise of both voltages, drawn at each action", _CHOICE),
+    Parameter("impulse_rate", "1/s", 0.0, 0.0, 10.0, "random impulses on the puck", "report, K.2 (named, no number)"),
+    Parameter("impulse_speed", "m/s", 0.1, 0.0, 2.0, "size of a random impulse, each component", _CHOICE),
 )
+
+BY_NAME: dict[str, Parameter] = {row.name: row for row in TABLE}
+RECORD = np.dtype([(row.name, np.float64) for row in TABLE])
+COLUMN: dict[str, int] = {row.name: index for index, row in enumerate(TABLE)}
+
+
+def make_records(tables: int, values: Mapping[str, float] | None = None) -> np.ndarray:
+    """`(tables,)` records of the defaults, with `values` [SI units] put in their place by name.
+
+    Raises ValueError for an unknown name, a value out of its range, or numbers that do not make a table together.
+    """
+    records = np.zeros(tables, RECORD)
+    for row in TABLE:
+        records[row.name] = row.default
+    for name, value in (values or {}).items():
+        records[name] = checked(name, value)
+    if tables:
+        _check_together(records[0])
+    return records
+
+
+def as_matrix(records: np.ndarray) -> np.ndarray:
+    """The same memory as a float64 `(tables, len(TABLE))` array; column i is TABLE[i]."""
+    return records.view(np.float64).reshape(len(records), len(TABLE))
+
+
+def checked(name: str, value: float) -> float:
+    """`value` as a float if `name` is a parameter and it lies in its range; otherwise ValueError."""
+    if name not in BY_NAME:
+        near = difflib.get_close_matches(name, BY_NAME, n=1)
+        hint = f"; did you mean '{near[0]}'?" if near else f"; known: {', '.join(BY_NAME)}"
+        raise ValueError(f"unknown parameter '{name}'{hint}")
+    row = BY_NAME[name]
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        number = math.nan
+    if not row.low <= number <= row.high:
+        raise ValueError(
+            f"parameter '{name}' is {value!r}; expected a number in [{row.low:g}, {row.high:g}] {row.unit}"
+        )
+    return number
+
+
+def _check_together(record: np.void) -> None:
+    if record["goal_width"] + 2 * record["puck_radius"] > record["width"]:
+        raise ValueError("goal_width leaves no wall beside the mouth; expected goal_width + 2 puck_radius <= width")
+    if record["goal_width"] <= 2 * record["puck_radius"]:
+        raise ValueError("the puck does not fit through the goal; expected goal_width > 2 puck_radius")
+    if record["width"] < 6 * record["mallet_radius"] or record["length"] < 12 * record["mallet_radius"]:
+        raise ValueError("the table is too small for the mallets; expected width >= 6 and length >= 12 mallet radii")
+    for sign, axis in ((-1.0, "x"), (1.0, "y")):
+        c5, c6, c7 = (record[f"a{i}"] + sign * record[f"b{i}"] for i in (1, 2, 3))
+        if not (c5 > 0 and c6 > 0 and c7 > 0 and c6 * c6 > 4 * c5 * c7):
+            raise ValueError(f"gantry axis {axis} is not overdamped: C5, C6, C7 = {c5:g}, {c6:g}, {c7:g}; change a, b")

@@ -1,0 +1,61 @@
+"""The kernels behind `tables.Tables`: a range of tables through a step, a reset, a check."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from puckpilot_env import random_stream
+from puckpilot_env.game.rules import RUNNING, STEP_LIMIT
+from puckpilot_env.game.step import begin_table, observe_table, step_table
+from puckpilot_env.kernel import kernel
+from puckpilot_env.physics.advance import EVENT_COLUMNS
+from puckpilot_env.physics.mallet import PATH_COLUMNS
+
+
+@kernel
+def first_outside(actions, bounds):
+    """Flat index of the first action number that is NaN or outside `bounds` (2, 4), or -1."""
+    columns = actions.shape[2]
+    flat = actions.reshape(-1)
+    for i in range(flat.size):
+        column = i % columns
+        if not (bounds[0, column] <= flat[i] <= bounds[1, column]):
+            return i
+    return -1
+
+
+@kernel
+def seed_range(states, seed):
+    """Start every table's random streams from `seed` and its index."""
+    for i in range(states.size):
+        random_stream.seed_streams(states[i], seed, np.uint64(i))
+
+
+@kernel
+def reset_range(states, params, rows, drawn, rules, frames, bounds, observations):
+    """Begin a new episode on every table."""
+    for i in range(states.size):
+        begin_table(states[i], params[i], rows[i], drawn, rules[0], frames[i])
+        observe_table(states[i], params[i], rules[0], frames[i], bounds, observations[i])
+
+
+@kernel
+def step_range(
+    states, params, rows, drawn, rules, frames, bounds, actions, observations, finals, rewards, terminated, truncated,
+    autoreset, first, last,
+):  # fmt: skip
+    """Play one step on tables `first` to `last`, and begin a new episode where one ended, if `autoreset`."""
+    path = np.zeros((2, 2, PATH_COLUMNS))
+    log = np.zeros((0, EVENT_COLUMNS))
+    rule = rules[0]
+    for i in range(first, last):
+        table, p = states[i], params[i]
+        step_table(table, p, rule, frames[i], actions[i], rewards[i], path, log)
+        ended = table.ending != RUNNING
+        truncated[i] = table.ending == STEP_LIMIT
+        terminated[i] = ended and not truncated[i]
+        observe_table(table, p, rule, frames[i], bounds, observations[i])
+        if ended and autoreset:
+            finals[i] = observations[i]
+            begin_table(table, p, rows[i], drawn, rule, frames[i])
+            observe_table(table, p, rule, frames[i], bounds, observations[i])

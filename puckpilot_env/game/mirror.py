@@ -1,0 +1,62 @@
+"""The only place that turns the table round: player 1 sees the table from its own end (x -> length - x, y -> width - y).
+
+Turning is its own inverse, so the same functions serve both ways.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from puckpilot_env.kernel import kernel
+from puckpilot_env.physics.mallet import REST
+
+
+@kernel
+def place(player, x, y, p):
+    """A place [m] of the table's frame in player's frame, or back."""
+    return (x, y) if player == 0 else (p.length - x, p.width - y)
+
+
+@kernel
+def velocity(player, vx, vy):
+    """A velocity [m/s] of the table's frame in player's frame, or back."""
+    return (vx, vy) if player == 0 else (-vx, -vy)
+
+
+@kernel
+def area(player, p):
+    """`(x_low, x_high, y_low, y_high)` [m] in the table's frame in which the player's mallet centre must stay."""
+    radius = p.mallet_radius
+    if player == 0:
+        return radius, 0.5 * p.length - radius, radius, p.width - radius
+    return 0.5 * p.length + radius, p.length - radius, radius, p.width - radius
+
+
+def turn_table(tables: np.ndarray, frames: np.ndarray, length: np.ndarray, width: np.ndarray) -> None:
+    """Turn whole tables round in place, players, streams and all: the same game seen from the other end.
+
+    tables: (n,) records of `state.TABLE`; frames: (n, 2, FRAMES_KEPT, FRAME_COLUMNS); length, width: (n,) [m].
+    """
+    tables["puck"][:, 0] = length - tables["puck"][:, 0]
+    tables["puck"][:, 1] = width - tables["puck"][:, 1]
+    tables["puck"][:, 2:] *= -1.0
+    tables["modes"] *= -1.0
+    tables["modes"][:, :, 0, REST] += length[:, None]
+    tables["modes"][:, :, 1, REST] += width[:, None]
+    for name in (
+        "modes",
+        "gantry",
+        "gantry_scale",
+        "camera_error",
+        "seen_velocity",
+        "score",
+        "last_score",
+        "defending",
+    ):
+        tables[name] = tables[name][:, ::-1].copy()
+    for name in ("keys", "draws"):
+        tables[name][:, :2] = tables[name][:, 1::-1].copy()
+    tables["subject"] = 1 - tables["subject"]
+    tables["winner"] = np.where(tables["winner"] < 0, -1, 1 - tables["winner"])
+    tables["turned"] = 1 - tables["turned"]
+    frames[:] = frames[:, ::-1].copy()

@@ -1,0 +1,108 @@
+"""What the puck's events mean: rewards, who defends, points, endings (report 2.4.3, J; errata row on J.1)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from puckpilot_env.game import mirror, reward
+from puckpilot_env.game.predict import SCORES, projected_shot
+from puckpilot_env.game.start import ATTACK, DEFENCE, MATCH, face_off, serve
+from puckpilot_env.kernel import kernel
+from puckpilot_env.physics import bounce
+
+# How an episode ended; the order is that of ENDING_NAMES.
+RUNNING, CLEAR, CONCEDED, LOST, SHOT, MISSED, POINTS, CLOCK, STEP_LIMIT = range(9)
+ENDING_NAMES = (
+    "running", "clear", "conceded", "possession lost", "shot on goal", "shot missed", "points", "clock", "step limit",
+)  # fmt: skip
+
+RULES = np.dtype(
+    [
+        ("game", np.int64),  # start.DEFENCE, ATTACK or MATCH
+        ("sensing", np.int64),  # sensing.EXACT, ESTIMATED or HISTORY
+        ("shows_gantry", np.int64),  # 1: the agent sees its own gantry's coefficients
+        ("period", np.float64),  # of a step [s]
+        ("points", np.int64),  # to win a match
+        ("match_time", np.float64),  # [s]
+        ("possession_time", np.float64),  # in a match: longest time in one half before a face-off [s]
+        ("step_limit", np.int64),  # of a drill (truncation); 0 for none
+    ]
+)
+
+
+@kernel
+def end(table, ending, winner):
+    """Note how and for whom the episode ended."""
+    table.ending = ending
+    table.winner = winner
+
+
+@kernel
+def crossed_middle(table, p, rules, rewards, mallet_x, mallet_y):
+    """The puck just crossed the middle line; `(mallet_x, mallet_y)`: the mallet of the half that it enters [m]."""
+    table.held = 0.0
+    vx, vy = table.puck[2], table.puck[3]
+    player = 0 if vx > 0.0 else 1  # whose half it leaves
+    goal = bounce.GOAL_X1 if player == 0 else bounce.GOAL_X0
+    outcome = projected_shot(table.puck[0], table.puck[1], vx, vy, mallet_x, mallet_y, goal, p)
+    speed = (vx * vx + vy * vy) ** 0.5
+    mine = player == table.subject
+    if table.defending[player] == 1:
+        rewards[player] += reward.possession_lost_reward(speed, outcome)
+        if rules.game == DEFENCE and mine:
+            end(table, LOST, player)
+    else:
+        rewards[player] += reward.shot_reward(speed, outcome)
+        table.defending[player] = 1
+        if rules.game == ATTACK and mine:
+            if outcome == SCORES:
+                end(table, SHOT, player)
+            else:
+                end(table, MISSED, 1 - player)
+
+
+@kernel
+def goal(table, p, rules, rewards, kind):
+    """The puck entered a goal."""
+    conceder = 0 if kind == bounce.GOAL_X0 else 1
+    scorer = 1 - conceder
+    rewards[conceder] += reward.conceded_reward()
+    table.score[scorer] += 1
+    if rules.game != MATCH:
+        end(table, CONCEDED, scorer)
+        return
+    rewards[scorer] += reward.scored_reward()
+    table.defending[0] = table.defending[1] = 1
+    if table.score[scorer] >= rules.points:
+        end(table, POINTS, scorer)
+    else:
+        serve(table, p, conceder)
+
+
+@kernel
+def look_for_clear(table, p, rules, rewards):
+    """Whether a defending player has just cleared the puck (J.1 case 1)."""
+    for k in range(2):
+        if table.defending[k] == 1:
+            x, _ = mirror.place(k, table.puck[0], table.puck[1], p)
+            if reward.is_clear(x, table.puck[2], table.puck[3], p.length):
+                rewards[k] += reward.clear_reward()
+                table.defending[k] = 0
+                if rules.game == DEFENCE and k == table.subject:
+                    end(table, CLEAR, k)
+
+
+@kernel
+def keep_time(table, p, rules):
+    """Clocks: the end of a match, a puck held or stuck in one half, the step limit. True if a face-off was called."""
+    if rules.game == MATCH:
+        if table.time >= rules.match_time - 1e-9:
+            lead = table.score[0] - table.score[1]
+            end(table, CLOCK, 0 if lead > 0 else (1 if lead < 0 else -1))
+        elif table.held >= rules.possession_time - 1e-9:
+            table.defending[0] = table.defending[1] = 1
+            face_off(table, p)
+            return True
+    elif rules.step_limit > 0 and table.steps >= rules.step_limit:
+        end(table, STEP_LIMIT, -1)
+    return False

@@ -1,0 +1,71 @@
+"""The one way in which this project compiles: `@kernel`.
+
+numba's own cache notices edits of the decorated file but not of the functions that it calls in other files, so the
+cache folder is keyed here by a hash of every kernel source: an edit anywhere starts a fresh folder.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numba
+from numba.core import config
+
+_ROOT = Path(__file__).parent
+_SOURCES = ("*.py", "physics/**/*.py", "game/**/*.py")  # adapters too: hashing one too many only costs a compilation
+_KEEP_DAYS = 30
+
+
+def _source_files() -> list[Path]:
+    return sorted({path for pattern in _SOURCES for path in _ROOT.glob(pattern)})
+
+
+def _source_hash() -> str:
+    digest = hashlib.sha256(numba.__version__.encode())
+    for path in _source_files():
+        digest.update(path.name.encode())
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def _make_cache_folder() -> Path:
+    """The folder for this version of the sources; a temporary one where the home folder cannot be written."""
+    base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "puckpilot"
+    folder = base / _source_hash()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / "used").touch()
+    except OSError:
+        return Path(tempfile.mkdtemp(prefix="puckpilot-kernels-"))
+    oldest = time.time() - _KEEP_DAYS * 86400
+    for other in base.iterdir():
+        used = other / "used"
+        if other != folder and used.exists() and used.stat().st_mtime < oldest:
+            shutil.rmtree(other, ignore_errors=True)
+    return folder
+
+
+CACHE_FOLDER = _make_cache_folder()
+
+
+def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Compile `function` with numba on its first call: no GIL, IEEE divisions, cached in `CACHE_FOLDER`."""
+    before, config.CACHE_DIR = config.CACHE_DIR, str(CACHE_FOLDER)
+    try:
+        return numba.njit(cache=True, nogil=True, error_model="numpy")(function)
+    finally:
+        config.CACHE_DIR = before
+
+
+def announce_compilation(marker: str) -> None:
+    """Say on stderr that the first call will compile, once per cache folder and `marker` (a kernel's name)."""
+    if not any(CACHE_FOLDER.rglob(f"*{marker}*.nbi")):
+        print("puckpilot: compiling the simulator (once after each change, under a minute) ...", file=sys.stderr)

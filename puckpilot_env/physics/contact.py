@@ -1,0 +1,152 @@
+"""Puck against mallet: the earliest contact, the impulse, and what happens to a pinched puck.
+
+The distance between puck and mallet, `g`, has `g'' >= -A` where `A` bounds the size of their relative acceleration
+(the rest of `g''` is the square of the sideways speed over `g`, which is never negative). So `g(t) >= g0 + g0' t -
+A t^2/2`, and advancing to the smallest root of that parabola again and again can never jump over a contact; near the
+contact it converges quadratically. This is sharper than the bound by speeds in report appendix H (errata row H.5).
+"""
+
+from __future__ import annotations
+
+import math
+
+from puckpilot_env.kernel import kernel
+from puckpilot_env.physics import glide
+from puckpilot_env.physics.mallet import (
+    acceleration_bound,
+    axis_acceleration,
+    axis_at,
+    axis_velocity,
+    next_switch,
+)
+
+TOUCH = 1e-9  # m; a gap below it is a contact
+SHORTEST_ADVANCE = 1e-9  # s
+MOST_ADVANCES = 20000
+REST_BETWEEN_TOUCHES = 1e-3  # s; a mallet that pushes the puck along touches it about this often
+PINCH_SLACK = 5e-5  # m; a puck this near to a wall while a mallet strikes it is between the two
+STEEPEST_WEDGE = 0.0625  # sin^2 of the angle (14.5 degrees) under which a pinched puck cannot slip out
+
+
+@kernel
+def mallet_motion(path, gantry, k, t):
+    """`(x, y, vx, vy)` of player `k`'s mallet at time `t` of its plan."""
+    rest_x, slow_x, fast_x, _ = axis_at(path, gantry, k, 0, t)
+    rest_y, slow_y, fast_y, _ = axis_at(path, gantry, k, 1, t)
+    return (
+        rest_x + slow_x + fast_x,
+        rest_y + slow_y + fast_y,
+        axis_velocity(gantry, k, 0, slow_x, fast_x),
+        axis_velocity(gantry, k, 1, slow_y, fast_y),
+    )
+
+
+@kernel
+def mallet_push(path, gantry, k, t, nx, ny):
+    """Acceleration [m/s^2] of player `k`'s mallet along the unit vector `n` at time `t`."""
+    _, slow_x, fast_x, _ = axis_at(path, gantry, k, 0, t)
+    _, slow_y, fast_y, _ = axis_at(path, gantry, k, 1, t)
+    return nx * axis_acceleration(gantry, k, 0, slow_x, fast_x) + ny * axis_acceleration(gantry, k, 1, slow_y, fast_y)
+
+
+@kernel
+def stays_clear(x, y, ux, uy, travel, mallet_x, mallet_y, reach_x, reach_y, distance):
+    """True where a puck moving `travel` [m] along `u` cannot meet a mallet that moves at most `reach` from its place."""
+    dx, dy = mallet_x - x, mallet_y - y
+    along = min(max(dx * ux + dy * uy, 0.0), travel)
+    apart = math.hypot(dx - along * ux, dy - along * uy)
+    return apart > distance + math.hypot(reach_x, reach_y)
+
+
+@kernel
+def time_to_parabola(gap, gap_rate, bound):
+    """Smallest positive root of `gap + gap_rate t - bound t^2/2`; infinite if there is none. gap, bound >= 0."""
+    root = math.sqrt(gap_rate * gap_rate + 2.0 * bound * gap)
+    if gap_rate < 0.0:
+        return 2.0 * gap / (root - gap_rate)
+    if bound <= 0.0:
+        return math.inf
+    return (gap_rate + root) / bound
+
+
+@kernel
+def first_contact(x, y, ux, uy, v, friction, drag, path, gantry, k, start, end, distance):
+    """Time in [start, end) at which a freely gliding puck first meets player `k`'s mallet; infinite if it does not.
+
+    `(x, y)`, unit `u` and speed `v` [m/s] are the puck's at `start` [s]; `distance` [m] is the sum of the radii.
+    """
+    t = start
+    for _ in range(MOST_ADVANCES):
+        path_length, speed = glide.advance(v, t - start, friction, drag)
+        rest_x, slow_x, fast_x, volts_x = axis_at(path, gantry, k, 0, t)
+        rest_y, slow_y, fast_y, volts_y = axis_at(path, gantry, k, 1, t)
+        dx = x + ux * path_length - (rest_x + slow_x + fast_x)
+        dy = y + uy * path_length - (rest_y + slow_y + fast_y)
+        apart = math.sqrt(dx * dx + dy * dy)
+        rate = (
+            dx * (ux * speed - axis_velocity(gantry, k, 0, slow_x, fast_x))
+            + dy * (uy * speed - axis_velocity(gantry, k, 1, slow_y, fast_y))
+        ) / apart
+        gap = apart - distance
+        if gap <= TOUCH and rate < 0.0:
+            return t
+        bound_x = acceleration_bound(gantry, k, 0, slow_x, fast_x, volts_x)
+        bound_y = acceleration_bound(gantry, k, 1, slow_y, fast_y, volts_y)
+        bound = math.sqrt(bound_x * bound_x + bound_y * bound_y)
+        if speed > 0.0:
+            bound += friction + drag * speed * speed
+        ahead = t + max(time_to_parabola(max(gap, 0.0), rate, bound), SHORTEST_ADVANCE)
+        t = min(ahead, next_switch(path, k, t))
+        if t >= end:
+            return math.inf
+    return t
+
+
+@kernel
+def reflect(vx, vy, mx, my, nx, ny, restitution):
+    """Puck velocity after meeting a driven mallet of velocity `m`; unit normal `n` points from mallet to puck.
+
+    The normal part of the relative velocity is reversed with `restitution`, the tangential part stays (errata, 2.3.3).
+    """
+    closing = (mx - vx) * nx + (my - vy) * ny
+    if closing <= 0.0:
+        return vx, vy
+    gain = (1.0 + restitution) * closing
+    return vx + gain * nx, vy + gain * ny
+
+
+@kernel
+def strike(vx, vy, mx, my, nx, ny, restitution, push):
+    """`reflect`, but apart at least so fast that a mallet accelerating by `push` is met again only a moment later.
+
+    That replaces the endless sequence of ever smaller bounces of a puck being pushed along; the gap that it opens
+    stays under `push REST_BETWEEN_TOUCHES^2 / 8`.
+    """
+    vx, vy = reflect(vx, vy, mx, my, nx, ny, restitution)
+    apart = (vx - mx) * nx + (vy - my) * ny
+    least = max(0.5 * push * REST_BETWEEN_TOUCHES, 1e-6)
+    if apart < least:
+        vx, vy = vx + (least - apart) * nx, vy + (least - apart) * ny
+    return vx, vy
+
+
+@kernel
+def pinch(vx, vy, mx, my, nx, ny, ox, oy, wx, wy, separation, wall_restitution):
+    """A puck struck by a mallet (velocity `m`, normal `n`) while it touches something else (velocity `o`, normal `w`).
+
+    Both impulses act at once, so that the puck leaves the mallet with `separation` [m/s] and the other with its own
+    rebound. Returns `(held, vx, vy)`; `held` is true where the two face each other so squarely that no puck slips out:
+    then the motors stall, and what remains is the puck's motion along the wedge.
+    """
+    closing = (mx - vx) * nx + (my - vy) * ny
+    rebound = wall_restitution * max((ox - vx) * wx + (oy - vy) * wy, 0.0)
+    cosine = nx * wx + ny * wy
+    sine2 = 1.0 - cosine * cosine
+    if sine2 < STEEPEST_WEDGE:
+        along = -vx * ny + vy * nx
+        return True, -wall_restitution * along * ny, wall_restitution * along * nx
+    need_n = closing + separation
+    need_w = rebound - ((vx - ox) * wx + (vy - oy) * wy)
+    from_mallet = max((need_n - cosine * need_w) / sine2, 0.0)
+    from_wall = max((need_w - cosine * need_n) / sine2, 0.0)
+    return False, vx + from_mallet * nx + from_wall * wx, vy + from_mallet * ny + from_wall * wy

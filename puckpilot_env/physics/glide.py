@@ -1,0 +1,122 @@
+"""Free sliding of the puck: `dv/dt = -(friction + drag v^2)` along the direction of motion, in closed form.
+
+Report eq. (6)-(9), per unit mass. Written so that every limit (drag 0, friction 0, speed 0) is exact and nothing is
+singular: with `w = sqrt(friction drag)`, `S = sin(w t)/w` and `H = (1 - cos(w t))/w^2`,
+
+    distance = log(1 + drag z)/drag,   z = v0 S - friction H,
+    speed    = (v0 cos(w t) - friction S) / (1 + drag z).
+"""
+
+from __future__ import annotations
+
+import math
+
+from puckpilot_env.kernel import kernel
+
+
+@kernel
+def _sinc(x2):
+    """sin(x)/x as a function of x^2."""
+    if x2 < 0.25:
+        return 1.0 - x2 / 6.0 * (1.0 - x2 / 20.0 * (1.0 - x2 / 42.0 * (1.0 - x2 / 72.0 * (1.0 - x2 / 110.0))))
+    x = math.sqrt(x2)
+    return math.sin(x) / x
+
+
+@kernel
+def _versine(x2):
+    """(1 - cos(x))/x^2 as a function of x^2."""
+    if x2 < 0.25:
+        return 0.5 * (1.0 - x2 / 12.0 * (1.0 - x2 / 30.0 * (1.0 - x2 / 56.0 * (1.0 - x2 / 90.0 * (1.0 - x2 / 132.0)))))
+    return (1.0 - math.cos(math.sqrt(x2))) / x2
+
+
+@kernel
+def _log1p_ratio(u):
+    """log(1 + u)/u, for u > -1."""
+    if abs(u) < 0.1:
+        w = u / (2.0 + u)
+        w2 = w * w
+        series = 1.0 + w2 * (1 / 3 + w2 * (1 / 5 + w2 * (1 / 7 + w2 * (1 / 9 + w2 * (1 / 11)))))
+        return 2.0 * series / (2.0 + u)
+    return math.log1p(u) / u
+
+
+@kernel
+def _atan_ratio(x2):
+    """atan(x)/x as a function of x^2."""
+    if x2 < 1e-3:
+        return 1.0 - x2 * (1 / 3 - x2 * (1 / 5 - x2 * (1 / 7 - x2 * (1 / 9))))
+    x = math.sqrt(x2)
+    return math.atan(x) / x
+
+
+@kernel
+def _expm1_ratio(u):
+    """(1 - exp(-u))/u, for u >= 0."""
+    if u < 1e-2:
+        return 1.0 - u / 2.0 * (1.0 - u / 3.0 * (1.0 - u / 4.0 * (1.0 - u / 5.0 * (1.0 - u / 6.0))))
+    return -math.expm1(-u) / u
+
+
+@kernel
+def stop_distance(v0, friction, drag):
+    """Distance [m] at which a puck of speed `v0` [m/s] comes to rest; infinite without friction."""
+    if v0 <= 0.0:
+        return 0.0
+    if friction <= 0.0:
+        return math.inf
+    kinetic = v0 * v0 / friction
+    return 0.5 * kinetic * _log1p_ratio(drag * kinetic)
+
+
+@kernel
+def advance(v0, t, friction, drag):
+    """`(distance [m], speed [m/s])` after `t` [s] from speed `v0`; at rest from the stop on."""
+    if v0 <= 0.0:
+        return 0.0, 0.0
+    w2 = friction * drag
+    x2 = w2 * t * t
+    stopped = x2 >= 0.25 * math.pi * math.pi
+    if not stopped:
+        sine = t * _sinc(x2)
+        rise = t * t * _versine(x2)
+        numerator = v0 * (1.0 - w2 * rise) - friction * sine
+        stopped = numerator <= 0.0
+    if stopped:
+        return stop_distance(v0, friction, drag), 0.0
+    z = v0 * sine - friction * rise
+    u = drag * z
+    return z * _log1p_ratio(u), numerator / (1.0 + u)
+
+
+@kernel
+def distance(v0, t, friction, drag):
+    """Distance [m] covered after `t` [s] from speed `v0` [m/s]."""
+    return advance(v0, t, friction, drag)[0]
+
+
+@kernel
+def speed(v0, t, friction, drag):
+    """Speed [m/s] after `t` [s] from speed `v0` [m/s]."""
+    return advance(v0, t, friction, drag)[1]
+
+
+@kernel
+def time_to(v0, path, friction, drag):
+    """`(time [s], speed [m/s])` on having covered `path` [m]; time is infinite where the puck rests before."""
+    if path <= 0.0:
+        return 0.0, v0
+    if v0 <= 0.0:
+        return math.inf, 0.0
+    loss = drag * v0 * v0 + friction
+    lost = loss * 2.0 * path * _expm1_ratio(2.0 * drag * path)  # v0^2 - v1^2
+    v1_squared = v0 * v0 - lost
+    if v1_squared < 0.0:
+        return math.inf, 0.0
+    v1 = math.sqrt(v1_squared)
+    mixed = friction + drag * v0 * v1
+    if mixed <= 0.0:  # no friction, and no drag or no speed left
+        return (path / v0 if drag <= 0.0 else math.inf), v1
+    gain = lost / ((v0 + v1) * mixed)
+    return gain * _atan_ratio(friction * drag * gain * gain), v1

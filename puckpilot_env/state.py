@@ -1,0 +1,43 @@
+"""What a table is at an instant, as one numpy record: snapshot, restore and fork are copies of it.
+
+All places are in the table's frame. `turned` is 1 for a table that was turned round (see `game.mirror`): what its own
+random stream draws is then turned too, so that a turned table plays the same game.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from puckpilot_env.physics.mallet import GANTRY_COLUMNS
+from puckpilot_env.random_stream import STREAMS
+
+ERROR_TERMS = 5  # of the camera's smooth error, each component
+FRAMES_KEPT = 32  # camera frames kept a player
+FRAME_COLUMNS = 5  # puck x, y, opponent x, y [m], puck seen (1 or 0); in the player's own frame
+
+TABLE = np.dtype(
+    [
+        ("puck", np.float64, 4),  # x, y, vx, vy [m, m/s]
+        ("modes", np.float64, (2, 2, 3)),  # rest, slow, fast [m] of player, axis (see physics.mallet)
+        ("gantry", np.float64, (2, 2, GANTRY_COLUMNS)),  # constants of player, axis
+        ("gantry_scale", np.float64, (2, 2, 3)),  # C5, C6, C7 relative to the parameters', of player, axis
+        ("camera_error", np.float64, (2, 2, ERROR_TERMS)),  # smooth error's coefficients [m] of player, component
+        ("frame_phase", np.float64),  # frame j is exposed at (j + frame_phase)/frame_rate
+        ("last_frame", np.int64),  # newest frame taken
+        ("seen_velocity", np.float64, (2, 4)),  # last estimate a player of puck and opponent velocity, own frame
+        ("time", np.float64),  # since the episode began [s]
+        ("held", np.float64),  # since the puck last changed halves [s]
+        ("steps", np.int64),  # since the episode began
+        ("episode", np.int64),  # how many this table has begun
+        ("score", np.int64, 2),
+        ("last_score", np.int64, 2),  # of the episode before this one
+        ("defending", np.int64, 2),  # 1 defence, 0 attack (report, appendix J)
+        ("subject", np.int64),  # the player whose episode a drill is
+        ("ending", np.int64),  # how the last step ended the episode (see game.rules), 0 if it did not
+        ("winner", np.int64),  # of the last episode: 0, 1, or -1 for none
+        ("turned", np.int64),
+        ("keys", np.uint64, STREAMS),
+        ("draws", np.uint64, STREAMS),
+    ],
+    align=True,
+)

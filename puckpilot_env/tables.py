@@ -1,0 +1,199 @@
+"""N tables at once in flat arrays: the only parallel code. Everything else that plays is an adapter over this."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from puckpilot_env import batch, parameters, state
+from puckpilot_env.game import mirror, observation
+from puckpilot_env.kernel import announce_compilation
+from puckpilot_env.variants import Variant
+
+ACTION_COLUMNS = (
+    ("target_x", "m", "where the mallet should come to rest, x"),
+    ("target_y", "m", "where the mallet should come to rest, y"),
+    ("volts_x", "V", "magnitude of the voltage of axis x"),
+    ("volts_y", "V", "magnitude of the voltage of axis y"),
+)
+LEAST_VOLTS, MOST_VOLTS = 0.3, 10.0  # report K.1
+SHORTEST_PERIOD = 1.0 / 120.0
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """Some tables at an instant, random streams included. Made by `Tables.snapshot`, taken by `Tables.restore`."""
+
+    states: NDArray[np.void]
+    params: NDArray[np.void]
+    frames: NDArray[np.float64]
+    observations: NDArray[np.float32]
+
+
+class Tables:
+    """A batch of air-hockey tables of one variant.
+
+    Arrays, overwritten by every `reset` and `step` (copy what you keep); `n` tables, 2 players, `d` columns:
+
+    - `observations` (n, 2, d) float32: what each player sees now; after an automatic reset, the new episode's first.
+    - `final_observations` (n, 2, d) float32: the last of the episode, in rows where `terminated | truncated`.
+    - `rewards` (n, 2) float32; `terminated`, `truncated` (n,) bool.
+    - `states` (n,) records of `state.TABLE`, `params` (n,) records of `parameters.RECORD`.
+    """
+
+    def __init__(
+        self,
+        variant: Variant,
+        tables: int,
+        *,
+        seed: int = 0,
+        threads: int = 1,
+        autoreset: bool = True,
+        period: float | None = None,
+        values: Mapping[str, float] | None = None,
+    ) -> None:
+        """Make `tables` tables and reset them. `values` puts parameters in place of the defaults, by name.
+
+        Raises ValueError, in one line, for anything that cannot be.
+        """
+        if not isinstance(tables, int | np.integer) or tables < 1:
+            raise ValueError(f"tables is {tables!r}; expected a whole number >= 1")
+        if not isinstance(threads, int | np.integer) or not 1 <= threads <= 256:
+            raise ValueError(f"threads is {threads!r}; expected a whole number from 1 to 256")
+        if period is not None:
+            if not SHORTEST_PERIOD - 1e-9 <= period <= 10.0:
+                raise ValueError(f"period is {period!r} s; expected a number from 1/120 to 10")
+            scale = variant.period / period
+            variant = replace(variant, period=float(period), step_limit=round(variant.step_limit * scale))
+        self.variant = variant
+        self.threads = min(int(threads), int(tables))
+        self.autoreset = autoreset
+        self.params = parameters.make_records(tables, {**variant.parameters, **(values or {})})
+        self.nominal = self.params[:1].copy()
+        self._rows = parameters.as_matrix(self.params)
+        self._rules = variant.rules()
+        self._drawn = variant.drawn()
+        self.states = np.zeros(tables, state.TABLE)
+        kept = state.FRAMES_KEPT if variant.sensing else 1
+        self._frames = np.zeros((tables, 2, kept, state.FRAME_COLUMNS))
+        self.observation_columns = observation.columns(self._rules[0], self.nominal[0])
+        self.observation_bounds = observation.space_bounds(self._rules[0], self.nominal[0])
+        self.action_bounds = _action_bounds(self.nominal[0])
+        shape = (tables, 2, len(self.observation_columns))
+        self.observations = np.zeros(shape, np.float32)
+        self.final_observations = np.zeros(shape, np.float32)
+        self.rewards = np.zeros((tables, 2), np.float32)
+        self.terminated = np.zeros(tables, np.bool_)
+        self.truncated = np.zeros(tables, np.bool_)
+        self._bounds_of_work = _shares(tables, self.threads)
+        self._pool = ThreadPoolExecutor(self.threads - 1) if self.threads > 1 else None
+        announce_compilation("step_range")
+        self.reset(seed)
+
+    def __len__(self) -> int:
+        return len(self.states)
+
+    def reset(self, seed: int | None = None) -> NDArray[np.float32]:
+        """Begin a new episode on every table and return `observations`; with a seed, start its random streams anew."""
+        if seed is not None:
+            if not isinstance(seed, int | np.integer) or not 0 <= seed < 2**64:
+                raise ValueError(f"seed is {seed!r}; expected a whole number from 0 to 2**64 - 1")
+            self.states[:] = np.zeros((), state.TABLE)
+            batch.seed_range(self.states, np.uint64(seed))
+        self.terminated[:] = self.truncated[:] = False
+        self.rewards[:] = 0.0
+        batch.reset_range(
+            self.states, self.params, self._rows, self._drawn, self._rules, self._frames, self.observation_bounds,
+            self.observations,
+        )  # fmt: skip
+        return self.observations
+
+    def step(self, actions: ArrayLike) -> None:
+        """Play one step with `actions` (n, 2, 4) float32, each in its player's own frame and in the action space.
+
+        Raises ValueError, having changed nothing, for a wrong shape, NaN, or a number outside the space.
+        """
+        actions = np.ascontiguousarray(actions, np.float32)
+        if actions.shape != (len(self.states), 2, 4):
+            raise ValueError(f"actions have shape {actions.shape}; expected {(len(self.states), 2, 4)}")
+        bad = batch.first_outside(actions, self.action_bounds)
+        if bad >= 0:
+            raise ValueError(self._describe_bad_action(actions, bad))
+        if self._pool is None:
+            self._step_share(actions, 0, len(self.states))
+            return
+        others = [self._pool.submit(self._step_share, actions, a, b) for a, b in self._bounds_of_work[1:]]
+        self._step_share(actions, *self._bounds_of_work[0])
+        for other in others:
+            other.result()
+
+    def _step_share(self, actions: NDArray[np.float32], first: int, last: int) -> None:
+        batch.step_range(
+            self.states, self.params, self._rows, self._drawn, self._rules, self._frames, self.observation_bounds,
+            actions, self.observations, self.final_observations, self.rewards, self.terminated, self.truncated,
+            self.autoreset, first, last,
+        )  # fmt: skip
+
+    def _describe_bad_action(self, actions: NDArray[np.float32], flat: int) -> str:
+        table, player, column = np.unravel_index(flat, actions.shape)
+        name, unit, _ = ACTION_COLUMNS[column]
+        low, high = self.action_bounds[:, column]
+        value = actions[table, player, column]
+        return (
+            f"action {name} of player_{player} on table {table} is {value:g}; "
+            f"expected a number in [{low:g}, {high:g}] {unit}"
+        )
+
+    def snapshot(self, tables: ArrayLike | slice = slice(None)) -> Snapshot:
+        """A copy of these tables (indices or a slice; all by default), random streams included."""
+        return Snapshot(
+            self.states[tables].copy(), self.params[tables].copy(), self._frames[tables].copy(),
+            self.observations[tables].copy(),
+        )  # fmt: skip
+
+    def restore(self, snapshot: Snapshot, tables: ArrayLike | slice = slice(None)) -> None:
+        """Put a snapshot back onto as many tables, or one table's snapshot onto all of them (a fork)."""
+        if (
+            snapshot.frames.shape[1:] != self._frames.shape[1:]
+            or snapshot.observations.shape[1:] != (self.observations.shape[1:])
+        ):
+            raise ValueError("the snapshot is of another variant; restore it onto tables of its own")
+        count = len(self.states[tables])
+        if len(snapshot.states) not in (1, count):
+            raise ValueError(f"the snapshot has {len(snapshot.states)} tables; expected 1 or {count}")
+        self.states[tables] = snapshot.states
+        self.params[tables] = snapshot.params
+        self._frames[tables] = snapshot.frames
+        self.observations[tables] = snapshot.observations
+
+    def turn(self) -> None:
+        """Turn all tables round: the players change ends, and the game goes on the same (see `game.mirror`)."""
+        mirror.turn_table(self.states, self._frames, self.params["length"], self.params["width"])
+        self.observations[:] = self.observations[:, ::-1].copy()
+
+    def close(self) -> None:
+        """End the threads."""
+        if self._pool is not None:
+            self._pool.shutdown()
+
+
+def _action_bounds(p: np.void) -> NDArray[np.float32]:
+    """(2, 4): low and high of the action space (report K.1)."""
+    radius = p["mallet_radius"]
+    low = (radius, radius, LEAST_VOLTS, LEAST_VOLTS)
+    return np.array([low, (p["length"] / 2 - radius, p["width"] - radius, MOST_VOLTS, MOST_VOLTS)], np.float32)
+
+
+def _shares(tables: int, threads: int) -> list[tuple[int, int]]:
+    edges = np.linspace(0, tables, threads + 1).astype(int)
+    return [(int(a), int(b)) for a, b in zip(edges[:-1], edges[1:], strict=True)]
+
+
+def available_threads() -> int:
+    """How many threads can run here at once."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
