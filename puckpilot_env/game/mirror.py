@@ -1,4 +1,4 @@
-"""The only place that turns the table round: player 1 sees the table from its own end (x -> length - x, y -> width - y).
+"""The only place that turns the table round: player 1 sees it from its own end (x -> length - x, y -> width - y).
 
 Turning is its own inverse, so the same functions serve both ways.
 """

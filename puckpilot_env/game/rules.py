@@ -25,7 +25,7 @@ RULES = np.dtype(
         ("points", np.int64),  # to win a match
         ("match_time", np.float64),  # [s]
         ("possession_time", np.float64),  # in a match: longest time in one half before a face-off [s]
-        ("step_limit", np.int64),  # of a drill (truncation); 0 for none
+        ("step_limit", np.int64),  # truncation; 0 for none
     ]
 )
 
@@ -95,6 +95,7 @@ def look_for_clear(table, p, rules, rewards):
 @kernel
 def keep_time(table, p, rules):
     """Clocks: the end of a match, a puck held or stuck in one half, the step limit. True if a face-off was called."""
+    called = False
     if rules.game == MATCH:
         if table.time >= rules.match_time - 1e-9:
             lead = table.score[0] - table.score[1]
@@ -102,7 +103,7 @@ def keep_time(table, p, rules):
         elif table.held >= rules.possession_time - 1e-9:
             table.defending[0] = table.defending[1] = 1
             face_off(table, p)
-            return True
-    elif rules.step_limit > 0 and table.steps >= rules.step_limit:
+            called = True
+    if table.ending == RUNNING and 0 < rules.step_limit <= table.steps:
         end(table, STEP_LIMIT, -1)
-    return False
+    return called

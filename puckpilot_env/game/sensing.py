@@ -25,7 +25,7 @@ PUCK_X, PUCK_Y, OPPONENT_X, OPPONENT_Y, SEEN = range(5)  # columns of a frame
 @kernel
 def newest_frame(table, p, time):
     """Number of the newest frame that can be used at `time` [s]."""
-    return int(math.floor((time - p.camera_latency) * p.frame_rate - table.frame_phase + 1e-9))
+    return math.floor((time - p.camera_latency) * p.frame_rate - table.frame_phase + 1e-9)
 
 
 @kernel
@@ -37,7 +37,7 @@ def exposure(table, p, frame):
 @kernel
 def frames_exposed(table, p):
     """Number of the first frame that is exposed after now."""
-    return int(math.floor(table.time * p.frame_rate - table.frame_phase)) + 1
+    return math.floor(table.time * p.frame_rate - table.frame_phase) + 1
 
 
 @kernel

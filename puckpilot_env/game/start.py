@@ -11,12 +11,13 @@ from puckpilot_env.physics import mallet
 
 DEFENCE, ATTACK, MATCH = range(3)  # the games
 UNIFORM, LOG_UNIFORM = range(2)  # distributions of a drawn parameter
+SHORTEST_FLIGHT = 0.45  # s that a shot takes at least to the goal line: four decisions
 HOME_X = 0.25  # m from the player's own goal line; y is the middle
 
 
 @kernel
 def draw_parameters(table, row, drawn):
-    """Draw the randomized parameters of a table. row: its parameters as float64; drawn: (n, 4) of column, kind, a, b."""
+    """Draw a table's randomized parameters. row: its parameters as float64; drawn: (n, 4) of column, kind, low, high."""
     for i in range(drawn.shape[0]):
         u = random_stream.uniform(table, random_stream.TABLE)
         low, high = drawn[i, 2], drawn[i, 3]
@@ -26,7 +27,7 @@ def draw_parameters(table, row, drawn):
 
 @kernel
 def build_gantries(table, p):
-    """Draw each player's gantry around the parameters and derive its constants (report E.1: minus for x, plus for y)."""
+    """Draw each player's gantry around the parameters and derive its constants (errata row 1)."""
     for k in range(2):
         for a in range(2):
             sign = -1.0 if a == 0 else 1.0
@@ -96,9 +97,9 @@ def _shot(table, p, subject):
         aim = 2.0 * radius - aim
     elif way < 0.5:
         aim = 2.0 * (p.width - radius) - aim
-    speed = random_stream.between(table, random_stream.TABLE, 1.0, 6.0)
     dx, dy = -x, aim - y
     size = math.hypot(dx, dy)
+    speed = min(random_stream.between(table, random_stream.TABLE, 1.0, 6.0), size / SHORTEST_FLIGHT)
     place_puck(table, p, subject, x, y, speed * dx / size, speed * dy / size)
     shooter = min(x + radius + p.mallet_radius + 0.05, p.length - p.mallet_radius)
     place_mallet(
@@ -120,7 +121,7 @@ def _cleared_puck(table, p, subject):
 
 @kernel
 def begin_episode(table, p, row, drawn, game):
-    """Begin a new episode of `game`: parameters, gantries, puck and mallets, flags and clocks. `row` is `p` as floats."""
+    """Begin a new episode of `game`: parameters, gantries, puck and mallets, flags, clocks. `row`: `p` as floats."""
     draw_parameters(table, row, drawn)
     build_gantries(table, p)
     table.episode += 1

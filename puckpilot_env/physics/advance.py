@@ -44,7 +44,7 @@ def _bounce(body, kind, p):
 
 @kernel
 def _other_obstacle(body, p, path, gantry, k, t, nx, ny):
-    """`(mallet, wx, wy, ox, oy)` of what else the puck touches opposite to `n`; mallet is -1 for a wall, -2 for none."""
+    """`(mallet, wx, wy, ox, oy)` of what else the puck touches opposite `n`; mallet is -1 for a wall, -2 for none."""
     kind, wx, wy = bounce.touched(
         body[X], body[Y], nx, ny, contact.PINCH_SLACK, p.length, p.width, p.goal_width, p.puck_radius
     )
@@ -111,7 +111,8 @@ def advance(body, p, path, gantry, start, end, log):
     """Move the puck from `start` to `end` [s] of the current plans. `p` is a parameter record.
 
     Returns `(kind, time, events)`. `kind` says what it stopped at: GOAL_X0 or GOAL_X1 (the puck then rests on the goal
-    line), MIDDLE_LINE (it is about to cross: call again from `time`), or NOTHING (it is `end`). `log` is a float64 (m, EVENT_COLUMNS) array that takes the first m events; (0, EVENT_COLUMNS) to log none.
+    line), MIDDLE_LINE (it is about to cross: call again from `time`), or NOTHING (it is `end`). `log` is a float64
+    (m, EVENT_COLUMNS) array that takes the first m events; (0, EVENT_COLUMNS) to log none.
     """
     t = start
     events = 0

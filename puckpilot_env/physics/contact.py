@@ -51,7 +51,7 @@ def mallet_push(path, gantry, k, t, nx, ny):
 
 @kernel
 def stays_clear(x, y, ux, uy, travel, mallet_x, mallet_y, reach_x, reach_y, distance):
-    """True where a puck moving `travel` [m] along `u` cannot meet a mallet that moves at most `reach` from its place."""
+    """True where a puck moving `travel` [m] along `u` cannot meet a mallet that stays within `reach` of its place."""
     dx, dy = mallet_x - x, mallet_y - y
     along = min(max(dx * ux + dy * uy, 0.0), travel)
     apart = math.hypot(dx - along * ux, dy - along * uy)
