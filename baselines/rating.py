@@ -5,7 +5,7 @@ one that stands 400 points above the other wins ten games for each it loses. The
 
 A player that won every game has no finite rating by maximum likelihood, so ratings are the most probable ones under a
 weak prior: players' ratings are normal with a standard deviation of `PRIOR_SD`. Between players 400 apart who met
-1,000 times it moves the gap by about one point.
+1,000 times it moves the gap by less than one point.
 """
 
 from __future__ import annotations
@@ -110,7 +110,7 @@ def unseen_upsets(payoff: Payoff, elo: NDArray[np.float64]) -> NDArray[np.bool_]
     """
     groups = groups_of(payoff.wins, "strong")
     across = groups[:, None] != groups[None, :]
-    gaps = np.where(across, 1.0 + np.abs(elo[:, None] - elo[None, :]), 1e-9)
+    gaps = np.where(across, 1.0 + np.abs(elo[:, None] - elo[None, :]), 0.5)
     tree = minimum_spanning_tree(np.where(payoff.games > 0, gaps, 0.0)).toarray() > 0
     return (tree | tree.T) & across & (payoff.wins == 0)
 
