@@ -24,9 +24,10 @@ def test_tables_and_picture(tmp_path):
     with console.capture() as printed:
         console.print(payoff_table(payoff), rating_table(ratings))
     lines = printed.get().splitlines()
-    ace, mid, low = (next(line.rstrip() for line in lines if line.strip().startswith(name)) for name in payoff.players)
+    heading = next(row for row, line in enumerate(lines) if line.split() == list(payoff.players))
+    ace, mid, low = (line.rstrip() for line in lines[heading + 2 : heading + 5])
     assert ace.split(maxsplit=2) == ["[b]ace", "-", "120/  3/  7     9/  2/  1"]
-    assert len(ace) == len(mid) == len(low) and mid.endswith("-")
+    assert len(ace) == len(mid) == len(low) and mid.endswith("-") and low.split(maxsplit=1)[0] == "low"
     assert any(line.split() == ["[b]ace", "+200", "+150", "?"] for line in lines)
     draw_payoff(tmp_path / "one.png", payoff, ratings)
     draw_payoff(tmp_path / "two.png", payoff, ratings)
