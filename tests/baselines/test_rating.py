@@ -116,13 +116,15 @@ def test_rating_coverage(elo, correlation, highest):
 
 
 def test_player_that_won_all_is_finite_but_unsure():
-    """No game bounds the lead from above, ten thousand wins bound it from below better than ten."""
+    """No game bounds the lead from above. From below, 20 won pairs bound it about as far as their share of wins does."""
     few, many = (
         fit_ratings_from_pairs({("a", "b"): np.ones((pairs, 2), int)}, seed=0, resamples=400) for pairs in (20, 2000)
     )
     assert few.low and few.high and many.low and many.high
     assert 0 < few.low[0] < few.elo[0] < few.high[0] < 2000
     assert few.high[0] - few.elo[0] > 200
+    surest, likeliest = (400 * math.log10(share / (1 - share)) for share in (0.025 ** (1 / 20), 0.5 ** (1 / 20)))
+    assert surest < few.low[0] - few.high[1] < likeliest
     assert many.low[0] > few.low[0] + 200
 
 
