@@ -116,7 +116,7 @@ def test_rating_coverage(elo, correlation, highest):
 
 
 def test_player_that_won_all_is_finite_but_unsure():
-    """No game bounds the lead from above. From below, 20 won pairs bound it about as far as their share of wins does."""
+    """No game bounds the lead from above. From below, 20 won pairs bound it about as their share of wins does."""
     few, many = (
         fit_ratings_from_pairs({("a", "b"): np.ones((pairs, 2), int)}, seed=0, resamples=400) for pairs in (20, 2000)
     )
