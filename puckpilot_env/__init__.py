@@ -26,7 +26,7 @@ def _make(module: str, function: str, **options: Any) -> Any:
 
 
 def _register() -> None:
-    """Enter every id in both registries. The Gymnasium seats need players by name, which live a floor above: by string."""
+    """Enter every id in both registries. The Gymnasium seats know players, who live a floor above: named by string."""
     for id_, variant in all_variants().items():
         if id_ not in pettingzoo.parallel_registry:
             pettingzoo.register("parallel", id_, partial(_make, variant.module, "parallel_env"))

@@ -13,7 +13,8 @@ VARIANT = Variant(
     version=0,
     summary="The puck is under player_0's control; it has to shoot past player_1.",
     game=ATTACK,
-    ending="When the puck crosses the middle line or enters player_0's own goal (terminated), or after 10 s (truncated).",
+    ending="When the puck crosses the middle line or enters player_0's own goal (terminated), or after 10 s "
+    "(truncated).",
     step_limit=100,
 )
 

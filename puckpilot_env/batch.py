@@ -6,10 +6,10 @@ import numpy as np
 
 from puckpilot_env import random_stream
 from puckpilot_env.game.rules import RUNNING, STEP_LIMIT
+from puckpilot_env.game.sensing import MOST_WANTED
 from puckpilot_env.game.step import begin_table, observe_table, step_table
 from puckpilot_env.kernel import kernel
 from puckpilot_env.physics.advance import EVENT_COLUMNS
-from puckpilot_env.physics.mallet import PATH_COLUMNS
 
 
 @kernel
@@ -45,12 +45,12 @@ def step_range(
     autoreset, first, last,
 ):  # fmt: skip
     """Play one step on tables `first` to `last`, and begin a new episode where one ended, if `autoreset`."""
-    path = np.zeros((2, 2, PATH_COLUMNS))
     log = np.zeros((0, EVENT_COLUMNS))
+    film = np.zeros((MOST_WANTED, 3))
     rule = rules[0]
     for i in range(first, last):
         table, p = states[i], params[i]
-        step_table(table, p, rule, frames[i], actions[i], rewards[i], path, log)
+        step_table(table, p, rule, frames[i], actions[i], rewards[i], log, film)
         ended = table.ending != RUNNING
         truncated[i] = table.ending == STEP_LIMIT
         terminated[i] = ended and not truncated[i]

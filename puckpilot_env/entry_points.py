@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 def entry_points(
     variant: Variant,
 ) -> tuple[Callable[..., AECEnv], Callable[..., ParallelEnv], Callable[..., AECEnv]]:
-    """`(env, parallel_env, raw_env)` of a variant, PettingZoo's three names; see `parallel_env.TableEnv` for arguments."""
+    """PettingZoo's `(env, parallel_env, raw_env)` of a variant; `parallel_env.TableEnv` describes their arguments."""
 
     def parallel_env(**options: Any) -> ParallelEnv:
         from puckpilot_env.parallel_env import TableEnv

@@ -5,12 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from puckpilot_env.physics.mallet import FAST, FAST_RATE, SLOW, SLOW_RATE
-
 
 def motion_of_mallets(states: NDArray[np.void]) -> NDArray[np.float64]:
     """`(n, 2, 4)`: x, y, vx, vy [m, m/s] of both mallets in the table's frame."""
-    modes, gantry = states["modes"], states["gantry"]
-    places = modes.sum(-1)
-    speeds = -gantry[..., SLOW_RATE] * modes[..., SLOW] - gantry[..., FAST_RATE] * modes[..., FAST]
-    return np.concatenate([places, speeds], axis=-1)
+    axes = [states["mallets"][axis] for axis in "xy"]
+    places = [a["rest"] + a["slow"] + a["fast"] for a in axes]
+    speeds = [-a["slow_rate"] * a["slow"] - a["fast_rate"] * a["fast"] for a in axes]
+    return np.stack(places + speeds, axis=-1)

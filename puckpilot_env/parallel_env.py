@@ -97,7 +97,7 @@ class TableEnv(ParallelEnv):
         dict[str, bool],
         dict[str, dict[str, Any]],
     ]:
-        """Play one step. Raises ValueError, having changed nothing, for an action that is missing or not in its space."""
+        """Play one step. Raises ValueError, having changed nothing, for an action missing or not in its space."""
         if not self.agents:
             raise ValueError("the episode is over (or has not begun); call reset() before step()")
         rows = self._actions[0]
@@ -153,7 +153,8 @@ class TableEnv(ParallelEnv):
     def state(self) -> NDArray[np.float64]:
         """The true state in the table's frame: puck, then each mallet, as x, y, vx, vy [m, m/s]."""
         table = self._tables.states[0]
-        everything = np.concatenate([table["puck"], motion_of_mallets(self._tables.states)[0].ravel()])
+        puck = [table["puck"][name] for name in ("x", "y", "vx", "vy")]
+        everything = np.concatenate([puck, motion_of_mallets(self._tables.states)[0].ravel()])
         return np.clip(everything, -STATE_HIGH, STATE_HIGH)
 
     def render(self) -> NDArray[np.uint8] | None:

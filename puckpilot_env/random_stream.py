@@ -20,6 +20,7 @@ _MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
 _MIX_2 = np.uint64(0x94D049BB133111EB)
 _S30, _S27, _S31, _S11 = np.uint64(30), np.uint64(27), np.uint64(31), np.uint64(11)
 _ONE = np.uint64(1)
+_TAIL = 0.02425
 
 
 @kernel
@@ -54,8 +55,33 @@ def between(table, stream, low, high):
 
 
 @kernel
-def normal_pair(table, stream):
-    """Two independent standard normal numbers (Box and Muller 1958)."""
-    radius = math.sqrt(-2.0 * math.log(1.0 - uniform(table, stream)))
-    angle = 2.0 * math.pi * uniform(table, stream)
-    return radius * math.cos(angle), radius * math.sin(angle)
+def normal(table, stream):
+    """The next number of the stream, standard normal, by the inverse of its distribution (Acklam's approximation).
+
+    Its relative error, under 1.2e-9, is far below anything that is simulated here; it needs no pairs and, in 95 of 100
+    cases, no logarithm.
+    """
+    u = uniform(table, stream)
+    if u < _TAIL:
+        return _normal_tail(max(u, 1e-300))
+    if u > 1.0 - _TAIL:
+        return -_normal_tail(max(1.0 - u, 1e-300))
+    q = u - 0.5
+    r = q * q
+    above = ((((-39.69683028665376 * r + 220.9460984245205) * r - 275.9285104469687) * r + 138.3577518672690) * r
+             - 30.66479806614716) * r + 2.506628277459239  # fmt: skip
+    below = ((((-54.47609879822406 * r + 161.5858368580409) * r - 155.6989798598866) * r + 66.80131188771972) * r
+             - 13.28068155288572) * r + 1.0  # fmt: skip
+    return q * above / below
+
+
+@kernel
+def _normal_tail(u):
+    """`normal` for u < _TAIL."""
+    q = math.sqrt(-2.0 * math.log(u))
+    above = ((((-0.007784894002430293 * q - 0.3223964580411365) * q - 2.400758277161838) * q - 2.549732539343734) * q
+             + 4.374664141464968) * q + 2.938163982698783  # fmt: skip
+    below = (
+        ((0.007784695709041462 * q + 0.3224671290700398) * q + 2.445134137142996) * q + 3.754408661907416
+    ) * q + 1.0
+    return above / below

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from puckpilot_env.physics.mallet import GANTRY_COLUMNS
+from puckpilot_env.physics.advance import PUCK
+from puckpilot_env.physics.mallet import MALLET
 from puckpilot_env.random_stream import STREAMS
 
 ERROR_TERMS = 5  # of the camera's smooth error, each component
@@ -17,9 +18,8 @@ FRAME_COLUMNS = 5  # puck x, y, opponent x, y [m], puck seen (1 or 0); in the pl
 
 TABLE = np.dtype(
     [
-        ("puck", np.float64, 4),  # x, y, vx, vy [m, m/s]
-        ("modes", np.float64, (2, 2, 3)),  # rest, slow, fast [m] of player, axis (see physics.mallet)
-        ("gantry", np.float64, (2, 2, GANTRY_COLUMNS)),  # constants of player, axis
+        ("puck", PUCK),
+        ("mallets", MALLET, 2),  # with their gantries and plans
         ("gantry_scale", np.float64, (2, 2, 3)),  # C5, C6, C7 relative to the parameters', of player, axis
         ("camera_error", np.float64, (2, 2, ERROR_TERMS)),  # smooth error's coefficients [m] of player, component
         ("frame_phase", np.float64),  # frame j is exposed at (j + frame_phase)/frame_rate

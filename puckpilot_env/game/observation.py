@@ -12,7 +12,7 @@ import numpy as np
 from puckpilot_env.game import mirror, predict, sensing
 from puckpilot_env.game.start import MATCH
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics.mallet import axis_velocity
+from puckpilot_env.physics.mallet import motion_now
 from puckpilot_env.state import FRAMES_KEPT
 
 HORIZONS = (0.2, 0.5)  # s ahead, of the expected puck places
@@ -95,18 +95,14 @@ def _put_velocity(row, at, k, vx, vy):
 @kernel
 def _put_mallet(table, p, row, at, k, player):
     """Place and velocity of `player`'s mallet as `k` sees them."""
-    modes, gantry = table.modes, table.gantry
-    x = modes[player, 0, 0] + modes[player, 0, 1] + modes[player, 0, 2]
-    y = modes[player, 1, 0] + modes[player, 1, 1] + modes[player, 1, 2]
-    vx = axis_velocity(gantry, player, 0, modes[player, 0, 1], modes[player, 0, 2])
-    vy = axis_velocity(gantry, player, 1, modes[player, 1, 1], modes[player, 1, 2])
+    x, y, vx, vy = motion_now(table.mallets[player])
     return _put_velocity(row, _put_place(row, at, k, x, y, p), k, vx, vy)
 
 
 @kernel
 def _put_exact(table, p, rows, at):
     """Puck, opponent and expected places, known exactly; the expectations serve both players."""
-    x, y, vx, vy = table.puck[0], table.puck[1], table.puck[2], table.puck[3]
+    x, y, vx, vy = table.puck.x, table.puck.y, table.puck.vx, table.puck.vy
     for k in range(2):
         i = _put_velocity(rows[k], _put_place(rows[k], at, k, x, y, p), k, vx, vy)
         _put_mallet(table, p, rows[k], i, k, 1 - k)

@@ -41,10 +41,10 @@ def end(table, ending, winner):
 def crossed_middle(table, p, rules, rewards, mallet_x, mallet_y):
     """The puck just crossed the middle line; `(mallet_x, mallet_y)`: the mallet of the half that it enters [m]."""
     table.held = 0.0
-    vx, vy = table.puck[2], table.puck[3]
+    vx, vy = table.puck.vx, table.puck.vy
     player = 0 if vx > 0.0 else 1  # whose half it leaves
     goal = bounce.GOAL_X1 if player == 0 else bounce.GOAL_X0
-    outcome = projected_shot(table.puck[0], table.puck[1], vx, vy, mallet_x, mallet_y, goal, p)
+    outcome = projected_shot(table.puck.x, table.puck.y, vx, vy, mallet_x, mallet_y, goal, p)
     speed = (vx * vx + vy * vy) ** 0.5
     mine = player == table.subject
     if table.defending[player] == 1:
@@ -84,8 +84,8 @@ def look_for_clear(table, p, rules, rewards):
     """Whether a defending player has just cleared the puck (J.1 case 1)."""
     for k in range(2):
         if table.defending[k] == 1:
-            x, _ = mirror.place(k, table.puck[0], table.puck[1], p)
-            if reward.is_clear(x, table.puck[2], table.puck[3], p.length):
+            x, _ = mirror.place(k, table.puck.x, table.puck.y, p)
+            if reward.is_clear(x, table.puck.vx, table.puck.vy, p.length):
                 rewards[k] += reward.clear_reward()
                 table.defending[k] = 0
                 if rules.game == DEFENCE and k == table.subject:

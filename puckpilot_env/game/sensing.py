@@ -12,7 +12,7 @@ import math
 from puckpilot_env import random_stream
 from puckpilot_env.game import mirror
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics import contact
+from puckpilot_env.physics.mallet import place_at, place_now
 from puckpilot_env.state import ERROR_TERMS, FRAMES_KEPT
 
 EXACT, ESTIMATED, HISTORY = range(3)  # kinds of sensing
@@ -20,6 +20,7 @@ LAGS = (0, 1, 2, 5, 11)  # frames back from the newest, of a history
 OLDEST_LAG = 11
 VELOCITY_LAG = 2  # estimated velocities are a difference over so many frames
 PUCK_X, PUCK_Y, OPPONENT_X, OPPONENT_Y, SEEN = range(5)  # columns of a frame
+MOST_WANTED = 62  # frames in a step that can be told apart
 
 
 @kernel
@@ -41,18 +42,26 @@ def frames_exposed(table, p):
 
 
 @kernel
-def is_looked_at(table, p, frame, sensing, step, period):
-    """Whether a decision at the end of step `step` (0, 1, ..) or later looks at this frame."""
-    for later in range(step, step + 64):
-        lag = newest_frame(table, p, (later + 1) * period) - frame
-        if lag > OLDEST_LAG:
-            return False
+def _bit(frame, first, last):
+    return 1 << (frame - first) if first <= frame <= last else 0
+
+
+@kernel
+def wanted_frames(table, p, sensing, first, period):
+    """Which of the frames exposed in this step, from number `first` on, some decision will look at, as bits."""
+    last = math.floor((table.time + period) * p.frame_rate - table.frame_phase)
+    wanted = 0
+    step = table.steps + 1
+    newest = newest_frame(table, p, step * period)
+    while newest - OLDEST_LAG <= last:
         if sensing == HISTORY:
-            if lag == 0 or lag == 1 or lag == 2 or lag == 5 or lag == 11:
-                return True
-        elif lag == 0 or lag == VELOCITY_LAG:
-            return True
-    return False
+            for lag in LAGS:
+                wanted |= _bit(newest - lag, first, last)
+        else:
+            wanted |= _bit(newest, first, last) | _bit(newest - VELOCITY_LAG, first, last)
+        step += 1
+        newest = newest_frame(table, p, step * period)
+    return wanted
 
 
 @kernel
@@ -61,7 +70,7 @@ def draw_camera_error(table, p):
     for k in range(2):
         for c in range(2):
             for term in range(ERROR_TERMS):
-                z = random_stream.normal_pair(table, k)[0]
+                z = random_stream.normal(table, k)
                 table.camera_error[k, c, term] = p.camera_error * z / math.sqrt(2.0 * ERROR_TERMS)
 
 
@@ -81,8 +90,8 @@ def smooth_error(table, k, c, u, w):
 def measure(table, p, k, x, y, noise):
     """A place [m] of player `k`'s frame as its camera reports it."""
     u, w = 2.0 * x / p.length - 1.0, 2.0 * y / p.width - 1.0
-    noise_x, noise_y = random_stream.normal_pair(table, k)
-    return x + smooth_error(table, k, 0, u, w) + noise * noise_x, y + smooth_error(table, k, 1, u, w) + noise * noise_y
+    x += smooth_error(table, k, 0, u, w) + noise * random_stream.normal(table, k)
+    return x, y + smooth_error(table, k, 1, u, w) + noise * random_stream.normal(table, k)
 
 
 @kernel
@@ -92,31 +101,30 @@ def _copy_frame(frames, k, source, target):
 
 
 @kernel
-def take_frame(table, p, frames, frame, puck_x, puck_y, path, time):
+def take_frame(table, p, frames, frame, puck_x, puck_y, time):
     """Store frame number `frame` as each player's camera saw the puck and the other mallet at `time` of the plans."""
-    gantry = table.gantry
+    slot = frame % FRAMES_KEPT
+    first = place_at(table.mallets[0], time)
+    second = place_at(table.mallets[1], time)
     for k in range(2):
         chance = random_stream.uniform(table, k)
         if chance < p.held_frames:
             _copy_frame(frames, k, table.last_frame, frame)
             continue
-        slot = frame % FRAMES_KEPT
+        own, other = (first, second) if k == 0 else (second, first)
         x, y = mirror.place(k, puck_x, puck_y, p)
-        own = contact.mallet_motion(path, gantry, k, time)
-        other = contact.mallet_motion(path, gantry, 1 - k, time)
         beam, _ = mirror.place(k, own[0], own[1], p)
-        other_x, other_y = mirror.place(k, other[0], other[1], p)
         beside = abs(x - beam)
-        near = beside < p.puck_radius + 0.5 * p.beam_width
-        seen = beside > 0.5 * p.beam_width and chance < 1.0 - p.dropped_frames
-        if seen:
+        if beside > 0.5 * p.beam_width and chance < 1.0 - p.dropped_frames:
+            near = beside < p.puck_radius + 0.5 * p.beam_width
             x, y = measure(table, p, k, x, y, p.beam_noise if near else p.camera_noise)
             frames[k, slot, PUCK_X], frames[k, slot, PUCK_Y], frames[k, slot, SEEN] = x, y, 1.0
         else:
             _copy_frame(frames, k, table.last_frame, frame)
             frames[k, slot, SEEN] = 0.0
-        other_x, other_y = measure(table, p, k, other_x, other_y, p.camera_noise)
-        frames[k, slot, OPPONENT_X], frames[k, slot, OPPONENT_Y] = other_x, other_y
+        x, y = mirror.place(k, other[0], other[1], p)
+        x, y = measure(table, p, k, x, y, p.camera_noise)
+        frames[k, slot, OPPONENT_X], frames[k, slot, OPPONENT_Y] = x, y
     table.last_frame = frame
 
 
@@ -133,14 +141,10 @@ def fill_frames(table, p, frames):
     newest = newest_frame(table, p, table.time)
     last = frames_exposed(table, p) - 1
     for k in range(2):
-        x, y = mirror.place(k, table.puck[0], table.puck[1], p)
-        vx, vy = mirror.velocity(k, table.puck[2], table.puck[3])
-        modes = table.modes
-        other = 1 - k
-        other_x, other_y = mirror.place(
-            k, modes[other, 0, 0] + modes[other, 0, 1] + modes[other, 0, 2],
-            modes[other, 1, 0] + modes[other, 1, 1] + modes[other, 1, 2], p,
-        )  # fmt: skip
+        x, y = mirror.place(k, table.puck.x, table.puck.y, p)
+        vx, vy = mirror.velocity(k, table.puck.vx, table.puck.vy)
+        other_x, other_y = place_now(table.mallets[1 - k])
+        other_x, other_y = mirror.place(k, other_x, other_y, p)
         for frame in range(newest - OLDEST_LAG, last + 1):
             slot = frame % FRAMES_KEPT
             age = table.time - exposure(table, p, frame)

@@ -8,6 +8,7 @@ from puckpilot_env import random_stream
 from puckpilot_env.game import mirror
 from puckpilot_env.kernel import kernel
 from puckpilot_env.physics import mallet
+from puckpilot_env.physics.vector import size
 
 DEFENCE, ATTACK, MATCH = range(3)  # the games
 UNIFORM, LOG_UNIFORM = range(2)  # distributions of a drawn parameter
@@ -17,7 +18,7 @@ HOME_X = 0.25  # m from the player's own goal line; y is the middle
 
 @kernel
 def draw_parameters(table, row, drawn):
-    """Draw a table's randomized parameters. row: its parameters as float64; drawn: (n, 4) of column, kind, low, high."""
+    """Draw a table's randomized parameters. row: all parameters; drawn: (n, 4) of column, kind, low, high."""
     for i in range(drawn.shape[0]):
         u = random_stream.uniform(table, random_stream.TABLE)
         low, high = drawn[i, 2], drawn[i, 3]
@@ -35,32 +36,29 @@ def build_gantries(table, p):
                 table.gantry_scale[k, a, c] = 1.0
                 if p.gantry_spread > 0.0:
                     table.gantry_scale[k, a, c] += random_stream.between(table, k, -p.gantry_spread, p.gantry_spread)
-            constants = mallet.axis_constants(
+            mallet.set_constants(
+                table.mallets[k].x if a == 0 else table.mallets[k].y,
                 (p.a1 + sign * p.b1) * table.gantry_scale[k, a, 0],
                 (p.a2 + sign * p.b2) * table.gantry_scale[k, a, 1],
                 (p.a3 + sign * p.b3) * table.gantry_scale[k, a, 2],
                 p.pulley_radius,
             )
-            for c in range(mallet.GANTRY_COLUMNS):
-                table.gantry[k, a, c] = constants[c]
 
 
 @kernel
 def place_mallet(table, p, k, x, y):
     """Put player `k`'s mallet at rest at `(x, y)` [m] of its own frame."""
-    modes = table.modes
     x, y = mirror.place(k, x, y, p)
-    modes[k, 0, mallet.REST], modes[k, 1, mallet.REST] = x, y
-    for a in range(2):
-        modes[k, a, mallet.SLOW], modes[k, a, mallet.FAST] = 0.0, 0.0
+    mallet.place_axis(table.mallets[k].x, x, 0.0, 0.0)
+    mallet.place_axis(table.mallets[k].y, y, 0.0, 0.0)
 
 
 @kernel
 def place_puck(table, p, player, x, y, vx, vy):
     """Put the puck at `(x, y)` [m] with velocity `(vx, vy)` [m/s], all in `player`'s frame."""
     puck = table.puck
-    puck[0], puck[1] = mirror.place(player, x, y, p)
-    puck[2], puck[3] = mirror.velocity(player, vx, vy)
+    puck.x, puck.y = mirror.place(player, x, y, p)
+    puck.vx, puck.vy = mirror.velocity(player, vx, vy)
     table.held = 0.0
 
 
@@ -92,15 +90,15 @@ def _shot(table, p, subject):
     x = p.length * random_stream.between(table, random_stream.TABLE, 0.55, 0.85)
     y = random_stream.between(table, random_stream.TABLE, 2.0 * radius, p.width - 2.0 * radius)
     aim = 0.5 * p.width + 0.7 * p.goal_width * random_stream.between(table, random_stream.TABLE, -1.0, 1.0)
-    way = random_stream.uniform(table, random_stream.TABLE)
-    if way < 0.25:  # over the wall y = 0: aim at the target's mirror image
+    side = random_stream.uniform(table, random_stream.TABLE)
+    if side < 0.25:  # over the wall y = 0: aim at the target's mirror image
         aim = 2.0 * radius - aim
-    elif way < 0.5:
+    elif side < 0.5:
         aim = 2.0 * (p.width - radius) - aim
     dx, dy = -x, aim - y
-    size = math.hypot(dx, dy)
-    speed = min(random_stream.between(table, random_stream.TABLE, 1.0, 6.0), size / SHORTEST_FLIGHT)
-    place_puck(table, p, subject, x, y, speed * dx / size, speed * dy / size)
+    way = size(dx, dy)
+    speed = min(random_stream.between(table, random_stream.TABLE, 1.0, 6.0), way / SHORTEST_FLIGHT)
+    place_puck(table, p, subject, x, y, speed * dx / way, speed * dy / way)
     shooter = min(x + radius + p.mallet_radius + 0.05, p.length - p.mallet_radius)
     place_mallet(
         table, p, 1 - subject, p.length - shooter, p.width - min(max(y, p.mallet_radius), p.width - p.mallet_radius)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 from puckpilot_env.kernel import kernel
+from puckpilot_env.physics.vector import size
 
 # Kinds of events
 NOTHING, WALL_X0, WALL_X1, WALL_Y0, WALL_Y1, POST, GOAL_X0, GOAL_X1, MIDDLE_LINE, MALLET_0, MALLET_1 = range(11)
@@ -102,8 +103,8 @@ def boundary_normal(kind, x, y, length, width, goal_width):
     post_x = 0.0 if x < 0.5 * length else length
     post_y = 0.5 * width + (0.5 * goal_width if y > 0.5 * width else -0.5 * goal_width)
     dx, dy = x - post_x, y - post_y
-    size = math.sqrt(dx * dx + dy * dy)
-    return dx / size, dy / size
+    apart = size(dx, dy)
+    return dx / apart, dy / apart
 
 
 @kernel
@@ -124,6 +125,6 @@ def touched(x, y, nx, ny, slack, length, width, goal_width, radius):
         px, py = boundary_normal(POST, x, y, length, width, goal_width)
         post_x = 0.0 if x < 0.5 * length else length
         post_y = middle + (half_goal if y > middle else -half_goal)
-        if math.hypot(x - post_x, y - post_y) - radius < slack and px * nx + py * ny < opposed:
+        if size(x - post_x, y - post_y) - radius < slack and px * nx + py * ny < opposed:
             kind, wx, wy = POST, px, py
     return kind, wx, wy
