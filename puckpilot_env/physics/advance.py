@@ -79,7 +79,7 @@ def _strike(puck, p, mallets, k, t):
     apart = size(dx, dy)
     nx, ny = dx / apart, dy / apart
     push = push_at(mallets[k], t, nx, ny)
-    vx, vy = contact.strike(puck.vx, puck.vy, mvx, mvy, nx, ny, p.mallet_restitution, push)
+    vx, vy = contact.strike(puck.vx, puck.vy, mvx, mvy, nx, ny, p.mallet_restitution, push, p.friction, p.drag)
     other, wx, wy, ox, oy = _other_obstacle(puck, p, mallets, k, t, nx, ny)
     if other != -2 and (vx - ox) * wx + (vy - oy) * wy < 0.0:
         separation = (vx - mvx) * nx + (vy - mvy) * ny
@@ -129,13 +129,15 @@ def advance(puck, p, mallets, start, end, log, film):
         v = math.sqrt(puck.vx * puck.vx + puck.vy * puck.vy)
         ux, uy = (puck.vx / v, puck.vy / v) if v > 0.0 else (1.0, 0.0)
         travel = glide.distance(v, end - t, p.friction, p.drag)
-        gap, kind = bounce.first_boundary(
-            puck.x, puck.y, ux, uy, travel, p.length, p.width, p.goal_width, p.puck_radius
-        )
+        gap, kind = travel, bounce.NOTHING
+        if v > 0.0:  # a resting puck meets no wall, however near
+            gap, kind = bounce.first_boundary(
+                puck.x, puck.y, ux, uy, travel, p.length, p.width, p.goal_width, p.puck_radius
+            )
+            middle = bounce.distance_to_middle(puck.x, ux, p.length)
+            if middle < gap:
+                gap, kind = middle, bounce.MIDDLE_LINE
         until = end
-        middle = bounce.distance_to_middle(puck.x, ux, p.length)
-        if middle < gap:
-            gap, kind = middle, bounce.MIDDLE_LINE
         if kind != bounce.NOTHING:
             travel = gap
             until = min(t + glide.time_to(v, gap, p.friction, p.drag)[0], end)
