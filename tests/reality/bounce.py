@@ -12,7 +12,7 @@ from tests.reality.table import MALLET, POST
 RESTING = 1e-6  # m/s, a slower approach than this is not a bounce but a contact that lasts
 
 
-@njit
+@njit(error_model="numpy")
 def approach(which, puck, mallets, nx, ny):
     """Speed [m/s] at which puck and obstacle close along the normal; negative when they part."""
     vx, vy = puck[VX], puck[VY]
@@ -22,7 +22,7 @@ def approach(which, puck, mallets, nx, ny):
     return -(vx * nx + vy * ny)
 
 
-@njit
+@njit(error_model="numpy")
 def bounce(law, which, puck, mallets, nx, ny):
     """Apply the impulse of a contact with obstacle `which` in place."""
     if which >= MALLET:
@@ -31,7 +31,7 @@ def bounce(law, which, puck, mallets, nx, ny):
         off_wall(law, which, puck, nx, ny)
 
 
-@njit
+@njit(error_model="numpy")
 def rub(law, mu, pressure, along, spin):
     """Coulomb impulse along the tangent: grip stops the slip at the rim, slip is capped at mu times the normal impulse.
 
@@ -45,7 +45,7 @@ def rub(law, mu, pressure, along, spin):
     return j, spin - j / (law.spin_inertia * law.puck_radius)
 
 
-@njit
+@njit(error_model="numpy")
 def off_wall(law, which, puck, nx, ny):
     """Eq. (10): v_n -> -e v_n, v_t -> e v_t; or, as effects, other constants and friction with spin."""
     closing = -(puck[VX] * nx + puck[VY] * ny)
@@ -68,9 +68,9 @@ def off_wall(law, which, puck, nx, ny):
     puck[VY] = rebound * ny + along * nx
 
 
-@njit
+@njit(error_model="numpy")
 def off_mallet(law, k, puck, mallets, nx, ny):
-    """Reflect the velocity relative to the mallet: normal part with e, tangent kept. The mallet yields by `mallet_give`."""
+    """Reflect the velocity relative to the mallet: normal part with e, tangent kept. By `mallet_give`, it yields."""
     wx, wy = puck[VX] - mallets[k, 1], puck[VY] - mallets[k, 4]
     closing = -(wx * nx + wy * ny)
     e = max(0.0, law.mallet_restitution - law.mallet_restitution_slope * closing) if closing > RESTING else 0.0

@@ -5,14 +5,14 @@ from __future__ import annotations
 from numba import njit
 
 
-@njit
+@njit(error_model="numpy")
 def true_volts(law, volts_x, volts_y):
     """What reaches the motors of what was commanded: a sagging supply, and the volts that stiction eats."""
     sag = 1.0 + law.voltage_sag * (abs(volts_x) + abs(volts_y))
     return less_deadband(volts_x, law.deadband) / sag, less_deadband(volts_y, law.deadband) / sag
 
 
-@njit
+@njit(error_model="numpy")
 def less_deadband(volts, deadband):
     if volts > deadband:
         return volts - deadband
@@ -21,7 +21,7 @@ def less_deadband(volts, deadband):
     return 0.0
 
 
-@njit
+@njit(error_model="numpy")
 def advance_axis(c5, c6, c7, force, mallet, first, h, out):
     """RK4 for C5 p''' + C6 p'' + C7 p' = force (Eq. 2-3 with their dots restored); state (p, p', p'') from `first`."""
     p, v, a = mallet[first], mallet[first + 1], mallet[first + 2]
@@ -38,7 +38,7 @@ def advance_axis(c5, c6, c7, force, mallet, first, h, out):
     out[first + 2] = a + h * (j1 + 2.0 * j2 + 2.0 * j3 + j4) / 6.0
 
 
-@njit
+@njit(error_model="numpy")
 def advance_mallets(law, mallets, volts, h, out):
     """Every mallet through h seconds; `mallets` (k, 6) is (x, x', x'', y, y', y''), `volts` (k, 2) as commanded."""
     half_radius = 0.5 * law.pulley_radius

@@ -9,7 +9,7 @@ from numba import njit
 X, Y, VX, VY, SPIN = range(5)  # columns of a puck state
 
 
-@njit
+@njit(error_model="numpy")
 def push(law, x, y, vx, vy, spin):
     """Acceleration of everything but friction and drag: tilt, warp, and forces across the velocity."""
     dx = x - 0.5 * law.length
@@ -20,20 +20,20 @@ def push(law, x, y, vx, vy, spin):
     return ax, ay
 
 
-@njit
+@njit(error_model="numpy")
 def grip(law, t, x, y, vx, vy):
     """Sliding friction per unit mass [m/s^2]: constant in the baseline (Eq. 6)."""
     friction = law.friction
     if law.patch_radius > 0.0 and sqrt((x - law.patch_x) ** 2 + (y - law.patch_y) ** 2) < law.patch_radius:
         friction += law.patch_friction
     friction *= 1.0 + law.friction_drift * t
-    square = vx * vx + vy * vy
-    if square > 0.0:
+    if law.friction_anisotropy != 0.0 and (vx != 0.0 or vy != 0.0):
+        square = vx * vx + vy * vy
         friction *= 1.0 + law.friction_anisotropy * (vx * vx - vy * vy) / square
     return friction if friction > 0.0 else 0.0
 
 
-@njit
+@njit(error_model="numpy")
 def acceleration(law, t, x, y, vx, vy, spin):
     """Eq. (6) per unit mass, dv/dt = -(friction + drag v^2) along v, plus `push`. Rest holds while push <= friction."""
     ax, ay = push(law, x, y, vx, vy, spin)
@@ -48,7 +48,7 @@ def acceleration(law, t, x, y, vx, vy, spin):
     return ax * (1.0 - friction / pull), ay * (1.0 - friction / pull)
 
 
-@njit
+@njit(error_model="numpy")
 def advance_puck(law, t, puck, h, out):
     """One RK4 step of length h without contacts. A puck that friction stops inside the step stays where it stops."""
     x, y, vx, vy, spin = puck[X], puck[Y], puck[VX], puck[VY], puck[SPIN]

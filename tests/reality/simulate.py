@@ -47,6 +47,7 @@ class Trace:
     spin: np.ndarray  # (n,)
     mallets: np.ndarray  # (k, n, 6): x, x', x'', y, y', y''
     contacts: list[Contact]
+    unlogged: int  # contacts beyond the log's LOG_ROWS; a puck jammed for long can make so many
     near_miss: float
     end_puck: np.ndarray  # (5,): x, y, vx, vy, spin
     end_mallets: np.ndarray  # (k, 6)
@@ -60,12 +61,14 @@ def run(
     duration: float = 1.0,
     dt: float = 1e-5,
     sample: float = 1e-3,
+    clock: float = 0.0,
 ) -> Trace:
     """Simulate `duration` seconds.
 
     `puck`: (x, y, vx, vy[, spin]), or None for no puck. `mallets`: up to two starts, (x, y) or (x, vx, ax, y, vy, ay).
     `plans`: one for each mallet: (Vx, Vy, tx1, ty1, tx2, ty2) in signed volts and seconds, None (no voltage), or a
-    list of (start, plan) in order of time.
+    list of (start, plan) in order of time. `clock`: time at the start, for laws that change with time (plans and
+    trace count from the start).
     """
     plans = [None] * len(mallets) if plans is None else plans
     if len(mallets) > 2 or len(plans) != len(mallets):
@@ -84,16 +87,15 @@ def run(
     out_puck, out_mallets = np.full((rows, 5), np.nan), np.full((rows, len(mallets), 6), np.nan)
     log = np.zeros((LOG_ROWS, LOG_COLUMNS))
     count, near_miss = march(
-        law.numbers(), end_puck, end_mallets, times, volts, duration, dt, sample, out_puck, out_mallets, log
+        law.numbers(), end_puck, end_mallets, times, volts, clock, duration, dt, sample, out_puck, out_mallets, log
     )
-    if count > LOG_ROWS:
-        raise RuntimeError(f"{count} contacts in one run: more than the log of {LOG_ROWS} holds; run a shorter piece")
     return Trace(
         t=np.arange(rows) * sample,
         puck=out_puck[:, :4],
         spin=out_puck[:, 4],
         mallets=np.ascontiguousarray(out_mallets.swapaxes(0, 1)),
         contacts=[contact(row) for row in log[:count]],
+        unlogged=max(0, count - LOG_ROWS),
         near_miss=float(near_miss),
         end_puck=end_puck,
         end_mallets=end_mallets,

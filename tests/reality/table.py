@@ -17,7 +17,7 @@ NAMES = ("x0", "xL", "y0", "yW", "x0y0", "x0yW", "xLy0", "xLyW", "x0", "xL", "0"
 FAR = 1e3  # m, the gap to something that cannot be touched here
 
 
-@njit
+@njit(error_model="numpy")
 def gap(law, which, puck, mallets):
     """Distance [m] that the puck may still travel towards obstacle `which` before touching it."""
     x, y = puck[X], puck[Y]
@@ -36,7 +36,7 @@ def gap(law, which, puck, mallets):
     return sqrt((x - mallets[k, 0]) ** 2 + (y - mallets[k, 3]) ** 2) - law.puck_radius - law.mallet_radius
 
 
-@njit
+@njit(error_model="numpy")
 def normal(law, which, puck, mallets):
     """Unit vector from the obstacle to the puck's centre at contact."""
     if which == 0 or which == GOAL:
@@ -58,7 +58,7 @@ def normal(law, which, puck, mallets):
     return dx / distance, dy / distance
 
 
-@njit
+@njit(error_model="numpy")
 def post(law, which):
     """Corner point of the goal mouth, obstacle 4..7."""
     x = 0.0 if which < POST + 2 else law.length

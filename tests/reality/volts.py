@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 
 Plan: TypeAlias = tuple[float, float, float, float, float, float]  # Vx, Vy, tx1, ty1, tx2, ty2
-Plans: TypeAlias = "Plan | None | Sequence[tuple[float, Plan | None]]"  # one, none, or (start, plan) in order
+Plans: TypeAlias = "Plan | Sequence[tuple[float, Plan | None]] | None"  # one, none, or (start, plan) in order
 
 
 def schedule(plans: Sequence[Plans], delay: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
@@ -38,7 +38,7 @@ def sorted_changes(plans: Plans, delay: float) -> list[tuple[float, tuple[float,
             continue
         volts_x, volts_y, tx1, ty1, tx2, ty2 = plan
         for moment in sorted({0.0, tx1, ty1, tx2, ty2}):
-            if 0.0 <= moment and start + moment < end:
+            if moment >= 0.0 and start + moment < end:
                 pair = (profile(volts_x, tx1, tx2, moment), profile(volts_y, ty1, ty2, moment))
                 changes.append((start + moment, pair))
     return changes
