@@ -76,7 +76,7 @@ def test_wall_keeps_e_of_both_components(start, which, after):
     trace = run(ICE, start, duration=0.3)
     (hit,) = trace.contacts
     assert (hit.kind, hit.which) == ("wall", which)
-    assert hit.t == pytest.approx(0.2 - LAW.puck_radius, abs=1e-12)
+    assert hit.t == pytest.approx(0.2 - LAW.puck_radius, abs=5e-12)
     assert trace.puck[-1, 2:] == pytest.approx(after, abs=1e-12)
     expected = np.array(start[:2]) + hit.t * np.array(start[2:]) + (0.3 - hit.t) * np.array(after)
     assert trace.puck[-1, :2] == pytest.approx(expected, abs=1e-11)
@@ -136,14 +136,14 @@ def test_mallet_reflects_the_relative_velocity(ratio):
     law = replace(ICE, mallet_give=ratio)
     cruise = terminal(law, 3.0)
     mallet = (0.3, cruise, 0.0, 0.5, 0.0, 0.0)  # at terminal speed already, so it moves evenly
-    trace = run(law, (0.8, 0.54, -1.0, 0.2), [mallet], [(3.0, 0.0, 9.0, 0.0, 9.0, 0.0)], duration=0.3)
+    trace = run(law, (0.8, 0.52, -1.0, 0.05), [mallet], [(3.0, 0.0, 9.0, 0.0, 9.0, 0.0)], duration=0.3)
     (hit,) = trace.contacts
     assert (hit.kind, hit.which) == ("mallet", "0")
     assert hypot(hit.x - 0.3 - cruise * hit.t, hit.y - 0.5) == pytest.approx(0.0814, abs=1e-10)
-    closing = -((-1.0 - cruise) * hit.nx + 0.2 * hit.ny)
+    closing = -((-1.0 - cruise) * hit.nx + 0.05 * hit.ny)
     assert hit.closing == pytest.approx(closing, abs=1e-10)
     gain = (1.0 + 0.7) * closing / (1.0 + ratio)
-    assert trace.puck[-1, 2:] == pytest.approx((-1.0 + gain * hit.nx, 0.2 + gain * hit.ny), abs=1e-10)
+    assert trace.puck[-1, 2:] == pytest.approx((-1.0 + gain * hit.nx, 0.05 + gain * hit.ny), abs=1e-10)
     slowed = int(hit.t / 1e-3) + 1
     assert (trace.mallets[0, slowed, 1] < cruise - 0.01) == (ratio > 0.0)
 
@@ -215,7 +215,7 @@ def test_plans_bring_the_mallet_to_rest_at_their_target(target):
 
 def test_halving_the_step_changes_nothing_that_matters():
     mallets, plans = [(0.3, 0.5), (1.6, 0.45)], [(9.0, 2.0, 0.2, 0.1, 0.3, 0.2), (-6.0, 0.0, 0.3, 0.0, 0.4, 0.0)]
-    runs = [run(LAW, (0.9, 0.6, -2.5, 0.4), mallets, plans, dt=dt) for dt in (4e-4, 2e-4, 1e-4, 1e-5, 5e-6)]
+    runs = [run(LAW, (0.9, 0.25, -1.5, 1.1), mallets, plans, dt=dt) for dt in (4e-4, 2e-4, 1e-4, 1e-5, 5e-6)]
     kinds = [contact.kind for contact in runs[-1].contacts]
     assert len(kinds) >= 3
     assert {"mallet", "wall"} <= set(kinds)
