@@ -45,6 +45,11 @@ def test_friction_alone_slows_evenly_and_stops():
     assert (trace.puck[-400:, 2:] == 0.0).all()
 
 
+def test_the_stop_is_exact_inside_a_coarse_step():
+    stop = run(Law(friction=0.5, drag=0.0), (0.5, 0.5, 0.49975, 0.0), duration=1.1, dt=1e-3).puck[-1]
+    assert stop == pytest.approx((0.5 + 0.49975**2, 0.5, 0.0, 0.0), abs=1e-10)  # after 0.9995 s
+
+
 def test_drag_alone_gives_the_logarithm():
     trace = run(Law(friction=0.0, drag=0.8), (0.1, 0.5, 2.0, 0.0))
     assert trace.puck[:, 0] == pytest.approx(0.1 + np.log1p(0.8 * 2.0 * trace.t) / 0.8, abs=1e-10)
@@ -290,6 +295,9 @@ def test_gantry_effects():
 
     sag = 1.0 + 0.02 * 9.0
     assert speed(Law(voltage_sag=0.02)) == pytest.approx((terminal(LAW, 6 / sag), terminal(LAW, -3 / sag)), abs=1e-6)
+    one_axis = run(Law(voltage_sag=0.02), mallets=[(0.3, 0.5)], plans=[(6.0, -3.0, 9.0, 0.0, 9.0, 0.0)], duration=0.1)
+    alone = run(LAW, mallets=[(0.3, 0.5)], plans=[(6.0 / sag, 0.0, 9.0, 0.0, 9.0, 0.0)], duration=0.1)
+    assert one_axis.end_mallets == pytest.approx(alone.end_mallets, abs=1e-12)  # y's volts count, though y is done
     assert speed(Law(deadband=0.5)) == pytest.approx((terminal(LAW, 5.5), terminal(LAW, -2.5)), abs=1e-6)
     late = run(Law(command_delay=0.05), mallets=[(0.3, 0.5)], plans=[(6.0, 0.0, 0.1, 0.0, 0.2, 0.0)], duration=0.3)
     prompt = run(LAW, mallets=[(0.3, 0.5)], plans=[(6.0, 0.0, 0.1, 0.0, 0.2, 0.0)], duration=0.25)

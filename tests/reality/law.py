@@ -67,8 +67,8 @@ class Law:
     mallet_mu: float = 0.0  # 1, Coulomb impulse along the rim
     mallet_give: float = 0.0  # 1, puck mass / effective mallet mass
 
-    # Gantry: `gantry.true_volts` and, for the delay, `volts.schedule`.
-    voltage_sag: float = 0.0  # 1/V, V / (1 + sag (|Vx| + |Vy|))
+    # Gantry: `volts.at_the_motors` and, for the delay, `volts.sorted_changes`.
+    voltage_sag: float = 0.0  # 1/V, V / (1 + sag (|Vx| + |Vy|)), with a plan's two volts however long each lasts
     deadband: float = 0.0  # V lost to stiction
     command_delay: float = 0.0  # s
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from tests.reality.camera import Camera, look_up, see
 from tests.reality.law import Law
-from tests.reality.scene import FINE, Scene, play
+from tests.reality.scene import Scene, play
 
 SCENARIOS = {
     "launches": (0, "puck launched by hand, no mallets on the table"),
@@ -81,6 +81,3 @@ def cell(value: float, digits: int) -> str:
 
 def write(path: Path, header: str, rows: Iterable[str]) -> None:
     path.write_text("\n".join([header, *rows]) + "\n", newline="\n")
-
-
-__all__ = ["FINE", "SCENARIOS", "make_recording"]

@@ -16,7 +16,7 @@ from tests.reality.simulate import Contact, run
 from tests.reality.volts import Plan
 
 TICK = 0.1  # s, a new plan this often
-FINE = 1e-3  # s, spacing of the truth
+FINE = 1e-4  # s, spacing of the truth (a bounce between two of them is cut by 0.1 mm or so)
 HAND = 0.6  # s, for which the puck is out of sight when a hand takes it
 HOME = (0.22, 0.5)  # of length, of width: where the robot waits
 REACH = 0.42  # of length: the robot's side
@@ -74,7 +74,10 @@ class Robot:
             follow_y = 0.5 * (puck[1] - 0.5 * self.law.width) if np.isfinite(puck[1]) else 0.0
             aim_y, self.ticks_left = HOME[1] * self.law.width + follow_y + jitter[1], 2
         aim_x = float(np.clip(aim_x, low, high))
-        self.target = (aim_x if own > 0 else self.law.length - aim_x, float(np.clip(aim_y, margin, 1.0 - margin)))
+        self.target = (
+            aim_x if own > 0 else self.law.length - aim_x,
+            float(np.clip(aim_y, margin, self.law.width - margin)),
+        )
 
 
 def launch(law: Law, rng: np.random.Generator, mallets: np.ndarray, fastest: float) -> np.ndarray:

@@ -82,7 +82,7 @@ def run(
     end_mallets = np.zeros((len(mallets), 6))
     for state, start in zip(end_mallets, mallets, strict=True):
         state[[0, 3] if len(start) == 2 else slice(None)] = start
-    times, volts = schedule(plans, law.command_delay)
+    times, volts = schedule(law, plans)
     rows = int(duration / sample + 1e-9) + 1
     out_puck, out_mallets = np.full((rows, 5), np.nan), np.full((rows, len(mallets), 6), np.nan)
     log = np.zeros((LOG_ROWS, LOG_COLUMNS))
