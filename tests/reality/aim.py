@@ -19,6 +19,8 @@ from scipy.optimize import brentq
 from tests.reality.law import Law
 from tests.reality.volts import Plan
 
+NOTHING = 1e-9  # s, so little of the voltage is rounding: a mallet on its way or at rest is not told to turn round
+
 
 def plan_to(law: Law, mallet: Sequence[float], target: tuple[float, float], volts: tuple[float, float]) -> Plan:
     """Plan (Vx, Vy, tx1, ty1, tx2, ty2) from a mallet state (6,) to rest at `target` with magnitudes `volts`."""
@@ -36,6 +38,8 @@ def axis_plan(
     """Signed volts, t1, t2 for one axis with coefficients c = (C5, C6, C7) and half = R/2."""
     position, v, a = state
     needed = c[2] * (target - position) - c[1] * v - c[0] * a
+    if abs(needed) < NOTHING * half * volts:
+        return volts, 0.0, 0.0
     for sign in (1.0, -1.0) if needed >= 0.0 else (-1.0, 1.0):
         force = half * volts * sign
         net = needed / force  # 2 t1 - t2
@@ -46,8 +50,11 @@ def axis_plan(
             speed, rate = coast(c, -force, speed, rate, t1 - net)  # t2 - t1
             return (c[0] * rate + c[1] * speed) / force
 
-        if unsettled(earliest) < 0.0:
+        start = unsettled(earliest)
+        if start < -NOTHING:
             continue  # too fast already: this sign cannot stop there
+        if start < NOTHING:
+            return volts * sign, earliest, 2.0 * earliest - net
         latest = earliest + 0.01
         while unsettled(latest) > 0.0:
             latest += 2.0 * (latest - earliest)

@@ -36,15 +36,14 @@ def sorted_changes(law: Law, plans: Plans) -> list[tuple[float, tuple[float, flo
         plans = [(0.0, plans)]  # type: ignore[list-item]
     starts = [(start + law.command_delay, plan) for start, plan in plans]  # type: ignore[misc]
     changes = []
-    for i, (start, plan) in enumerate(starts):
-        end = starts[i + 1][0] if i + 1 < len(starts) else np.inf
+    for start, plan in starts:
         if plan is None:
             changes.append((start, (0.0, 0.0)))
             continue
         volts_x, volts_y = at_the_motors(law, plan[0], plan[1])
         tx1, ty1, tx2, ty2 = plan[2:]
         for moment in sorted({0.0, tx1, ty1, tx2, ty2}):
-            if moment >= 0.0 and start + moment < end:
+            if moment >= 0.0:
                 pair = (profile(volts_x, tx1, tx2, moment), profile(volts_y, ty1, ty2, moment))
                 changes.append((start + moment, pair))
     return changes
