@@ -107,9 +107,10 @@ def halt(path, gantry, k, t):
         path[k, a, T1] = t
         path[k, a, T2] = t
         path[k, a, VOLTS] = 0.0
-        path[k, a, REST2] = rest + slow + fast
-        path[k, a, SLOW2] = 0.0
-        path[k, a, FAST2] = 0.0
+        for knot in (REST0, REST2):  # the first one too: `reach` counts from it
+            path[k, a, knot] = rest + slow + fast
+            path[k, a, knot + 1] = 0.0
+            path[k, a, knot + 2] = 0.0
 
 
 @kernel
