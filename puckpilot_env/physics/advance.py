@@ -67,7 +67,9 @@ def _strike(body, p, path, gantry, k, t):
     apart = math.hypot(dx, dy)
     nx, ny = dx / apart, dy / apart
     push = contact.mallet_push(path, gantry, k, t, nx, ny)
-    vx, vy = contact.strike(body[VX], body[VY], mvx, mvy, nx, ny, p.mallet_restitution, push)
+    vx, vy = contact.strike(
+        body[VX], body[VY], mvx, mvy, nx, ny, p.mallet_restitution, push, p.friction, p.drag
+    )
     other, wx, wy, ox, oy = _other_obstacle(body, p, path, gantry, k, t, nx, ny)
     if other != -2 and (vx - ox) * wx + (vy - oy) * wy < 0.0:
         separation = (vx - mvx) * nx + (vy - mvy) * ny
@@ -120,13 +122,15 @@ def advance(body, p, path, gantry, start, end, log):
         v = math.sqrt(body[VX] * body[VX] + body[VY] * body[VY])
         ux, uy = (body[VX] / v, body[VY] / v) if v > 0.0 else (1.0, 0.0)
         travel = glide.distance(v, end - t, p.friction, p.drag)
-        gap, kind = bounce.first_boundary(
-            body[X], body[Y], ux, uy, travel, p.length, p.width, p.goal_width, p.puck_radius
-        )
+        gap, kind = travel, bounce.NOTHING
+        if v > 0.0:  # a resting puck meets no wall, however near
+            gap, kind = bounce.first_boundary(
+                body[X], body[Y], ux, uy, travel, p.length, p.width, p.goal_width, p.puck_radius
+            )
+            middle = bounce.distance_to_middle(body[X], ux, p.length)
+            if middle < gap:
+                gap, kind = middle, bounce.MIDDLE_LINE
         until = end
-        middle = bounce.distance_to_middle(body[X], ux, p.length)
-        if middle < gap:
-            gap, kind = middle, bounce.MIDDLE_LINE
         if kind != bounce.NOTHING:
             travel = gap
             until = min(t + glide.time_to(v, gap, p.friction, p.drag)[0], end)

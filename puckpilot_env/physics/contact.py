@@ -116,15 +116,16 @@ def reflect(vx, vy, mx, my, nx, ny, restitution):
 
 
 @kernel
-def strike(vx, vy, mx, my, nx, ny, restitution, push):
+def strike(vx, vy, mx, my, nx, ny, restitution, push, friction, drag):
     """`reflect`, but apart at least so fast that a mallet accelerating by `push` is met again only a moment later.
 
     That replaces the endless sequence of ever smaller bounces of a puck being pushed along; the gap that it opens
-    stays under `push REST_BETWEEN_TOUCHES^2 / 8`.
+    stays under `(push + braking) REST_BETWEEN_TOUCHES^2 / 8`, where `braking` bounds the puck's own loss of speed.
     """
     vx, vy = reflect(vx, vy, mx, my, nx, ny, restitution)
     apart = (vx - mx) * nx + (vy - my) * ny
-    least = max(0.5 * push * REST_BETWEEN_TOUCHES, 1e-6)
+    braking = friction + drag * math.sqrt(vx * vx + vy * vy) * max(vx * nx + vy * ny, 0.0)
+    least = max(0.5 * (push + braking) * REST_BETWEEN_TOUCHES, 1e-6)
     if apart < least:
         vx, vy = vx + (least - apart) * nx, vy + (least - apart) * ny
     return vx, vy
