@@ -28,7 +28,10 @@ def first_outside(actions, bounds):
 def seed_range(states, seed):
     """Start every table's random streams from `seed` and its index."""
     for i in range(states.size):
-        random_stream.seed_streams(states[i], seed, np.uint64(i))
+        table, index = states[i], np.uint64(i)
+        random_stream.seed_stream(table.streams[0], seed, index, 0)
+        random_stream.seed_stream(table.streams[1], seed, index, 1)
+        random_stream.seed_stream(table.stream, seed, index, 2)
 
 
 @kernel

@@ -12,8 +12,7 @@ import numpy as np
 
 from puckpilot_env.kernel import kernel
 
-TABLE = 2  # the table's own stream; 0 and 1 are the players'
-STREAMS = 3
+STREAM = np.dtype([("key", np.uint64), ("draws", np.uint64)], align=True)
 
 _GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 _MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
@@ -32,36 +31,35 @@ def mix(z):
 
 
 @kernel
-def seed_streams(table, seed, index):
-    """Start the streams of table number `index` of a batch with this `seed` (both uint64)."""
+def seed_stream(stream, seed, index, number):
+    """Start stream `number` (0, 1, ..) of table number `index` of a batch with this `seed` (uint64, uint64, int)."""
     base = mix(mix(seed + _GOLDEN) + index * _GOLDEN)
-    for stream in range(STREAMS):
-        table.keys[stream] = mix(base + np.uint64(stream + 1) * _MIX_1)
-        table.draws[stream] = np.uint64(0)
+    stream.key = mix(base + np.uint64(number + 1) * _MIX_1)
+    stream.draws = np.uint64(0)
 
 
 @kernel
-def uniform(table, stream):
+def uniform(stream):
     """The next number of the stream, uniform in [0, 1)."""
-    draws = table.draws[stream] + _ONE
-    table.draws[stream] = draws
-    return (mix(table.keys[stream] + draws * _GOLDEN) >> _S11) * (1.0 / 9007199254740992.0)
+    draws = stream.draws + _ONE
+    stream.draws = draws
+    return (mix(stream.key + draws * _GOLDEN) >> _S11) * (1.0 / 9007199254740992.0)
 
 
 @kernel
-def between(table, stream, low, high):
+def between(stream, low, high):
     """Uniform in [low, high)."""
-    return low + (high - low) * uniform(table, stream)
+    return low + (high - low) * uniform(stream)
 
 
 @kernel
-def normal(table, stream):
+def normal(stream):
     """The next number of the stream, standard normal, by the inverse of its distribution (Acklam's approximation).
 
     Its relative error, under 1.2e-9, is far below anything that is simulated here; it needs no pairs and, in 95 of 100
     cases, no logarithm.
     """
-    u = uniform(table, stream)
+    u = uniform(stream)
     if u < _TAIL:
         return _normal_tail(max(u, 1e-300))
     if u > 1.0 - _TAIL:

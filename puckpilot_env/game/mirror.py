@@ -44,10 +44,8 @@ def turn_table(tables: np.ndarray, frames: np.ndarray, length: np.ndarray, width
             mallets[name] = extent[:, None] - mallets[name]
         for name in ("slow", "fast", "slow1", "fast1", "fast2", "volts"):
             mallets[name] *= -1.0
-    for name in ("mallets", "gantry_scale", "camera_error", "seen_velocity", "score", "last_score", "defending"):
+    for name in ("mallets", "gantry_scale", "cameras", "streams", "score", "last_score", "defending"):
         tables[name] = tables[name][:, ::-1].copy()
-    for name in ("keys", "draws"):
-        tables[name][:, :2] = tables[name][:, 1::-1].copy()
     tables["subject"] = 1 - tables["subject"]
     tables["winner"] = np.where(tables["winner"] < 0, -1, 1 - tables["winner"])
     tables["turned"] = 1 - tables["turned"]

@@ -117,31 +117,30 @@ def _put_exact(table, p, rows, at):
 
 
 @kernel
-def _estimate(table, p, frames, k, newest):
-    """Newest measured places and the velocities [m/s] of puck and opponent, by difference over VELOCITY_LAG frames.
+def _estimate(camera, p, frames, k, newest):
+    """Estimate the velocities [m/s] of puck and opponent by difference over VELOCITY_LAG frames.
 
-    While either frame lacks the puck its last velocity estimate is kept.
+    While either frame lacks the puck its last estimate is kept. Returns the newest frame's slot.
     """
     now, then = newest % FRAMES_KEPT, (newest - sensing.VELOCITY_LAG) % FRAMES_KEPT
     rate = p.frame_rate / sensing.VELOCITY_LAG
-    speeds = table.seen_velocity
     if frames[k, now, sensing.SEEN] > 0.5 and frames[k, then, sensing.SEEN] > 0.5:
-        for c in range(2):
-            speeds[k, c] = (frames[k, now, c] - frames[k, then, c]) * rate
-    for c in range(2, 4):
-        speeds[k, c] = (frames[k, now, c] - frames[k, then, c]) * rate
+        camera.puck_vx = (frames[k, now, sensing.PUCK_X] - frames[k, then, sensing.PUCK_X]) * rate
+        camera.puck_vy = (frames[k, now, sensing.PUCK_Y] - frames[k, then, sensing.PUCK_Y]) * rate
+    camera.opponent_vx = (frames[k, now, sensing.OPPONENT_X] - frames[k, then, sensing.OPPONENT_X]) * rate
+    camera.opponent_vy = (frames[k, now, sensing.OPPONENT_Y] - frames[k, then, sensing.OPPONENT_Y]) * rate
     return now
 
 
 @kernel
 def _put_estimated(table, p, frames, row, at, k):
     """Puck and opponent as player `k`'s camera has them, and where the puck is expected, allowing for the delay."""
-    now = _estimate(table, p, frames, k, sensing.newest_frame(table, p, table.time))
-    speeds = table.seen_velocity
-    x, y, vx, vy = frames[k, now, 0], frames[k, now, 1], speeds[k, 0], speeds[k, 1]
+    camera = table.cameras[k]
+    now = _estimate(camera, p, frames, k, sensing.newest_frame(table, p, table.time))
+    x, y, vx, vy = frames[k, now, sensing.PUCK_X], frames[k, now, sensing.PUCK_Y], camera.puck_vx, camera.puck_vy
     row[at], row[at + 1], row[at + 2], row[at + 3] = x, y, vx, vy
-    row[at + 4], row[at + 5] = frames[k, now, 2], frames[k, now, 3]
-    row[at + 6], row[at + 7] = speeds[k, 2], speeds[k, 3]
+    row[at + 4], row[at + 5] = frames[k, now, sensing.OPPONENT_X], frames[k, now, sensing.OPPONENT_Y]
+    row[at + 6], row[at + 7] = camera.opponent_vx, camera.opponent_vy
     at += 8
     x = min(max(x, p.puck_radius), p.length - p.puck_radius)
     y = min(max(y, p.puck_radius), p.width - p.puck_radius)

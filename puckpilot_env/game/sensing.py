@@ -68,30 +68,27 @@ def wanted_frames(table, p, sensing, first, period):
 def draw_camera_error(table, p):
     """Draw each player's smooth error: a quadratic surface a component, `camera_error` [m] rms over the table."""
     for k in range(2):
-        for c in range(2):
-            for term in range(ERROR_TERMS):
-                z = random_stream.normal(table, k)
-                table.camera_error[k, c, term] = p.camera_error * z / math.sqrt(2.0 * ERROR_TERMS)
+        camera, stream = table.cameras[k], table.streams[k]
+        for term in range(ERROR_TERMS):
+            camera.error_x[term] = p.camera_error * random_stream.normal(stream) / math.sqrt(2.0 * ERROR_TERMS)
+            camera.error_y[term] = p.camera_error * random_stream.normal(stream) / math.sqrt(2.0 * ERROR_TERMS)
 
 
 @kernel
-def smooth_error(table, k, c, u, w):
-    """The error [m] of component `c` at `(u, w)` in -1..1 over the table; its terms are orthonormal there."""
-    e = table.camera_error
-    return (
-        e[k, c, 0]
-        + 1.7320508 * (e[k, c, 1] * u + e[k, c, 2] * w)
-        + 3.0 * e[k, c, 3] * u * w
-        + 1.1180340 * e[k, c, 4] * (3.0 * u * u - 1.0)
-    )
+def smooth_error(e, u, w):
+    """The error [m] at `(u, w)` in -1..1 over the table from its coefficients `e`; the terms are orthonormal there."""
+    linear = e[0] + 1.7320508075688772 * (e[1] * u + e[2] * w)
+    return linear + 3.0 * e[3] * u * w + 1.118033988749895 * e[4] * (3.0 * u * u - 1.0)
 
 
 @kernel
-def measure(table, p, k, x, y, noise):
-    """A place [m] of player `k`'s frame as its camera reports it."""
+def measure(camera, stream, p, x, y, noise):
+    """A place [m] of the player's frame as its camera reports it."""
     u, w = 2.0 * x / p.length - 1.0, 2.0 * y / p.width - 1.0
-    x += smooth_error(table, k, 0, u, w) + noise * random_stream.normal(table, k)
-    return x, y + smooth_error(table, k, 1, u, w) + noise * random_stream.normal(table, k)
+    return (
+        x + smooth_error(camera.error_x, u, w) + noise * random_stream.normal(stream),
+        y + smooth_error(camera.error_y, u, w) + noise * random_stream.normal(stream),
+    )
 
 
 @kernel
@@ -101,30 +98,36 @@ def _copy_frame(frames, k, source, target):
 
 
 @kernel
+def _see(camera, stream, p, frames, k, frame, last, x, y, own_x, other_x, other_y):
+    """Store frame number `frame` as player `k` sees it; all places in its own frame, `own_x` its mallet's."""
+    chance = random_stream.uniform(stream)
+    if chance < p.held_frames:
+        _copy_frame(frames, k, last, frame)
+        return
+    slot = frame % FRAMES_KEPT
+    beside = abs(x - own_x)
+    if beside > 0.5 * p.beam_width and chance < 1.0 - p.dropped_frames:
+        near = beside < p.puck_radius + 0.5 * p.beam_width
+        x, y = measure(camera, stream, p, x, y, p.beam_noise if near else p.camera_noise)
+        frames[k, slot, PUCK_X], frames[k, slot, PUCK_Y], frames[k, slot, SEEN] = x, y, 1.0
+    else:
+        _copy_frame(frames, k, last, frame)
+        frames[k, slot, SEEN] = 0.0
+    x, y = measure(camera, stream, p, other_x, other_y, p.camera_noise)
+    frames[k, slot, OPPONENT_X], frames[k, slot, OPPONENT_Y] = x, y
+
+
+@kernel
 def take_frame(table, p, frames, frame, puck_x, puck_y, time):
     """Store frame number `frame` as each player's camera saw the puck and the other mallet at `time` of the plans."""
-    slot = frame % FRAMES_KEPT
-    first = place_at(table.mallets[0], time)
-    second = place_at(table.mallets[1], time)
-    for k in range(2):
-        chance = random_stream.uniform(table, k)
-        if chance < p.held_frames:
-            _copy_frame(frames, k, table.last_frame, frame)
-            continue
-        own, other = (first, second) if k == 0 else (second, first)
-        x, y = mirror.place(k, puck_x, puck_y, p)
-        beam, _ = mirror.place(k, own[0], own[1], p)
-        beside = abs(x - beam)
-        if beside > 0.5 * p.beam_width and chance < 1.0 - p.dropped_frames:
-            near = beside < p.puck_radius + 0.5 * p.beam_width
-            x, y = measure(table, p, k, x, y, p.beam_noise if near else p.camera_noise)
-            frames[k, slot, PUCK_X], frames[k, slot, PUCK_Y], frames[k, slot, SEEN] = x, y, 1.0
-        else:
-            _copy_frame(frames, k, table.last_frame, frame)
-            frames[k, slot, SEEN] = 0.0
-        x, y = mirror.place(k, other[0], other[1], p)
-        x, y = measure(table, p, k, x, y, p.camera_noise)
-        frames[k, slot, OPPONENT_X], frames[k, slot, OPPONENT_Y] = x, y
+    x0, y0 = place_at(table.mallets[0], time)
+    x1, y1 = place_at(table.mallets[1], time)
+    last = table.last_frame
+    _see(table.cameras[0], table.streams[0], p, frames, 0, frame, last, puck_x, puck_y, x0, x1, y1)
+    puck_x, puck_y = mirror.place(1, puck_x, puck_y, p)
+    x0, y0 = mirror.place(1, x0, y0, p)
+    x1, y1 = mirror.place(1, x1, y1, p)
+    _see(table.cameras[1], table.streams[1], p, frames, 1, frame, last, puck_x, puck_y, x1, x0, y0)
     table.last_frame = frame
 
 
@@ -153,6 +156,7 @@ def fill_frames(table, p, frames):
             frames[k, slot, PUCK_X], frames[k, slot, PUCK_Y] = past_x, past_y
             frames[k, slot, OPPONENT_X], frames[k, slot, OPPONENT_Y] = other_x, other_y
             frames[k, slot, SEEN] = 1.0
-        table.seen_velocity[k, 0], table.seen_velocity[k, 1] = vx, vy
-        table.seen_velocity[k, 2] = table.seen_velocity[k, 3] = 0.0
+        camera = table.cameras[k]
+        camera.puck_vx, camera.puck_vy = vx, vy
+        camera.opponent_vx, camera.opponent_vy = 0.0, 0.0
     table.last_frame = last

@@ -20,7 +20,7 @@ HOME_X = 0.25  # m from the player's own goal line; y is the middle
 def draw_parameters(table, row, drawn):
     """Draw a table's randomized parameters. row: all parameters; drawn: (n, 4) of column, kind, low, high."""
     for i in range(drawn.shape[0]):
-        u = random_stream.uniform(table, random_stream.TABLE)
+        u = random_stream.uniform(table.stream)
         low, high = drawn[i, 2], drawn[i, 3]
         value = low * (high / low) ** u if drawn[i, 1] == LOG_UNIFORM else low + (high - low) * u
         row[int(drawn[i, 0])] = value
@@ -35,7 +35,9 @@ def build_gantries(table, p):
             for c in range(3):
                 table.gantry_scale[k, a, c] = 1.0
                 if p.gantry_spread > 0.0:
-                    table.gantry_scale[k, a, c] += random_stream.between(table, k, -p.gantry_spread, p.gantry_spread)
+                    table.gantry_scale[k, a, c] += random_stream.between(
+                        table.streams[k], -p.gantry_spread, p.gantry_spread
+                    )
             mallet.set_constants(
                 table.mallets[k].x if a == 0 else table.mallets[k].y,
                 (p.a1 + sign * p.b1) * table.gantry_scale[k, a, 0],
@@ -67,10 +69,10 @@ def face_off(table, p):
     """Both at home, the puck on the middle line with a small random velocity, the same for either player."""
     for k in range(2):
         place_mallet(table, p, k, HOME_X, 0.5 * p.width)
-    y = p.width * random_stream.between(table, random_stream.TABLE, 0.2, 0.8)
-    angle = random_stream.between(table, random_stream.TABLE, -0.25 * math.pi, 0.25 * math.pi)
-    speed = random_stream.between(table, random_stream.TABLE, 0.3, 0.8)
-    end = 1.0 if random_stream.uniform(table, random_stream.TABLE) < 0.5 else -1.0
+    y = p.width * random_stream.between(table.stream, 0.2, 0.8)
+    angle = random_stream.between(table.stream, -0.25 * math.pi, 0.25 * math.pi)
+    speed = random_stream.between(table.stream, 0.3, 0.8)
+    end = 1.0 if random_stream.uniform(table.stream) < 0.5 else -1.0
     place_puck(table, p, table.turned, 0.5 * p.length, y, end * speed * math.cos(angle), speed * math.sin(angle))
 
 
@@ -79,7 +81,7 @@ def serve(table, p, player):
     """Both at home, the puck at rest in front of `player`, who conceded the last goal."""
     for k in range(2):
         place_mallet(table, p, k, HOME_X, 0.5 * p.width)
-    y = p.width * random_stream.between(table, player, 0.25, 0.75)
+    y = p.width * random_stream.between(table.streams[player], 0.25, 0.75)
     place_puck(table, p, player, 0.3 * p.length, y, 0.0, 0.0)
 
 
@@ -87,17 +89,17 @@ def serve(table, p, player):
 def _shot(table, p, subject):
     """A shot from the other half at the subject's goal mouth and a little beside it, direct or over one side wall."""
     radius = p.puck_radius
-    x = p.length * random_stream.between(table, random_stream.TABLE, 0.55, 0.85)
-    y = random_stream.between(table, random_stream.TABLE, 2.0 * radius, p.width - 2.0 * radius)
-    aim = 0.5 * p.width + 0.7 * p.goal_width * random_stream.between(table, random_stream.TABLE, -1.0, 1.0)
-    side = random_stream.uniform(table, random_stream.TABLE)
+    x = p.length * random_stream.between(table.stream, 0.55, 0.85)
+    y = random_stream.between(table.stream, 2.0 * radius, p.width - 2.0 * radius)
+    aim = 0.5 * p.width + 0.7 * p.goal_width * random_stream.between(table.stream, -1.0, 1.0)
+    side = random_stream.uniform(table.stream)
     if side < 0.25:  # over the wall y = 0: aim at the target's mirror image
         aim = 2.0 * radius - aim
     elif side < 0.5:
         aim = 2.0 * (p.width - radius) - aim
     dx, dy = -x, aim - y
     way = size(dx, dy)
-    speed = min(random_stream.between(table, random_stream.TABLE, 1.0, 6.0), way / SHORTEST_FLIGHT)
+    speed = min(random_stream.between(table.stream, 1.0, 6.0), way / SHORTEST_FLIGHT)
     place_puck(table, p, subject, x, y, speed * dx / way, speed * dy / way)
     shooter = min(x + radius + p.mallet_radius + 0.05, p.length - p.mallet_radius)
     place_mallet(
@@ -108,12 +110,12 @@ def _shot(table, p, subject):
 @kernel
 def _cleared_puck(table, p, subject):
     """A puck that the subject has just cleared: on its side, moving across the table (report J.1, case 1)."""
-    x = p.length * random_stream.between(table, random_stream.TABLE, 0.2, 0.45)
-    y = p.width * random_stream.between(table, random_stream.TABLE, 0.15, 0.85)
-    across = random_stream.between(table, random_stream.TABLE, 0.4, 1.5)
-    if random_stream.uniform(table, random_stream.TABLE) < 0.5:
+    x = p.length * random_stream.between(table.stream, 0.2, 0.45)
+    y = p.width * random_stream.between(table.stream, 0.15, 0.85)
+    across = random_stream.between(table.stream, 0.4, 1.5)
+    if random_stream.uniform(table.stream) < 0.5:
         across = -across
-    along = across * random_stream.between(table, random_stream.TABLE, -1.0 / 7.0, 1.0 / 7.0)
+    along = across * random_stream.between(table.stream, -1.0 / 7.0, 1.0 / 7.0)
     place_puck(table, p, subject, x, y, along, across)
 
 
@@ -129,7 +131,7 @@ def begin_episode(table, p, row, drawn, game):
         table.last_score[k] = table.score[k]
         table.score[k] = 0
     table.defending[0] = table.defending[1] = 1
-    table.frame_phase = random_stream.uniform(table, random_stream.TABLE)
+    table.frame_phase = random_stream.uniform(table.stream)
     face_off(table, p)
     subject = table.subject
     if game == DEFENCE:

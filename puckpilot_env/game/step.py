@@ -24,8 +24,8 @@ def _plan(table, p, actions, rewards):
         x, y = place_now(mallet)
         rewards[k] = reward.movement_cost(x, y, x_f, y_f) + reward.voltage_cost(vx, vy)
         if p.action_noise > 0.0:
-            vx *= 1.0 + p.action_noise * random_stream.normal(table, k)
-            vy *= 1.0 + p.action_noise * random_stream.normal(table, k)
+            vx *= 1.0 + p.action_noise * random_stream.normal(table.streams[k])
+            vy *= 1.0 + p.action_noise * random_stream.normal(table.streams[k])
         plan_mallet(mallet, x_f, y_f, vx, vy, mirror.area(k, p), p.max_voltage)
 
 
@@ -53,24 +53,27 @@ def _play_and_film(table, p, rule, frames, rewards, log, film):
     first = sensing.frames_exposed(table, p)
     wanted = sensing.wanted_frames(table, p, rule.sensing, first, rule.period)
     shots = 0
-    for bit in range(sensing.MOST_WANTED):
-        if wanted >> bit & 1:
-            film[shots, 0] = sensing.exposure(table, p, first + bit) - table.time
+    frame, left = first, wanted
+    while left:
+        if left & 1:
+            film[shots, 0] = sensing.exposure(table, p, frame) - table.time
             shots += 1
+        frame, left = frame + 1, left >> 1
     over = _play(table, p, rule, rewards, log, film[:shots])
-    shots = 0
-    for bit in range(sensing.MOST_WANTED):
-        if wanted >> bit & 1:
-            sensing.take_frame(table, p, frames, first + bit, film[shots, 1], film[shots, 2], film[shots, 0])
+    shots, frame, left = 0, first, wanted
+    while left:
+        if left & 1:
+            sensing.take_frame(table, p, frames, frame, film[shots, 1], film[shots, 2], film[shots, 0])
             shots += 1
+        frame, left = frame + 1, left >> 1
     return over
 
 
 @kernel
 def _random_impulse(table, p, period):
-    if random_stream.uniform(table, random_stream.TABLE) < p.impulse_rate * period:
-        x = p.impulse_speed * random_stream.normal(table, random_stream.TABLE)
-        y = p.impulse_speed * random_stream.normal(table, random_stream.TABLE)
+    if random_stream.uniform(table.stream) < p.impulse_rate * period:
+        x = p.impulse_speed * random_stream.normal(table.stream)
+        y = p.impulse_speed * random_stream.normal(table.stream)
         x, y = mirror.velocity(table.turned, x, y)
         table.puck.vx += x
         table.puck.vy += y
