@@ -13,7 +13,6 @@ from puckpilot_env.physics.mallet import MALLET
 from puckpilot_env.random_stream import STREAM
 
 ERROR_TERMS = 5  # of the camera's smooth error, each component
-FRAMES_KEPT = 32  # camera frames kept a player
 FRAME_COLUMNS = 5  # puck x, y, opponent x, y [m], puck seen (1 or 0); in the player's own frame
 
 CAMERA = np.dtype(

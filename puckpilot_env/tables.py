@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from puckpilot_env import batch, parameters, state
-from puckpilot_env.game import mirror, observation
+from puckpilot_env.game import mirror, observation, sensing
 from puckpilot_env.kernel import announce_compilation
 from puckpilot_env.variants import Variant, find_variant
 
@@ -82,7 +82,7 @@ class Tables:
         self._rules = variant.rules()
         self._drawn = variant.drawn()
         self.states = np.zeros(tables, state.TABLE)
-        kept = state.FRAMES_KEPT if variant.sensing else 1
+        kept = self._frames_kept()
         self._frames = np.zeros((tables, 2, kept, state.FRAME_COLUMNS))
         self.observation_columns = observation.columns(self._rules[0], self.nominal[0])
         self.observation_bounds = observation.space_bounds(self._rules[0], self.nominal[0])
@@ -97,6 +97,13 @@ class Tables:
         self._pool = ThreadPoolExecutor(self.threads - 1) if self.threads > 1 else None
         announce_compilation("step_range")
         self.reset(seed)
+
+    def _frames_kept(self) -> int:
+        worst = {name: float(self.nominal[name][0]) for name in ("camera_latency", "frame_rate")}
+        for draw in self.variant.draws:
+            if draw.parameter in worst:
+                worst[draw.parameter] = draw.high
+        return sensing.frames_kept(self.variant.sensing, **worst)
 
     def __len__(self) -> int:
         return len(self.states)

@@ -34,7 +34,7 @@ def area(player, p):
 def turn_table(tables: np.ndarray, frames: np.ndarray, length: np.ndarray, width: np.ndarray) -> None:
     """Turn whole tables round in place, players, streams and all: the same game seen from the other end.
 
-    tables: (n,) records of `state.TABLE`; frames: (n, 2, FRAMES_KEPT, FRAME_COLUMNS); length, width: (n,) [m].
+    tables: (n,) records of `state.TABLE`; frames: (n, 2, frames, FRAME_COLUMNS); length, width: (n,) [m].
     """
     for axis, extent in (("x", length), ("y", width)):
         tables["puck"][axis] = extent - tables["puck"][axis]

@@ -13,7 +13,6 @@ from puckpilot_env.game import mirror, predict, sensing
 from puckpilot_env.game.start import MATCH
 from puckpilot_env.kernel import kernel
 from puckpilot_env.physics.mallet import motion_now
-from puckpilot_env.state import FRAMES_KEPT
 
 HORIZONS = (0.2, 0.5)  # s ahead, of the expected puck places
 BEYOND = 0.05  # m; measured places may lie so far outside the table
@@ -122,7 +121,7 @@ def _estimate(camera, p, frames, k, newest):
 
     While either frame lacks the puck its last estimate is kept. Returns the newest frame's slot.
     """
-    now, then = newest % FRAMES_KEPT, (newest - sensing.VELOCITY_LAG) % FRAMES_KEPT
+    now, then = newest % frames.shape[1], (newest - sensing.VELOCITY_LAG) % frames.shape[1]
     rate = p.frame_rate / sensing.VELOCITY_LAG
     if frames[k, now, sensing.SEEN] > 0.5 and frames[k, then, sensing.SEEN] > 0.5:
         camera.puck_vx = (frames[k, now, sensing.PUCK_X] - frames[k, then, sensing.PUCK_X]) * rate
@@ -158,7 +157,7 @@ def _put_estimated(table, p, frames, row, at, k):
 def _put_history(table, p, frames, row, at, k):
     newest = sensing.newest_frame(table, p, table.time)
     for lag in sensing.LAGS:
-        slot = (newest - lag) % FRAMES_KEPT
+        slot = (newest - lag) % frames.shape[1]
         for c in range(5):
             row[at + c] = frames[k, slot, c]
         at += 5

@@ -13,7 +13,7 @@ from puckpilot_env import random_stream
 from puckpilot_env.game import mirror
 from puckpilot_env.kernel import kernel
 from puckpilot_env.physics.mallet import place_at, place_now
-from puckpilot_env.state import ERROR_TERMS, FRAMES_KEPT
+from puckpilot_env.state import ERROR_TERMS
 
 EXACT, ESTIMATED, HISTORY = range(3)  # kinds of sensing
 LAGS = (0, 1, 2, 5, 11)  # frames back from the newest, of a history
@@ -21,6 +21,14 @@ OLDEST_LAG = 11
 VELOCITY_LAG = 2  # estimated velocities are a difference over so many frames
 PUCK_X, PUCK_Y, OPPONENT_X, OPPONENT_Y, SEEN = range(5)  # columns of a frame
 MOST_WANTED = 62  # frames in a step that can be told apart
+
+
+def frames_kept(sensing: int, camera_latency: float, frame_rate: float) -> int:
+    """How many frames a player's history must hold: the oldest one looked at, and those still on their way."""
+    if sensing == EXACT:
+        return 1
+    oldest = OLDEST_LAG if sensing == HISTORY else VELOCITY_LAG
+    return oldest + math.ceil(camera_latency * frame_rate) + 3
 
 
 @kernel
@@ -53,7 +61,8 @@ def wanted_frames(table, p, sensing, first, period):
     wanted = 0
     step = table.steps + 1
     newest = newest_frame(table, p, step * period)
-    while newest - OLDEST_LAG <= last:
+    oldest = OLDEST_LAG if sensing == HISTORY else VELOCITY_LAG
+    while newest - oldest <= last:
         if sensing == HISTORY:
             for lag in LAGS:
                 wanted |= _bit(newest - lag, first, last)
@@ -94,7 +103,7 @@ def measure(camera, stream, p, x, y, noise):
 @kernel
 def _copy_frame(frames, k, source, target):
     for c in range(frames.shape[2]):
-        frames[k, target % FRAMES_KEPT, c] = frames[k, source % FRAMES_KEPT, c]
+        frames[k, target % frames.shape[1], c] = frames[k, source % frames.shape[1], c]
 
 
 @kernel
@@ -104,7 +113,7 @@ def _see(camera, stream, p, frames, k, frame, last, x, y, own_x, other_x, other_
     if chance < p.held_frames:
         _copy_frame(frames, k, last, frame)
         return
-    slot = frame % FRAMES_KEPT
+    slot = frame % frames.shape[1]
     beside = abs(x - own_x)
     if beside > 0.5 * p.beam_width and chance < 1.0 - p.dropped_frames:
         near = beside < p.puck_radius + 0.5 * p.beam_width
@@ -141,15 +150,14 @@ def begin_frames(table, p, frames):
 @kernel
 def fill_frames(table, p, frames):
     """Fill the history as if the puck had come straight to where it is, and the mallets had stood still."""
-    newest = newest_frame(table, p, table.time)
     last = frames_exposed(table, p) - 1
     for k in range(2):
         x, y = mirror.place(k, table.puck.x, table.puck.y, p)
         vx, vy = mirror.velocity(k, table.puck.vx, table.puck.vy)
         other_x, other_y = place_now(table.mallets[1 - k])
         other_x, other_y = mirror.place(k, other_x, other_y, p)
-        for frame in range(newest - OLDEST_LAG, last + 1):
-            slot = frame % FRAMES_KEPT
+        for frame in range(last + 1 - frames.shape[1], last + 1):
+            slot = frame % frames.shape[1]
             age = table.time - exposure(table, p, frame)
             past_x = min(max(x - vx * age, p.puck_radius), p.length - p.puck_radius)
             past_y = min(max(y - vy * age, p.puck_radius), p.width - p.puck_radius)
