@@ -58,9 +58,9 @@ def box(picture: Picture, left: float, top: float, right: float, bottom: float, 
     _blend(picture, window, colour, alpha * down * across)
 
 
-def trail(picture: Picture, points: NDArray[np.float64], radius: float, colour: Colour, alpha: float):
+def trail(picture: Picture, points: NDArray[np.floating], radius: float, colour: Colour, alpha: float):
     """A line through `points` (m, 2), oldest first, that widens to `radius` and darkens to `alpha` at the last."""
-    points = np.asarray(points, np.float32)
+    points = points.astype(np.float32)
     if len(points) < 2:
         return
     low, high = points.min(axis=0) - radius - 1.0, points.max(axis=0) + radius + 1.0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,11 +12,18 @@ from numpy.typing import ArrayLike, NDArray
 from puckpilot_env import render
 from puckpilot_env.tables import Tables
 from puckpilot_env.trace import trace
-from puckpilot_env.video import VideoWriter
 
 TRAIL_TIME = 0.4  # s
 _GRAIN = 0.005  # s between points of a trail
 _SAME_PLACE = 1e-6  # m; a puck that is further off than this between two steps was placed anew
+
+
+class Video(Protocol):
+    """What takes the pictures: a `video.VideoWriter`, or anything else with a frame rate."""
+
+    fps: float
+
+    def add(self, frame: NDArray[np.uint8], /) -> None: ...
 
 
 class Film:
@@ -31,7 +39,7 @@ class Film:
     def __init__(
         self,
         tables: Tables,
-        video: VideoWriter,
+        video: Video,
         *,
         table: int = 0,
         names: Sequence[str] = ("player_0", "player_1"),

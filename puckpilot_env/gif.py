@@ -72,7 +72,8 @@ class _Palette:
         if rest.size:
             weighted = np.repeat(_channels(found[rest]), np.ceil(np.sqrt(counts[rest])).astype(int), axis=0)
             mixed = Image.fromarray(weighted[None]).quantize(_TRANSPARENT - len(exact), Image.Quantize.MEDIANCUT)
-            self._table = np.concatenate([self._table, np.reshape(mixed.getpalette(), (-1, 3)).astype(np.uint8)])
+            others = np.array(mixed.getpalette(), np.uint8).reshape(-1, 3)
+            self._table = np.concatenate([self._table, others])
         self._known = np.full(1 << 24, -1, np.int16)  # index of each colour, as it is needed
 
     @property
@@ -84,10 +85,10 @@ class _Palette:
         """The nearest palette colour of each pixel."""
         indices = self._known[picture]
         if (indices < 0).any():
-            from scipy.spatial import cKDTree
+            from scipy.spatial import KDTree
 
             new = np.unique(picture[indices < 0])
-            self._known[new] = cKDTree(self._table.astype(float)).query(_channels(new).astype(float))[1]
+            self._known[new] = KDTree(self._table.astype(float)).query(_channels(new).astype(float))[1]
             indices = self._known[picture]
         return indices.astype(np.uint8)
 

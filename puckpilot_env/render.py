@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -30,6 +31,8 @@ PLAYERS: tuple[Colour, Colour] = ((38, 108, 176), (226, 122, 46))
 _SIDE, _TOP, _BOTTOM, _RAIL = 40 / 280, 56 / 280, 24 / 280, 14 / 280
 _SUPERSAMPLING = 4  # of the background, drawn once
 
+_Number = TypeVar("_Number", float, NDArray[np.float64])
+
 
 @dataclass(frozen=True)
 class Layout:
@@ -47,7 +50,7 @@ class Layout:
         height = 2 * round(0.5 * self.scale * (self.width + _TOP + _BOTTOM))
         return height, 2 * round(0.5 * self.scale * (self.length + 2 * _SIDE))
 
-    def pixel(self, x: float, y: float) -> tuple[float, float]:
+    def pixel(self, x: _Number, y: _Number) -> tuple[_Number, _Number]:
         """The place `(x, y)` [m] of the table in the picture (see `canvas`): x to the right, y upwards."""
         return self.scale * (_SIDE + x), self.scale * (_TOP + self.width - y)
 
@@ -161,19 +164,20 @@ def _draw_header(
     """Names, who defends, score and time."""
     unit = place.scale / SCALE
     middle, _ = place.pixel(0.5 * place.length, 0.0)
-    is_match = rules is not None and rules["game"] == MATCH
+    time_left = rules["match_time"] - table["time"] if rules is not None and rules["game"] == MATCH else None
+    has_score = rules is None or time_left is not None
     room = middle - place.pixel(0.0, 0.0)[0] - 50 * unit
     for k in range(2):
         _draw_name(picture, place, names[k], "defends" if table["defending"][k] else "attacks", k, room)
     small = max(round(12 * unit), 6)
-    if is_match or rules is None:
+    if has_score:
         big = max(round(21 * unit), 8)
         canvas.text(picture, middle, 14 * unit, ":", big, MUTED, 0.5)
         for k, side in ((0, -1), (1, 1)):
             canvas.text(picture, middle + side * 9 * unit, 14 * unit, f"{table['score'][k]}", big, PLAYERS[k], k == 0)
     if note is None:
-        note = clock(rules["match_time"] - table["time"]) if is_match else f"{table['time']:.1f} s"
-    canvas.text(picture, middle, (32 if is_match or rules is None else 21) * unit, note, small, MUTED, 0.5)
+        note = f"{table['time']:.1f} s" if time_left is None else clock(time_left)
+    canvas.text(picture, middle, (32 if has_score else 21) * unit, note, small, MUTED, 0.5)
 
 
 def _draw_name(picture: Picture, place: Layout, name: str, role: str, player: int, room: float) -> None:
@@ -210,7 +214,7 @@ def _mix(a: Colour, b: Colour, share: float) -> Colour:
 def _background(place: Layout) -> Picture:
     """All that does not move, drawn large and averaged; not to be written to."""
     large = Layout(place.length, place.width, place.goal_width, place.corner, place.scale * _SUPERSAMPLING)
-    size = tuple(_SUPERSAMPLING * n for n in reversed(place.shape))
+    size = _SUPERSAMPLING * place.shape[1], _SUPERSAMPLING * place.shape[0]
     image = Image.new("RGB", size, PAPER)
     rail = _corners(large, _RAIL)
     shadow = Image.new("L", size)
@@ -235,9 +239,9 @@ def _corners(place: Layout, margin: float) -> tuple[float, float, float, float]:
     return left, top, right - 1, bottom - 1
 
 
-def _markings(place: Layout, size: tuple[int, ...]) -> Image.Image:
+def _markings(place: Layout, size: tuple[int, int]) -> Image.Image:
     """The ice with its lines."""
-    image = Image.new("RGB", (size[0], size[1]), ICE)
+    image = Image.new("RGB", size, ICE)
     pen = ImageDraw.Draw(image)
     line = 0.007 * place.scale
     for k, end in enumerate((0.0, place.length)):
