@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from puckpilot_env import render
+from puckpilot_env.canvas import Picture
+from puckpilot_env.rink import SCALE
 from puckpilot_env.tables import Tables
 from puckpilot_env.trace import trace
 
@@ -43,7 +45,7 @@ class Film:
         *,
         table: int = 0,
         names: Sequence[str] = ("player_0", "player_1"),
-        scale: float = render.SCALE,
+        scale: float = SCALE,
         hold: float = 0.8,
     ) -> None:
         """`table`: which of the batch; `scale`: pixels a metre; `hold`: how long [s] a goal stays on the screen, and
@@ -55,7 +57,7 @@ class Film:
         self._rules = tables.variant.rules()[0]
         self._played = 0.0  # time filmed [s]; pictures are due at whole multiples of 1/fps, the first at 0
         self._trail = np.zeros((0, 3))  # of the puck: time filmed, x, y
-        self._picture: render.Picture | None = None
+        self._picture: Picture | None = None
         self._puck: NDArray[np.float64] | None = None  # where the last step left it
         self._goal = False
 

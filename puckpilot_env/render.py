@@ -4,62 +4,30 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import lru_cache
-from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from PIL import Image, ImageDraw, ImageFilter
 
 from puckpilot_env import canvas
-from puckpilot_env.canvas import Colour, Picture
+from puckpilot_env.canvas import Picture
 from puckpilot_env.game.start import MATCH
+from puckpilot_env.rink import (
+    ICE,
+    INK,
+    MUTED,
+    PLAYERS,
+    PUCK,
+    PUCK_RING,
+    RAIL_WIDTH,
+    SCALE,
+    Layout,
+    background,
+    layout,
+    mix,
+)
 from puckpilot_env.tables import Tables
 from puckpilot_env.trace import trace as trace_motion
 from puckpilot_env.variants import Variant
-
-SCALE = 280.0  # pixels a metre: the default table is 640 x 360
-SMALLEST, LARGEST = 20.0, 2000.0
-
-PAPER, RAIL, RAIL_EDGE, ICE = (236, 240, 244), (54, 66, 80), (84, 98, 114), (251, 252, 253)
-INK, MUTED, MIDDLE = (42, 52, 64), (118, 130, 144), (238, 205, 200)
-PUCK, PUCK_RING = (33, 37, 43), (98, 105, 114)
-PLAYERS: tuple[Colour, Colour] = ((38, 108, 176), (226, 122, 46))
-
-# Sizes [m] of what has no physics
-_SIDE, _TOP, _BOTTOM, _RAIL = 40 / 280, 56 / 280, 24 / 280, 14 / 280
-_SUPERSAMPLING = 4  # of the background, drawn once
-
-_Number = TypeVar("_Number", float, NDArray[np.float64])
-
-
-@dataclass(frozen=True)
-class Layout:
-    """Where a table lies in its picture: `scale` in pixels a metre, the rest in metres."""
-
-    length: float
-    width: float
-    goal_width: float
-    corner: float  # radius of the rounded corners: the puck's, so that they are in nothing's way
-    scale: float
-
-    @property
-    def shape(self) -> tuple[int, int]:
-        """`(h, w)` of the picture in pixels; even, as films want it."""
-        height = 2 * round(0.5 * self.scale * (self.width + _TOP + _BOTTOM))
-        return height, 2 * round(0.5 * self.scale * (self.length + 2 * _SIDE))
-
-    def pixel(self, x: _Number, y: _Number) -> tuple[_Number, _Number]:
-        """The place `(x, y)` [m] of the table in the picture (see `canvas`): x to the right, y upwards."""
-        return self.scale * (_SIDE + x), self.scale * (_TOP + self.width - y)
-
-
-def layout(p: np.void, scale: float = SCALE) -> Layout:
-    """The layout of a table with parameters `p` (`parameters.RECORD`). ValueError for an impossible scale."""
-    if not SMALLEST <= scale <= LARGEST:
-        raise ValueError(f"scale is {scale!r}; expected a number from {SMALLEST:g} to {LARGEST:g} pixels a metre")
-    return Layout(float(p["length"]), float(p["width"]), float(p["goal_width"]), float(p["puck_radius"]), float(scale))
 
 
 def draw(
@@ -79,7 +47,7 @@ def draw(
     it began; note: a word in place of the time.
     """
     place = layout(p, scale)
-    picture = _background(place).copy()
+    picture = background(place).copy()
     if trail is not None and np.size(trail):
         _draw_trail(picture, place, np.asarray(trail, np.float64), p)
     mallets = table["modes"].sum(axis=2)
@@ -126,7 +94,7 @@ def _draw_beam(picture: Picture, place: Layout, x: float, p: np.void, player: in
     """The gantry beam over the player's mallet, resting on both rails."""
     middle, top = place.pixel(x, place.width)
     bottom = place.pixel(x, 0.0)[1]
-    half, rail = max(0.5 * p["beam_width"] * place.scale, 1.0), 0.7 * _RAIL * place.scale
+    half, rail = max(0.5 * p["beam_width"] * place.scale, 1.0), 0.7 * RAIL_WIDTH * place.scale
     colour = PLAYERS[player]
     canvas.box(picture, middle - half, top, middle + half, bottom, colour, 0.13)
     edge = 0.004 * place.scale
@@ -149,13 +117,13 @@ def _draw_mallet(picture: Picture, place: Layout, mallet: NDArray[np.float64], p
     x, y = place.pixel(mallet[0], mallet[1])
     radius, colour = p["mallet_radius"] * place.scale, PLAYERS[player]
     canvas.disc(picture, x, y + 0.1 * radius, 1.08 * radius, INK, 0.3, 0.4 * radius)
-    canvas.disc(picture, x, y, radius, _mix(colour, INK, 0.12))
+    canvas.disc(picture, x, y, radius, mix(colour, INK, 0.12))
     canvas.disc(picture, x, y, 0.86 * radius, colour)
-    canvas.disc(picture, x, y, 0.66 * radius, _mix(colour, ICE, 0.22))
+    canvas.disc(picture, x, y, 0.66 * radius, mix(colour, ICE, 0.22))
     canvas.disc(picture, x, y + 0.06 * radius, 0.44 * radius, INK, 0.3, 0.3 * radius)
     canvas.disc(picture, x, y, 0.4 * radius, colour)
     x, y = x - 0.06 * radius, y - 0.08 * radius
-    canvas.disc(picture, x, y, 0.2 * radius, _mix(colour, ICE, 0.35), 0.8, 0.25 * radius)
+    canvas.disc(picture, x, y, 0.2 * radius, mix(colour, ICE, 0.35), 0.8, 0.25 * radius)
 
 
 def _draw_header(
@@ -175,9 +143,9 @@ def _draw_header(
         canvas.text(picture, middle, 14 * unit, ":", big, MUTED, 0.5)
         for k, side in ((0, -1), (1, 1)):
             canvas.text(picture, middle + side * 9 * unit, 14 * unit, f"{table['score'][k]}", big, PLAYERS[k], k == 0)
-    if note is None:
-        note = f"{table['time']:.1f} s" if time_left is None else clock(time_left)
-    canvas.text(picture, middle, (32 if has_score else 21) * unit, note, small, MUTED, 0.5)
+    time = f"{table['time']:.1f} s" if time_left is None else clock(time_left)
+    words, colour = (time, MUTED) if note is None else (note, INK)
+    canvas.text(picture, middle, (32 if has_score else 21) * unit, words, small, colour, 0.5)
 
 
 def _draw_name(picture: Picture, place: Layout, name: str, role: str, player: int, room: float) -> None:
@@ -202,66 +170,3 @@ def clock(seconds: float) -> str:
     """Time left as minutes and seconds, `2:05`."""
     whole = max(math.ceil(seconds - 1e-6), 0)
     return f"{whole // 60}:{whole % 60:02d}"
-
-
-def _mix(a: Colour, b: Colour, share: float) -> Colour:
-    """`share` of `b` in `a`."""
-    red, green, blue = (round(i + (j - i) * share) for i, j in zip(a, b, strict=True))
-    return red, green, blue
-
-
-@lru_cache(maxsize=8)
-def _background(place: Layout) -> Picture:
-    """All that does not move, drawn large and averaged; not to be written to."""
-    large = Layout(place.length, place.width, place.goal_width, place.corner, place.scale * _SUPERSAMPLING)
-    size = _SUPERSAMPLING * place.shape[1], _SUPERSAMPLING * place.shape[0]
-    image = Image.new("RGB", size, PAPER)
-    rail = _corners(large, _RAIL)
-    shadow = Image.new("L", size)
-    ImageDraw.Draw(shadow).rounded_rectangle(rail, 0.06 * large.scale, fill=70)
-    image.paste(RAIL, mask=shadow.filter(ImageFilter.GaussianBlur(0.025 * large.scale)))
-    pen = ImageDraw.Draw(image)
-    pen.rounded_rectangle(rail, 0.06 * large.scale, fill=RAIL)
-    pen.rounded_rectangle(_corners(large, 0.008), large.corner * large.scale, fill=RAIL_EDGE)
-    ice = Image.new("L", size)
-    ImageDraw.Draw(ice).rounded_rectangle(_corners(large, 0.0), large.corner * large.scale, fill=255)
-    image.paste(_markings(large, size), mask=ice)
-    _draw_goals(pen, large)
-    finished = np.asarray(image.reduce(_SUPERSAMPLING)).copy()
-    finished.flags.writeable = False
-    return finished
-
-
-def _corners(place: Layout, margin: float) -> tuple[float, float, float, float]:
-    """Left, top, right, bottom in Pillow's pixels of the playing surface with a margin [m] around."""
-    left, top = place.pixel(-margin, place.width + margin)
-    right, bottom = place.pixel(place.length + margin, -margin)
-    return left, top, right - 1, bottom - 1
-
-
-def _markings(place: Layout, size: tuple[int, int]) -> Image.Image:
-    """The ice with its lines."""
-    image = Image.new("RGB", size, ICE)
-    pen = ImageDraw.Draw(image)
-    line = 0.007 * place.scale
-    for k, end in enumerate((0.0, place.length)):
-        x, y = place.pixel(end, 0.5 * place.width)
-        r = 0.8 * place.goal_width * place.scale
-        pen.ellipse((x - r, y - r, x + r, y + r), _mix(ICE, PLAYERS[k], 0.07), _mix(ICE, PLAYERS[k], 0.35), round(line))
-    x, y = place.pixel(0.5 * place.length, 0.5 * place.width)
-    pen.rectangle((x - 0.6 * line, 0, x + 0.6 * line, size[1]), MIDDLE)
-    for radius, fill in ((0.16 * place.width, None), (0.014, MIDDLE)):
-        r = radius * place.scale
-        pen.ellipse((x - r, y - r, x + r, y + r), fill, MIDDLE, round(1.2 * line))
-    return image
-
-
-def _draw_goals(pen: ImageDraw.ImageDraw, place: Layout) -> None:
-    """The goal mouths: pockets in the rail, with the player's colour at their back."""
-    depth = 0.75 * _RAIL
-    for k, player in enumerate(PLAYERS):
-        for inner, outer, colour in ((0.0, depth, _mix(ICE, player, 0.25)), (depth - 0.009, depth, player)):
-            x0, x1 = (-outer, -inner) if k == 0 else (place.length + inner, place.length + outer)
-            left, top = place.pixel(x0, 0.5 * (place.width + place.goal_width))
-            right, bottom = place.pixel(x1, 0.5 * (place.width - place.goal_width))
-            pen.rectangle((left, top, right - 1, bottom - 1), colour)

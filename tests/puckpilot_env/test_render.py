@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from puckpilot_env import canvas, parameters, render, state
+from puckpilot_env import canvas, parameters, render, rink, state
 from puckpilot_env.variants import BY_ID, VARIANTS
 
 P = parameters.make_records(1)[0]
@@ -44,7 +44,7 @@ def test_picture_has_the_shape_of_its_table(values, scale, shape):
 @pytest.mark.parametrize("puck", [(1.2, 0.3), (0.7013, 0.8027), (1.0, 0.5), (0.0, 0.5)])
 def test_puck_is_where_the_state_says(puck):
     expected = 40.0 + 280.0 * puck[0], 56.0 + 280.0 * (1.0 - puck[1])
-    found = centroid(render.draw(make_table(puck), P), render.PUCK, expected, 20.0)
+    found = centroid(render.draw(make_table(puck), P), rink.PUCK, expected, 20.0)
     assert found == pytest.approx(expected, abs=0.3)
 
 
@@ -53,7 +53,7 @@ def test_mallets_and_beams_are_where_the_state_says(player):
     mallet = ((0.3, 0.6), (1.7, 0.45))[player]
     expected = 40.0 + 280.0 * mallet[0], 56.0 + 280.0 * (1.0 - mallet[1])
     picture = render.draw(make_table(), P)
-    rim = render._mix(render.PLAYERS[player], render.INK, 0.12)
+    rim = rink.mix(rink.PLAYERS[player], rink.INK, 0.12)
     assert centroid(picture, rim, expected, 15.0) == pytest.approx(expected, abs=0.3)
     row = picture[300, 45:595].astype(int)  # crosses both beams below the mallets, clear of puck and goal areas
     other = render.draw(make_table(mallets=((0.5, 0.6), (1.5, 0.45))), P)[300, 45:595].astype(int)
@@ -67,9 +67,9 @@ def test_moving_the_puck_changes_its_surroundings_alone():
     here, there = (1.2, 0.3), (0.8, 0.75)
     changed = (render.draw(make_table(here), P) != render.draw(make_table(there), P)).any(axis=2)
     rows, columns = np.nonzero(changed)
-    place = render.layout(P)
+    place = rink.layout(P)
     away = [np.hypot(columns + 0.5 - x, rows + 0.5 - y) for x, y in (place.pixel(*here), place.pixel(*there))]
-    radius = P["puck_radius"] * render.SCALE
+    radius = P["puck_radius"] * rink.SCALE
     assert np.minimum(*away).max() < 1.6 * radius
     assert min((a < radius).sum() for a in away) > 0.95 * np.pi * radius**2
 
