@@ -86,7 +86,7 @@ def _draw_trail(picture: Picture, place: Layout, trail: NDArray[np.float64], p: 
     x, y = place.pixel(trail[:, 0], trail[:, 1])
     points = np.stack([x, y], axis=1)
     far = np.hypot(*np.diff(points[::-1], axis=0).T).cumsum()  # from the newest point back
-    _, kept = np.unique(np.floor(np.concatenate([[0.0], far]) / 3.0), return_index=True)
+    _, kept = np.unique(np.floor(np.concatenate([[0.0], far]) / 5.0), return_index=True)
     canvas.trail(picture, points[::-1][kept][::-1], 0.8 * p["puck_radius"] * place.scale, PUCK, 0.3)
 
 
