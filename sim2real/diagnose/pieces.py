@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 
@@ -127,7 +128,7 @@ def _sense(t: np.ndarray, p: np.ndarray, held: np.ndarray, far: np.ndarray) -> t
         index = np.flatnonzero(np.isfinite(p).all(axis=1) & ~held & ~wild)
         jumps = kinks.find_jumps(t[index], p[index], noise) if len(index) > 1 else np.zeros(0, bool)
         edges = np.concatenate([[0], np.flatnonzero(jumps) + 1, [len(index)]])
-        short = [slice(a, b) for a, b in zip(edges[:-1], edges[1:], strict=True) if 0 < b - a < LAUNCH_FRAMES]
+        short = [slice(a, b) for a, b in pairwise(edges) if 0 < b - a < LAUNCH_FRAMES]
         if not short:
             break
         for piece in short:
@@ -189,6 +190,7 @@ def _explain(event: _Event, path: _Path, noise: Noise, g, lines, tracks) -> list
     walls = contacts.touched_walls(lines, g, event.place, v_in, v_out, slack)
     post = contacts.touched_post(g, event.place, dv, slack)
     who, mallet_v, normal = contacts.touched_mallet(g, tracks, path.t, event.t, event.place, v_in, dv, slack)
+    post = "" if walls else post
     causes = len(walls) + bool(post) + bool(who)
     if len(walls) == 2 and causes == 2:
         return [_hit(event, path, "wall", wall, contacts.wall_axis(wall), clean=False) for wall in walls]
@@ -218,7 +220,7 @@ def _glides(path: _Path, noise: Noise, broken: np.ndarray) -> tuple[list[Glide],
     """Stretches between events that are long enough; those that gain too much speed were pushed: unexplained."""
     edges = np.concatenate([[0], np.flatnonzero(path.jumps | broken) + 1, [len(path.t)]])
     glides, pushes = [], []
-    for a, b in zip(edges[:-1], edges[1:], strict=True):
+    for a, b in pairwise(edges):
         if b - a < GLIDE_FRAMES:
             continue
         t, p = path.t[a:b], path.p[a:b]
@@ -237,5 +239,5 @@ def _glides(path: _Path, noise: Noise, broken: np.ndarray) -> tuple[list[Glide],
 
 def _launches(path: _Path) -> list[tuple[int, int]]:
     edges = np.concatenate([[0], np.flatnonzero(path.jumps) + 1, [len(path.t)]])
-    pairs = zip(edges[:-1], edges[1:], strict=True)
+    pairs = pairwise(edges)
     return [(int(path.index[a]), int(path.index[b - 1]) + 1) for a, b in pairs if b - a >= LAUNCH_FRAMES]

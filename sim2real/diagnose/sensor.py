@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -66,11 +67,13 @@ def _split(size: np.ndarray, speed: np.ndarray) -> Noise:
         return Noise(position, 0.0)
     edges = np.quantile(speed[fast], np.linspace(0, 1, 6))
     ratios = []
-    for low, high in zip(edges[:-1], edges[1:], strict=True):
+    for low, high in pairwise(edges):
         here = (speed >= low) & (speed <= high) & fast
         more = (np.median(size[here]) / GAUSS) ** 2 - position**2
         ratios.append(max(more, 0.0) / np.median(speed[here]) ** 2)
-    return Noise(position, float(np.sqrt(np.median(ratios))))
+    clock = float(np.sqrt(np.median(ratios)))
+    sure = clock * float(np.median(speed[fast])) > 0.5 * position
+    return Noise(position, clock if sure else 0.0)
 
 
 def wild_frames(t: np.ndarray, p: np.ndarray, noise: Noise) -> np.ndarray:
