@@ -19,17 +19,20 @@ CURVATURE = 3.0
 PRIOR_DOF = 4.0
 LONG_WINDOW_TRAVEL = 0.06
 JUMP_AT_LEAST = 0.005
+SETTLE_FRAMES = 8
 
 
 @dataclass(frozen=True)
 class Side:
-    """The motion just beside a time: place (2,), velocity (2,), std of each of its components, frames used."""
+    """The motion just beside a time: place (2,), velocity (2,), std of each of its components, frames used,
+    and the sum of squares [m^2] that the fit leaves of them."""
 
     place: np.ndarray
     velocity: np.ndarray
     place_std: float
     velocity_std: float
     frames: int
+    rest: float
 
 
 def find_jumps(t: np.ndarray, p: np.ndarray, noise: Noise) -> np.ndarray:
@@ -79,6 +82,11 @@ def find_kinks(t: np.ndarray, p: np.ndarray, noise: Noise, cuts: np.ndarray, exp
             for k in new:
                 near[max(0, k - 2 * half) : k + 2 * half + 1] = True
             rows = rows[near[rows] & ~cuts[rows]]
+    for k in np.flatnonzero(found):
+        best = settle(t, p, noise, cuts, int(k))
+        if best != k and not cuts[best]:
+            found[best], found[k] = found[k], 0.0
+            cuts[best], cuts[k] = True, False
     return found
 
 
@@ -94,12 +102,12 @@ def _allowed(t: np.ndarray, p: np.ndarray, half: int, expected: np.ndarray) -> n
 
 def _commonplace(strength: np.ndarray) -> float:
     """How much wider than white noise (1.0) the strengths of most windows spread: errors of a camera that change
-    slowly with the place look like small kinks everywhere. From the median and the 90 % quantile of two components.
+    slowly with the place look like small kinks everywhere. From the median and the 70 % quantile of two components.
     """
     strength = strength[strength > 0]
     if len(strength) < 50:
         return 1.0
-    middle, high = np.quantile(strength, [0.5, 0.9]) / np.sqrt(2 * np.log([2.0, 10.0]))
+    middle, high = np.quantile(strength, [0.5, 0.7]) / np.sqrt(2 * np.log([2.0, 1 / 0.3]))
     return float(max(1.0, middle, high))
 
 
@@ -157,11 +165,32 @@ def _windows(t, p, cuts, rows, half: int):
     return u, q, weight, unit
 
 
+def settle(t: np.ndarray, p: np.ndarray, noise: Noise, cuts: np.ndarray, k: int) -> int:
+    """The gap within 3 of the break `k` at which a motion before and one after leave the least rest."""
+    others = np.flatnonzero(cuts)
+    before, after = others[others < k], others[others > k]
+    first = max(int(before[-1]) + 1 if len(before) else 0, k - SETTLE_FRAMES)
+    last = min(int(after[0]) + 1 if len(after) else len(t), k + 2 + SETTLE_FRAMES)
+    gaps = [c for c in range(k - 3, k + 4) if c - first >= 1 and last - c >= 3]
+    if k not in gaps:
+        return k
+    rest = [_rest(t, p, slice(first, c + 1), noise) + _rest(t, p, slice(c + 1, last), noise) for c in gaps]
+    best = int(np.argmin(rest))
+    speed = np.abs(np.diff(p[first:last], axis=0)).sum() / max(float(np.ptp(t[first:last])), 1e-6)
+    worth = 30 * float(noise.std(speed)) ** 2
+    return gaps[best] if rest[best] < rest[gaps.index(k)] - worth else k
+
+
+def _rest(t: np.ndarray, p: np.ndarray, frames: slice, noise: Noise) -> float:
+    """Sum of squares [m^2] that `beside` leaves of `frames`."""
+    return beside(t, p, float(t[frames].mean()), frames, noise).rest
+
+
 def beside(t: np.ndarray, p: np.ndarray, at: float, frames: slice, noise: Noise) -> Side:
     """Motion at the time `at`, from a parabola through `frames` whose acceleration is near 0 +- CURVATURE."""
     u, q = t[frames] - at, p[frames]
     if len(u) == 1:
-        return Side(q[0], np.zeros(2), float(noise.std(0.0)), np.inf, 1)
+        return Side(q[0], np.zeros(2), float(noise.std(0.0)), np.inf, 1, 0.0)
     span = max(float(np.ptp(u)), 1e-6)
     speed = np.linalg.norm(q[-1] - q[0]) / span
     sigma = float(noise.std(speed))
@@ -170,4 +199,5 @@ def beside(t: np.ndarray, p: np.ndarray, at: float, frames: slice, noise: Noise)
     inverse = np.linalg.inv(normal)
     c = inverse @ basis.T @ q
     spread = np.sqrt(np.maximum(np.diag(inverse), 0.0)) * sigma
-    return Side(c[0], c[1], float(spread[0]), float(spread[1]), len(u))
+    rest = float(((q - basis @ c) ** 2).sum())
+    return Side(c[0], c[1], float(spread[0]), float(spread[1]), len(u), rest)

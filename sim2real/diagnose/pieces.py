@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import numpy as np
@@ -193,9 +193,9 @@ def _explain(event: _Event, path: _Path, noise: Noise, g, lines, tracks) -> list
     post = "" if walls else post
     causes = len(walls) + bool(post) + bool(who)
     if len(walls) == 2 and causes == 2:
-        return [_hit(event, path, "wall", wall, contacts.wall_axis(wall), clean=False) for wall in walls]
+        return [_corner_hit(event, path, wall) for wall in walls]
     if causes > 1:
-        return [_hit(event, path, "unexplained", " or ".join([*walls, post, who]).strip(" or"), None)]
+        return [_hit(event, path, "unexplained", " or ".join(filter(None, [*walls, post, who])), None)]
     if walls:
         return [_hit(event, path, "wall", walls[0], contacts.wall_axis(walls[0]))]
     if post:
@@ -203,6 +203,16 @@ def _explain(event: _Event, path: _Path, noise: Noise, g, lines, tracks) -> list
     if who:
         return [_hit(event, path, "mallet", who, None, normal=normal, mallet_v=mallet_v)]
     return [_hit(event, path, "unexplained", "nothing near", None)]
+
+
+def _corner_hit(event: _Event, path: _Path, wall: str) -> Hit:
+    """One of two hits that no frames part: its time is that at which its own coordinate turns."""
+    axis, _ = contacts.wall_axis(wall)
+    apart = event.right.place[axis] - event.left.place[axis]
+    turn = event.right.velocity[axis] - event.left.velocity[axis]
+    reach = path.t[event.gap + 1] - path.t[event.gap]
+    later = float(np.clip(-apart / turn, -reach, reach))
+    return _hit(replace(event, t=event.t + later), path, "wall", wall, contacts.wall_axis(wall), clean=False)
 
 
 def _hit(event: _Event, path: _Path, kind: str, where: str, wall, clean: bool = True, **more) -> Hit:

@@ -52,18 +52,22 @@ def estimate_noise(t: np.ndarray, p: np.ndarray) -> Noise:
     lone = sum(weight[:, [k]] * p[k : len(t) - 3 + k] for k in range(4))
     speed = np.abs(p[3:] - p[:-3]) / span[:, None]
     usable = (span < LONGEST_GAP)[:, None] & np.ones(2, bool)
-    return _split(np.abs(lone)[usable], speed[usable])
+    return _split(np.abs(lone)[usable], speed[usable], float(np.median(span)) / 3)
 
 
-def _split(size: np.ndarray, speed: np.ndarray) -> Noise:
-    """Noise of the position from slow axes, of the clock from what fast axes have more."""
+def _split(size: np.ndarray, speed: np.ndarray, period: float) -> Noise:
+    """Noise of the position from slow axes, of the clock from what fast axes have more.
+
+    Where hardly anything is fast, what looks fast are jumps, and the clock is taken as exact; so it is where the
+    clock's noise would be no small part of the frames' `period` [s].
+    """
     if len(size) == 0:
         return Noise(NOISE_FLOOR, 0.0)
     slow, fast = size[speed < SLOW], (speed > FAST) & (speed < 10 * FAST)
     if len(slow) < 100:
         slow = size
     position = max(float(np.median(slow)) / GAUSS, NOISE_FLOOR)
-    if fast.sum() < 100:
+    if fast.sum() < max(100, 0.03 * len(size)):
         return Noise(position, 0.0)
     edges = np.quantile(speed[fast], np.linspace(0, 1, 6))
     ratios = []
@@ -72,8 +76,8 @@ def _split(size: np.ndarray, speed: np.ndarray) -> Noise:
         more = (np.median(size[here]) / GAUSS) ** 2 - position**2
         ratios.append(max(more, 0.0) / np.median(speed[here]) ** 2)
     clock = float(np.sqrt(np.median(ratios)))
-    sure = clock * float(np.median(speed[fast])) > 0.5 * position
-    return Noise(position, clock if sure else 0.0)
+    matters = clock * float(np.median(speed[fast])) > 0.5 * position
+    return Noise(position, clock if matters and clock < 0.1 * period else 0.0)
 
 
 def wild_frames(t: np.ndarray, p: np.ndarray, noise: Noise) -> np.ndarray:
