@@ -192,7 +192,7 @@ def beside(t: np.ndarray, p: np.ndarray, at: float, frames: slice, noise: Noise)
     if len(u) == 1:
         return Side(q[0], np.zeros(2), float(noise.std(0.0)), np.inf, 1, 0.0)
     span = max(float(np.ptp(u)), 1e-6)
-    speed = np.linalg.norm(q[-1] - q[0]) / span
+    speed = float(np.linalg.norm(q[-1] - q[0])) / span
     sigma = float(noise.std(speed))
     basis = np.stack([np.ones_like(u), u, u * u / 2], axis=1)
     normal = basis.T @ basis + np.diag([0.0, 0.0, (sigma / CURVATURE) ** 2])
