@@ -10,11 +10,13 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from sim2real.compare_predict import Comparison, HitError
 from sim2real.diagnose.pieces import Pieces
 
 SEEN, TANGENT, SIMULATOR, EVENT = "#1f6fb4", "#d9822b", "#222222", "#c0392b"
+RATIOS = (-0.2, 1.4)
 
 
 def draw(file: Path, title: str, pieces: Pieces, found: Comparison, values: dict[str, float]) -> None:
@@ -41,7 +43,7 @@ def _draw_table(figure: Figure, ax: Axes, pieces: Pieces, found: Comparison, val
             place = np.stack([g.x, g.y], axis=1)
             segments.append(np.stack([place[:-1], place[1:]], axis=1))
             colours.append(1e3 * distance[1:])
-        lines = LineCollection(np.concatenate(list(segments)), cmap="viridis", norm=LogNorm(0.1, 100), lw=0.9)
+        lines = LineCollection(list(np.concatenate(segments)), cmap="viridis", norm=LogNorm(0.1, 100), lw=0.9)
         lines.set_array(np.concatenate(colours).clip(0.1, 100))
         ax.add_collection(lines)
         figure.colorbar(lines, ax=ax, label="seen − predicted [mm]", shrink=0.75)
@@ -65,12 +67,14 @@ def _draw_growth(ax: Axes, found: Comparison) -> None:
     edges = np.quantile(t, np.linspace(0, 1, 16))
     which = np.clip(np.searchsorted(edges, t) - 1, 0, 14)
     middle = [np.median(t[which == k]) for k in range(15)]
-    ax.plot(middle, [np.median(off[which == k]) for k in range(15)], color=SEEN, lw=2, label="median seen")
-    ax.plot(
-        middle, [np.median(noise[which == k]) for k in range(15)], color=SIMULATOR, lw=1.5, ls="--", label="noise alone"
-    )
+    seen = [np.median(off[which == k]) for k in range(15)]
+    alone = [np.median(noise[which == k]) for k in range(15)]
+    ax.plot(middle, seen, color=SEEN, lw=2, label="median seen")
+    ax.plot(middle, alone, color=SIMULATOR, lw=1.5, ls="--", label="noise alone")
     ax.set_yscale("log")
-    ax.set_ylim(bottom=max(0.01, float(np.quantile(off, 0.01))))
+    ax.set_ylim(bottom=0.3 * float(np.nanmin([*alone, *seen])))
+    ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    ax.yaxis.set_minor_formatter(NullFormatter())
     ax.legend(fontsize=8)
 
 
@@ -84,9 +88,11 @@ def _draw_walls(ax: Axes, hits: tuple[HitError, ...], restitution: float) -> Non
         use = np.abs(before[:, axis]) > 0.1
         ratio = sign * after[use, axis] / before[use, axis]
         std = np.array([h.hit.v_std for h in hits])[use] / np.abs(before[use, axis])
-        ax.errorbar(np.abs(before[use, axis]), ratio, yerr=std, fmt=".", color=colour, ms=5, lw=0.5, label=name)
+        ax.errorbar(np.abs(before[use, axis]), ratio, yerr=std, fmt=".", color=colour, ms=5, lw=0.5)
+        beyond = int(((ratio < RATIOS[0]) | (ratio > RATIOS[1])).sum())
+        ax.plot([], [], ".", color=colour, label=f"{name}, {beyond} beyond the frame" if beyond else name)
     ax.axhline(restitution, color=SIMULATOR, lw=1.2, ls="--", label="simulator")
-    ax.set_ylim(-0.2, 1.4)
+    ax.set_ylim(*RATIOS)
     ax.set_xlim(left=0)
     ax.legend(fontsize=8)
 
@@ -107,4 +113,5 @@ def _draw_mallets(ax: Axes, hits: tuple[HitError, ...]) -> None:
 
 
 def _say_nothing(ax: Axes, words: str) -> None:
+    ax.set_axis_off()
     ax.text(0.5, 0.5, words, ha="center", va="center", transform=ax.transAxes, color="0.4")
