@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,7 @@ from sim2real.diagnose.pieces import Pieces
 
 SEEN, TANGENT, SIMULATOR, EVENT = "#1f6fb4", "#d9822b", "#222222", "#c0392b"
 RATIOS = (-0.2, 1.4)
+MEDIAN_OF_RMS = math.sqrt(math.log(2))  # of a distance in the plane under white noise
 
 
 def draw(file: Path, title: str, pieces: Pieces, found: Comparison, values: dict[str, float]) -> None:
@@ -63,14 +65,14 @@ def _draw_growth(ax: Axes, found: Comparison) -> None:
     noise = np.concatenate([1e3 * np.hypot(*g.std[g.fitted :].T) for g in found.glides])
     for g in found.glides:
         ahead = slice(g.fitted, None)
-        ax.plot(g.t[ahead] - g.t[g.fitted - 1], 1e3 * np.hypot(*g.error[ahead].T), color=SEEN, lw=0.4, alpha=0.3)
+        ax.plot(g.t[ahead] - g.t[g.fitted - 1], 1e3 * np.hypot(*g.error[ahead].T), color="0.8", lw=0.3)
     edges = np.quantile(t, np.linspace(0, 1, 16))
     which = np.clip(np.searchsorted(edges, t) - 1, 0, 14)
     middle = [np.median(t[which == k]) for k in range(15)]
     seen = [np.median(off[which == k]) for k in range(15)]
-    alone = [np.median(noise[which == k]) for k in range(15)]
+    alone = [MEDIAN_OF_RMS * np.median(noise[which == k]) for k in range(15)]
     ax.plot(middle, seen, color=SEEN, lw=2, label="median seen")
-    ax.plot(middle, alone, color=SIMULATOR, lw=1.5, ls="--", label="noise alone")
+    ax.plot(middle, alone, color=SIMULATOR, lw=1.5, ls="--", label="median of noise alone")
     ax.set_yscale("log")
     ax.set_ylim(bottom=0.3 * float(np.nanmin([*alone, *seen])))
     ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
