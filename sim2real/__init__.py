@@ -1,0 +1,1 @@
+"""From recordings of a real table to what the simulator gets wrong about it."""

@@ -1,0 +1,129 @@
+"""`puckpilot compare RECORDING`: what a real table did beside what the simulator says it should have done."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+from sim2real.compare_predict import compare_pieces, parameters
+from sim2real.compare_summary import summarize
+from sim2real.diagnose.pieces import cut
+from sim2real.recording import RecordingError, read_recording
+
+UNITS = {"m": (1e3, "mm", 1), "m/s": (1.0, "m/s", 2), "": (1.0, "", 2)}
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The arguments of the command."""
+    parser.add_argument("recording", type=Path, help="folder of a recording")
+    parser.add_argument("--json", action="store_true", help="print one JSON object instead of the table")
+    parser.add_argument("--out", type=Path, default=Path("out"), metavar="DIR", help="folder for the picture (out)")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Compare and print; 0, or 2 with one line why on stderr."""
+    console = Console(stderr=True)
+    try:
+        with console.status("reading the recording") as status:
+            recording = read_recording(args.recording)
+            status.update("cutting it into pieces")
+            pieces = cut(recording)
+            status.update("predicting each piece")
+            values = parameters(recording)
+            found = compare_pieces(pieces, values)
+            summary = summarize(recording, pieces, found, values)
+            status.update("drawing")
+            summary["picture"] = str(_draw(args.out, recording.name, pieces, found, values))
+    except RecordingError as error:
+        print(error, file=sys.stderr)
+        return 2
+    except OSError as error:
+        print(f"{args.out}: cannot write the picture there ({error.strerror}); name another --out", file=sys.stderr)
+        return 2
+    if args.json:
+        print(json.dumps(summary, indent=1, allow_nan=False))
+    else:
+        _print(summary)
+    return 0
+
+
+def _draw(folder: Path, name: str, pieces, found, values: dict[str, float]) -> Path:
+    from sim2real.compare_draw import draw  # matplotlib is slow to load, and nothing else here needs it
+
+    folder.mkdir(parents=True, exist_ok=True)
+    file = folder / f"compare_{name}.png"
+    draw(file, name, pieces, found, values)
+    return file
+
+
+def _print(summary: dict[str, Any]) -> None:
+    console = Console(highlight=False, soft_wrap=True)
+    console.print(f"{summary['recording']}: {_sensor(summary['sensor'])}")
+    for note in summary["notes"]:
+        console.print(f"note: {note}")
+    table = Table("piece", "what", "median", "90 % range", "count", title_justify="left")
+    for kind, rows in ROWS.items():
+        part = summary[kind]
+        if not part["pieces"]:
+            table.add_row(kind, "none that could be compared", "", "", "0")
+            continue
+        for k, (key, words, unit) in enumerate(rows):
+            count = str(part["pieces"]) if k == 0 else ""
+            table.add_row(kind if k == 0 else "", words, *_cells(part[key], unit), count)
+        table.add_section()
+    console.print(table)
+    for row in summary["glide"].get("growth", []):
+        console.print(
+            f"glide, up to {row['ahead_s']:g} s ahead: rms {1e3 * row['rms_m']:.2f} mm, "
+            f"{row['times_noise']:.1f} times noise ({row['frames']} frames)"
+        )
+    for kind, reasons in summary["unusable"].items():
+        for reason, count in reasons.items():
+            console.print(f"not usable, {kind}: {count} {reason}")
+    console.print(f"picture: {summary['picture']}")
+    console.print(f"where they part most: {summary['part_most']}")
+
+
+ROWS = {
+    "glide": (
+        ("end_error_m", "error at the end", "m"),
+        ("end_error_along_m", "the same, along the motion", "m"),
+        ("times_noise", "rms in units of noise", ""),
+    ),
+    "wall": (
+        ("error_mps", "error of the velocity after", "m/s"),
+        ("restitution_normal", "normal ratio kept", ""),
+        ("restitution_tangential", "tangential ratio kept", ""),
+        ("times_noise", "rms in units of noise", ""),
+    ),
+    "mallet": (
+        ("error_mps", "error of the velocity after", "m/s"),
+        ("restitution_normal", "normal ratio kept", ""),
+        ("restitution_tangential", "tangential ratio kept", ""),
+        ("times_noise", "rms in units of noise", ""),
+    ),
+}
+
+
+def _sensor(sensor: dict[str, Any]) -> str:
+    if not sensor["seen"]:
+        return "no puck was seen"
+    return (
+        f"{sensor['frames']} frames, {sensor['seen']} with a puck, {sensor['held']} held, {sensor['wild']} wild, "
+        f"noise {1e3 * sensor['position_std_m']:.2f} mm and {1e3 * sensor['clock_std_s']:.2f} ms, "
+        f"{sensor['launches']} launches"
+    )
+
+
+def _cells(values: dict[str, float] | None, unit: str) -> tuple[str, str]:
+    if values is None:
+        return "unknown", ""
+    factor, name, digits = UNITS[unit]
+    median, low, high = (f"{factor * values[key]:.{digits}f}" for key in ("median", "low", "high"))
+    return f"{median} {name}".strip(), f"{low} … {high} {name}".strip()

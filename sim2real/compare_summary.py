@@ -1,0 +1,126 @@
+"""The numbers of a comparison: how many pieces, how wrong the simulator is on them, and where it is most wrong."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from sim2real.compare_predict import Comparison, GlideError, HitError
+from sim2real.diagnose.pieces import Pieces
+from sim2real.recording import Recording
+
+GROWTH = (0.1, 0.2, 0.5, 1.0, 2.0)
+AGREES = 1.5
+
+
+def summarize(recording: Recording, pieces: Pieces, found: Comparison, values: dict[str, float]) -> dict[str, Any]:
+    """One JSON-ready object. Errors in metres and m/s; `times_noise` is the rms in units of what noise explains."""
+    seen = 0 if recording.frames is None else int(np.isfinite(recording.frames["puck_x"]).sum())
+    summary = {
+        "recording": recording.name,
+        "notes": list(recording.notes),
+        "parameters": {name: values[name] for name in ("friction", "drag", "wall_restitution", "mallet_restitution")},
+        "sensor": {
+            "frames": 0 if recording.frames is None else recording.frames.rows,
+            "seen": seen,
+            "held": int(pieces.held.sum()),
+            "wild": int(pieces.wild.sum()),
+            "position_std_m": pieces.noise.position if seen else None,
+            "clock_std_s": pieces.noise.clock if seen else None,
+            "launches": len(pieces.launches),
+        },
+        "glide": _glides(found.glides),
+        "wall": _hits(found.walls),
+        "mallet": _hits(found.mallets),
+        "unusable": {kind: dict(reasons) for kind, reasons in found.unusable.items() if reasons},
+    }
+    return summary | {"part_most": _part_most(summary)}
+
+
+def range_of(values: np.ndarray) -> dict[str, float] | None:
+    """Median and the range that holds 90 %; None of nothing."""
+    if len(values) == 0:
+        return None
+    low, middle, high = np.quantile(values, [0.05, 0.5, 0.95])
+    return {"median": float(middle), "low": float(low), "high": float(high)}
+
+
+def _glides(glides: tuple[GlideError, ...]) -> dict[str, Any]:
+    """Errors beyond the part to which the start was fitted."""
+    if not glides:
+        return {"pieces": 0}
+    ahead = [(g.error[g.fitted :], g.std[g.fitted :], g.t[g.fitted :] - g.t[g.fitted - 1]) for g in glides]
+    ends = np.array([np.hypot(*error[-1]) for error, _, _ in ahead])
+    ratio = np.array([np.sqrt(np.mean((error / std) ** 2)) for error, std, _ in ahead])
+    along = np.array([error[-1, 0] for error, _, _ in ahead])
+    error, std, t = (np.concatenate(part) for part in zip(*ahead, strict=True))
+    return {
+        "pieces": len(glides),
+        "seconds": float(sum(g.t[-1] for g in glides)),
+        "end_error_m": range_of(ends),
+        "end_error_along_m": range_of(along),
+        "rms_m": float(np.sqrt(np.mean(np.sum(error**2, axis=1)))),
+        "times_noise": range_of(ratio),
+        "growth": _growth(error, std, t),
+    }
+
+
+def _growth(error: np.ndarray, std: np.ndarray, t: np.ndarray) -> list[dict[str, float]]:
+    rows = []
+    for low, high in zip((0.0, *GROWTH[:-1]), GROWTH, strict=True):
+        here = (t > low) & (t <= high)
+        if here.sum() >= 10:
+            rms = float(np.sqrt(np.mean(np.sum(error[here] ** 2, axis=1))))
+            ratio = float(np.sqrt(np.mean((error[here] / std[here]) ** 2)))
+            rows.append({"ahead_s": high, "rms_m": rms, "times_noise": ratio, "frames": int(here.sum())})
+    return rows
+
+
+def _hits(hits: tuple[HitError, ...]) -> dict[str, Any]:
+    if not hits:
+        return {"pieces": 0}
+    before, after = np.array([h.before for h in hits]), np.array([h.after for h in hits])
+    error, std = np.array([h.error for h in hits]), np.array([h.hit.v_std for h in hits])
+    closing, sliding = before[:, 0] < -0.1, np.abs(before[:, 1]) > 0.1
+    return {
+        "pieces": len(hits),
+        "speed_before": range_of(np.linalg.norm(before, axis=1)),
+        "error_mps": range_of(np.linalg.norm(error, axis=1)),
+        "error_normal_mps": range_of(error[:, 0]),
+        "error_tangential_mps": range_of(error[:, 1] * np.sign(before[:, 1])),
+        "restitution_normal": range_of(-after[closing, 0] / before[closing, 0]),
+        "restitution_tangential": range_of(after[sliding, 1] / before[sliding, 1]),
+        "times_noise": range_of(np.sqrt(np.mean((error / std[:, None]) ** 2, axis=1))),
+    }
+
+
+def _part_most(summary: dict[str, Any]) -> str:
+    """One sentence: the kind of piece on which simulator and recording differ by most beyond noise."""
+    ratios = {
+        kind: summary[kind]["times_noise"]["median"] for kind in ("glide", "wall", "mallet") if summary[kind]["pieces"]
+    }
+    if not ratios:
+        return "nothing to compare: the recording holds no puck in free motion that could be used"
+    kind = max(ratios, key=lambda name: ratios[name])
+    if ratios[kind] < AGREES:
+        return f"nowhere beyond noise: the largest is {kind} with {ratios[kind]:.1f} times what noise explains"
+    return f"{_words(kind, summary[kind])}; that is {ratios[kind]:.1f} times what noise explains"
+
+
+def _words(kind: str, part: dict[str, Any]) -> str:
+    if kind == "glide":
+        along = part["end_error_along_m"]["median"]
+        way = "further" if along > 0 else "less far"
+        return (
+            f"glides: at the end of a glide the puck is {1e3 * part['end_error_m']['median']:.1f} mm off "
+            f"(median of {part['pieces']}), {1e3 * abs(along):.1f} mm {way} along its way than predicted"
+        )
+    normal, tangential = part["restitution_normal"], part["restitution_tangential"]
+    seen = [
+        f"{range_['median']:.2f} {name}" for range_, name in ((normal, "normal"), (tangential, "tangential")) if range_
+    ]
+    return (
+        f"{kind} hits: the velocity after them is {part['error_mps']['median']:.2f} m/s off (median of "
+        f"{part['pieces']}); the ratio kept is {', '.join(seen) or 'unknown'}"
+    )

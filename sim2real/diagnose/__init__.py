@@ -1,0 +1,1 @@
+"""Explaining a recording: pieces, prediction, location, names, refit, report; a file a stage."""

@@ -1,0 +1,133 @@
+"""The rules that a recording must keep beyond being well-formed: its meta data, its clocks, its units."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from sim2real.recording_csv import RecordingError, Stream, read_text
+
+FORMAT = "puckpilot-recording/1"
+# key -> field -> largest value that can be meant in SI units
+META_FIELDS: dict[str, dict[str, float]] = {
+    "table": {"length_m": 20.0, "width_m": 20.0, "goal_width_m": 20.0},
+    "puck": {"radius_m": 1.0},
+    "mallet": {"radius_m": 1.0},
+    "camera": {"rate_hz": 1e5, "position_std_m": 1.0},
+}
+LARGEST_POSITION = 1e3
+LARGEST_TIME = 1e11
+BEYOND_END = 0.35
+BEYOND_SIDE = 0.12
+RATE_FACTOR = 50.0
+
+
+def read_meta(file: Path) -> dict[str, Any]:
+    """The checked content of meta.json; absent nominal values are present as None. Errors: RecordingError."""
+    try:
+        meta = json.loads(read_text(file), parse_constant=_refuse_constant)
+    except json.JSONDecodeError as error:
+        raise RecordingError(file, f"is not JSON ({error.msg}); mend it there", error.lineno) from None
+    except (RecursionError, ValueError) as error:
+        if isinstance(error, RecordingError):
+            raise
+        raise RecordingError(file, f"is not usable JSON ({str(error)[:80]})") from None
+    if not isinstance(meta, dict):
+        raise RecordingError(file, f"holds a {type(meta).__name__}, expected one object with the key 'format'")
+    if meta.get("format") != FORMAT:
+        reason = f"format is {str(meta.get('format'))[:60]!r}, expected {FORMAT!r}; convert the recording"
+        raise RecordingError(file, reason)
+    return meta | {key: _section(file, meta, key) for key in META_FIELDS}
+
+
+def _refuse_constant(word: str) -> float:
+    raise ValueError(f"{word} is no JSON number; write null where a value is unknown")
+
+
+def _section(file: Path, meta: dict[str, Any], key: str) -> dict[str, Any]:
+    if not isinstance(meta.get(key), dict):
+        fields = ", ".join(f'"{field}": null' for field in META_FIELDS[key])
+        raise RecordingError(file, f'"{key}" is no object; expected "{key}": {{{fields}}} with null where unknown')
+    section = dict(meta[key])
+    for field, largest in META_FIELDS[key].items():
+        value = section.setdefault(field, None)
+        if value is None:
+            continue
+        number = isinstance(value, int | float) and not isinstance(value, bool)
+        if not number or not 0 < value <= largest:
+            reason = f"{key}.{field} is {str(value)[:40]!r}, expected a number in 0 … {largest:g} or null"
+            raise RecordingError(file, reason)
+    return section
+
+
+def check_clock(file: Path, stream: Stream) -> None:
+    """`t` must be there in each row and must grow from row to row."""
+    t = stream.t
+    _refuse_first(file, np.isnan(t), lambda k: "t is blank; every row needs its time")
+    _refuse_first(file, np.abs(t) > LARGEST_TIME, lambda k: f"t is {t[k]:g}, expected seconds")
+    late = np.zeros(len(t), bool)
+    late[1:] = np.diff(t) <= 0
+
+    def reason(k: int) -> str:
+        if t[k] == t[k - 1]:
+            return f"t {t[k]:.6f} stands twice; remove the repeated row"
+        return f"the clock runs back from {t[k - 1]:.6f} to {t[k]:.6f}; rows must come in the order of t"
+
+    _refuse_first(file, late, reason)
+
+
+def check_size(file: Path, stream: Stream, columns: tuple[str, ...]) -> None:
+    """No value may be larger than any position, voltage or time within a recording can be."""
+    for name in columns:
+        if name in stream and name != "t":
+            value = stream[name]
+            _refuse_first(
+                file,
+                np.abs(value) > LARGEST_POSITION,
+                lambda k, name=name, value=value: f"{name} is {value[k]:g}, far beyond anything in SI units",
+            )
+
+
+def check_rate(file: Path, stream: Stream, rate: float | None) -> None:
+    """The frames' clock must be in seconds: its median step may not be far from the nominal rate."""
+    if rate is None or stream.rows < 3:
+        return
+    step = float(np.median(np.diff(stream.t)))
+    if not 1 / RATE_FACTOR < step * rate < RATE_FACTOR:
+        reason = f"frames are {step:g} apart, but meta.json says {rate:g} Hz; t must be in seconds"
+        raise RecordingError(file, reason)
+
+
+def outside(stream: Stream, names: tuple[str, str], length: float | None, width: float | None) -> np.ndarray:
+    """Which rows show a position outside of the table by more than a goal is deep, shape (rows,) bool."""
+    x, y = stream[names[0]], stream[names[1]]
+    far = np.zeros(len(x), bool)
+    if length is not None:
+        far |= (x < -BEYOND_END) | (x > length + BEYOND_END)
+    if width is not None:
+        far |= (y < -BEYOND_SIDE) | (y > width + BEYOND_SIDE)
+    return far
+
+
+def check_inside(file: Path, stream: Stream, names: tuple[str, str], table: dict[str, Any]) -> int:
+    """Number of positions far outside of the table; RecordingError where these are most of all that were seen."""
+    far = outside(stream, names, table["length_m"], table["width_m"])
+    seen = np.isfinite(stream[names[0]]) & np.isfinite(stream[names[1]])
+    if far.sum() > 0.5 * seen.sum():
+        size = f"{table['length_m'] or math.nan:g} x {table['width_m'] or math.nan:g} m"
+        reason = (
+            f"{far.sum()} of {seen.sum()} positions {names[0]}, {names[1]} lie outside of the table of {size} "
+            "that meta.json states; expected metres in the table's frame: check unit and size"
+        )
+        raise RecordingError(file, reason, int(np.argmax(far)) + 2)
+    return int(far.sum())
+
+
+def _refuse_first(file: Path, bad: np.ndarray, reason) -> None:
+    if bad.any():
+        k = int(np.argmax(bad))
+        raise RecordingError(file, reason(k), k + 2)

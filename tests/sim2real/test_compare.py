@@ -1,0 +1,127 @@
+"""`compare`: right numbers on paths that the simulator would make, and one line of words when it cannot."""
+
+import argparse
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sim2real.compare import add_arguments, run
+from sim2real.compare_physics_stub import bounce, contact, glide
+from sim2real.compare_predict import compare_pieces, parameters, predict_glide
+from sim2real.diagnose.pieces import cut
+from sim2real.diagnose.sensor import Noise
+from sim2real.recording import Recording, Stream, read_recording, write_recording
+
+SHARED = Path(__file__).resolve().parents[2].parent / "shared" / "recordings"
+META = {
+    "format": "puckpilot-recording/1",
+    "table": {"length_m": 2.0, "width_m": 1.0, "goal_width_m": None},
+    "puck": {"radius_m": 0.03},
+    "mallet": {"radius_m": 0.05},
+    "camera": {"rate_hz": 150.0, "position_std_m": None},
+}
+
+
+def glides(friction: float, drag: float, noise: float = 0.0005, count: int = 12) -> Recording:
+    """Free slides under the simulator's law, none of which touches anything."""
+    rng = np.random.default_rng(0)
+    t = np.arange(150) / 150
+    places = []
+    for speed in rng.uniform(0.5, 1.5, count):
+        way = np.array([glide.distance(speed, at, friction, drag) for at in t])
+        angle = rng.uniform(-0.2, 0.2)
+        places.append(np.stack([0.2 + way * np.cos(angle), 0.5 + way * np.sin(angle)], axis=1))
+    p = np.concatenate(places) + rng.normal(0, noise, (150 * count, 2))
+    unseen = np.full(len(p), np.nan)
+    clock = np.arange(len(p)) / 150
+    columns = {"t": clock, "puck_x": p[:, 0], "puck_y": p[:, 1], "opponent_x": unseen, "opponent_y": unseen}
+    return Recording("glides", META, Stream(columns))
+
+
+def command(*words: str) -> int:
+    parser = argparse.ArgumentParser()
+    add_arguments(parser)
+    return run(parser.parse_args(words))
+
+
+@pytest.mark.parametrize(("friction", "drag"), [(0.125, 0.125), (0.0, 0.3), (0.2, 0.0), (0.0, 0.0)])
+def test_the_stand_in_obeys_its_equation_in_all_limits(friction, drag):
+    t, h = 0.7, 1e-5
+    v = glide.speed(1.3, t, friction, drag)
+    assert (glide.distance(1.3, t + h, friction, drag) - glide.distance(1.3, t - h, friction, drag)) / (
+        2 * h
+    ) == pytest.approx(v, rel=1e-6)
+    slope = (glide.speed(1.3, t + h, friction, drag) - glide.speed(1.3, t - h, friction, drag)) / (2 * h)
+    assert slope == pytest.approx(-friction - drag * v * v, abs=1e-6)
+    assert glide.distance(0.0, 1.0, friction, drag) == 0.0
+
+
+def test_the_stand_in_reflects():
+    assert bounce.reflect(1.0, -2.0, 0.0, 1.0, 0.5) == (0.5, 1.0)
+    assert contact.reflect(-1.0, 0.5, 2.0, 0.0, 1.0, 0.0, 0.5) == (3.5, 0.5)
+
+
+def test_glides_of_the_same_law_differ_by_noise_alone():
+    recording = glides(0.125, 0.125)
+    found = compare_pieces(cut(recording), parameters(recording))
+    assert len(found.glides) == 12
+    ratio = [np.sqrt(np.mean((g.error[g.fitted :] / g.std[g.fitted :]) ** 2)) for g in found.glides]
+    assert np.mean(ratio) == pytest.approx(1.0, abs=0.15)
+
+
+def test_glides_of_another_law_show_its_distance():
+    recording = glides(0.4, 0.125, noise=0.0002)
+    pieces = cut(recording)
+    for piece in pieces.glides:
+        off = predict_glide(piece, Noise(0.0002, 0.0), 0.125, 0.125)
+        ahead = off.t[-1] - off.t[off.fitted - 1]
+        # 0.275 m/s^2 more: the start's fit, centred in its part, splits the parabola as least squares does
+        part = off.t[off.fitted - 1]
+        expected = -0.5 * 0.275 * (ahead**2 + ahead * part + part**2 / 6)
+        assert off.error[-1, 0] == pytest.approx(expected, rel=0.12)
+        assert abs(off.error[-1, 1]) < 0.003
+
+
+def test_prints_one_json_object_and_draws(tmp_path, capsys):
+    write_recording(tmp_path / "glides", glides(0.4, 0.125))
+    assert command(str(tmp_path / "glides"), "--json", "--out", str(tmp_path / "o")) == 0
+    summary = json.loads(capsys.readouterr().out)
+    assert summary["glide"]["pieces"] == 12 and summary["wall"] == {"pieces": 0}
+    assert summary["part_most"].startswith("glides: at the end of a glide") and "less far" in summary["part_most"]
+    assert Path(summary["picture"]).read_bytes().startswith(b"\x89PNG")
+
+
+def test_says_in_one_line_what_it_cannot_read_or_write(tmp_path, capsys):
+    assert command(str(tmp_path / "none"), "--out", str(tmp_path / "o")) == 2
+    assert "is no folder" in capsys.readouterr().err
+    assert not (tmp_path / "o").exists()
+    write_recording(tmp_path / "glides", glides(0.1, 0.1, count=2))
+    (tmp_path / "file").write_text("")
+    assert command(str(tmp_path / "glides"), "--out", str(tmp_path / "file")) == 2
+    error = capsys.readouterr().err
+    assert "cannot write the picture" in error and error.count("\n") == 1
+
+
+def test_a_gantry_alone_is_nothing_to_compare_and_no_crash(tmp_path, capsys):
+    t = np.arange(5) / 100
+    write_recording(tmp_path / "g", Recording("g", META, mallet=Stream({"t": t, "mallet_x": t, "mallet_y": t})))
+    assert command(str(tmp_path / "g"), "--out", str(tmp_path)) == 0
+    assert "where they part most: nothing to compare" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("name", ["practice/null", "practice/tilt", "practice/sag", "ubc/play_a", "ubc/noise_a"])
+def test_shared_recordings_are_compared(tmp_path, capsys, name):
+    if not SHARED.is_dir():
+        pytest.skip(f"the shared recordings are not beside this checkout ({SHARED})")
+    assert command(str(SHARED / name), "--json", "--out", str(tmp_path)) == 0
+    summary = json.loads(capsys.readouterr().out)
+    if name == "practice/null":
+        assert summary["glide"]["times_noise"]["median"] == pytest.approx(1.0, abs=0.1)
+        recording = read_recording(SHARED / name)
+        found = compare_pieces(cut(recording), parameters(recording) | {"wall_restitution": 0.8})
+        worst = [np.max(np.abs(h.error)) / h.hit.v_std for h in found.walls]
+        assert np.median(worst) < 2.0
+    if name == "practice/tilt":
+        assert summary["part_most"].startswith("glides")
