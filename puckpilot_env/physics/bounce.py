@@ -54,9 +54,10 @@ def first_boundary(x, y, ux, uy, farthest, length, width, goal_width, radius):
             best, kind = gap, WALL_Y0
     half_goal = 0.5 * goal_width
     middle = 0.5 * width
-    if x - best < radius:
+    ahead = x + ux * best
+    if min(x, ahead) < radius:
         best, kind = _first_at_end(x, y, ux, uy, best, kind, radius, half_goal, middle, WALL_X0, GOAL_X0)
-    elif x + best > length - radius:
+    if max(x, ahead) > length - radius:
         best, kind = _first_at_end(length - x, y, -ux, uy, best, kind, radius, half_goal, middle, WALL_X1, GOAL_X1)
     return best, kind
 
