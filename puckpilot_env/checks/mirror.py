@@ -41,12 +41,13 @@ class _Seen:
     faceoffs: int = 0
 
     def count(self, before: np.ndarray, tables: Tables) -> None:
+        """Note what the last step brought; `before`: the states before it."""
         ended = tables.terminated | tables.truncated
         goals = (tables.states["score"].sum(1) > before["score"].sum(1)) & ~ended
-        placed = (tables.states["held"] == 0.0) & (tables.states["puck"][:, 0] == 0.5 * tables.params["length"])
+        full = before["held"] + tables.variant.period >= tables.variant.possession_time - 1e-9
         self.ends += int(ended.sum())
         self.goals += int(goals.sum())
-        self.faceoffs += int((placed & ~ended & ~goals).sum())
+        self.faceoffs += int((full & (tables.states["held"] == 0.0) & ~goals & ~ended).sum())
 
 
 def _versions(variant: variants.Variant) -> tuple[variants.Variant, ...]:
@@ -119,18 +120,18 @@ def _symmetric(subject: Subject) -> str:
     for variant in _versions(own.variant):
         _play_both(variant, steps, subject.seed, seen)
     return (
-        f"{2 * steps * TABLES:,} steps of turned tables agree, through {seen.goals} goals, {seen.faceoffs} face-offs and "
-        f"{seen.ends} endings"
+        f"{2 * steps * TABLES:,} steps of turned tables agree, through {seen.goals} goals, {seen.faceoffs} face-offs "
+        f"and {seen.ends} endings"
     )
 
 
-def _worst(before: np.ndarray, after: np.ndarray) -> str | None:
-    for name in before.dtype.names or ():
-        a, b = before[name], after[name]
-        same = np.abs(a - b) <= ROUNDING if a.dtype.kind == "f" else a == b
-        if not np.all(same):
-            return f"`{name}` is not what it was after turning twice"
-    return None
+def _changed(before: np.ndarray, after: np.ndarray, where: str = "") -> str | None:
+    """The first field of two arrays of records that is not the same, numbers with a point up to rounding."""
+    if before.dtype.names:
+        found = (_changed(before[name], after[name], f"{where}{name} ") for name in before.dtype.names)
+        return next((each for each in found if each is not None), None)
+    same = np.abs(before - after) <= ROUNDING if before.dtype.kind == "f" else before == after
+    return None if np.all(same) else f"{where}is not what it was after turning twice"
 
 
 def _inverse(subject: Subject) -> str:
@@ -145,7 +146,7 @@ def _inverse(subject: Subject) -> str:
         tables.turn()
         tables.turn()
         after = tables.snapshot()
-        found = _worst(before.states, after.states)
+        found = _changed(before.states, after.states)
         for name in ("frames", "observations"):
             if not np.array_equal(getattr(before, name), getattr(after, name)):
                 found = f"{name} are not what they were after turning twice"
@@ -160,7 +161,7 @@ CHECKS = (
     Check(
         "turned table, same game",
         "Neither seat has an advantage, and one policy can play both.",
-        "Let everything that has an end or a side go through game.mirror, and every field of the state turn in turn_table.",
+        "Let everything with an end or a side go through game.mirror, and turn every field of the state in turn_table.",
         _symmetric,
     ),
     Check(

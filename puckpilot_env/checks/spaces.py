@@ -14,7 +14,7 @@ from puckpilot_env.checks.walk import Moment, walk
 
 
 def _outside(space: Any, value: Any, where: str) -> str | None:
-    """Why a value is not in its space, in words. A wrong type or shape is left to `_mistyped`, so that it is told once."""
+    """Why a value is not in its space, in words. A wrong type or shape is left to `_mistyped`."""
     if isinstance(space, spaces.Dict | spaces.Tuple):
         return next((found for part in _parts(space, value, where) if (found := _outside(*part))), None)
     if isinstance(space, spaces.Box):
