@@ -102,7 +102,7 @@ class Tables:
 
     @property
     def _rows(self) -> NDArray[np.float64]:
-        """The parameters as a matrix, made anew each time: a kept view would part from `params` in a copy or a pickle."""
+        """The parameters as a matrix, made anew each time: a kept view would part from `params` in a copy."""
         return parameters.as_matrix(self.params)
 
     def reset(self, seed: int | None = None) -> NDArray[np.float32]:

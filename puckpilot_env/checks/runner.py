@@ -74,8 +74,9 @@ def find_maker(name: str) -> Callable[..., Any]:
     for id_ in (name, f"puckpilot/{name}"):
         if id_ in known:
             return partial(pettingzoo.make, "parallel", id_)
-    near = difflib.get_close_matches(name, known, n=1) or difflib.get_close_matches(f"puckpilot/{name}", known, n=1)
-    hint = f"did you mean '{near[0]}'?" if near else 'expected an id of the registry or "module:attribute"'
+    short = {id_.rpartition("/")[2]: id_ for id_ in known}
+    near = difflib.get_close_matches(name.rpartition("/")[2], short, n=1)
+    hint = f"did you mean '{short[near[0]]}'?" if near else 'expected an id of the registry or "module:attribute"'
     raise ValueError(f"unknown environment '{name}'; {hint}")
 
 
