@@ -32,7 +32,12 @@ class TableEnv(ParallelEnv):
     Every array handed out is the caller's own: no later step changes it.
     """
 
-    metadata = {"render_modes": ["rgb_array"], "render_fps": 10, "is_parallelizable": True}  # noqa: RUF012
+    metadata = {  # noqa: RUF012
+        "render_modes": ["rgb_array"],
+        "render_fps": 10,
+        "is_parallelizable": True,
+        "refuses_bad_actions": True,  # see `check`
+    }
 
     def __init__(
         self,

@@ -78,7 +78,6 @@ class Tables:
         self.autoreset = autoreset
         self.params = parameters.make_records(tables, {**variant.parameters, **(values or {})})
         self.nominal = self.params[:1].copy()
-        self._rows = parameters.as_matrix(self.params)
         self._rules = variant.rules()
         self._drawn = variant.drawn()
         self.states = np.zeros(tables, state.TABLE)
@@ -107,6 +106,11 @@ class Tables:
 
     def __len__(self) -> int:
         return len(self.states)
+
+    @property
+    def _rows(self) -> NDArray[np.float64]:
+        """The parameters as a matrix, made anew each time: a kept view would part from `params` in a copy."""
+        return parameters.as_matrix(self.params)
 
     def reset(self, seed: int | None = None) -> NDArray[np.float32]:
         """Begin a new episode on every table and return `observations`; with a seed, start its random streams anew."""

@@ -1,0 +1,78 @@
+"""`puckpilot check`: does an environment keep its promises? Each finding is a fact, what it means, and what to do."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import json
+from typing import Any
+
+STYLES = {"passed": "green", "error": "bold red", "warning": "yellow", "info": "cyan"}
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of the command."""
+    parser.add_argument("ids", nargs="*", metavar="ID|module:attribute", help="environments; default: all of puckpilot")
+    parser.add_argument("--steps", type=int, default=2000, help="steps that each check plays (default 2000, a match)")
+    parser.add_argument("--seed", type=int, default=0, help="seed of the games (default 0)")
+    parser.add_argument("--json", action="store_true", help="print findings as JSON")
+
+
+def run(args: argparse.Namespace) -> int:
+    """0 if all checks passed, 1 if an environment failed one. Raises ValueError, in one line, where it cannot check."""
+    from puckpilot_env.checks.runner import find_maker
+    from puckpilot_env.variants import all_variants
+
+    names = args.ids or list(all_variants())
+    for name in names:
+        find_maker(name)  # so that a misspelt last one is told before the others are played
+    found = _check_all(names, args.steps, args.seed)
+    if args.json:
+        print(json.dumps([{"id": name, "checks": _as_dicts(results)} for name, results in found.items()], indent=2))
+    else:
+        _print_tables(found)
+    return int(any(result.failed for results in found.values() for result in results))
+
+
+def _check_all(names: list[str], steps: int, seed: int) -> dict[str, list[Any]]:
+    from rich.console import Console
+    from rich.progress import Progress
+
+    from puckpilot_env.check import check_names, run_checks
+
+    found = {}
+    with Progress(console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("checking", total=len(names) * len(check_names()))
+
+        for name in names:
+
+            def show(check: str, name: str = name) -> None:
+                bar.update(task, advance=1, description=f"{name}: {check}")
+
+            found[name] = run_checks(name, steps=steps, seed=seed, progress=show)
+    return found
+
+
+def _as_dicts(results: list[Any]) -> list[dict[str, Any]]:
+    return [dataclasses.asdict(result) for result in results]
+
+
+def _print_tables(found: dict[str, list[Any]]) -> None:
+    from rich.console import Console
+    from rich.markup import escape
+    from rich.table import Table
+
+    console = Console()
+    for name, results in found.items():
+        table = Table(title=name, title_justify="left", title_style="bold", expand=False)
+        for heading in ("check", "finding", "fact, what it means, what to do"):
+            table.add_column(heading, overflow="fold")
+        for result in results:
+            verdict = "passed" if result.passed else result.level
+            words = [result.detail] if result.passed else [result.detail, result.meaning, result.remedy]
+            style = STYLES[verdict]
+            table.add_row(result.name, f"[{style}]{verdict}[/{style}]", escape("\n".join(words)))
+        console.print(table)
+        failed = sum(result.failed for result in results)
+        passed = sum(result.passed for result in results)
+        console.print(f"{passed} of {len(results)} passed, {failed} failed\n")
