@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from puckpilot_env import render
 from puckpilot_env.canvas import Picture
+from puckpilot_env.motion import puck_motion
 from puckpilot_env.rink import SCALE
 from puckpilot_env.tables import Tables
 from puckpilot_env.trace import trace
@@ -70,12 +71,12 @@ class Film:
         times, shown = self._moments()
         moments, scored = trace(self.tables, self.table, np.asarray(actions)[self.table], times)
         for moment, time, is_shown, goal in zip(moments, times, shown, scored, strict=True):
-            row = [[self._played + time, moment["puck"][0], moment["puck"][1]]]
+            row = [[self._played + time, moment["puck"]["x"], moment["puck"]["y"]]]
             self._trail = np.concatenate([self._trail, row])
             if is_shown:
                 self._add(_with_goal(moment, self.tables.params[self.table]) if goal else moment, time, goal)
         self._played += self.tables.variant.period
-        self._puck = moments[-1]["puck"][:2].copy()
+        self._puck = puck_motion(moments[-1])[:2]
         self._goal = bool(scored[-1])
         if self._goal:
             self._hold(self.hold)
@@ -93,12 +94,12 @@ class Film:
 
     def _note_new_start(self, now: np.void) -> None:
         """If the puck was placed anew since the last step: show the last picture a moment, and begin a new trail."""
-        if self._puck is not None and np.abs(now["puck"][:2] - self._puck).max() > _SAME_PLACE:
+        if self._puck is not None and np.abs(puck_motion(now)[:2] - self._puck).max() > _SAME_PLACE:
             if not self._goal:
                 self._hold(0.5 * self.hold)
             self._puck = None
         if self._puck is None:
-            self._trail = np.array([[self._played, now["puck"][0], now["puck"][1]]])
+            self._trail = np.array([[self._played, now["puck"]["x"], now["puck"]["y"]]])
 
     def _add(self, moment: np.void, time: float, goal: bool = False) -> None:
         """Add the picture of a moment `time` [s] after the step's begin."""
@@ -119,5 +120,5 @@ class Film:
 def _with_goal(moment: np.void, p: np.void) -> np.void:
     """The moment with the goal counted, which the step does only at its end."""
     counted = moment.copy()
-    counted["score"][1 if moment["puck"][0] < 0.5 * p["length"] else 0] += 1
+    counted["score"][1 if moment["puck"]["x"] < 0.5 * p["length"] else 0] += 1
     return counted

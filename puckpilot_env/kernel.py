@@ -20,12 +20,14 @@ import numba
 from numba.core import config
 
 _ROOT = Path(__file__).parent
-_SOURCES = ("*.py", "physics/**/*.py", "game/**/*.py")  # adapters too: hashing one too many only costs a compilation
 _KEEP_DAYS = 30
 
 
 def _source_files() -> list[Path]:
-    return sorted({path for pattern in _SOURCES for path in _ROOT.glob(pattern)})
+    """Every file that defines kernels or what they are compiled against, in this package and those above it."""
+    sources = [path for path in sorted(_ROOT.rglob("*.py")) if path.parent.name in ("physics", "game")]
+    sources += [_ROOT / f"{name}.py" for name in ("kernel", "parameters", "random_stream", "state", "batch", "trace")]
+    return sources + sorted((_ROOT.parent / "baselines").rglob("*.py"))
 
 
 def _source_hash() -> str:

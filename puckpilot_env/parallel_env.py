@@ -13,7 +13,7 @@ from pettingzoo import ParallelEnv
 
 from puckpilot_env import parameters
 from puckpilot_env.game.rules import ENDING_NAMES
-from puckpilot_env.mallet_motion import motion_of_mallets
+from puckpilot_env.motion import mallet_motion, puck_motion
 from puckpilot_env.tables import ACTION_COLUMNS, Tables
 from puckpilot_env.variants import Variant
 
@@ -158,8 +158,7 @@ class TableEnv(ParallelEnv):
     def state(self) -> NDArray[np.float64]:
         """The true state in the table's frame: puck, then each mallet, as x, y, vx, vy [m, m/s]."""
         table = self._tables.states[0]
-        puck = [table["puck"][name] for name in ("x", "y", "vx", "vy")]
-        everything = np.concatenate([puck, motion_of_mallets(self._tables.states)[0].ravel()])
+        everything = np.concatenate([puck_motion(table), mallet_motion(table).ravel()])
         return np.clip(everything, -STATE_HIGH, STATE_HIGH)
 
     def render(self) -> NDArray[np.uint8] | None:
@@ -168,7 +167,8 @@ class TableEnv(ParallelEnv):
             return None
         from puckpilot_env.render import draw
 
-        return draw(self._tables.states[0], self._tables.params[0])
+        tables = self._tables
+        return draw(tables.states[0], tables.params[0], rules=tables.variant.rules()[0], names=AGENTS)
 
     def close(self) -> None:
         """Nothing is held open."""

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from puckpilot_env import canvas
 from puckpilot_env.canvas import Picture
 from puckpilot_env.game.start import MATCH
+from puckpilot_env.motion import mallet_motion, puck_motion
 from puckpilot_env.rink import (
     ICE,
     INK,
@@ -50,10 +51,10 @@ def draw(
     picture = background(place).copy()
     if trail is not None and np.size(trail):
         _draw_trail(picture, place, np.asarray(trail, np.float64), p)
-    mallets = table["modes"].sum(axis=2)
+    mallets = mallet_motion(table)[:, :2]
     for k in range(2):
         _draw_beam(picture, place, mallets[k, 0], p, k)
-    _draw_puck(picture, place, table["puck"], p)
+    _draw_puck(picture, place, puck_motion(table), p)
     for k in range(2):
         _draw_mallet(picture, place, mallets[k], p, k)
     _draw_header(picture, place, table, names, rules, note)
@@ -69,12 +70,12 @@ def draw_start(variant: Variant, *, seed: int = 0, steps: int = 5, scale: float 
     random = np.random.default_rng(seed)
     low, high = tables.action_bounds
     times = np.linspace(0.0, tables.variant.period, 21)
-    moment, trail = tables.states[0].copy(), [tables.states["puck"][0, :2].copy()]
+    moment, trail = tables.states[0].copy(), [puck_motion(tables.states[0])[:2]]
     for _ in range(steps):
         actions = random.uniform(low, high, (1, 2, 4)).astype(np.float32)
         actions[..., 2:] = 0.5 * high[2:]
         moments, scored = trace_motion(tables, 0, actions[0], times)
-        trail.extend(moments["puck"][:, :2])
+        trail.extend(puck_motion(moments)[:, :2])
         moment = moments[-1]
         tables.step(actions)
         if scored[-1] or tables.terminated[0] or tables.truncated[0]:

@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from puckpilot_env import state
-from puckpilot_env.game.step import _plan, _play, _play_and_film, _settle_mallets
+from puckpilot_env.game.sensing import EXACT, MOST_WANTED
+from puckpilot_env.game.step import plan_both, play, play_and_film
 from puckpilot_env.kernel import announce_compilation, kernel
 from puckpilot_env.physics.advance import EVENT_COLUMNS
-from puckpilot_env.physics.mallet import PATH_COLUMNS
+from puckpilot_env.physics.mallet import settle
 from puckpilot_env.tables import Tables
 
 _announce_once = lru_cache(announce_compilation)
@@ -29,18 +30,19 @@ def trace_step(moments, p, rules, frames, actions, times, scored):
 
     Each copy is played from the start in one stretch, because a stretch cut in two differs in its last digits.
     """
-    path = np.zeros((2, 2, PATH_COLUMNS))
+    film = np.zeros((MOST_WANTED, 3))
     log = np.zeros((0, EVENT_COLUMNS))
     rewards = np.zeros(2, np.float32)
     rule = rules[0]
     for i in range(times.size):
         table = moments[i]
-        _plan(table, p[0], actions, path, rewards)
-        if times[i] >= rule.period:
-            scored[i] = _play_and_film(table, p[0], rule, frames, path, rewards, log)
+        plan_both(table, p[0], actions, rewards)
+        if times[i] >= rule.period and rule.sensing != EXACT:
+            scored[i] = play_and_film(table, p[0], rule, frames, rewards, log, film)
         else:
-            scored[i] = _play(table, p[0], rule, path, 0.0, times[i], rewards, log)
-        _settle_mallets(table, path, times[i])
+            scored[i] = play(table, p[0], rule, times[i], rewards, log, film[:0])
+        settle(table.mallets[0], times[i])
+        settle(table.mallets[1], times[i])
         table.time += times[i]
 
 

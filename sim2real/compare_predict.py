@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from puckpilot_env.parameters import TABLE
-from sim2real.compare_physics_stub import bounce, contact, glide
+from puckpilot_env.physics import bounce, contact, glide
 from sim2real.diagnose.hits import Hit
 from sim2real.diagnose.pieces import Glide, Pieces
 from sim2real.diagnose.sensor import Noise

@@ -15,7 +15,7 @@ MOST_CROSSINGS = 200  # of the middle line in one stretch; a puck that jitters t
 
 
 @kernel
-def _plan(table, p, actions, rewards):
+def plan_both(table, p, actions, rewards):
     """Both players' plans, and what J.3 charges for them. actions: float32 (2, 4) in each player's own frame."""
     for k in range(2):
         mallet = table.mallets[k]
@@ -30,11 +30,11 @@ def _plan(table, p, actions, rewards):
 
 
 @kernel
-def _play(table, p, rule, rewards, log, film):
-    """The puck's motion through a step with what it means; True if the point is over."""
+def play(table, p, rule, until, rewards, log, film):
+    """The puck's motion until `until` [s] of the plans with what it means; True if the point is over."""
     now = 0.0
     for _ in range(MOST_CROSSINGS):
-        kind, now, _ = advance(table.puck, p, table.mallets, now, rule.period, log, film)
+        kind, now, _ = advance(table.puck, p, table.mallets, now, until, log, film)
         if kind == bounce.NOTHING:
             return False
         if kind == bounce.MIDDLE_LINE:
@@ -48,8 +48,8 @@ def _play(table, p, rule, rewards, log, film):
 
 
 @kernel
-def _play_and_film(table, p, rule, frames, rewards, log, film):
-    """`_play`, and the camera frames exposed meanwhile that some decision will look at."""
+def play_and_film(table, p, rule, frames, rewards, log, film):
+    """`play` for a whole step, and the camera frames exposed meanwhile that some decision will look at."""
     first = sensing.frames_exposed(table, p)
     wanted = sensing.wanted_frames(table, p, rule.sensing, first, rule.period)
     shots = 0
@@ -59,7 +59,7 @@ def _play_and_film(table, p, rule, frames, rewards, log, film):
             film[shots, 0] = sensing.exposure(table, p, frame) - table.time
             shots += 1
         frame, left = frame + 1, left >> 1
-    over = _play(table, p, rule, rewards, log, film[:shots])
+    over = play(table, p, rule, rule.period, rewards, log, film[:shots])
     shots, frame, left = 0, first, wanted
     while left:
         if left & 1:
@@ -88,11 +88,11 @@ def step_table(table, p, rule, frames, actions, rewards, log, film):
     scratch.
     """
     table.ending = rules.RUNNING
-    _plan(table, p, actions, rewards)
+    plan_both(table, p, actions, rewards)
     if rule.sensing == sensing.EXACT:
-        scored = _play(table, p, rule, rewards, log, film[:0])
+        scored = play(table, p, rule, rule.period, rewards, log, film[:0])
     else:
-        scored = _play_and_film(table, p, rule, frames, rewards, log, film)
+        scored = play_and_film(table, p, rule, frames, rewards, log, film)
     settle(table.mallets[0], rule.period)
     settle(table.mallets[1], rule.period)
     table.steps += 1

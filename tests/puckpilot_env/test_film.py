@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from puckpilot_env.film import Film
+from puckpilot_env.motion import mallet_motion, puck_motion
 from puckpilot_env.tables import Tables
 from puckpilot_env.trace import trace
-from puckpilot_env.variants import BY_ID, VARIANTS
+from puckpilot_env.variants import all_variants, find_variant
 
-MATCH = BY_ID["puckpilot/match-v0"]
+MATCH = find_variant("match-v0")
 
 
 class Reel:
@@ -28,7 +29,7 @@ def draw_actions(tables: Tables, random: np.random.Generator) -> np.ndarray:
     """Players that rush at the puck, so that much happens in a step; (n, 2, 4)."""
     low, high = tables.action_bounds
     actions = random.uniform(low, high, (len(tables), 2, 4))
-    puck, p = tables.states["puck"], tables.params
+    puck, p = puck_motion(tables.states), tables.params
     actions[:, 0, :2] = puck[:, :2] + 0.02
     actions[:, 1, :2] = np.stack([p["length"] - puck[:, 0], p["width"] - puck[:, 1]], axis=1) + 0.02
     return np.clip(actions, low, high).astype(np.float32)
@@ -36,16 +37,16 @@ def draw_actions(tables: Tables, random: np.random.Generator) -> np.ndarray:
 
 def stand_still(tables: Tables) -> np.ndarray:
     """Actions that leave player_0 in its corner and player_1 at home; (1, 2, 4)."""
-    tables.states["modes"][0, 0, :, 0] = 0.1, 0.9
+    tables.states["mallets"]["x"]["rest"][0, 0], tables.states["mallets"]["y"]["rest"][0, 0] = 0.1, 0.9
     return np.array([[[0.1, 0.9, 1.0, 1.0], [0.25, 0.5, 1.0, 1.0]]], np.float32)
 
 
 def places(states) -> np.ndarray:
     """Puck and mallets (n, 6) [m]."""
-    return np.concatenate([states["puck"][:, :2], states["modes"].sum(axis=3).reshape(len(states), 4)], axis=1)
+    return np.concatenate([puck_motion(states)[:, :2], mallet_motion(states)[..., :2].reshape(len(states), 4)], axis=1)
 
 
-@pytest.mark.parametrize("variant", VARIANTS, ids=lambda v: v.name)
+@pytest.mark.parametrize("variant", all_variants().values(), ids=lambda v: v.name)
 def test_trace_ends_where_the_step_ends_and_leaves_no_mark(variant):
     filmed, twin = (Tables(variant, 3, seed=11, autoreset=False) for _ in range(2))
     random = np.random.default_rng(1)
@@ -77,8 +78,8 @@ def test_moments_of_a_step_join_smoothly():
     for _ in range(30):
         actions = draw_actions(tables, random)
         moments, _ = trace(tables, 0, actions[0], times)
-        moved = np.hypot(*np.diff(moments["puck"][:, :2], axis=0).T)
-        fastest = np.hypot(*moments["puck"][:, 2:].T).max()
+        moved = np.hypot(*np.diff(puck_motion(moments)[:, :2], axis=0).T)
+        fastest = np.hypot(*puck_motion(moments)[:, 2:].T).max()
         assert moved.max() <= 1.01 * fastest * 0.001 + 1e-6
         np.testing.assert_allclose(moments["time"] - tables.states["time"][0], times, atol=1e-9)
         tables.step(actions)
@@ -107,7 +108,7 @@ def test_film_has_its_frame_rate(fps, frames):
 def test_film_holds_a_goal_and_counts_it():
     tables = Tables(MATCH, 1, seed=6)
     actions = stand_still(tables)
-    tables.states["puck"][0] = 0.3, 0.5, -5.0, 0.0
+    tables.states["puck"][0] = (0.3, 0.5, -5.0, 0.0)
     reel = Reel(20)
     film = Film(tables, reel, scale=100, hold=1.0)
     for _ in range(3):
@@ -122,9 +123,9 @@ def test_film_holds_a_goal_and_counts_it():
 
 
 def test_film_pauses_where_the_puck_is_placed_anew():
-    tables = Tables(BY_ID["puckpilot/defence-v0"], 1, seed=7)
+    tables = Tables(find_variant("defence-v0"), 1, seed=7)
     actions = stand_still(tables)
-    tables.states["puck"][0] = 1.2, 0.1, 0.0, 0.0
+    tables.states["puck"][0] = (1.2, 0.1, 0.0, 0.0)
     tables.states["steps"][0] = 99  # the drill's last step
     reel = Reel(20)
     film = Film(tables, reel, scale=100, hold=1.0)

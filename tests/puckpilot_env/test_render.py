@@ -6,19 +6,20 @@ import numpy as np
 import pytest
 
 from puckpilot_env import canvas, parameters, render, rink, state
-from puckpilot_env.variants import BY_ID, VARIANTS
+from puckpilot_env.variants import all_variants, find_variant
 
 P = parameters.make_records(1)[0]
-MATCH = BY_ID["puckpilot/match-v0"].rules()[0]
-DRILL = BY_ID["puckpilot/defence-v0"].rules()[0]
+MATCH = find_variant("match-v0").rules()[0]
+DRILL = find_variant("defence-v0").rules()[0]
 
 
 def make_table(puck=(1.2, 0.3), mallets=((0.3, 0.6), (1.7, 0.45))) -> np.void:
     table = np.zeros(1, state.TABLE)[0]
-    table["puck"][:2] = puck
-    table["modes"][:, :, 0] = mallets
-    table["modes"][:, :, 1] += 0.01  # a place is the sum of its modes
-    table["modes"][:, :, 2] -= 0.01
+    table["puck"]["x"], table["puck"]["y"] = puck
+    for mallet, place in zip(table["mallets"], mallets, strict=True):
+        for axis, position in zip("xy", place, strict=True):
+            mallet[axis]["rest"] = position
+            mallet[axis]["slow"], mallet[axis]["fast"] = 0.01, -0.01  # a place is the sum of its modes
     return table
 
 
@@ -140,7 +141,7 @@ def test_shapes_are_exact_to_a_fraction_of_a_pixel():
     canvas.text(picture, -5.0, 19.0, "cut off", 12, (9, 9, 9))
 
 
-@pytest.mark.parametrize("variant", VARIANTS, ids=lambda v: v.name)
+@pytest.mark.parametrize("variant", all_variants().values(), ids=lambda v: v.name)
 def test_start_of_a_variant(variant):
     picture = render.draw_start(variant, seed=5)
     assert picture.shape == (360, 640, 3)

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from puckpilot_env.physics import bounce, contact, glide
 from sim2real.compare import add_arguments, run
-from sim2real.compare_physics_stub import bounce, contact, glide
 from sim2real.compare_predict import compare_pieces, parameters, predict_glide
 from sim2real.diagnose.pieces import cut
 from sim2real.diagnose.sensor import Noise
