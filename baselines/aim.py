@@ -88,28 +88,26 @@ def shot_chance(x, y, vx, vy, since, opponent, p, gantry, volts):
     """
     radius = p.puck_radius + p.mallet_radius
     spare, t = math.inf, since
+    depth, vx, opponent_depth = p.length - x, -vx, p.length - opponent[0]  # from the opponent's goal line
     for _ in range(MOST_LEGS):
         v = math.hypot(vx, vy)
-        if v < 1e-3:
+        if v < 1e-3 or vx >= 0.0:
             return 0.0
         ux, uy = vx / v, vy / v
         most = min(glide.stop_distance(v, p.friction, p.drag), 2.0 * p.length)
-        gap, kind = bounce.first_boundary(x, y, ux, uy, most, p.length, p.width, p.goal_width, p.puck_radius)
-        if kind == bounce.NOTHING or kind == bounce.WALL_X0 or kind == bounce.WALL_X1 or kind == bounce.GOAL_X0:
+        gap, kind = bounce.first_boundary(depth, y, ux, uy, most, p.length, p.width, p.goal_width, p.puck_radius)
+        if kind == bounce.NOTHING or kind == bounce.WALL_X0:
             return 0.0
         used, slower = glide.time_to(v, gap, p.friction, p.drag)
         for i in range(SAMPLES):
             share = (i + 1.0) / SAMPLES
-            px, py = x + share * gap * ux, y + share * gap * uy
-            if px < 0.5 * p.length + p.mallet_radius - radius:
-                continue
             ready = t + share * used - REACTION
-            past_x = abs(px - opponent[0]) - reach_within(gantry, 0, ready, volts)
-            past_y = abs(py - opponent[1]) - reach_within(gantry, 1, ready, volts)
+            past_x = abs(depth + share * gap * ux - opponent_depth) - reach_within(gantry, 0, ready, volts)
+            past_y = abs(y + share * gap * uy - opponent[1]) - reach_within(gantry, 1, ready, volts)
             spare = min(spare, math.hypot(max(past_x, 0.0), max(past_y, 0.0)) - radius)
-        x, y, t = x + gap * ux, y + gap * uy, t + used
-        if kind == bounce.GOAL_X1:
+        depth, y, t = depth + gap * ux, y + gap * uy, t + used
+        if kind == bounce.GOAL_X0:
             return 1.0 / (1.0 + math.exp(-min(spare, 1.0) / DOUBT))
-        nx, ny = bounce.boundary_normal(kind, x, y, p.length, p.width, p.goal_width)
+        nx, ny = bounce.boundary_normal(kind, depth, y, p.length, p.width, p.goal_width)
         vx, vy = bounce.reflect(ux * slower, uy * slower, nx, ny, p.wall_restitution)
     return 0.0

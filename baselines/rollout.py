@@ -21,11 +21,23 @@ from puckpilot_env.physics.plan import write_plan
 
 HORIZON = 0.45  # s
 FAR = 1e3  # m; where the opponent's mallet is put out of the way
+OPPONENTS = (0.2, 0.5, 1.0)  # how much of the voltage an opponent may use
 LATEST_THREAT = 1.5  # s after the horizon
-NO_REACTION = 0.1  # weight of a shot's chance against an opponent that does not move
-POSSESSION = 0.12  # worth of a puck under control, at best
-LOST = 0.04  # what giving the puck away costs
-LONGEST_HOLD = 5.0  # s; possession is worth nothing after that
+# What a player values. Worths are shares of a goal.
+STYLE = np.dtype(
+    [
+        ("asleep", np.float64),  # weight of a shot's chance against an opponent that does not move
+        ("speed", np.float64),  # worth of a shot's speed towards the goal, per m/s
+        ("possession", np.float64),  # worth of a puck under control, at best
+        ("lost", np.float64),  # what giving the puck away costs
+        ("patience", np.float64),  # s; possession is worth nothing after that
+        ("forward", np.float64),  # what ending a shot far from the own goal costs, per table length
+        ("off", np.float64),  # what being away from the place behind the puck costs, per m
+        ("run_up", np.float64),  # m between that place and the puck
+        ("guard", np.float64),  # m from the goal line to where it waits
+        ("early", np.float64),  # share of the way to the middle line during which the opponent sees a shot coming
+    ]
+)
 
 
 @kernel
@@ -38,7 +50,7 @@ def park_opponent(path):
 
 
 @kernel
-def value_of(action, puck, own, opponent, held, p, gantry, modes, path, body, log, volts):
+def value_of(action, puck, own, opponent, held, p, style, gantry, modes, path, body, log, volts):
     """What playing `action` (4,) is worth. puck, opponent: motions; modes: the own mallet's; path, body, log: scratch."""
     write_plan(
         path, gantry, modes, 0, action[0], action[1], action[2], action[3], mirror.area(0, p), p.max_voltage
@@ -53,29 +65,31 @@ def value_of(action, puck, own, opponent, held, p, gantry, modes, path, body, lo
         if kind == bounce.GOAL_X1:
             return 0.0
         if kind == bounce.MIDDLE_LINE and body[2] > 0.0:
-            return _value_of_shot(body, now, opponent, p, gantry, path, volts)
+            return _value_of_shot(body, now, opponent, p, style, gantry, path, volts)
         if kind == bounce.NOTHING:
-            return _value_of_end(body, held, p, gantry, path, volts)
+            return _value_of_end(body, held, p, style, gantry, path, volts)
 
 
 @kernel
-def _value_of_shot(body, now, opponent, p, gantry, path, volts):
+def _value_of_shot(body, now, opponent, p, style, gantry, path, volts):
     x, y, vx, vy = body[0], body[1], body[2], body[3]
-    early = 0.3 * 0.5 * p.length / max(vx, 0.5)  # the opponent sees the strike before the puck crosses the line
-    chance = shot_chance(x, y, vx, vy, min(early, now), opponent, p, gantry, volts)
+    early = style.early * 0.5 * p.length / max(vx, 0.5)  # the opponent sees the strike before the puck crosses the line
+    chance = 0.0
+    for share in OPPONENTS:
+        chance += shot_chance(x, y, vx, vy, min(early, now), opponent, p, gantry, share * volts) / len(OPPONENTS)
     asleep = shot_chance(x, y, vx, vy, -10.0, opponent, p, gantry, volts)
     rest_x = path[0, 0, mallet.REST2]
-    return chance + NO_REACTION * asleep + 0.01 * vx - LOST - 0.03 * rest_x / p.length
+    return chance + style.asleep * asleep + style.speed * vx - style.lost - style.forward * rest_x / p.length
 
 
 @kernel
-def _value_of_end(body, held, p, gantry, path, volts):
+def _value_of_end(body, held, p, style, gantry, path, volts):
     """Worth of a puck that is still about: who will have it, and whether it threatens the own goal."""
     x, y, vx, vy = body[0], body[1], body[2], body[3]
     mx, my, _, _ = mallet_motion(path, gantry, 0, HORIZON)
     reach = p.puck_radius + p.mallet_radius
     if x > 0.5 * p.length and vx >= 0.0:
-        return -LOST
+        return -style.lost
     t, at_y = crossing(x, y, vx, vy, p, reach, LATEST_THREAT)
     if t < math.inf:
         away = abs(at_y - 0.5 * p.width)
@@ -88,10 +102,10 @@ def _value_of_end(body, held, p, gantry, path, volts):
     else:
         danger = 0.0
     if x > 0.5 * p.length:
-        return -0.5 * LOST - danger
-    patience = 1.0 - held / LONGEST_HOLD
-    behind_x, behind_y = max(x - 2.5 * reach, p.mallet_radius), y
+        return -0.5 * style.lost - danger
+    patience = 1.0 - held / style.patience
+    behind_x, behind_y = max(x - reach - style.run_up, p.mallet_radius), y
     off = math.hypot(mx - behind_x, my - behind_y)
     fast = math.hypot(vx, vy)
     deep = max(0.2 * p.length - x, 0.0) / p.length
-    return POSSESSION * patience - 0.12 * min(off, 1.0) - 0.01 * fast - 0.2 * deep - danger
+    return style.possession * patience - style.off * min(off, 1.0) - 0.01 * fast - 0.2 * deep - danger

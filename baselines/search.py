@@ -14,21 +14,20 @@ from puckpilot_env.kernel import kernel
 from puckpilot_env.physics import mallet
 from puckpilot_env.physics.advance import EVENT_COLUMNS
 
-GUARD = 0.15  # m from the goal line to where it waits
 MOST_CANDIDATES = 64
 LATER = (0.0, 0.1, 0.2)  # s; each way is tried with the first strike after these
 RING = 8  # places around the puck to go to
 
 
 @kernel
-def _suggest(puck, own, last, p, gantry, bounds, ways, found):
+def _suggest(puck, own, last, p, style, gantry, bounds, ways, found):
     """Write candidate actions into `found` (MOST_CANDIDATES, 4); returns how many."""
     n = 0
     found[n] = last
     n += 1
     block(puck, own, p, gantry, bounds, found[n])
     n += 1
-    found[n, 0], found[n, 1] = guard_place(puck[0], puck[1], p, GUARD)
+    found[n, 0], found[n, 1] = guard_place(puck[0], puck[1], p, style.guard)
     n += 1
     for line in (0.06, 0.15, 0.3):
         t, y = crossing(puck[0], puck[1], puck[2], puck[3], p, line, 1.0)
@@ -62,16 +61,16 @@ def _clip(action, bounds):
 
 
 @kernel
-def _best_of_many(puck, own, opponent, held, last, p, gantry, bounds, ways, changes, scratch, out):
+def _best_of_many(puck, own, opponent, held, last, p, style, gantry, bounds, ways, changes, scratch, out):
     modes, path, body, log, found, trial = scratch
     for a in range(2):
         modes[0, a] = mallet.modes_from_motion(gantry, 0, a, own[a], own[2 + a], 0.0)
     park_opponent(path)
     volts = bounds[1, 3]
     best = -math.inf
-    for i in range(_suggest(puck, own, last, p, gantry, bounds, ways, found)):
+    for i in range(_suggest(puck, own, last, p, style, gantry, bounds, ways, found)):
         _clip(found[i], bounds)
-        value = value_of(found[i], puck, own, opponent, held, p, gantry, modes, path, body, log, volts)
+        value = value_of(found[i], puck, own, opponent, held, p, style, gantry, modes, path, body, log, volts)
         if value > best:
             best = value
             out[:] = found[i]
@@ -79,7 +78,7 @@ def _best_of_many(puck, own, opponent, held, last, p, gantry, bounds, ways, chan
         for c in range(4):
             trial[c] = out[c] + changes[i, c]
         _clip(trial, bounds)
-        value = value_of(trial, puck, own, opponent, held, p, gantry, modes, path, body, log, volts)
+        value = value_of(trial, puck, own, opponent, held, p, style, gantry, modes, path, body, log, volts)
         if value > best:
             best = value
             out[:] = trial
@@ -87,13 +86,13 @@ def _best_of_many(puck, own, opponent, held, last, p, gantry, bounds, ways, chan
 
 
 @kernel
-def choose(pucks, mallets, opponents, helds, lasts, scales, nominal, bounds, ways, changes, actions):
+def choose(pucks, mallets, opponents, helds, lasts, scales, nominal, styles, bounds, ways, changes, actions):
     """Write the best action found on every table into `actions` (n, 4).
 
-    lasts: (n, 4) the actions before; ways: rows of way and share of the goal (see `attack`); changes: (m, 4) variations
+    lasts: (n, 4) the actions before; styles: (1,) record of `rollout.STYLE`; ways: rows of way and share of the goal (see `attack`); changes: (m, 4) variations
     of an action that are tried in turn.
     """
-    p = nominal[0]
+    p, style = nominal[0], styles[0]
     gantry = np.zeros((2, 2, mallet.GANTRY_COLUMNS))
     scratch = (
         np.zeros((2, 2, 3)), np.zeros((2, 2, mallet.PATH_COLUMNS)), np.zeros(4), np.zeros((0, EVENT_COLUMNS)),
@@ -104,9 +103,9 @@ def choose(pucks, mallets, opponents, helds, lasts, scales, nominal, bounds, way
         puck = pucks[i]
         ahead = puck[0] + HORIZON * puck[2]
         if min(puck[0], ahead) > 0.5 * p.length:
-            actions[i, 0], actions[i, 1] = guard_place(puck[0], puck[1], p, GUARD)
+            actions[i, 0], actions[i, 1] = guard_place(puck[0], puck[1], p, style.guard)
             actions[i, 2], actions[i, 3] = bounds[1, 2], bounds[1, 3]
             continue
         _best_of_many(
-            puck, mallets[i], opponents[i], helds[i], lasts[i], p, gantry, bounds, ways, changes, scratch, actions[i]
+            puck, mallets[i], opponents[i], helds[i], lasts[i], p, style, gantry, bounds, ways, changes, scratch, actions[i]
         )

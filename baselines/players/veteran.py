@@ -7,12 +7,20 @@ from numpy.typing import NDArray
 
 from baselines.aim import DIRECT, OVER_LEFT, OVER_RIGHT
 from baselines.player import Player, Seat
+from baselines.rollout import STYLE
 from baselines.search import choose
 from baselines.sight import Seen
 
 WAYS = tuple((way, share) for way in (DIRECT, OVER_RIGHT, OVER_LEFT) for share in (-0.8, 0.0, 0.8))
 VARIATIONS = 24
 SPREAD = (0.06, 0.06, 2.0, 2.0)  # of the first variations: m, m, V, V; the last are a quarter as wide
+
+
+# See rollout.STYLE
+VALUES = {
+    "asleep": 0.1, "speed": 0.01, "possession": 0.12, "lost": 0.04, "patience": 5.0, "forward": 0.03, "off": 0.12,
+    "run_up": 0.12, "guard": 0.15, "early": 0.3,
+}  # fmt: skip
 
 
 class Veteran(Player):
@@ -24,6 +32,9 @@ class Veteran(Player):
         self._changes = draws * np.array(SPREAD) * np.linspace(1.0, 0.25, VARIATIONS)[:, None]
         self._ways = np.array(WAYS, np.float64)
         self._bounds = seat.action_bounds.astype(np.float64)
+        self._style = np.zeros(1, STYLE)
+        for name, value in VALUES.items():
+            self._style[name] = value
         self._last = np.tile(self._bounds.mean(axis=0), (seat.tables, 1))
 
     def reset(self, mask: NDArray[np.bool_]) -> None:
@@ -35,7 +46,7 @@ class Veteran(Player):
         actions = np.zeros((len(seen.puck), 4))
         choose(
             seen.puck, seen.mallet, seen.opponent, seen.held, self._last, seen.gantry_scale, self.seat.nominal,
-            self._bounds, self._ways, self._changes, actions,
+            self._style, self._bounds, self._ways, self._changes, actions,
         )  # fmt: skip
         self._last[:] = actions
         return actions
