@@ -6,10 +6,10 @@ import numpy as np
 
 from puckpilot_env import random_stream
 from puckpilot_env.game.rules import RUNNING, STEP_LIMIT
+from puckpilot_env.game.sensing import MOST_WANTED
 from puckpilot_env.game.step import begin_table, observe_table, step_table
 from puckpilot_env.kernel import kernel
 from puckpilot_env.physics.advance import EVENT_COLUMNS
-from puckpilot_env.physics.mallet import PATH_COLUMNS
 
 
 @kernel
@@ -28,7 +28,10 @@ def first_outside(actions, bounds):
 def seed_range(states, seed):
     """Start every table's random streams from `seed` and its index."""
     for i in range(states.size):
-        random_stream.seed_streams(states[i], seed, np.uint64(i))
+        table, index = states[i], np.uint64(i)
+        random_stream.seed_stream(table.streams[0], seed, index, 0)
+        random_stream.seed_stream(table.streams[1], seed, index, 1)
+        random_stream.seed_stream(table.stream, seed, index, 2)
 
 
 @kernel
@@ -45,12 +48,12 @@ def step_range(
     autoreset, first, last,
 ):  # fmt: skip
     """Play one step on tables `first` to `last`, and begin a new episode where one ended, if `autoreset`."""
-    path = np.zeros((2, 2, PATH_COLUMNS))
     log = np.zeros((0, EVENT_COLUMNS))
+    film = np.zeros((MOST_WANTED, 3))
     rule = rules[0]
     for i in range(first, last):
         table, p = states[i], params[i]
-        step_table(table, p, rule, frames[i], actions[i], rewards[i], path, log)
+        step_table(table, p, rule, frames[i], actions[i], rewards[i], log, film)
         ended = table.ending != RUNNING
         truncated[i] = table.ending == STEP_LIMIT
         terminated[i] = ended and not truncated[i]

@@ -53,7 +53,7 @@ TABLE: tuple[Parameter, ...] = (
     Parameter("b2", "V s^2", -0.002739, -1.0, 1.0, "other-motor acceleration coefficient b2", _E2),
     Parameter("b3", "V s", 0.0, -10.0, 10.0, "other-motor speed coefficient b3", _E2),
     Parameter("gantry_spread", "1", 0.0, 0.0, 0.3, "each player's C5, C6, C7 differ by up to this share", _CHOICE),
-    Parameter("frame_rate", "Hz", 120.0, 10.0, 1000.0, "camera frames a second", "camera of the real table"),
+    Parameter("frame_rate", "Hz", 120.0, 10.0, 300.0, "camera frames a second", "camera of the real table"),
     Parameter(
         "camera_latency", "s", 0.0134, 0.0, 0.06, "from exposure to a usable position", "measured on the real table"
     ),

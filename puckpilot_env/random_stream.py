@@ -12,14 +12,14 @@ import numpy as np
 
 from puckpilot_env.kernel import kernel
 
-TABLE = 2  # the table's own stream; 0 and 1 are the players'
-STREAMS = 3
+STREAM = np.dtype([("key", np.uint64), ("draws", np.uint64)], align=True)
 
 _GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 _MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
 _MIX_2 = np.uint64(0x94D049BB133111EB)
 _S30, _S27, _S31, _S11 = np.uint64(30), np.uint64(27), np.uint64(31), np.uint64(11)
 _ONE = np.uint64(1)
+_TAIL = 0.02425
 
 
 @kernel
@@ -31,31 +31,55 @@ def mix(z):
 
 
 @kernel
-def seed_streams(table, seed, index):
-    """Start the streams of table number `index` of a batch with this `seed` (both uint64)."""
+def seed_stream(stream, seed, index, number):
+    """Start stream `number` (0, 1, ..) of table number `index` of a batch with this `seed` (uint64, uint64, int)."""
     base = mix(mix(seed + _GOLDEN) + index * _GOLDEN)
-    for stream in range(STREAMS):
-        table.keys[stream] = mix(base + np.uint64(stream + 1) * _MIX_1)
-        table.draws[stream] = np.uint64(0)
+    stream.key = mix(base + np.uint64(number + 1) * _MIX_1)
+    stream.draws = np.uint64(0)
 
 
 @kernel
-def uniform(table, stream):
+def uniform(stream):
     """The next number of the stream, uniform in [0, 1)."""
-    draws = table.draws[stream] + _ONE
-    table.draws[stream] = draws
-    return (mix(table.keys[stream] + draws * _GOLDEN) >> _S11) * (1.0 / 9007199254740992.0)
+    draws = stream.draws + _ONE
+    stream.draws = draws
+    return (mix(stream.key + draws * _GOLDEN) >> _S11) * (1.0 / 9007199254740992.0)
 
 
 @kernel
-def between(table, stream, low, high):
+def between(stream, low, high):
     """Uniform in [low, high)."""
-    return low + (high - low) * uniform(table, stream)
+    return low + (high - low) * uniform(stream)
 
 
 @kernel
-def normal_pair(table, stream):
-    """Two independent standard normal numbers (Box and Muller 1958)."""
-    radius = math.sqrt(-2.0 * math.log(1.0 - uniform(table, stream)))
-    angle = 2.0 * math.pi * uniform(table, stream)
-    return radius * math.cos(angle), radius * math.sin(angle)
+def normal(stream):
+    """The next number of the stream, standard normal, by the inverse of its distribution (Acklam's approximation).
+
+    Its relative error, under 1.2e-9, is far below anything that is simulated here; it needs no pairs and, in 95 of 100
+    cases, no logarithm.
+    """
+    u = uniform(stream)
+    if u < _TAIL:
+        return _normal_tail(max(u, 1e-300))
+    if u > 1.0 - _TAIL:
+        return -_normal_tail(max(1.0 - u, 1e-300))
+    q = u - 0.5
+    r = q * q
+    above = ((((-39.69683028665376 * r + 220.9460984245205) * r - 275.9285104469687) * r + 138.3577518672690) * r
+             - 30.66479806614716) * r + 2.506628277459239  # fmt: skip
+    below = ((((-54.47609879822406 * r + 161.5858368580409) * r - 155.6989798598866) * r + 66.80131188771972) * r
+             - 13.28068155288572) * r + 1.0  # fmt: skip
+    return q * above / below
+
+
+@kernel
+def _normal_tail(u):
+    """`normal` for u < _TAIL."""
+    q = math.sqrt(-2.0 * math.log(u))
+    above = ((((-0.007784894002430293 * q - 0.3223964580411365) * q - 2.400758277161838) * q - 2.549732539343734) * q
+             + 4.374664141464968) * q + 2.938163982698783  # fmt: skip
+    below = (
+        ((0.007784695709041462 * q + 0.3224671290700398) * q + 2.445134137142996) * q + 3.754408661907416
+    ) * q + 1.0
+    return above / below

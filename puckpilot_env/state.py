@@ -8,23 +8,33 @@ from __future__ import annotations
 
 import numpy as np
 
-from puckpilot_env.physics.mallet import GANTRY_COLUMNS
-from puckpilot_env.random_stream import STREAMS
+from puckpilot_env.physics.advance import PUCK
+from puckpilot_env.physics.mallet import MALLET
+from puckpilot_env.random_stream import STREAM
 
 ERROR_TERMS = 5  # of the camera's smooth error, each component
 FRAMES_KEPT = 32  # camera frames kept a player
 FRAME_COLUMNS = 5  # puck x, y, opponent x, y [m], puck seen (1 or 0); in the player's own frame
 
+CAMERA = np.dtype(
+    [
+        ("error_x", np.float64, ERROR_TERMS),  # the smooth error's coefficients [m]
+        ("error_y", np.float64, ERROR_TERMS),
+        ("puck_vx", np.float64),  # latest estimates in the player's own frame [m/s]
+        ("puck_vy", np.float64),
+        ("opponent_vx", np.float64),
+        ("opponent_vy", np.float64),
+    ],
+    align=True,
+)
 TABLE = np.dtype(
     [
-        ("puck", np.float64, 4),  # x, y, vx, vy [m, m/s]
-        ("modes", np.float64, (2, 2, 3)),  # rest, slow, fast [m] of player, axis (see physics.mallet)
-        ("gantry", np.float64, (2, 2, GANTRY_COLUMNS)),  # constants of player, axis
+        ("puck", PUCK),
+        ("mallets", MALLET, 2),  # with their gantries and plans
         ("gantry_scale", np.float64, (2, 2, 3)),  # C5, C6, C7 relative to the parameters', of player, axis
-        ("camera_error", np.float64, (2, 2, ERROR_TERMS)),  # smooth error's coefficients [m] of player, component
         ("frame_phase", np.float64),  # frame j is exposed at (j + frame_phase)/frame_rate
         ("last_frame", np.int64),  # newest frame taken
-        ("seen_velocity", np.float64, (2, 4)),  # last estimate a player of puck and opponent velocity, own frame
+        ("cameras", CAMERA, 2),
         ("time", np.float64),  # since the episode began [s]
         ("held", np.float64),  # since the puck last changed halves [s]
         ("steps", np.int64),  # since the episode began
@@ -36,8 +46,8 @@ TABLE = np.dtype(
         ("ending", np.int64),  # how the last step ended the episode (see game.rules), 0 if it did not
         ("winner", np.int64),  # of the last episode: 0, 1, or -1 for none
         ("turned", np.int64),
-        ("keys", np.uint64, STREAMS),
-        ("draws", np.uint64, STREAMS),
+        ("streams", STREAM, 2),  # of each player: what happens to it alone, in its own frame
+        ("stream", STREAM),  # of the table
     ],
     align=True,
 )

@@ -6,6 +6,7 @@ import os
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from puckpilot_env import batch, parameters, state
 from puckpilot_env.game import mirror, observation
 from puckpilot_env.kernel import announce_compilation
-from puckpilot_env.variants import Variant
+from puckpilot_env.variants import Variant, find_variant
 
 ACTION_COLUMNS = (
     ("target_x", "m", "where the mallet should come to rest, x"),
@@ -22,7 +23,7 @@ ACTION_COLUMNS = (
     ("volts_y", "V", "magnitude of the voltage of axis y"),
 )
 LEAST_VOLTS, MOST_VOLTS = 0.3, 10.0  # report K.1
-SHORTEST_PERIOD = 1.0 / 120.0
+SHORTEST_PERIOD, LONGEST_PERIOD = 1.0 / 120.0, 1.0  # s
 
 
 @dataclass(frozen=True)
@@ -48,16 +49,20 @@ class Tables:
 
     def __init__(
         self,
-        variant: Variant,
+        variant: Variant | str,
         tables: int,
         *,
         seed: int = 0,
         threads: int = 1,
         autoreset: bool = True,
         period: float | None = None,
+        max_steps: int | None = None,
         values: Mapping[str, float] | None = None,
     ) -> None:
-        """Make `tables` tables and reset them. `values` puts parameters in place of the defaults, by name.
+        """Make `tables` tables of a variant (or its id) and reset them.
+
+        `period` [s] of a step replaces the variant's (from 1/120 s on), `max_steps` its step limit (truncation);
+        `values` puts parameters in place of the defaults, by name.
 
         Raises ValueError, in one line, for anything that cannot be.
         """
@@ -65,11 +70,9 @@ class Tables:
             raise ValueError(f"tables is {tables!r}; expected a whole number >= 1")
         if not isinstance(threads, int | np.integer) or not 1 <= threads <= 256:
             raise ValueError(f"threads is {threads!r}; expected a whole number from 1 to 256")
-        if period is not None:
-            if not SHORTEST_PERIOD - 1e-9 <= period <= 10.0:
-                raise ValueError(f"period is {period!r} s; expected a number from 1/120 to 10")
-            scale = variant.period / period
-            variant = replace(variant, period=float(period), step_limit=round(variant.step_limit * scale))
+        if isinstance(variant, str):
+            variant = find_variant(variant)
+        variant = _with_timing(variant, period, max_steps)
         self.variant = variant
         self.threads = min(int(threads), int(tables))
         self.autoreset = autoreset
@@ -182,6 +185,19 @@ class Tables:
             self._pool.shutdown()
 
 
+def _with_timing(variant: Variant, period: float | None, max_steps: int | None) -> Variant:
+    if period is not None:
+        if not isinstance(period, int | float) or not SHORTEST_PERIOD - 1e-9 <= period <= LONGEST_PERIOD:
+            raise ValueError(f"period is {period!r}; expected a number of seconds from 1/120 to {LONGEST_PERIOD:g}")
+        limit = round(variant.step_limit * variant.period / period)
+        variant = replace(variant, period=float(period), step_limit=limit)
+    if max_steps is not None:
+        if not isinstance(max_steps, int | np.integer) or max_steps < 1:
+            raise ValueError(f"max_steps is {max_steps!r}; expected a whole number >= 1")
+        variant = replace(variant, step_limit=int(max_steps))
+    return variant
+
+
 def _action_bounds(p: np.void) -> NDArray[np.float32]:
     """(2, 4): low and high of the action space (report K.1)."""
     radius = p["mallet_radius"]
@@ -190,8 +206,8 @@ def _action_bounds(p: np.void) -> NDArray[np.float32]:
 
 
 def _shares(tables: int, threads: int) -> list[tuple[int, int]]:
-    edges = np.linspace(0, tables, threads + 1).astype(int)
-    return [(int(a), int(b)) for a, b in zip(edges[:-1], edges[1:], strict=True)]
+    edges = [tables * i // threads for i in range(threads + 1)]
+    return list(pairwise(edges))
 
 
 def available_threads() -> int:

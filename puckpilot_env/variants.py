@@ -1,27 +1,22 @@
-"""The registered variants. A variant is data: game, sensing, parameters, what is drawn; adding one is adding a row."""
+"""What a variant is, and which there are: every module `NAME_vN.py` of this package that holds a `VARIANT`.
+
+Adding a variant is adding such a file; the registries, the commands, the pages and the tests find it there.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+import difflib
+import importlib
+import re
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
 
 import numpy as np
 
-from puckpilot_env import parameters
-from puckpilot_env.game import sensing, start
+from puckpilot_env.game import sensing
 from puckpilot_env.game.rules import RULES
-
-UNIFORM, LOG_UNIFORM = "uniform", "log-uniform"
-
-
-@dataclass(frozen=True)
-class Draw:
-    """A parameter that every table draws anew for each episode, and why in this range."""
-
-    parameter: str
-    distribution: str
-    low: float
-    high: float
-    source: str
+from puckpilot_env.randomization import Draw, as_rows
 
 
 @dataclass(frozen=True)
@@ -35,12 +30,12 @@ class Variant:
     ending: str  # in words, for the page
     sensing: int = sensing.EXACT
     shows_gantry: bool = False
-    period: float = 0.1
-    step_limit: int = 0
-    points: int = 7
-    match_time: float = 180.0
-    possession_time: float = 7.0
-    parameters: dict[str, float] = field(default_factory=dict)
+    period: float = 0.1  # of a step [s]
+    step_limit: int = 0  # truncation; 0 for none
+    points: int = 7  # to win a match
+    match_time: float = 180.0  # s
+    possession_time: float = 7.0  # longest in one half of a match [s]
+    parameters: dict[str, float] = field(default_factory=dict)  # other than the defaults
     draws: tuple[Draw, ...] = ()
     history: tuple[str, ...] = ("v0: first version",)
 
@@ -57,84 +52,29 @@ class Variant:
     def rules(self) -> np.ndarray:
         """A `(1,)` record of `rules.RULES`."""
         record = np.zeros(1, RULES)
-        for name in (
-            "game",
-            "sensing",
-            "shows_gantry",
-            "period",
-            "points",
-            "match_time",
-            "possession_time",
-            "step_limit",
-        ):
+        for name in RULES.names or ():
             record[name] = getattr(self, name)
         return record
 
     def drawn(self) -> np.ndarray:
-        """`(draws, 4)` float64: column of the parameter, kind of distribution, low, high."""
-        kinds = {UNIFORM: start.UNIFORM, LOG_UNIFORM: start.LOG_UNIFORM}
-        rows = [(parameters.COLUMN[d.parameter], kinds[d.distribution], d.low, d.high) for d in self.draws]
-        return np.array(rows, np.float64).reshape(len(rows), 4)
+        """Its randomization as `(draws, 4)` rows; see `randomization.as_rows`."""
+        return as_rows(self.draws)
 
 
-REALITY: tuple[Draw, ...] = (
-    Draw("friction", LOG_UNIFORM, 0.06, 0.25, "report F.2 (0.125), halved and doubled"),
-    Draw("drag", LOG_UNIFORM, 0.014, 0.25, "from a ninth of the report's, as fitted on a real table, to its double"),
-    Draw("wall_restitution", UNIFORM, 0.65, 0.9, "report F.3 (0.7) and a real table (0.83 to 0.86)"),
-    Draw("mallet_restitution", UNIFORM, 0.5, 0.9, "not measured; a wide choice"),
-    Draw("gantry_spread", UNIFORM, 0.0, 0.1, "spread of gantry fits between voltages; a choice"),
-    Draw("camera_noise", UNIFORM, 0.00015, 0.0003, "0.2 mm measured on the real table"),
-    Draw("beam_noise", UNIFORM, 0.0004, 0.0008, "0.6 mm measured on the real table near the beam"),
-    Draw("camera_error", UNIFORM, 0.0005, 0.0015, "about 1 mm, report 2.2.2"),
-    Draw("dropped_frames", UNIFORM, 0.0, 0.03, "recordings of the real table"),
-    Draw("held_frames", UNIFORM, 0.0, 0.05, "recordings of the real table"),
-    Draw("action_noise", UNIFORM, 0.0, 0.05, "supply under load; a choice"),
-    Draw("impulse_rate", UNIFORM, 0.0, 0.2, "report K.2 names them without a number"),
-)
-
-_DEFENCE = Variant(
-    "defence", 0, "A shot comes from the other half; player_0 has to keep it out and take control.",
-    start.DEFENCE,
-    "The drill ends when player_0 clears the puck, concedes, or sends it back over the middle line, or after 10 s.",
-    step_limit=100,
-)  # fmt: skip
-_ATTACK = Variant(
-    "attack", 0, "The puck is under player_0's control; it has to shoot past player_1.",
-    start.ATTACK,
-    "The drill ends when the puck crosses the middle line or enters player_0's own goal, or after 10 s.",
-    step_limit=100,
-)  # fmt: skip
-_MATCH = Variant(
-    "match", 0, "A whole match: first to 7, three minutes, face-offs, and a rule against holding the puck.",
-    start.MATCH,
-    "First to 7 points, or the leader after 180 s (a draw if level). After a goal the conceder serves; a puck that stays "
-    "7 s in one half is faced off on the middle line.",
-)  # fmt: skip
+@cache
+def all_variants() -> dict[str, Variant]:
+    """Every variant by its id, in the order of their names."""
+    files = sorted(p.stem for p in Path(__file__).parent.glob("*_v*.py") if re.fullmatch(r"[a-z_]+_v\d+", p.stem))
+    found = [importlib.import_module(f"puckpilot_env.{stem}").VARIANT for stem in files]
+    return {variant.id: variant for variant in found}
 
 
-def _randomized(variant: Variant) -> Variant:
-    return replace(
-        variant,
-        name=f"{variant.name}-randomized",
-        summary=f"{variant.summary} Every table differs, and is seen late and noisily through a camera.",
-        sensing=sensing.ESTIMATED,
-        shows_gantry=True,
-        draws=REALITY,
-    )
-
-
-VARIANTS: tuple[Variant, ...] = (
-    _DEFENCE,
-    _ATTACK,
-    _MATCH,
-    _randomized(_DEFENCE),
-    _randomized(_ATTACK),
-    _randomized(_MATCH),
-    replace(
-        _MATCH,
-        name="match-sensors",
-        summary=f"{_MATCH.summary} The agent sees delayed position measurements instead of velocities.",
-        sensing=sensing.HISTORY,
-    ),
-)
-BY_ID: dict[str, Variant] = {variant.id: variant for variant in VARIANTS}
+def find_variant(name: str) -> Variant:
+    """The variant of an id, with or without `puckpilot/`. Raises ValueError, in one line, for an unknown one."""
+    known = all_variants()
+    full = name if name.startswith("puckpilot/") else f"puckpilot/{name}"
+    if full not in known:
+        near = difflib.get_close_matches(full, known, n=1)
+        hint = f"did you mean '{near[0]}'?" if near else f"known: {', '.join(known)}"
+        raise ValueError(f"unknown variant '{name}'; {hint}")
+    return known[full]

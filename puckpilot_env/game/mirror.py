@@ -1,4 +1,4 @@
-"""The only place that turns the table round: player 1 sees the table from its own end (x -> length - x, y -> width - y).
+"""The only place that turns the table round: player 1 sees it from its own end (x -> length - x, y -> width - y).
 
 Turning is its own inverse, so the same functions serve both ways.
 """
@@ -8,7 +8,6 @@ from __future__ import annotations
 import numpy as np
 
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics.mallet import REST
 
 
 @kernel
@@ -37,25 +36,16 @@ def turn_table(tables: np.ndarray, frames: np.ndarray, length: np.ndarray, width
 
     tables: (n,) records of `state.TABLE`; frames: (n, 2, FRAMES_KEPT, FRAME_COLUMNS); length, width: (n,) [m].
     """
-    tables["puck"][:, 0] = length - tables["puck"][:, 0]
-    tables["puck"][:, 1] = width - tables["puck"][:, 1]
-    tables["puck"][:, 2:] *= -1.0
-    tables["modes"] *= -1.0
-    tables["modes"][:, :, 0, REST] += length[:, None]
-    tables["modes"][:, :, 1, REST] += width[:, None]
-    for name in (
-        "modes",
-        "gantry",
-        "gantry_scale",
-        "camera_error",
-        "seen_velocity",
-        "score",
-        "last_score",
-        "defending",
-    ):
+    for axis, extent in (("x", length), ("y", width)):
+        tables["puck"][axis] = extent - tables["puck"][axis]
+        tables["puck"][f"v{axis}"] *= -1.0
+        mallets = tables["mallets"][axis]
+        for name in ("rest", "rest1", "rest2"):
+            mallets[name] = extent[:, None] - mallets[name]
+        for name in ("slow", "fast", "slow1", "fast1", "fast2", "volts"):
+            mallets[name] *= -1.0
+    for name in ("mallets", "gantry_scale", "cameras", "streams", "score", "last_score", "defending"):
         tables[name] = tables[name][:, ::-1].copy()
-    for name in ("keys", "draws"):
-        tables[name][:, :2] = tables[name][:, 1::-1].copy()
     tables["subject"] = 1 - tables["subject"]
     tables["winner"] = np.where(tables["winner"] < 0, -1, 1 - tables["winner"])
     tables["turned"] = 1 - tables["turned"]

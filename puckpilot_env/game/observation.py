@@ -12,7 +12,7 @@ import numpy as np
 from puckpilot_env.game import mirror, predict, sensing
 from puckpilot_env.game.start import MATCH
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics.mallet import axis_velocity
+from puckpilot_env.physics.mallet import motion_now
 from puckpilot_env.state import FRAMES_KEPT
 
 HORIZONS = (0.2, 0.5)  # s ahead, of the expected puck places
@@ -95,18 +95,14 @@ def _put_velocity(row, at, k, vx, vy):
 @kernel
 def _put_mallet(table, p, row, at, k, player):
     """Place and velocity of `player`'s mallet as `k` sees them."""
-    modes, gantry = table.modes, table.gantry
-    x = modes[player, 0, 0] + modes[player, 0, 1] + modes[player, 0, 2]
-    y = modes[player, 1, 0] + modes[player, 1, 1] + modes[player, 1, 2]
-    vx = axis_velocity(gantry, player, 0, modes[player, 0, 1], modes[player, 0, 2])
-    vy = axis_velocity(gantry, player, 1, modes[player, 1, 1], modes[player, 1, 2])
+    x, y, vx, vy = motion_now(table.mallets[player])
     return _put_velocity(row, _put_place(row, at, k, x, y, p), k, vx, vy)
 
 
 @kernel
 def _put_exact(table, p, rows, at):
     """Puck, opponent and expected places, known exactly; the expectations serve both players."""
-    x, y, vx, vy = table.puck[0], table.puck[1], table.puck[2], table.puck[3]
+    x, y, vx, vy = table.puck.x, table.puck.y, table.puck.vx, table.puck.vy
     for k in range(2):
         i = _put_velocity(rows[k], _put_place(rows[k], at, k, x, y, p), k, vx, vy)
         _put_mallet(table, p, rows[k], i, k, 1 - k)
@@ -121,31 +117,30 @@ def _put_exact(table, p, rows, at):
 
 
 @kernel
-def _estimate(table, p, frames, k, newest):
-    """Newest measured places and the velocities [m/s] of puck and opponent, by difference over VELOCITY_LAG frames.
+def _estimate(camera, p, frames, k, newest):
+    """Estimate the velocities [m/s] of puck and opponent by difference over VELOCITY_LAG frames.
 
-    While either frame lacks the puck its last velocity estimate is kept.
+    While either frame lacks the puck its last estimate is kept. Returns the newest frame's slot.
     """
     now, then = newest % FRAMES_KEPT, (newest - sensing.VELOCITY_LAG) % FRAMES_KEPT
     rate = p.frame_rate / sensing.VELOCITY_LAG
-    speeds = table.seen_velocity
     if frames[k, now, sensing.SEEN] > 0.5 and frames[k, then, sensing.SEEN] > 0.5:
-        for c in range(2):
-            speeds[k, c] = (frames[k, now, c] - frames[k, then, c]) * rate
-    for c in range(2, 4):
-        speeds[k, c] = (frames[k, now, c] - frames[k, then, c]) * rate
+        camera.puck_vx = (frames[k, now, sensing.PUCK_X] - frames[k, then, sensing.PUCK_X]) * rate
+        camera.puck_vy = (frames[k, now, sensing.PUCK_Y] - frames[k, then, sensing.PUCK_Y]) * rate
+    camera.opponent_vx = (frames[k, now, sensing.OPPONENT_X] - frames[k, then, sensing.OPPONENT_X]) * rate
+    camera.opponent_vy = (frames[k, now, sensing.OPPONENT_Y] - frames[k, then, sensing.OPPONENT_Y]) * rate
     return now
 
 
 @kernel
 def _put_estimated(table, p, frames, row, at, k):
     """Puck and opponent as player `k`'s camera has them, and where the puck is expected, allowing for the delay."""
-    now = _estimate(table, p, frames, k, sensing.newest_frame(table, p, table.time))
-    speeds = table.seen_velocity
-    x, y, vx, vy = frames[k, now, 0], frames[k, now, 1], speeds[k, 0], speeds[k, 1]
+    camera = table.cameras[k]
+    now = _estimate(camera, p, frames, k, sensing.newest_frame(table, p, table.time))
+    x, y, vx, vy = frames[k, now, sensing.PUCK_X], frames[k, now, sensing.PUCK_Y], camera.puck_vx, camera.puck_vy
     row[at], row[at + 1], row[at + 2], row[at + 3] = x, y, vx, vy
-    row[at + 4], row[at + 5] = frames[k, now, 2], frames[k, now, 3]
-    row[at + 6], row[at + 7] = speeds[k, 2], speeds[k, 3]
+    row[at + 4], row[at + 5] = frames[k, now, sensing.OPPONENT_X], frames[k, now, sensing.OPPONENT_Y]
+    row[at + 6], row[at + 7] = camera.opponent_vx, camera.opponent_vy
     at += 8
     x = min(max(x, p.puck_radius), p.length - p.puck_radius)
     y = min(max(y, p.puck_radius), p.width - p.puck_radius)

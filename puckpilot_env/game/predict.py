@@ -6,6 +6,7 @@ import math
 
 from puckpilot_env.kernel import kernel
 from puckpilot_env.physics import bounce, glide
+from puckpilot_env.physics.vector import size
 
 MOST_BOUNCES = 12
 MISSES, SAVED, SCORES = range(3)
@@ -50,7 +51,7 @@ def projected_shot(x, y, vx, vy, mallet_x, mallet_y, goal, p):
         stop = min(glide.stop_distance(v, p.friction, p.drag), 4.0 * p.length)
         gap, kind = bounce.first_boundary(x, y, ux, uy, stop, p.length, p.width, p.goal_width, p.puck_radius)
         along = min(max((mallet_x - x) * ux + (mallet_y - y) * uy, 0.0), gap)
-        saved = saved or math.hypot(mallet_x - x - along * ux, mallet_y - y - along * uy) < reach
+        saved = saved or size(mallet_x - x - along * ux, mallet_y - y - along * uy) < reach
         x, y = x + ux * gap, y + uy * gap
         if kind == goal:
             return SAVED if saved else SCORES

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import math
-
 from puckpilot_env.game.predict import SAVED, SCORES
 from puckpilot_env.kernel import kernel
+from puckpilot_env.physics.vector import size
 
 CLEAR_FROM, CLEAR_TO = 0.175, 0.475  # of the table's length: 0.35 m and 0.95 m of 2 m
 CLEAR_SPEED = 0.4  # m/s
@@ -60,10 +59,10 @@ def shot_reward(speed, outcome):
 @kernel
 def movement_cost(mallet_x, mallet_y, target_x, target_y):
     """J.3: the longer the commanded way, the dearer."""
-    return -math.hypot(mallet_x - target_x, mallet_y - target_y) / 50.0
+    return -size(mallet_x - target_x, mallet_y - target_y) / 50.0
 
 
 @kernel
 def voltage_cost(volts_x, volts_y):
     """J.3: of the magnitudes that the player asked for."""
-    return -math.hypot(volts_x, volts_y) / 1400.0
+    return -size(volts_x, volts_y) / 1400.0

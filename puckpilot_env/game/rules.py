@@ -25,7 +25,7 @@ RULES = np.dtype(
         ("points", np.int64),  # to win a match
         ("match_time", np.float64),  # [s]
         ("possession_time", np.float64),  # in a match: longest time in one half before a face-off [s]
-        ("step_limit", np.int64),  # of a drill (truncation); 0 for none
+        ("step_limit", np.int64),  # truncation; 0 for none
     ]
 )
 
@@ -41,10 +41,10 @@ def end(table, ending, winner):
 def crossed_middle(table, p, rules, rewards, mallet_x, mallet_y):
     """The puck just crossed the middle line; `(mallet_x, mallet_y)`: the mallet of the half that it enters [m]."""
     table.held = 0.0
-    vx, vy = table.puck[2], table.puck[3]
+    vx, vy = table.puck.vx, table.puck.vy
     player = 0 if vx > 0.0 else 1  # whose half it leaves
     goal = bounce.GOAL_X1 if player == 0 else bounce.GOAL_X0
-    outcome = projected_shot(table.puck[0], table.puck[1], vx, vy, mallet_x, mallet_y, goal, p)
+    outcome = projected_shot(table.puck.x, table.puck.y, vx, vy, mallet_x, mallet_y, goal, p)
     speed = (vx * vx + vy * vy) ** 0.5
     mine = player == table.subject
     if table.defending[player] == 1:
@@ -84,8 +84,8 @@ def look_for_clear(table, p, rules, rewards):
     """Whether a defending player has just cleared the puck (J.1 case 1)."""
     for k in range(2):
         if table.defending[k] == 1:
-            x, _ = mirror.place(k, table.puck[0], table.puck[1], p)
-            if reward.is_clear(x, table.puck[2], table.puck[3], p.length):
+            x, _ = mirror.place(k, table.puck.x, table.puck.y, p)
+            if reward.is_clear(x, table.puck.vx, table.puck.vy, p.length):
                 rewards[k] += reward.clear_reward()
                 table.defending[k] = 0
                 if rules.game == DEFENCE and k == table.subject:
@@ -95,6 +95,7 @@ def look_for_clear(table, p, rules, rewards):
 @kernel
 def keep_time(table, p, rules):
     """Clocks: the end of a match, a puck held or stuck in one half, the step limit. True if a face-off was called."""
+    called = False
     if rules.game == MATCH:
         if table.time >= rules.match_time - 1e-9:
             lead = table.score[0] - table.score[1]
@@ -102,7 +103,7 @@ def keep_time(table, p, rules):
         elif table.held >= rules.possession_time - 1e-9:
             table.defending[0] = table.defending[1] = 1
             face_off(table, p)
-            return True
-    elif rules.step_limit > 0 and table.steps >= rules.step_limit:
+            called = True
+    if table.ending == RUNNING and 0 < rules.step_limit <= table.steps:
         end(table, STEP_LIMIT, -1)
-    return False
+    return called

@@ -12,7 +12,7 @@ import math
 from puckpilot_env import random_stream
 from puckpilot_env.game import mirror
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics import contact
+from puckpilot_env.physics.mallet import place_at, place_now
 from puckpilot_env.state import ERROR_TERMS, FRAMES_KEPT
 
 EXACT, ESTIMATED, HISTORY = range(3)  # kinds of sensing
@@ -20,12 +20,13 @@ LAGS = (0, 1, 2, 5, 11)  # frames back from the newest, of a history
 OLDEST_LAG = 11
 VELOCITY_LAG = 2  # estimated velocities are a difference over so many frames
 PUCK_X, PUCK_Y, OPPONENT_X, OPPONENT_Y, SEEN = range(5)  # columns of a frame
+MOST_WANTED = 62  # frames in a step that can be told apart
 
 
 @kernel
 def newest_frame(table, p, time):
     """Number of the newest frame that can be used at `time` [s]."""
-    return int(math.floor((time - p.camera_latency) * p.frame_rate - table.frame_phase + 1e-9))
+    return math.floor((time - p.camera_latency) * p.frame_rate - table.frame_phase + 1e-9)
 
 
 @kernel
@@ -37,52 +38,57 @@ def exposure(table, p, frame):
 @kernel
 def frames_exposed(table, p):
     """Number of the first frame that is exposed after now."""
-    return int(math.floor(table.time * p.frame_rate - table.frame_phase)) + 1
+    return math.floor(table.time * p.frame_rate - table.frame_phase) + 1
 
 
 @kernel
-def is_looked_at(table, p, frame, sensing, step, period):
-    """Whether a decision at the end of step `step` (0, 1, ..) or later looks at this frame."""
-    for later in range(step, step + 64):
-        lag = newest_frame(table, p, (later + 1) * period) - frame
-        if lag > OLDEST_LAG:
-            return False
+def _bit(frame, first, last):
+    return 1 << (frame - first) if first <= frame <= last else 0
+
+
+@kernel
+def wanted_frames(table, p, sensing, first, period):
+    """Which of the frames exposed in this step, from number `first` on, some decision will look at, as bits."""
+    last = math.floor((table.time + period) * p.frame_rate - table.frame_phase)
+    wanted = 0
+    step = table.steps + 1
+    newest = newest_frame(table, p, step * period)
+    while newest - OLDEST_LAG <= last:
         if sensing == HISTORY:
-            if lag == 0 or lag == 1 or lag == 2 or lag == 5 or lag == 11:
-                return True
-        elif lag == 0 or lag == VELOCITY_LAG:
-            return True
-    return False
+            for lag in LAGS:
+                wanted |= _bit(newest - lag, first, last)
+        else:
+            wanted |= _bit(newest, first, last) | _bit(newest - VELOCITY_LAG, first, last)
+        step += 1
+        newest = newest_frame(table, p, step * period)
+    return wanted
 
 
 @kernel
 def draw_camera_error(table, p):
     """Draw each player's smooth error: a quadratic surface a component, `camera_error` [m] rms over the table."""
     for k in range(2):
-        for c in range(2):
-            for term in range(ERROR_TERMS):
-                z = random_stream.normal_pair(table, k)[0]
-                table.camera_error[k, c, term] = p.camera_error * z / math.sqrt(2.0 * ERROR_TERMS)
+        camera, stream = table.cameras[k], table.streams[k]
+        for term in range(ERROR_TERMS):
+            camera.error_x[term] = p.camera_error * random_stream.normal(stream) / math.sqrt(2.0 * ERROR_TERMS)
+            camera.error_y[term] = p.camera_error * random_stream.normal(stream) / math.sqrt(2.0 * ERROR_TERMS)
 
 
 @kernel
-def smooth_error(table, k, c, u, w):
-    """The error [m] of component `c` at `(u, w)` in -1..1 over the table; its terms are orthonormal there."""
-    e = table.camera_error
-    return (
-        e[k, c, 0]
-        + 1.7320508 * (e[k, c, 1] * u + e[k, c, 2] * w)
-        + 3.0 * e[k, c, 3] * u * w
-        + 1.1180340 * e[k, c, 4] * (3.0 * u * u - 1.0)
-    )
+def smooth_error(e, u, w):
+    """The error [m] at `(u, w)` in -1..1 over the table from its coefficients `e`; the terms are orthonormal there."""
+    linear = e[0] + 1.7320508075688772 * (e[1] * u + e[2] * w)
+    return linear + 3.0 * e[3] * u * w + 1.118033988749895 * e[4] * (3.0 * u * u - 1.0)
 
 
 @kernel
-def measure(table, p, k, x, y, noise):
-    """A place [m] of player `k`'s frame as its camera reports it."""
+def measure(camera, stream, p, x, y, noise):
+    """A place [m] of the player's frame as its camera reports it."""
     u, w = 2.0 * x / p.length - 1.0, 2.0 * y / p.width - 1.0
-    noise_x, noise_y = random_stream.normal_pair(table, k)
-    return x + smooth_error(table, k, 0, u, w) + noise * noise_x, y + smooth_error(table, k, 1, u, w) + noise * noise_y
+    return (
+        x + smooth_error(camera.error_x, u, w) + noise * random_stream.normal(stream),
+        y + smooth_error(camera.error_y, u, w) + noise * random_stream.normal(stream),
+    )
 
 
 @kernel
@@ -92,31 +98,36 @@ def _copy_frame(frames, k, source, target):
 
 
 @kernel
-def take_frame(table, p, frames, frame, puck_x, puck_y, path, time):
-    """Store frame number `frame` as each player's camera saw the puck and the other mallet at `time` of the plans."""
-    gantry = table.gantry
-    for k in range(2):
-        chance = random_stream.uniform(table, k)
-        if chance < p.held_frames:
-            _copy_frame(frames, k, table.last_frame, frame)
-            continue
-        slot = frame % FRAMES_KEPT
-        x, y = mirror.place(k, puck_x, puck_y, p)
-        own = contact.mallet_motion(path, gantry, k, time)
-        other = contact.mallet_motion(path, gantry, 1 - k, time)
-        beam, _ = mirror.place(k, own[0], own[1], p)
-        other_x, other_y = mirror.place(k, other[0], other[1], p)
-        beside = abs(x - beam)
+def _see(camera, stream, p, frames, k, frame, last, x, y, own_x, other_x, other_y):
+    """Store frame number `frame` as player `k` sees it; all places in its own frame, `own_x` its mallet's."""
+    chance = random_stream.uniform(stream)
+    if chance < p.held_frames:
+        _copy_frame(frames, k, last, frame)
+        return
+    slot = frame % FRAMES_KEPT
+    beside = abs(x - own_x)
+    if beside > 0.5 * p.beam_width and chance < 1.0 - p.dropped_frames:
         near = beside < p.puck_radius + 0.5 * p.beam_width
-        seen = beside > 0.5 * p.beam_width and chance < 1.0 - p.dropped_frames
-        if seen:
-            x, y = measure(table, p, k, x, y, p.beam_noise if near else p.camera_noise)
-            frames[k, slot, PUCK_X], frames[k, slot, PUCK_Y], frames[k, slot, SEEN] = x, y, 1.0
-        else:
-            _copy_frame(frames, k, table.last_frame, frame)
-            frames[k, slot, SEEN] = 0.0
-        other_x, other_y = measure(table, p, k, other_x, other_y, p.camera_noise)
-        frames[k, slot, OPPONENT_X], frames[k, slot, OPPONENT_Y] = other_x, other_y
+        x, y = measure(camera, stream, p, x, y, p.beam_noise if near else p.camera_noise)
+        frames[k, slot, PUCK_X], frames[k, slot, PUCK_Y], frames[k, slot, SEEN] = x, y, 1.0
+    else:
+        _copy_frame(frames, k, last, frame)
+        frames[k, slot, SEEN] = 0.0
+    x, y = measure(camera, stream, p, other_x, other_y, p.camera_noise)
+    frames[k, slot, OPPONENT_X], frames[k, slot, OPPONENT_Y] = x, y
+
+
+@kernel
+def take_frame(table, p, frames, frame, puck_x, puck_y, time):
+    """Store frame number `frame` as each player's camera saw the puck and the other mallet at `time` of the plans."""
+    x0, y0 = place_at(table.mallets[0], time)
+    x1, y1 = place_at(table.mallets[1], time)
+    last = table.last_frame
+    _see(table.cameras[0], table.streams[0], p, frames, 0, frame, last, puck_x, puck_y, x0, x1, y1)
+    puck_x, puck_y = mirror.place(1, puck_x, puck_y, p)
+    x0, y0 = mirror.place(1, x0, y0, p)
+    x1, y1 = mirror.place(1, x1, y1, p)
+    _see(table.cameras[1], table.streams[1], p, frames, 1, frame, last, puck_x, puck_y, x1, x0, y0)
     table.last_frame = frame
 
 
@@ -133,14 +144,10 @@ def fill_frames(table, p, frames):
     newest = newest_frame(table, p, table.time)
     last = frames_exposed(table, p) - 1
     for k in range(2):
-        x, y = mirror.place(k, table.puck[0], table.puck[1], p)
-        vx, vy = mirror.velocity(k, table.puck[2], table.puck[3])
-        modes = table.modes
-        other = 1 - k
-        other_x, other_y = mirror.place(
-            k, modes[other, 0, 0] + modes[other, 0, 1] + modes[other, 0, 2],
-            modes[other, 1, 0] + modes[other, 1, 1] + modes[other, 1, 2], p,
-        )  # fmt: skip
+        x, y = mirror.place(k, table.puck.x, table.puck.y, p)
+        vx, vy = mirror.velocity(k, table.puck.vx, table.puck.vy)
+        other_x, other_y = place_now(table.mallets[1 - k])
+        other_x, other_y = mirror.place(k, other_x, other_y, p)
         for frame in range(newest - OLDEST_LAG, last + 1):
             slot = frame % FRAMES_KEPT
             age = table.time - exposure(table, p, frame)
@@ -149,6 +156,7 @@ def fill_frames(table, p, frames):
             frames[k, slot, PUCK_X], frames[k, slot, PUCK_Y] = past_x, past_y
             frames[k, slot, OPPONENT_X], frames[k, slot, OPPONENT_Y] = other_x, other_y
             frames[k, slot, SEEN] = 1.0
-        table.seen_velocity[k, 0], table.seen_velocity[k, 1] = vx, vy
-        table.seen_velocity[k, 2] = table.seen_velocity[k, 3] = 0.0
+        camera = table.cameras[k]
+        camera.puck_vx, camera.puck_vy = vx, vy
+        camera.opponent_vx, camera.opponent_vy = 0.0, 0.0
     table.last_frame = last

@@ -8,17 +8,19 @@ from puckpilot_env import random_stream
 from puckpilot_env.game import mirror
 from puckpilot_env.kernel import kernel
 from puckpilot_env.physics import mallet
+from puckpilot_env.physics.vector import size
 
 DEFENCE, ATTACK, MATCH = range(3)  # the games
 UNIFORM, LOG_UNIFORM = range(2)  # distributions of a drawn parameter
+SHORTEST_FLIGHT = 0.45  # s that a shot takes at least to the goal line: four decisions
 HOME_X = 0.25  # m from the player's own goal line; y is the middle
 
 
 @kernel
 def draw_parameters(table, row, drawn):
-    """Draw the randomized parameters of a table. row: its parameters as float64; drawn: (n, 4) of column, kind, a, b."""
+    """Draw a table's randomized parameters. row: all parameters; drawn: (n, 4) of column, kind, low, high."""
     for i in range(drawn.shape[0]):
-        u = random_stream.uniform(table, random_stream.TABLE)
+        u = random_stream.uniform(table.stream)
         low, high = drawn[i, 2], drawn[i, 3]
         value = low * (high / low) ** u if drawn[i, 1] == LOG_UNIFORM else low + (high - low) * u
         row[int(drawn[i, 0])] = value
@@ -26,40 +28,39 @@ def draw_parameters(table, row, drawn):
 
 @kernel
 def build_gantries(table, p):
-    """Draw each player's gantry around the parameters and derive its constants (report E.1: minus for x, plus for y)."""
+    """Draw each player's gantry around the parameters and derive its constants (errata row 1)."""
     for k in range(2):
         for a in range(2):
             sign = -1.0 if a == 0 else 1.0
             for c in range(3):
                 table.gantry_scale[k, a, c] = 1.0
                 if p.gantry_spread > 0.0:
-                    table.gantry_scale[k, a, c] += random_stream.between(table, k, -p.gantry_spread, p.gantry_spread)
-            constants = mallet.axis_constants(
+                    table.gantry_scale[k, a, c] += random_stream.between(
+                        table.streams[k], -p.gantry_spread, p.gantry_spread
+                    )
+            mallet.set_constants(
+                table.mallets[k].x if a == 0 else table.mallets[k].y,
                 (p.a1 + sign * p.b1) * table.gantry_scale[k, a, 0],
                 (p.a2 + sign * p.b2) * table.gantry_scale[k, a, 1],
                 (p.a3 + sign * p.b3) * table.gantry_scale[k, a, 2],
                 p.pulley_radius,
             )
-            for c in range(mallet.GANTRY_COLUMNS):
-                table.gantry[k, a, c] = constants[c]
 
 
 @kernel
 def place_mallet(table, p, k, x, y):
     """Put player `k`'s mallet at rest at `(x, y)` [m] of its own frame."""
-    modes = table.modes
     x, y = mirror.place(k, x, y, p)
-    modes[k, 0, mallet.REST], modes[k, 1, mallet.REST] = x, y
-    for a in range(2):
-        modes[k, a, mallet.SLOW], modes[k, a, mallet.FAST] = 0.0, 0.0
+    mallet.place_axis(table.mallets[k].x, x, 0.0, 0.0)
+    mallet.place_axis(table.mallets[k].y, y, 0.0, 0.0)
 
 
 @kernel
 def place_puck(table, p, player, x, y, vx, vy):
     """Put the puck at `(x, y)` [m] with velocity `(vx, vy)` [m/s], all in `player`'s frame."""
     puck = table.puck
-    puck[0], puck[1] = mirror.place(player, x, y, p)
-    puck[2], puck[3] = mirror.velocity(player, vx, vy)
+    puck.x, puck.y = mirror.place(player, x, y, p)
+    puck.vx, puck.vy = mirror.velocity(player, vx, vy)
     table.held = 0.0
 
 
@@ -68,10 +69,10 @@ def face_off(table, p):
     """Both at home, the puck on the middle line with a small random velocity, the same for either player."""
     for k in range(2):
         place_mallet(table, p, k, HOME_X, 0.5 * p.width)
-    y = p.width * random_stream.between(table, random_stream.TABLE, 0.2, 0.8)
-    angle = random_stream.between(table, random_stream.TABLE, -0.25 * math.pi, 0.25 * math.pi)
-    speed = random_stream.between(table, random_stream.TABLE, 0.3, 0.8)
-    end = 1.0 if random_stream.uniform(table, random_stream.TABLE) < 0.5 else -1.0
+    y = p.width * random_stream.between(table.stream, 0.2, 0.8)
+    angle = random_stream.between(table.stream, -0.25 * math.pi, 0.25 * math.pi)
+    speed = random_stream.between(table.stream, 0.3, 0.8)
+    end = 1.0 if random_stream.uniform(table.stream) < 0.5 else -1.0
     place_puck(table, p, table.turned, 0.5 * p.length, y, end * speed * math.cos(angle), speed * math.sin(angle))
 
 
@@ -80,7 +81,7 @@ def serve(table, p, player):
     """Both at home, the puck at rest in front of `player`, who conceded the last goal."""
     for k in range(2):
         place_mallet(table, p, k, HOME_X, 0.5 * p.width)
-    y = p.width * random_stream.between(table, player, 0.25, 0.75)
+    y = p.width * random_stream.between(table.streams[player], 0.25, 0.75)
     place_puck(table, p, player, 0.3 * p.length, y, 0.0, 0.0)
 
 
@@ -88,18 +89,18 @@ def serve(table, p, player):
 def _shot(table, p, subject):
     """A shot from the other half at the subject's goal mouth and a little beside it, direct or over one side wall."""
     radius = p.puck_radius
-    x = p.length * random_stream.between(table, random_stream.TABLE, 0.55, 0.85)
-    y = random_stream.between(table, random_stream.TABLE, 2.0 * radius, p.width - 2.0 * radius)
-    aim = 0.5 * p.width + 0.7 * p.goal_width * random_stream.between(table, random_stream.TABLE, -1.0, 1.0)
-    way = random_stream.uniform(table, random_stream.TABLE)
-    if way < 0.25:  # over the wall y = 0: aim at the target's mirror image
+    x = p.length * random_stream.between(table.stream, 0.55, 0.85)
+    y = random_stream.between(table.stream, 2.0 * radius, p.width - 2.0 * radius)
+    aim = 0.5 * p.width + 0.7 * p.goal_width * random_stream.between(table.stream, -1.0, 1.0)
+    side = random_stream.uniform(table.stream)
+    if side < 0.25:  # over the wall y = 0: aim at the target's mirror image
         aim = 2.0 * radius - aim
-    elif way < 0.5:
+    elif side < 0.5:
         aim = 2.0 * (p.width - radius) - aim
-    speed = random_stream.between(table, random_stream.TABLE, 1.0, 6.0)
     dx, dy = -x, aim - y
-    size = math.hypot(dx, dy)
-    place_puck(table, p, subject, x, y, speed * dx / size, speed * dy / size)
+    way = size(dx, dy)
+    speed = min(random_stream.between(table.stream, 1.0, 6.0), way / SHORTEST_FLIGHT)
+    place_puck(table, p, subject, x, y, speed * dx / way, speed * dy / way)
     shooter = min(x + radius + p.mallet_radius + 0.05, p.length - p.mallet_radius)
     place_mallet(
         table, p, 1 - subject, p.length - shooter, p.width - min(max(y, p.mallet_radius), p.width - p.mallet_radius)
@@ -109,18 +110,18 @@ def _shot(table, p, subject):
 @kernel
 def _cleared_puck(table, p, subject):
     """A puck that the subject has just cleared: on its side, moving across the table (report J.1, case 1)."""
-    x = p.length * random_stream.between(table, random_stream.TABLE, 0.2, 0.45)
-    y = p.width * random_stream.between(table, random_stream.TABLE, 0.15, 0.85)
-    across = random_stream.between(table, random_stream.TABLE, 0.4, 1.5)
-    if random_stream.uniform(table, random_stream.TABLE) < 0.5:
+    x = p.length * random_stream.between(table.stream, 0.2, 0.45)
+    y = p.width * random_stream.between(table.stream, 0.15, 0.85)
+    across = random_stream.between(table.stream, 0.4, 1.5)
+    if random_stream.uniform(table.stream) < 0.5:
         across = -across
-    along = across * random_stream.between(table, random_stream.TABLE, -1.0 / 7.0, 1.0 / 7.0)
+    along = across * random_stream.between(table.stream, -1.0 / 7.0, 1.0 / 7.0)
     place_puck(table, p, subject, x, y, along, across)
 
 
 @kernel
 def begin_episode(table, p, row, drawn, game):
-    """Begin a new episode of `game`: parameters, gantries, puck and mallets, flags and clocks. `row` is `p` as floats."""
+    """Begin a new episode of `game`: parameters, gantries, puck and mallets, flags, clocks. `row`: `p` as floats."""
     draw_parameters(table, row, drawn)
     build_gantries(table, p)
     table.episode += 1
@@ -130,7 +131,7 @@ def begin_episode(table, p, row, drawn, game):
         table.last_score[k] = table.score[k]
         table.score[k] = 0
     table.defending[0] = table.defending[1] = 1
-    table.frame_phase = random_stream.uniform(table, random_stream.TABLE)
+    table.frame_phase = random_stream.uniform(table.stream)
     face_off(table, p)
     subject = table.subject
     if game == DEFENCE:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 from puckpilot_env.kernel import kernel
+from puckpilot_env.physics.vector import size
 
 # Kinds of events
 NOTHING, WALL_X0, WALL_X1, WALL_Y0, WALL_Y1, POST, GOAL_X0, GOAL_X1, MIDDLE_LINE, MALLET_0, MALLET_1 = range(11)
@@ -54,9 +55,10 @@ def first_boundary(x, y, ux, uy, farthest, length, width, goal_width, radius):
             best, kind = gap, WALL_Y0
     half_goal = 0.5 * goal_width
     middle = 0.5 * width
-    if x - best < radius:
+    ahead = x + ux * best
+    if min(x, ahead) < radius:
         best, kind = _first_at_end(x, y, ux, uy, best, kind, radius, half_goal, middle, WALL_X0, GOAL_X0)
-    elif x + best > length - radius:
+    if max(x, ahead) > length - radius:
         best, kind = _first_at_end(length - x, y, -ux, uy, best, kind, radius, half_goal, middle, WALL_X1, GOAL_X1)
     return best, kind
 
@@ -102,8 +104,8 @@ def boundary_normal(kind, x, y, length, width, goal_width):
     post_x = 0.0 if x < 0.5 * length else length
     post_y = 0.5 * width + (0.5 * goal_width if y > 0.5 * width else -0.5 * goal_width)
     dx, dy = x - post_x, y - post_y
-    size = math.sqrt(dx * dx + dy * dy)
-    return dx / size, dy / size
+    apart = size(dx, dy)
+    return dx / apart, dy / apart
 
 
 @kernel
@@ -124,6 +126,6 @@ def touched(x, y, nx, ny, slack, length, width, goal_width, radius):
         px, py = boundary_normal(POST, x, y, length, width, goal_width)
         post_x = 0.0 if x < 0.5 * length else length
         post_y = middle + (half_goal if y > middle else -half_goal)
-        if math.hypot(x - post_x, y - post_y) - radius < slack and px * nx + py * ny < opposed:
+        if size(x - post_x, y - post_y) - radius < slack and px * nx + py * ny < opposed:
             kind, wx, wy = POST, px, py
     return kind, wx, wy

@@ -12,13 +12,8 @@ import math
 
 from puckpilot_env.kernel import kernel
 from puckpilot_env.physics import glide
-from puckpilot_env.physics.mallet import (
-    acceleration_bound,
-    axis_acceleration,
-    axis_at,
-    axis_velocity,
-    next_switch,
-)
+from puckpilot_env.physics.mallet import acceleration_bound, axis_at, axis_velocity, next_switch
+from puckpilot_env.physics.vector import size
 
 TOUCH = 1e-9  # m; a gap below it is a contact
 SHORTEST_ADVANCE = 1e-9  # s
@@ -29,33 +24,12 @@ STEEPEST_WEDGE = 0.0625  # sin^2 of the angle (14.5 degrees) under which a pinch
 
 
 @kernel
-def mallet_motion(path, gantry, k, t):
-    """`(x, y, vx, vy)` of player `k`'s mallet at time `t` of its plan."""
-    rest_x, slow_x, fast_x, _ = axis_at(path, gantry, k, 0, t)
-    rest_y, slow_y, fast_y, _ = axis_at(path, gantry, k, 1, t)
-    return (
-        rest_x + slow_x + fast_x,
-        rest_y + slow_y + fast_y,
-        axis_velocity(gantry, k, 0, slow_x, fast_x),
-        axis_velocity(gantry, k, 1, slow_y, fast_y),
-    )
-
-
-@kernel
-def mallet_push(path, gantry, k, t, nx, ny):
-    """Acceleration [m/s^2] of player `k`'s mallet along the unit vector `n` at time `t`."""
-    _, slow_x, fast_x, _ = axis_at(path, gantry, k, 0, t)
-    _, slow_y, fast_y, _ = axis_at(path, gantry, k, 1, t)
-    return nx * axis_acceleration(gantry, k, 0, slow_x, fast_x) + ny * axis_acceleration(gantry, k, 1, slow_y, fast_y)
-
-
-@kernel
 def stays_clear(x, y, ux, uy, travel, mallet_x, mallet_y, reach_x, reach_y, distance):
-    """True where a puck moving `travel` [m] along `u` cannot meet a mallet that moves at most `reach` from its place."""
+    """True where a puck moving `travel` [m] along `u` cannot meet a mallet that stays within `reach` of its place."""
     dx, dy = mallet_x - x, mallet_y - y
     along = min(max(dx * ux + dy * uy, 0.0), travel)
-    apart = math.hypot(dx - along * ux, dy - along * uy)
-    return apart > distance + math.hypot(reach_x, reach_y)
+    apart = size(dx - along * ux, dy - along * uy)
+    return apart > distance + size(reach_x, reach_y)
 
 
 @kernel
@@ -70,33 +44,33 @@ def time_to_parabola(gap, gap_rate, bound):
 
 
 @kernel
-def first_contact(x, y, ux, uy, v, friction, drag, path, gantry, k, start, end, distance):
-    """Time in [start, end) at which a freely gliding puck first meets player `k`'s mallet; infinite if it does not.
+def first_contact(x, y, ux, uy, v, friction, drag, mallet, start, end, distance):
+    """Time in [start, end) at which a freely gliding puck first meets a mallet; infinite if it does not.
 
     `(x, y)`, unit `u` and speed `v` [m/s] are the puck's at `start` [s]; `distance` [m] is the sum of the radii.
     """
     t = start
     for _ in range(MOST_ADVANCES):
         path_length, speed = glide.advance(v, t - start, friction, drag)
-        rest_x, slow_x, fast_x, volts_x = axis_at(path, gantry, k, 0, t)
-        rest_y, slow_y, fast_y, volts_y = axis_at(path, gantry, k, 1, t)
+        rest_x, slow_x, fast_x, volts_x = axis_at(mallet.x, t)
+        rest_y, slow_y, fast_y, volts_y = axis_at(mallet.y, t)
         dx = x + ux * path_length - (rest_x + slow_x + fast_x)
         dy = y + uy * path_length - (rest_y + slow_y + fast_y)
         apart = math.sqrt(dx * dx + dy * dy)
         rate = (
-            dx * (ux * speed - axis_velocity(gantry, k, 0, slow_x, fast_x))
-            + dy * (uy * speed - axis_velocity(gantry, k, 1, slow_y, fast_y))
+            dx * (ux * speed - axis_velocity(mallet.x, slow_x, fast_x))
+            + dy * (uy * speed - axis_velocity(mallet.y, slow_y, fast_y))
         ) / apart
         gap = apart - distance
         if gap <= TOUCH and rate < 0.0:
             return t
-        bound_x = acceleration_bound(gantry, k, 0, slow_x, fast_x, volts_x)
-        bound_y = acceleration_bound(gantry, k, 1, slow_y, fast_y, volts_y)
+        bound_x = acceleration_bound(mallet.x, slow_x, fast_x, volts_x)
+        bound_y = acceleration_bound(mallet.y, slow_y, fast_y, volts_y)
         bound = math.sqrt(bound_x * bound_x + bound_y * bound_y)
         if speed > 0.0:
             bound += friction + drag * speed * speed
         ahead = t + max(time_to_parabola(max(gap, 0.0), rate, bound), SHORTEST_ADVANCE)
-        t = min(ahead, next_switch(path, k, t))
+        t = min(ahead, next_switch(mallet, t))
         if t >= end:
             return math.inf
     return t
@@ -116,15 +90,16 @@ def reflect(vx, vy, mx, my, nx, ny, restitution):
 
 
 @kernel
-def strike(vx, vy, mx, my, nx, ny, restitution, push):
+def strike(vx, vy, mx, my, nx, ny, restitution, push, friction, drag):
     """`reflect`, but apart at least so fast that a mallet accelerating by `push` is met again only a moment later.
 
     That replaces the endless sequence of ever smaller bounces of a puck being pushed along; the gap that it opens
-    stays under `push REST_BETWEEN_TOUCHES^2 / 8`.
+    stays under `(push + braking) REST_BETWEEN_TOUCHES^2 / 8`, where `braking` bounds the puck's own loss of speed.
     """
     vx, vy = reflect(vx, vy, mx, my, nx, ny, restitution)
     apart = (vx - mx) * nx + (vy - my) * ny
-    least = max(0.5 * push * REST_BETWEEN_TOUCHES, 1e-6)
+    braking = friction + drag * size(vx, vy) * max(vx * nx + vy * ny, 0.0)
+    least = max(0.5 * (push + braking) * REST_BETWEEN_TOUCHES, 1e-6)
     if apart < least:
         vx, vy = vx + (least - apart) * nx, vy + (least - apart) * ny
     return vx, vy

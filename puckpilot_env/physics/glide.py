@@ -39,7 +39,7 @@ def _log1p_ratio(u):
         w2 = w * w
         series = 1.0 + w2 * (1 / 3 + w2 * (1 / 5 + w2 * (1 / 7 + w2 * (1 / 9 + w2 * (1 / 11)))))
         return 2.0 * series / (2.0 + u)
-    return math.log1p(u) / u
+    return math.log(1.0 + u) / u
 
 
 @kernel
@@ -54,9 +54,10 @@ def _atan_ratio(x2):
 @kernel
 def _expm1_ratio(u):
     """(1 - exp(-u))/u, for u >= 0."""
-    if u < 1e-2:
-        return 1.0 - u / 2.0 * (1.0 - u / 3.0 * (1.0 - u / 4.0 * (1.0 - u / 5.0 * (1.0 - u / 6.0))))
-    return -math.expm1(-u) / u
+    if u < 0.25:
+        tail = 1.0 - u / 7.0 * (1.0 - u / 8.0 * (1.0 - u / 9.0 * (1.0 - u / 10.0 * (1.0 - u / 11.0))))
+        return 1.0 - u / 2.0 * (1.0 - u / 3.0 * (1.0 - u / 4.0 * (1.0 - u / 5.0 * (1.0 - u / 6.0 * tail))))
+    return (1.0 - math.exp(-u)) / u
 
 
 @kernel

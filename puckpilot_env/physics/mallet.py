@@ -6,24 +6,41 @@ three modes, `p = rest + slow + fast`: `rest` is where the mallet would come to 
 
     rest' = rest_gain u,   slow' = -slow_rate (slow + slow_gain u),   fast' = -fast_rate (fast - fast_gain u).
 
-A plan is `+u` until `t1`, `-u` until `t2`, then 0 (report eq. 4-5). `path` holds for each player and axis the plan and
-the modes at its three knots 0, t1, t2; `gantry` holds the five constants. Both are float64 arrays with named columns.
+A plan is `+u` until `t1`, `-u` until `t2`, then 0 (report eq. 4-5). An axis is one record: its constants, its modes
+when the plan began, the plan, and the modes at t1 and t2 (where the slow one is gone).
 """
 
 from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from puckpilot_env.kernel import kernel
 
-# Columns of gantry[player, axis]
-SLOW_RATE, FAST_RATE, REST_GAIN, SLOW_GAIN, FAST_GAIN = range(5)
-GANTRY_COLUMNS = 5
-# Columns of path[player, axis]
-T1, T2, VOLTS, REST0, SLOW0, FAST0, REST1, SLOW1, FAST1, REST2, SLOW2, FAST2 = range(12)
-PATH_COLUMNS = 12
-# Columns of modes[player, axis]
-REST, SLOW, FAST = range(3)
+AXIS = np.dtype(
+    [
+        ("slow_rate", np.float64),  # 1/s
+        ("fast_rate", np.float64),
+        ("rest_gain", np.float64),  # m/s/V
+        ("slow_gain", np.float64),  # m/V
+        ("fast_gain", np.float64),
+        ("rest", np.float64),  # m, when the plan begins
+        ("slow", np.float64),
+        ("fast", np.float64),
+        ("volts", np.float64),  # signed, until t1
+        ("t1", np.float64),  # s since the plan began
+        ("t2", np.float64),
+        ("halt", np.float64),  # when the motor stalled; infinite if it did not
+        ("rest1", np.float64),  # m, at t1
+        ("slow1", np.float64),
+        ("fast1", np.float64),
+        ("rest2", np.float64),  # m, at t2
+        ("fast2", np.float64),
+    ],
+    align=True,
+)
+MALLET = np.dtype([("x", AXIS), ("y", AXIS)], align=True)
 
 _NEGLIGIBLE = 40.0  # exp(-40) of a fast mode (under 1 mm) is under 1e-20 m
 
@@ -45,6 +62,23 @@ def axis_constants(c5, c6, c7, pulley_radius):
 
 
 @kernel
+def set_constants(axis, c5, c6, c7, pulley_radius):
+    """Give an axis its coefficients C5 [V s^3], C6 [V s^2], C7 [V s] and pulley radius [m]."""
+    axis.slow_rate, axis.fast_rate, axis.rest_gain, axis.slow_gain, axis.fast_gain = axis_constants(
+        c5, c6, c7, pulley_radius
+    )
+
+
+@kernel
+def place_axis(axis, position, velocity, acceleration):
+    """Put an axis at `position` [m] with this velocity [m/s] and acceleration [m/s^2], without a plan."""
+    spread = axis.fast_rate - axis.slow_rate
+    axis.slow = -(velocity * axis.fast_rate + acceleration) / (axis.slow_rate * spread)
+    axis.fast = (velocity * axis.slow_rate + acceleration) / (axis.fast_rate * spread)
+    axis.rest = position - axis.slow - axis.fast
+
+
+@kernel
 def fade(rate, t):
     """exp(-rate t), 0 where that no longer matters."""
     exponent = rate * t
@@ -52,97 +86,140 @@ def fade(rate, t):
 
 
 @kernel
-def drift(gantry, k, a, rest, slow, fast, volts, t):
-    """The modes `(rest, slow, fast)` [m] after `t` [s] under constant `volts`."""
-    slow_end = -gantry[k, a, SLOW_GAIN] * volts
-    fast_end = gantry[k, a, FAST_GAIN] * volts
-    rest += gantry[k, a, REST_GAIN] * volts * t
-    if slow != slow_end:
-        slow = slow_end + (slow - slow_end) * fade(gantry[k, a, SLOW_RATE], t)
-    if fast != fast_end:
-        fast = fast_end + (fast - fast_end) * fade(gantry[k, a, FAST_RATE], t)
-    return rest, slow, fast
+def axis_at(axis, t):
+    """`(rest, slow, fast, volts)` at time `t` [s] of the plan."""
+    if t >= axis.halt:
+        rest, slow, fast, _ = _running_axis_at(axis, axis.halt)
+        return rest + slow + fast, 0.0, 0.0, 0.0
+    return _running_axis_at(axis, t)
 
 
 @kernel
-def axis_at(path, gantry, k, a, t):
-    """`(rest, slow, fast, volts)` of axis `a` of player `k` at time `t` [s] of its plan."""
-    if t >= path[k, a, T2]:
-        since, volts, knot = t - path[k, a, T2], 0.0, REST2
-    elif t >= path[k, a, T1]:
-        since, volts, knot = t - path[k, a, T1], -path[k, a, VOLTS], REST1
+def _running_axis_at(axis, t):
+    """`axis_at` of a plan that no stall has cut short."""
+    if t >= axis.t2:
+        fast = axis.fast2
+        if fast != 0.0:
+            fast *= fade(axis.fast_rate, t - axis.t2)
+        return axis.rest2, 0.0, fast, 0.0
+    if t >= axis.t1:
+        since, volts = t - axis.t1, -axis.volts
+        rest, slow, fast = axis.rest1, axis.slow1, axis.fast1
     else:
-        since, volts, knot = t, path[k, a, VOLTS], REST0
-    rest, slow, fast = drift(gantry, k, a, path[k, a, knot], path[k, a, knot + 1], path[k, a, knot + 2], volts, since)
-    return rest, slow, fast, volts
+        since, volts = t, axis.volts
+        rest, slow, fast = axis.rest, axis.slow, axis.fast
+    slow_end = -axis.slow_gain * volts
+    fast_end = axis.fast_gain * volts
+    return (
+        rest + axis.rest_gain * volts * since,
+        slow_end + (slow - slow_end) * math.exp(-axis.slow_rate * since),
+        fast_end + (fast - fast_end) * fade(axis.fast_rate, since),
+        volts,
+    )
 
 
 @kernel
-def axis_velocity(gantry, k, a, slow, fast):
+def axis_velocity(axis, slow, fast):
     """Velocity [m/s] of an axis from its modes."""
-    return -gantry[k, a, SLOW_RATE] * slow - gantry[k, a, FAST_RATE] * fast
+    return -axis.slow_rate * slow - axis.fast_rate * fast
 
 
 @kernel
-def axis_acceleration(gantry, k, a, slow, fast):
+def axis_acceleration(axis, slow, fast):
     """Acceleration [m/s^2] of an axis from its modes."""
-    return gantry[k, a, SLOW_RATE] ** 2 * slow + gantry[k, a, FAST_RATE] ** 2 * fast
+    return axis.slow_rate * axis.slow_rate * slow + axis.fast_rate * axis.fast_rate * fast
 
 
 @kernel
-def modes_from_motion(gantry, k, a, position, velocity, acceleration):
-    """The modes `(rest, slow, fast)` [m] of a mallet with this position, velocity and acceleration."""
-    slow_rate, fast_rate = gantry[k, a, SLOW_RATE], gantry[k, a, FAST_RATE]
-    spread = fast_rate - slow_rate
-    slow = -(velocity * fast_rate + acceleration) / (slow_rate * spread)
-    fast = (velocity * slow_rate + acceleration) / (fast_rate * spread)
-    return position - slow - fast, slow, fast
+def place_now(mallet):
+    """`(x, y)` [m] of a mallet when its plan begins."""
+    return mallet.x.rest + mallet.x.slow + mallet.x.fast, mallet.y.rest + mallet.y.slow + mallet.y.fast
 
 
 @kernel
-def halt(path, gantry, k, t):
-    """Stop player `k`'s mallet dead where it is at `t` and drop the rest of its plan (a stalled motor)."""
-    for a in range(2):
-        rest, slow, fast, _ = axis_at(path, gantry, k, a, t)
-        path[k, a, T1] = t
-        path[k, a, T2] = t
-        path[k, a, VOLTS] = 0.0
-        path[k, a, REST2] = rest + slow + fast
-        path[k, a, SLOW2] = 0.0
-        path[k, a, FAST2] = 0.0
+def motion_now(mallet):
+    """`(x, y, vx, vy)` [m, m/s] of a mallet when its plan begins."""
+    x, y = mallet.x, mallet.y
+    vx, vy = axis_velocity(x, x.slow, x.fast), axis_velocity(y, y.slow, y.fast)
+    return x.rest + x.slow + x.fast, y.rest + y.slow + y.fast, vx, vy
 
 
 @kernel
-def next_switch(path, k, t):
-    """The first time after `t` at which a voltage of player `k` changes; infinite if none does."""
-    first = math.inf
-    for a in range(2):
-        if path[k, a, T1] > t:
-            first = min(first, path[k, a, T1])
-        elif path[k, a, T2] > t:
-            first = min(first, path[k, a, T2])
-    return first
+def place_at(mallet, t):
+    """`(x, y)` [m] of a mallet at time `t` of its plan."""
+    rest_x, slow_x, fast_x, _ = axis_at(mallet.x, t)
+    rest_y, slow_y, fast_y, _ = axis_at(mallet.y, t)
+    return rest_x + slow_x + fast_x, rest_y + slow_y + fast_y
 
 
 @kernel
-def acceleration_bound(gantry, k, a, slow, fast, volts):
+def motion_at(mallet, t):
+    """`(x, y, vx, vy)` [m, m/s] of a mallet at time `t` of its plan."""
+    rest_x, slow_x, fast_x, _ = axis_at(mallet.x, t)
+    rest_y, slow_y, fast_y, _ = axis_at(mallet.y, t)
+    return (
+        rest_x + slow_x + fast_x,
+        rest_y + slow_y + fast_y,
+        axis_velocity(mallet.x, slow_x, fast_x),
+        axis_velocity(mallet.y, slow_y, fast_y),
+    )
+
+
+@kernel
+def push_at(mallet, t, nx, ny):
+    """Acceleration [m/s^2] of a mallet along the unit vector `n` at time `t` of its plan."""
+    _, slow_x, fast_x, _ = axis_at(mallet.x, t)
+    _, slow_y, fast_y, _ = axis_at(mallet.y, t)
+    return nx * axis_acceleration(mallet.x, slow_x, fast_x) + ny * axis_acceleration(mallet.y, slow_y, fast_y)
+
+
+@kernel
+def halt(mallet, t):
+    """Stop a mallet dead where it is at `t` and drop the rest of its plan (stalled motors)."""
+    mallet.x.halt = min(mallet.x.halt, t)
+    mallet.y.halt = min(mallet.y.halt, t)
+
+
+@kernel
+def settle(mallet, t):
+    """Make the modes at time `t` of the plan those from which the next plan begins."""
+    x, y = mallet.x, mallet.y
+    x.rest, x.slow, x.fast, _ = axis_at(x, t)
+    y.rest, y.slow, y.fast, _ = axis_at(y, t)
+
+
+@kernel
+def _next_axis_switch(axis, t):
+    if axis.t1 > t:
+        return axis.t1
+    return axis.t2 if axis.t2 > t else math.inf
+
+
+@kernel
+def next_switch(mallet, t):
+    """The first time after `t` at which a voltage of the mallet changes; infinite if none does."""
+    if t >= mallet.x.halt:
+        return math.inf
+    return min(_next_axis_switch(mallet.x, t), _next_axis_switch(mallet.y, t))
+
+
+@kernel
+def acceleration_bound(axis, slow, fast, volts):
     """Largest |acceleration| [m/s^2] of an axis from these modes on, while `volts` stays as it is."""
-    slow_part = gantry[k, a, SLOW_RATE] ** 2 * (slow + gantry[k, a, SLOW_GAIN] * volts)
-    fast_part = gantry[k, a, FAST_RATE] ** 2 * (fast - gantry[k, a, FAST_GAIN] * volts)
+    slow_part = axis.slow_rate * axis.slow_rate * (slow + axis.slow_gain * volts)
+    fast_part = axis.fast_rate * axis.fast_rate * (fast - axis.fast_gain * volts)
     if slow_part * fast_part >= 0.0:
         return abs(slow_part + fast_part)
     return max(abs(slow_part), abs(fast_part))
 
 
 @kernel
-def reach(path, gantry, k, a, duration):
+def reach(axis, duration):
     """A bound [m] on how far an axis can move from where its plan began, within `duration` [s]."""
-    volts = abs(path[k, a, VOLTS])
-    slow, fast = path[k, a, SLOW0], path[k, a, FAST0]
-    rate = gantry[k, a, SLOW_RATE]
-    v0 = abs(axis_velocity(gantry, k, a, slow, fast))
-    start = abs(axis_acceleration(gantry, k, a, slow, fast))
-    steady = gantry[k, a, SLOW_GAIN] * volts
-    top_acceleration = max(start, rate * rate * (max(abs(slow), steady) + steady))
-    top_speed = max(v0, gantry[k, a, REST_GAIN] * volts) + start / gantry[k, a, FAST_RATE]
+    volts = abs(axis.volts)
+    v0 = abs(axis_velocity(axis, axis.slow, axis.fast))
+    start = abs(axis_acceleration(axis, axis.slow, axis.fast))
+    steady = axis.slow_gain * volts
+    top_acceleration = max(start, axis.slow_rate * axis.slow_rate * (max(abs(axis.slow), steady) + steady))
+    top_speed = max(v0, axis.rest_gain * volts) + start / axis.fast_rate
     return min(top_speed * duration, (v0 + 0.5 * top_acceleration * duration) * duration)

@@ -16,29 +16,7 @@ from __future__ import annotations
 import math
 
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics.mallet import (
-    FAST,
-    FAST0,
-    FAST1,
-    FAST2,
-    FAST_GAIN,
-    FAST_RATE,
-    REST,
-    REST0,
-    REST1,
-    REST2,
-    REST_GAIN,
-    SLOW,
-    SLOW0,
-    SLOW1,
-    SLOW2,
-    SLOW_GAIN,
-    SLOW_RATE,
-    T1,
-    T2,
-    VOLTS,
-    fade,
-)
+from puckpilot_env.physics.mallet import fade
 
 SMALLEST_VOLTAGE = 1e-6  # V; keeps switching times finite
 LARGEST_REQUEST = 1e6  # V; requests beyond it are the same to the projection
@@ -47,7 +25,7 @@ LARGEST_REQUEST = 1e6  # V; requests beyond it are the same to the projection
 @kernel
 def stop_position(rest, slow, rest_gain, slow_gain, slow_rate, volts):
     """Where an axis comes to rest when it brakes at once with `volts` > 0 (the report's x_over, appendix I.1)."""
-    brake_time = math.log1p(abs(slow) / (slow_gain * volts)) / slow_rate
+    brake_time = math.log(1.0 + abs(slow) / (slow_gain * volts)) / slow_rate
     return rest + math.copysign(rest_gain * volts * brake_time, slow)
 
 
@@ -55,22 +33,25 @@ def stop_position(rest, slow, rest_gain, slow_gain, slow_rate, volts):
 def braking_voltage(rest, slow, rest_gain, slow_gain, slow_rate, low, high):
     """The least voltage that stops the axis inside [low, high]; 0 where it coasts to a stop inside anyway.
 
-    `stop_position` is monotone in the voltage, so the root is bracketed and bisected in the exponent.
+    How far braking pulls the stop back is an increasing, concave function of the voltage, and log(1 + z) <= sqrt(z)
+    gives a start below the root: from there Newton's steps rise to it and cannot pass it.
     """
     edge = min(max(rest, low), high)
     if edge == rest:
         return 0.0
-    shortfall = abs(rest - edge)
-    weak, strong = SMALLEST_VOLTAGE, LARGEST_REQUEST
-    for _ in range(100):
-        middle = math.sqrt(weak * strong)
-        if abs(stop_position(rest, slow, rest_gain, slow_gain, slow_rate, middle) - rest) < shortfall:
-            weak = middle
-        else:
-            strong = middle
-        if strong < weak * (1.0 + 1e-13):
+    scale = abs(slow) / slow_gain
+    wanted = abs(rest - edge) * slow_rate / rest_gain
+    if wanted >= scale:
+        return LARGEST_REQUEST
+    volts = max(wanted * wanted / scale, SMALLEST_VOLTAGE)
+    for _ in range(60):
+        z = scale / volts
+        log = math.log(1.0 + z)
+        step = (wanted - volts * log) / (log - z / (1.0 + z))
+        volts += max(step, 0.0)
+        if step <= 1e-13 * volts:
             break
-    return strong
+    return volts * (1.0 + 1e-12)
 
 
 @kernel
@@ -94,7 +75,10 @@ def share_voltage(vx, vy, least_x, least_y, limit):
 
 @kernel
 def switching_times(rest, slow, target, rest_gain, slow_gain, slow_rate, volts):
-    """`(sign, t1, t2)` of the plan that brings an axis to rest at `target` [m] with `volts` > 0."""
+    """`(sign, t1, t2, fade)` of the plan that brings an axis to rest at `target` [m] with `volts` > 0.
+
+    `fade` is exp(-slow_rate t1), which comes without another exponential.
+    """
     steady = slow_gain * volts
     heading = 1.0 if slow < 0.0 or (slow == 0.0 and target >= rest) else -1.0
     ahead = heading * (target - rest) / (rest_gain * volts)
@@ -104,52 +88,57 @@ def switching_times(rest, slow, target, rest_gain, slow_gain, slow_rate, volts):
     else:
         sign, shrink, lead = -heading, growth, -ahead
     root = math.sqrt(max(1.0 - (1.0 + sign * slow / steady) * shrink, 0.0))
-    pause = math.log1p(root) / slow_rate  # t2 - t1
+    pause = math.log(1.0 + root) / slow_rate  # t2 - t1
     t1 = max(lead + pause, 0.0)
-    return sign, t1, t1 + pause
+    return sign, t1, t1 + pause, min(shrink / (1.0 + root), 1.0)
 
 
 @kernel
-def write_axis(path, gantry, modes, k, a, target, volts):
-    """Write the plan of one axis and its three knots into `path[k, a]`."""
-    rest, slow, fast = modes[k, a, REST], modes[k, a, SLOW], modes[k, a, FAST]
-    rest_gain, slow_gain, slow_rate = gantry[k, a, REST_GAIN], gantry[k, a, SLOW_GAIN], gantry[k, a, SLOW_RATE]
-    sign, t1, t2 = switching_times(rest, slow, target, rest_gain, slow_gain, slow_rate, volts)
+def plan_axis(axis, target, volts):
+    """Plan one axis from its present modes: bring it to rest at `target` [m] with `volts` > 0."""
+    sign, t1, t2, slow_fade = switching_times(
+        axis.rest, axis.slow, target, axis.rest_gain, axis.slow_gain, axis.slow_rate, volts
+    )
     signed = sign * volts
-    slow_end, fast_end = -slow_gain * signed, gantry[k, a, FAST_GAIN] * signed
-    path[k, a, T1], path[k, a, T2], path[k, a, VOLTS] = t1, t2, signed
-    path[k, a, REST0], path[k, a, SLOW0], path[k, a, FAST0] = rest, slow, fast
-    fast_rate = gantry[k, a, FAST_RATE]
-    fast1 = fast_end + (fast - fast_end) * fade(fast_rate, t1)
-    path[k, a, REST1] = rest + rest_gain * signed * t1
-    path[k, a, SLOW1] = slow_end + (slow - slow_end) * fade(slow_rate, t1)
-    path[k, a, FAST1] = fast1
-    path[k, a, REST2] = target
-    path[k, a, SLOW2] = 0.0
-    path[k, a, FAST2] = -fast_end + (fast1 + fast_end) * fade(fast_rate, t2 - t1)
+    slow_end, fast_end = -axis.slow_gain * signed, axis.fast_gain * signed
+    axis.volts, axis.t1, axis.t2, axis.halt = signed, t1, t2, math.inf
+    axis.rest1 = axis.rest + axis.rest_gain * signed * t1
+    axis.slow1 = slow_end + (axis.slow - slow_end) * slow_fade
+    axis.fast1 = fast_end + (axis.fast - fast_end) * fade(axis.fast_rate, t1)
+    axis.rest2 = target
+    axis.fast2 = -fast_end + (axis.fast1 + fast_end) * fade(axis.fast_rate, t2 - t1)
 
 
 @kernel
-def write_plan(path, gantry, modes, k, x_f, y_f, vx, vy, area, max_voltage):
-    """Plan player `k`'s next move from any finite request.
+def _stops_inside(axis, volts, low, high):
+    """Whether braking at once with `volts` stops an axis inside [low, high]."""
+    if low <= axis.rest <= high:
+        return True
+    return low <= stop_position(axis.rest, axis.slow, axis.rest_gain, axis.slow_gain, axis.slow_rate, volts) <= high
+
+
+@kernel
+def _least_voltage(axis, low, high):
+    return braking_voltage(axis.rest, axis.slow, axis.rest_gain, axis.slow_gain, axis.slow_rate, low, high)
+
+
+@kernel
+def plan_mallet(mallet, x_f, y_f, vx, vy, area, max_voltage):
+    """Plan a mallet's next move from any finite request.
 
     `x_f, y_f` [m]: target, in the table's frame; `vx, vy` [V]: wanted magnitudes; `area` = (x_low, x_high, y_low,
     y_high) [m] in which the mallet's centre must stay. The rest position keeps clear of the area's edge by twice the
     largest fast mode, so that the mallet itself never crosses it.
     """
+    x, y = mallet.x, mallet.y
     limit = 2.0 * (max_voltage - SMALLEST_VOLTAGE)
-    margin_x = 2.0 * gantry[k, 0, FAST_GAIN] * limit
-    margin_y = 2.0 * gantry[k, 1, FAST_GAIN] * limit
+    margin_x = 2.0 * x.fast_gain * limit
+    margin_y = 2.0 * y.fast_gain * limit
     x_low, x_high = area[0] + margin_x, area[1] - margin_x
     y_low, y_high = area[2] + margin_y, area[3] - margin_y
-    least_x = braking_voltage(
-        modes[k, 0, REST], modes[k, 0, SLOW], gantry[k, 0, REST_GAIN], gantry[k, 0, SLOW_GAIN],
-        gantry[k, 0, SLOW_RATE], x_low, x_high,
-    )  # fmt: skip
-    least_y = braking_voltage(
-        modes[k, 1, REST], modes[k, 1, SLOW], gantry[k, 1, REST_GAIN], gantry[k, 1, SLOW_GAIN],
-        gantry[k, 1, SLOW_RATE], y_low, y_high,
-    )  # fmt: skip
-    vx, vy = share_voltage(vx, vy, least_x, least_y, limit)
-    write_axis(path, gantry, modes, k, 0, min(max(x_f, x_low), x_high), vx)
-    write_axis(path, gantry, modes, k, 1, min(max(y_f, y_low), y_high), vy)
+    volts_x, volts_y = share_voltage(vx, vy, 0.0, 0.0, limit)
+    if not (_stops_inside(x, volts_x, x_low, x_high) and _stops_inside(y, volts_y, y_low, y_high)):
+        least_x, least_y = _least_voltage(x, x_low, x_high), _least_voltage(y, y_low, y_high)
+        volts_x, volts_y = share_voltage(vx, vy, least_x, least_y, limit)
+    plan_axis(x, min(max(x_f, x_low), x_high), volts_x)
+    plan_axis(y, min(max(y_f, y_low), y_high), volts_y)

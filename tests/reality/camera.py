@@ -1,0 +1,62 @@
+"""What a camera says about a scene: when it looks, what it sees, and how it errs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tests.reality.law import Law
+from tests.reality.scene import FINE, Scene
+
+
+@dataclass(frozen=True)
+class Camera:
+    """White noise on each coordinate, a jittered clock, and fractions of frames held, dropped or wild."""
+
+    rate: float = 120.0  # Hz
+    noise: float = 0.0005  # m
+    jitter: float = 0.0001  # s
+    held: float = 0.0  # of the frames repeat the last position
+    dropped: float = 0.0  # of the frames see no puck
+    wild: float = 0.0  # of the frames are wrong by centimetres
+    wild_by: float = 0.05  # m, the size of such an error
+
+
+def look_up(t: np.ndarray, path: np.ndarray) -> np.ndarray:
+    """Positions (m, 2) at times t (m,) on a path (n, 2) sampled every FINE seconds; NaN off its ends or beside NaN."""
+    at = t / FINE
+    left = np.clip(np.floor(at).astype(int), 0, len(path) - 2)
+    share = (at - left)[:, None]
+    seen = path[left] + share * (path[left + 1] - path[left])
+    seen[(at < 0.0) | (at > len(path) - 1)] = np.nan
+    return seen
+
+
+def see(law: Law, camera: Camera, scene: Scene, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Time stamps (m,), the puck (m, 2) and the opponent's mallet (m, 2; NaN where there is none) as seen."""
+    seconds = len(scene.t) * FINE
+    taken = np.arange(1, int(seconds * camera.rate)) / camera.rate
+    taken = taken + np.clip(camera.jitter * rng.standard_normal(len(taken)), -0.3 / camera.rate, 0.3 / camera.rate)
+    stamps = (taken + law.camera_delay) * (1.0 + law.camera_clock)
+    paths = [scene.puck, scene.mallets[1] if len(scene.mallets) > 1 else np.full_like(scene.puck, np.nan)]
+    puck, opponent = (distort(law, look_up(taken, path)) for path in paths)
+    puck = puck + camera.noise * rng.standard_normal(puck.shape)
+    opponent = opponent + camera.noise * rng.standard_normal(opponent.shape)
+    fate = rng.uniform(size=len(taken))
+    heading = rng.uniform(0.0, 2.0 * np.pi, len(taken))
+    wild = fate < camera.wild
+    puck[wild] += camera.wild_by * np.stack([np.cos(heading[wild]), np.sin(heading[wild])], axis=1)
+    fate -= camera.wild
+    puck[(fate >= 0.0) & (fate < camera.dropped)] = np.nan
+    fate -= camera.dropped
+    for i in np.flatnonzero((fate >= 0.0) & (fate < camera.held)):
+        if i > 0:
+            puck[i] = puck[i - 1]
+    return stamps, puck, opponent
+
+
+def distort(law: Law, seen: np.ndarray) -> np.ndarray:
+    """The map from the image to the table, stretched and sheared about the origin."""
+    x, y = seen[:, 0], seen[:, 1]
+    return np.stack([(1.0 + law.camera_scale_x) * x + law.camera_shear * y, (1.0 + law.camera_scale_y) * y], axis=1)
