@@ -1,4 +1,4 @@
-"""How to send the puck somewhere: directions over the side walls, the place and speed of a strike, who could stop it."""
+"""How to send the puck somewhere: ways over the side walls, where and when to strike, who could stop it."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def strike_normal(vx, vy, dx, dy, speed, p):
 
 
 @kernel
-def first_strike(puck, own, p, gantry, bounds, way, goal_y, after, horizon, out):
+def first_strike(puck, own, p, mallet, bounds, way, goal_y, after, horizon, out):
     """The earliest strike, `after` [s] or later, that sends the puck `way` to `goal_y`; its time, infinite if none.
 
     puck, own: motions (x, y, vx, vy); bounds: (2, 4) of the action space. Writes the action into `out` (4,): a target
@@ -67,8 +67,8 @@ def first_strike(puck, own, p, gantry, bounds, way, goal_y, after, horizon, out)
         at_x, at_y = x - reach * nx, y - reach * ny
         if not (bounds[0, 0] <= at_x <= bounds[1, 0] and bounds[0, 1] <= at_y <= bounds[1, 1]):
             continue
-        volts_x = volts_to_pass(gantry, 0, at_x - own[0], own[2], t)
-        volts_y = volts_to_pass(gantry, 1, at_y - own[1], own[3], t)
+        volts_x = volts_to_pass(mallet.x, at_x - own[0], own[2], t)
+        volts_y = volts_to_pass(mallet.y, at_y - own[1], own[3], t)
         if volts_x > bounds[1, 2] or volts_x < 0.0 or abs(volts_y) > bounds[1, 3]:
             continue
         beyond = 0.25
@@ -80,7 +80,7 @@ def first_strike(puck, own, p, gantry, bounds, way, goal_y, after, horizon, out)
 
 
 @kernel
-def shot_chance(x, y, vx, vy, since, opponent, p, gantry, volts):
+def shot_chance(x, y, vx, vy, since, opponent, p, mallet, volts):
     """Chance that a puck leaving the middle line scores against `opponent` (x, y, vx, vy), who may use `volts`.
 
     `since` [s]: how long before that the opponent could see it coming. The chance falls with how far the opponent's
@@ -102,8 +102,8 @@ def shot_chance(x, y, vx, vy, since, opponent, p, gantry, volts):
         for i in range(SAMPLES):
             share = (i + 1.0) / SAMPLES
             ready = t + share * used - REACTION
-            past_x = abs(depth + share * gap * ux - opponent_depth) - reach_within(gantry, 0, ready, volts)
-            past_y = abs(y + share * gap * uy - opponent[1]) - reach_within(gantry, 1, ready, volts)
+            past_x = abs(depth + share * gap * ux - opponent_depth) - reach_within(mallet.x, ready, volts)
+            past_y = abs(y + share * gap * uy - opponent[1]) - reach_within(mallet.y, ready, volts)
             spare = min(spare, math.hypot(max(past_x, 0.0), max(past_y, 0.0)) - radius)
         depth, y, t = depth + gap * ux, y + gap * uy, t + used
         if kind == bounce.GOAL_X0:

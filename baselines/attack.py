@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from baselines.aim import first_strike
-from baselines.geometry import crossing, fill_gantry, guard_place, volts_to_pass
+from baselines.geometry import crossing, fill_mallet, guard_place, volts_to_pass
 from baselines.player import Player
 from baselines.sight import Seen
 from puckpilot_env.kernel import kernel
+from puckpilot_env.physics.mallet import MALLET
 
 GUARD = 0.2  # m from the goal line to where it waits
 LATEST_STRIKE, LATEST_CROSSING = 0.5, 1.5  # s
@@ -37,22 +38,22 @@ class Attacker(Player):
 @kernel
 def _decide(pucks, mallets, scales, nominal, bounds, ways, actions):
     p = nominal[0]
-    gantry = np.zeros((2, 2, 5))
+    mallet = np.zeros(1, MALLET)[0]
     for i in range(pucks.shape[0]):
-        fill_gantry(gantry, p, scales[i])
-        if not strike_or_nothing(pucks[i], mallets[i], p, gantry, bounds, ways, actions[i]):
-            block(pucks[i], mallets[i], p, gantry, bounds, actions[i])
+        fill_mallet(mallet, p, scales[i], mallets[i])
+        if not strike_or_nothing(pucks[i], mallets[i], p, mallet, bounds, ways, actions[i]):
+            block(pucks[i], mallets[i], p, mallet, bounds, actions[i])
 
 
 @kernel
-def strike_or_nothing(puck, own, p, gantry, bounds, ways, out):
+def strike_or_nothing(puck, own, p, mallet, bounds, ways, out):
     """Write the soonest strike along any of `ways` into `out` (4,); False if there is none."""
     best = math.inf
     other = np.zeros(4)
     room = 0.5 * p.goal_width - p.puck_radius
     for w in range(ways.shape[0]):
         goal_y = 0.5 * p.width + ways[w, 1] * room
-        t = first_strike(puck, own, p, gantry, bounds, int(ways[w, 0]), goal_y, 0.0, LATEST_STRIKE, other)
+        t = first_strike(puck, own, p, mallet, bounds, int(ways[w, 0]), goal_y, 0.0, LATEST_STRIKE, other)
         if t < best:
             best = t
             out[:] = other
@@ -60,7 +61,7 @@ def strike_or_nothing(puck, own, p, gantry, bounds, ways, out):
 
 
 @kernel
-def block(puck, own, p, gantry, bounds, out):
+def block(puck, own, p, mallet, bounds, out):
     """Write into `out` (4,) where to stand: in the way of a puck that comes, or before the goal; behind the puck."""
     out[2], out[3] = bounds[1, 2], bounds[1, 3]
     reach = p.puck_radius + p.mallet_radius
@@ -69,7 +70,7 @@ def block(puck, own, p, gantry, bounds, out):
     t, at_y = crossing(x, y, vx, vy, p, GUARD, LATEST_CROSSING)
     if t < math.inf:
         out[1] = at_y
-        late = abs(volts_to_pass(gantry, 1, at_y - own[1], own[3], t)) > bounds[1, 3]
+        late = abs(volts_to_pass(mallet.y, at_y - own[1], own[3], t)) > bounds[1, 3]
         if late:  # meet it nearer to the goal
             out[0] = bounds[0, 0]
             out[1] = crossing(x, y, vx, vy, p, bounds[0, 0], LATEST_CROSSING)[1]

@@ -1,8 +1,8 @@
 """Where the puck will be and what the own mallet can reach: scalar kernels shared by the players.
 
-A player is seat 0 of its own frame. `gantry` is the float64 (2, 2, 5) of `physics.mallet`, both rows the player's own;
-an axis that starts with speed `v0` under constant volts `V` has moved `v0 E + rest_gain V (t - E)` after `t`, with
-`E = (1 - exp(-slow_rate t))/slow_rate` (the fast mode, under a millisecond, is left out).
+A player is seat 0 of its own frame. An axis (see `physics.mallet`) that starts with speed `v0` under constant volts `V`
+has moved `v0 E + rest_gain V (t - E)` after `t`, with `E = (1 - exp(-slow_rate t))/slow_rate` (the fast mode, under a
+millisecond, is left out).
 """
 
 from __future__ import annotations
@@ -11,46 +11,47 @@ import math
 
 from puckpilot_env.game.predict import expected_place
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics import mallet
+from puckpilot_env.physics.mallet import place_axis, set_constants
 
 STEP = 0.02  # s between the instants at which the puck's way is looked at
 
 
 @kernel
-def fill_gantry(gantry, p, scale):
-    """Write the gantry constants of parameters `p` into both rows. scale: (2, 3), C5, C6, C7 of x, y (see `Seen`)."""
-    for a in range(2):
-        sign = -1.0 if a == 0 else 1.0  # report E.1
-        constants = mallet.axis_constants(
-            (p.a1 + sign * p.b1) * scale[a, 0],
-            (p.a2 + sign * p.b2) * scale[a, 1],
-            (p.a3 + sign * p.b3) * scale[a, 2],
-            p.pulley_radius,
-        )
-        for c in range(mallet.GANTRY_COLUMNS):
-            gantry[0, a, c] = gantry[1, a, c] = constants[c]
+def fill_mallet(mallet, p, scale, motion):
+    """Make `mallet` the player's own: parameters `p`, at `motion` (x, y, vx, vy) [m, m/s], without a plan.
+
+    scale: (2, 3), C5, C6, C7 of axes x, y relative to the nominal (see `Seen`). Its acceleration, which nothing tells,
+    is taken to be 0.
+    """
+    set_constants(
+        mallet.x, (p.a1 - p.b1) * scale[0, 0], (p.a2 - p.b2) * scale[0, 1], (p.a3 - p.b3) * scale[0, 2], p.pulley_radius
+    )
+    set_constants(
+        mallet.y, (p.a1 + p.b1) * scale[1, 0], (p.a2 + p.b2) * scale[1, 1], (p.a3 + p.b3) * scale[1, 2], p.pulley_radius
+    )
+    place_axis(mallet.x, motion[0], motion[2], 0.0)
+    place_axis(mallet.y, motion[1], motion[3], 0.0)
 
 
 @kernel
-def carried(gantry, a, t):
-    """`E` [s]: how far axis `a` has coasted after `t` [s], per speed at the start."""
-    rate = gantry[0, a, mallet.SLOW_RATE]
-    return -math.expm1(-rate * t) / rate
+def carried(axis, t):
+    """`E` [s]: how far an axis has coasted after `t` [s], per speed at the start."""
+    return -math.expm1(-axis.slow_rate * t) / axis.slow_rate
 
 
 @kernel
-def reach_within(gantry, a, t, volts):
-    """Distance [m] that axis `a` covers from rest in `t` [s] under `volts`."""
+def reach_within(axis, t, volts):
+    """Distance [m] that an axis covers from rest in `t` [s] under `volts`."""
     if t <= 0.0:
         return 0.0
-    return gantry[0, a, mallet.REST_GAIN] * volts * (t - carried(gantry, a, t))
+    return axis.rest_gain * volts * (t - carried(axis, t))
 
 
 @kernel
-def volts_to_pass(gantry, a, distance, v0, t):
-    """Signed voltage with which axis `a`, now at speed `v0` [m/s], has moved `distance` [m] after `t` [s]."""
-    coast = carried(gantry, a, t)
-    return (distance - v0 * coast) / (gantry[0, a, mallet.REST_GAIN] * max(t - coast, 1e-9))
+def volts_to_pass(axis, distance, v0, t):
+    """Signed voltage with which an axis, now at speed `v0` [m/s], has moved `distance` [m] after `t` [s]."""
+    coast = carried(axis, t)
+    return (distance - v0 * coast) / (axis.rest_gain * max(t - coast, 1e-9))
 
 
 @kernel

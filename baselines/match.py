@@ -44,7 +44,7 @@ class _Half:
 
 
 def play(
-    variant: Variant,
+    variant: Variant | str,
     first: Contestant,
     second: Contestant,
     games: int,
@@ -54,7 +54,7 @@ def play(
     progress: Progress | None = None,
     threads: int = 1,
 ) -> MatchResult:
-    """Play `games` episodes of `variant`, half of them with the seats exchanged.
+    """Play `games` episodes of `variant` (or its id), half of them with the seats exchanged.
 
     Pair i uses random stream i of `seed` in both halves; of an odd number, the last pair is half. `values` puts
     parameters in place of the variant's by name. The same call gives the same result.

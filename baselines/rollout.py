@@ -14,12 +14,13 @@ from baselines.aim import shot_chance
 from baselines.geometry import crossing, reach_within
 from puckpilot_env.game import mirror
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics import bounce, mallet
-from puckpilot_env.physics.advance import EVENT_COLUMNS, advance
-from puckpilot_env.physics.contact import mallet_motion
-from puckpilot_env.physics.plan import write_plan
+from puckpilot_env.physics import bounce
+from puckpilot_env.physics.advance import advance
+from puckpilot_env.physics.mallet import place_at
+from puckpilot_env.physics.plan import plan_mallet
 
 HORIZON = 0.45  # s
+MOST_CROSSINGS = 20  # of the middle line
 FAR = 1e3  # m; where the opponent's mallet is put out of the way
 OPPONENTS = (0.2, 0.5, 1.0)  # how much of the voltage an opponent may use
 LATEST_THREAT = 1.5  # s after the horizon
@@ -41,52 +42,49 @@ STYLE = np.dtype(
 
 
 @kernel
-def park_opponent(path):
-    """Put seat 1's mallet where nothing meets it."""
-    for a in range(2):
-        for c in range(mallet.PATH_COLUMNS):
-            path[1, a, c] = 0.0
-        path[1, a, mallet.REST0] = path[1, a, mallet.REST1] = path[1, a, mallet.REST2] = FAR
+def park_opponent(mallet):
+    """Put a mallet where nothing meets it, for good."""
+    mallet.x.rest = mallet.x.rest2 = mallet.y.rest = mallet.y.rest2 = FAR
+    mallet.x.halt = mallet.y.halt = math.inf
 
 
 @kernel
-def value_of(action, puck, own, opponent, held, p, style, gantry, modes, path, body, log, volts):
-    """What playing `action` (4,) is worth. puck, opponent: motions; modes: the own mallet's; path, body, log: scratch."""
-    write_plan(
-        path, gantry, modes, 0, action[0], action[1], action[2], action[3], mirror.area(0, p), p.max_voltage
-    )  # fmt: skip
-    for c in range(4):
-        body[c] = puck[c]
+def value_of(action, puck, opponent, held, p, style, mallets, free, log, volts):
+    """What playing `action` (4,) is worth. puck, opponent: motions; mallets: (2,) the own one where it is now, and the
+    opponent's parked; style: a record of `STYLE`; free: a puck, and log: scratch; volts: the most that anyone uses."""
+    plan_mallet(mallets[0], action[0], action[1], action[2], action[3], mirror.area(0, p), p.max_voltage)
+    free.x, free.y, free.vx, free.vy = puck[0], puck[1], puck[2], puck[3]
     now = 0.0
-    while True:
-        kind, now, _ = advance(body, p, path, gantry, now, HORIZON, log)
+    for _ in range(MOST_CROSSINGS):
+        kind, now, _ = advance(free, p, mallets, now, HORIZON, log, log[:, :3])
         if kind == bounce.GOAL_X0:
             return -1.0 - (HORIZON - now)
         if kind == bounce.GOAL_X1:
             return 0.0
-        if kind == bounce.MIDDLE_LINE and body[2] > 0.0:
-            return _value_of_shot(body, now, opponent, p, style, gantry, path, volts)
+        if kind == bounce.MIDDLE_LINE and free.vx > 0.0:
+            return _value_of_shot(free, now, opponent, p, style, mallets[0], volts)
         if kind == bounce.NOTHING:
-            return _value_of_end(body, held, p, style, gantry, path, volts)
+            break
+    return _value_of_end(free, held, p, style, mallets[0], volts)
 
 
 @kernel
-def _value_of_shot(body, now, opponent, p, style, gantry, path, volts):
-    x, y, vx, vy = body[0], body[1], body[2], body[3]
+def _value_of_shot(puck, now, opponent, p, style, mallet, volts):
+    x, y, vx, vy = puck.x, puck.y, puck.vx, puck.vy
     early = style.early * 0.5 * p.length / max(vx, 0.5)  # the opponent sees the strike before the puck crosses the line
     chance = 0.0
     for share in OPPONENTS:
-        chance += shot_chance(x, y, vx, vy, min(early, now), opponent, p, gantry, share * volts) / len(OPPONENTS)
-    asleep = shot_chance(x, y, vx, vy, -10.0, opponent, p, gantry, volts)
-    rest_x = path[0, 0, mallet.REST2]
+        chance += shot_chance(x, y, vx, vy, min(early, now), opponent, p, mallet, share * volts) / len(OPPONENTS)
+    asleep = shot_chance(x, y, vx, vy, -10.0, opponent, p, mallet, volts)
+    rest_x = mallet.x.rest2
     return chance + style.asleep * asleep + style.speed * vx - style.lost - style.forward * rest_x / p.length
 
 
 @kernel
-def _value_of_end(body, held, p, style, gantry, path, volts):
+def _value_of_end(puck, held, p, style, mallet, volts):
     """Worth of a puck that is still about: who will have it, and whether it threatens the own goal."""
-    x, y, vx, vy = body[0], body[1], body[2], body[3]
-    mx, my, _, _ = mallet_motion(path, gantry, 0, HORIZON)
+    x, y, vx, vy = puck.x, puck.y, puck.vx, puck.vy
+    mx, my = place_at(mallet, HORIZON)
     reach = p.puck_radius + p.mallet_radius
     if x > 0.5 * p.length and vx >= 0.0:
         return -style.lost
@@ -94,7 +92,7 @@ def _value_of_end(body, held, p, style, gantry, path, volts):
     if t < math.inf:
         away = abs(at_y - 0.5 * p.width)
         in_goal = away < 0.5 * p.goal_width + p.puck_radius
-        past = max(abs(at_y - my) - reach_within(gantry, 1, t - 0.05, volts), 0.0)
+        past = max(abs(at_y - my) - reach_within(mallet.y, t - 0.05, volts), 0.0)
         behind = mx > x - 0.5 * reach and abs(my - y) < 3.0 * reach
         if in_goal and (past > 0.6 * reach or behind):
             return -0.7 - 0.2 * min(past, 1.0)

@@ -8,24 +8,24 @@ import numpy as np
 
 from baselines.aim import first_strike
 from baselines.attack import block
-from baselines.geometry import crossing, fill_gantry, guard_place
+from baselines.geometry import crossing, fill_mallet, guard_place
 from baselines.rollout import HORIZON, park_opponent, value_of
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics import mallet
-from puckpilot_env.physics.advance import EVENT_COLUMNS
+from puckpilot_env.physics.advance import EVENT_COLUMNS, PUCK
+from puckpilot_env.physics.mallet import MALLET
 
 MOST_CANDIDATES = 64
-LATER = (0.0, 0.1, 0.2)  # s; each way is tried with the first strike after these
+TRIES, LATER = 2, 0.08  # strikes along each way, and s between them
 RING = 8  # places around the puck to go to
 
 
 @kernel
-def _suggest(puck, own, last, p, style, gantry, bounds, ways, found):
+def _suggest(puck, own, last, p, style, mallet, bounds, ways, found):
     """Write candidate actions into `found` (MOST_CANDIDATES, 4); returns how many."""
     n = 0
     found[n] = last
     n += 1
-    block(puck, own, p, gantry, bounds, found[n])
+    block(puck, own, p, mallet, bounds, found[n])
     n += 1
     found[n, 0], found[n, 1] = guard_place(puck[0], puck[1], p, style.guard)
     n += 1
@@ -39,10 +39,13 @@ def _suggest(puck, own, last, p, style, gantry, bounds, ways, found):
     room = 0.5 * p.goal_width - p.puck_radius
     for w in range(ways.shape[0]):
         goal_y = 0.5 * p.width + ways[w, 1] * room
-        for after in LATER:
-            t = first_strike(puck, own, p, gantry, bounds, int(ways[w, 0]), goal_y, after, HORIZON, found[n])
-            if t < math.inf:
-                n += 1
+        t = 0.0
+        for _ in range(TRIES):
+            t = first_strike(puck, own, p, mallet, bounds, int(ways[w, 0]), goal_y, t, HORIZON, found[n])
+            if t == math.inf:
+                break
+            n += 1
+            t += LATER
     if puck[0] < 0.5 * p.length:
         reach = p.puck_radius + p.mallet_radius
         for i in range(RING):
@@ -61,16 +64,13 @@ def _clip(action, bounds):
 
 
 @kernel
-def _best_of_many(puck, own, opponent, held, last, p, style, gantry, bounds, ways, changes, scratch, out):
-    modes, path, body, log, found, trial = scratch
-    for a in range(2):
-        modes[0, a] = mallet.modes_from_motion(gantry, 0, a, own[a], own[2 + a], 0.0)
-    park_opponent(path)
+def _best_of_many(puck, own, opponent, held, last, p, style, mallets, bounds, ways, changes, scratch, out):
+    free, log, found, trial = scratch
     volts = bounds[1, 3]
     best = -math.inf
-    for i in range(_suggest(puck, own, last, p, style, gantry, bounds, ways, found)):
+    for i in range(_suggest(puck, own, last, p, style, mallets[0], bounds, ways, found)):
         _clip(found[i], bounds)
-        value = value_of(found[i], puck, own, opponent, held, p, style, gantry, modes, path, body, log, volts)
+        value = value_of(found[i], puck, opponent, held, p, style, mallets, free[0], log, volts)
         if value > best:
             best = value
             out[:] = found[i]
@@ -78,7 +78,7 @@ def _best_of_many(puck, own, opponent, held, last, p, style, gantry, bounds, way
         for c in range(4):
             trial[c] = out[c] + changes[i, c]
         _clip(trial, bounds)
-        value = value_of(trial, puck, own, opponent, held, p, style, gantry, modes, path, body, log, volts)
+        value = value_of(trial, puck, opponent, held, p, style, mallets, free[0], log, volts)
         if value > best:
             best = value
             out[:] = trial
@@ -86,26 +86,36 @@ def _best_of_many(puck, own, opponent, held, last, p, style, gantry, bounds, way
 
 
 @kernel
-def choose(pucks, mallets, opponents, helds, lasts, scales, nominal, styles, bounds, ways, changes, actions):
+def choose(pucks, owns, opponents, helds, lasts, scales, nominal, styles, bounds, ways, changes, actions):
     """Write the best action found on every table into `actions` (n, 4).
 
-    lasts: (n, 4) the actions before; styles: (1,) record of `rollout.STYLE`; ways: rows of way and share of the goal (see `attack`); changes: (m, 4) variations
-    of an action that are tried in turn.
+    lasts: (n, 4) the actions before; styles: (1,) record of `rollout.STYLE`; ways: rows of way and share of the goal
+    (see `attack`); changes: (m, 4) variations of an action that are tried in turn.
     """
     p, style = nominal[0], styles[0]
-    gantry = np.zeros((2, 2, mallet.GANTRY_COLUMNS))
-    scratch = (
-        np.zeros((2, 2, 3)), np.zeros((2, 2, mallet.PATH_COLUMNS)), np.zeros(4), np.zeros((0, EVENT_COLUMNS)),
-        np.zeros((MOST_CANDIDATES, 4)), np.zeros(4),
-    )  # fmt: skip
+    mallets = np.zeros(2, MALLET)
+    park_opponent(mallets[1])
+    scratch = (np.zeros(1, PUCK), np.zeros((0, EVENT_COLUMNS)), np.zeros((MOST_CANDIDATES, 4)), np.zeros(4))
     for i in range(pucks.shape[0]):
-        fill_gantry(gantry, p, scales[i])
-        puck = pucks[i]
+        puck, own = pucks[i], owns[i]
         ahead = puck[0] + HORIZON * puck[2]
         if min(puck[0], ahead) > 0.5 * p.length:
             actions[i, 0], actions[i, 1] = guard_place(puck[0], puck[1], p, style.guard)
             actions[i, 2], actions[i, 3] = bounds[1, 2], bounds[1, 3]
             continue
+        fill_mallet(mallets[0], p, scales[i], own)
         _best_of_many(
-            puck, mallets[i], opponents[i], helds[i], lasts[i], p, style, gantry, bounds, ways, changes, scratch, actions[i]
+            puck,
+            owns[i],
+            opponents[i],
+            helds[i],
+            lasts[i],
+            p,
+            style,
+            mallets,
+            bounds,
+            ways,
+            changes,
+            scratch,
+            actions[i],
         )

@@ -1,4 +1,4 @@
-"""The strongest: tries many actions in the physics and plays the best, direct or over a wall, by where the opponent is."""
+"""The strongest: tries many actions in the physics and plays the best, straight or over a wall, past the opponent."""
 
 from __future__ import annotations
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from baselines.match import MatchResult, play
-from puckpilot_env.variants import BY_ID
+from puckpilot_env.variants import find_variant
 
-SHORT = replace(BY_ID["puckpilot/match-v0"], match_time=20.0)
+SHORT = replace(find_variant("match-v0"), match_time=20.0)
 
 
 def _match(first: str, second: str, games: int = 10) -> MatchResult:

@@ -12,9 +12,9 @@ import baselines.players
 from baselines import Seat, make_player, player_names
 from baselines.match import play
 from puckpilot_env.tables import Tables
-from puckpilot_env.variants import BY_ID
+from puckpilot_env.variants import all_variants
 
-MATCH, DEFENCE = BY_ID["puckpilot/match-v0"], BY_ID["puckpilot/defence-v0"]
+MATCH, DEFENCE = "match-v0", "defence-v0"
 WIDE = {"width": 1.4, "length": 2.6, "goal_width": 0.4, "mallet_radius": 0.06}
 
 
@@ -34,10 +34,10 @@ def _play_along(name: str, tables: Tables, steps: int) -> NDArray[np.float32]:
     return played
 
 
-@pytest.mark.parametrize("variant", list(BY_ID))
+@pytest.mark.parametrize("variant", list(all_variants()))
 @pytest.mark.parametrize("name", player_names())
 def test_actions_stay_inside_the_bounds_on_every_variant(name: str, variant: str) -> None:
-    _play_along(name, Tables(BY_ID[variant], 3, seed=1), 50)
+    _play_along(name, Tables(variant, 3, seed=1), 50)
 
 
 @pytest.mark.parametrize("name", player_names())
@@ -98,6 +98,6 @@ def test_the_veteran_concedes_fewer_shots_than_the_goalie() -> None:
 
 @pytest.mark.parametrize("other", ["still", "random", "follower"])
 def test_the_veteran_beats_the_simple_ones(other: str) -> None:
-    result = play(MATCH, "veteran", other, 4, seed=1, values=None)
+    result = play(MATCH, "veteran", other, 4, seed=1)
     assert result.wins == (4, 0)
     assert result.goals[0] > 3 * result.goals[1]
