@@ -1,0 +1,79 @@
+"""Where the puck will be and what the own mallet can reach: scalar kernels shared by the players.
+
+A player is seat 0 of its own frame. An axis (see `physics.mallet`) that starts with speed `v0` under constant volts `V`
+has moved `v0 E + rest_gain V (t - E)` after `t`, with `E = (1 - exp(-slow_rate t))/slow_rate` (the fast mode, under a
+millisecond, is left out).
+"""
+
+from __future__ import annotations
+
+import math
+
+from puckpilot_env.game.predict import expected_place
+from puckpilot_env.kernel import kernel
+from puckpilot_env.physics.mallet import place_axis, set_constants
+
+STEP = 0.02  # s between the instants at which the puck's way is looked at
+
+
+@kernel
+def fill_mallet(mallet, p, scale, motion):
+    """Make `mallet` the player's own: parameters `p`, at `motion` (x, y, vx, vy) [m, m/s], without a plan.
+
+    scale: (2, 3), C5, C6, C7 of axes x, y relative to the nominal (see `Seen`). Its acceleration, which nothing tells,
+    is taken to be 0.
+    """
+    set_constants(
+        mallet.x, (p.a1 - p.b1) * scale[0, 0], (p.a2 - p.b2) * scale[0, 1], (p.a3 - p.b3) * scale[0, 2], p.pulley_radius
+    )
+    set_constants(
+        mallet.y, (p.a1 + p.b1) * scale[1, 0], (p.a2 + p.b2) * scale[1, 1], (p.a3 + p.b3) * scale[1, 2], p.pulley_radius
+    )
+    place_axis(mallet.x, motion[0], motion[2], 0.0)
+    place_axis(mallet.y, motion[1], motion[3], 0.0)
+
+
+@kernel
+def carried(axis, t):
+    """`E` [s]: how far an axis has coasted after `t` [s], per speed at the start."""
+    return -math.expm1(-axis.slow_rate * t) / axis.slow_rate
+
+
+@kernel
+def reach_within(axis, t, volts):
+    """Distance [m] that an axis covers from rest in `t` [s] under `volts`."""
+    if t <= 0.0:
+        return 0.0
+    return axis.rest_gain * volts * (t - carried(axis, t))
+
+
+@kernel
+def volts_to_pass(axis, distance, v0, t):
+    """Signed voltage with which an axis, now at speed `v0` [m/s], has moved `distance` [m] after `t` [s]."""
+    coast = carried(axis, t)
+    return (distance - v0 * coast) / (axis.rest_gain * max(t - coast, 1e-9))
+
+
+@kernel
+def crossing(x, y, vx, vy, p, line, horizon):
+    """`(time [s], y [m])` at which a free puck first comes to the line `x = line` from beyond; infinite if not soon."""
+    t = 0.0
+    while t < horizon:
+        x1, y1, vx, vy = expected_place(x, y, vx, vy, p, STEP)
+        t += STEP
+        if x > line >= x1:
+            share = (x - line) / (x - x1)
+            return t - STEP * (1.0 - share), y + share * (y1 - y)
+        if x1 == x and y1 == y:
+            break
+        x, y = x1, y1
+    return math.inf, y
+
+
+@kernel
+def guard_place(x, y, p, guard_x):
+    """Where to wait, `guard_x` [m] from the goal line, on the way from the puck at `(x, y)` to the goal's middle."""
+    middle = 0.5 * p.width
+    share = guard_x / max(x, 2.0 * guard_x)
+    half = 0.5 * p.goal_width
+    return guard_x, min(max(middle + share * (y - middle), middle - half), middle + half)

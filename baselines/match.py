@@ -1,0 +1,125 @@
+"""Two players against each other in paired games: every table is played twice, with the seats exchanged."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from baselines import make_player
+from baselines.player import Player, Seat
+from puckpilot_env.tables import Tables
+from puckpilot_env.variants import Variant
+
+Contestant = str | Callable[[Seat], Player]  # a name, or what makes a player for a seat
+Progress = Callable[[int, int], None]  # called with games done and games in all
+
+
+@dataclass(frozen=True)
+class MatchResult:
+    """What came of a match. `players`, `wins` and `goals` are first, second."""
+
+    players: tuple[str, str]
+    games: int
+    wins: tuple[int, int]
+    draws: int
+    goals: tuple[int, int]
+    results: NDArray[np.float64]  # (pairs, 2): 1, 0, -1 as first won, drew, lost in seat 0 and in seat 1; NaN: unplayed
+    lengths: NDArray[np.int64]  # (games,) steps; the games with first in seat 0 come first
+
+    @property
+    def decisive_share(self) -> float:
+        """Share of the decided games that first won; NaN where there were none."""
+        decided = sum(self.wins)
+        return self.wins[0] / decided if decided else float("nan")
+
+
+@dataclass(frozen=True)
+class _Half:
+    winners: NDArray[np.int64]  # (n,) seat, or -1
+    scores: NDArray[np.int64]  # (n, 2)
+    lengths: NDArray[np.int64]  # (n,)
+
+
+def play(
+    variant: Variant | str,
+    first: Contestant,
+    second: Contestant,
+    games: int,
+    seed: int,
+    *,
+    values: Mapping[str, float] | None = None,
+    progress: Progress | None = None,
+    threads: int = 1,
+) -> MatchResult:
+    """Play `games` episodes of `variant` (or its id), half of them with the seats exchanged.
+
+    Pair i uses random stream i of `seed` in both halves; of an odd number, the last pair is half. `values` puts
+    parameters in place of the variant's by name. The same call gives the same result.
+    """
+    if games < 1:
+        raise ValueError(f"games is {games!r}; expected a whole number >= 1")
+    halves = []
+    done = 0
+    for seats, count in (((first, second), (games + 1) // 2), ((second, first), games // 2)):
+        if count == 0:
+            break
+        tables = Tables(variant, count, seed=seed, threads=threads, autoreset=False, values=values)
+        tick = (lambda ended, before=done: progress(before + ended, games)) if progress else None
+        halves.append(_play_half(tables, seats, seed, tick))
+        tables.close()
+        done += count
+    return _add_up((_name(first), _name(second)), games, halves)
+
+
+def _play_half(
+    tables: Tables, seats: tuple[Contestant, Contestant], seed: int, tick: Callable[[int], None] | None
+) -> _Half:
+    """One episode on every table; a table that has ended is stepped on but no longer looked at."""
+    count = len(tables)
+    players = [_make(contestant, Seat.from_tables(tables, seed=2 * seed + k)) for k, contestant in enumerate(seats)]
+    for player in players:
+        player.reset(np.ones(count, np.bool_))
+    half = _Half(np.full(count, -1), np.zeros((count, 2), np.int64), np.zeros(count, np.int64))
+    running = np.ones(count, np.bool_)
+    actions = np.zeros((count, 2, 4), np.float32)
+    while running.any():
+        for k, player in enumerate(players):
+            actions[:, k] = player.act(tables.observations[:, k])
+        tables.step(actions)
+        half.lengths[running] += 1
+        ended = running & (tables.terminated | tables.truncated)
+        half.winners[ended] = tables.states["winner"][ended]
+        half.scores[ended] = tables.states["score"][ended]
+        running &= ~ended
+        if tick and ended.any():
+            tick(int(count - running.sum()))
+    return half
+
+
+def _add_up(names: tuple[str, str], games: int, halves: list[_Half]) -> MatchResult:
+    results = np.full((len(halves[0].winners), 2), np.nan)
+    goals = np.zeros(2, np.int64)
+    for seat, half in enumerate(halves):  # of first
+        results[: len(half.winners), seat] = np.where(half.winners < 0, 0.0, np.where(half.winners == seat, 1.0, -1.0))
+        goals += half.scores.sum(axis=0)[:: 1 if seat == 0 else -1]
+    wins = (int((results == 1.0).sum()), int((results == -1.0).sum()))
+    return MatchResult(
+        names,
+        games,
+        wins,
+        games - sum(wins),
+        (int(goals[0]), int(goals[1])),
+        results,
+        np.concatenate([half.lengths for half in halves]),
+    )
+
+
+def _make(contestant: Contestant, seat: Seat) -> Player:
+    return make_player(contestant, seat) if isinstance(contestant, str) else contestant(seat)
+
+
+def _name(contestant: Contestant) -> str:
+    return contestant if isinstance(contestant, str) else getattr(contestant, "__name__", type(contestant).__name__)

@@ -1,0 +1,121 @@
+"""Choose an action by trying many: strikes along every way, blocks, places to wait, and variations of the best."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from baselines.aim import first_strike
+from baselines.attack import block
+from baselines.geometry import crossing, fill_mallet, guard_place
+from baselines.rollout import HORIZON, park_opponent, value_of
+from puckpilot_env.kernel import kernel
+from puckpilot_env.physics.advance import EVENT_COLUMNS, PUCK
+from puckpilot_env.physics.mallet import MALLET
+
+MOST_CANDIDATES = 64
+TRIES, LATER = 2, 0.08  # strikes along each way, and s between them
+RING = 8  # places around the puck to go to
+
+
+@kernel
+def _suggest(puck, own, last, p, style, mallet, bounds, ways, found):
+    """Write candidate actions into `found` (MOST_CANDIDATES, 4); returns how many."""
+    n = 0
+    found[n] = last
+    n += 1
+    block(puck, own, p, mallet, bounds, found[n])
+    n += 1
+    found[n, 0], found[n, 1] = guard_place(puck[0], puck[1], p, style.guard)
+    n += 1
+    for line in (0.06, 0.15, 0.3):
+        t, y = crossing(puck[0], puck[1], puck[2], puck[3], p, line, 1.0)
+        if t < math.inf:
+            found[n, 0], found[n, 1] = line, y
+            n += 1
+    for i in range(1, n):
+        found[i, 2], found[i, 3] = bounds[1, 2], bounds[1, 3]
+    room = 0.5 * p.goal_width - p.puck_radius
+    for w in range(ways.shape[0]):
+        goal_y = 0.5 * p.width + ways[w, 1] * room
+        t = 0.0
+        for _ in range(TRIES):
+            t = first_strike(puck, own, p, mallet, bounds, int(ways[w, 0]), goal_y, t, HORIZON, found[n])
+            if t == math.inf:
+                break
+            n += 1
+            t += LATER
+    if puck[0] < 0.5 * p.length:
+        reach = p.puck_radius + p.mallet_radius
+        for i in range(RING):
+            angle = 2.0 * math.pi * i / RING
+            found[n, 0] = puck[0] + 2.0 * reach * math.cos(angle)
+            found[n, 1] = puck[1] + 2.0 * reach * math.sin(angle)
+            found[n, 2], found[n, 3] = bounds[1, 2], bounds[1, 3]
+            n += 1
+    return n
+
+
+@kernel
+def _clip(action, bounds):
+    for c in range(4):
+        action[c] = min(max(action[c], bounds[0, c]), bounds[1, c])
+
+
+@kernel
+def _best_of_many(puck, own, opponent, held, last, p, style, mallets, bounds, ways, changes, scratch, out):
+    free, log, found, trial = scratch
+    volts = bounds[1, 3]
+    best = -math.inf
+    for i in range(_suggest(puck, own, last, p, style, mallets[0], bounds, ways, found)):
+        _clip(found[i], bounds)
+        value = value_of(found[i], puck, opponent, held, p, style, mallets, free[0], log, volts)
+        if value > best:
+            best = value
+            out[:] = found[i]
+    for i in range(changes.shape[0]):
+        for c in range(4):
+            trial[c] = out[c] + changes[i, c]
+        _clip(trial, bounds)
+        value = value_of(trial, puck, opponent, held, p, style, mallets, free[0], log, volts)
+        if value > best:
+            best = value
+            out[:] = trial
+    return best
+
+
+@kernel
+def choose(pucks, owns, opponents, helds, lasts, scales, nominal, styles, bounds, ways, changes, actions):
+    """Write the best action found on every table into `actions` (n, 4).
+
+    lasts: (n, 4) the actions before; styles: (1,) record of `rollout.STYLE`; ways: rows of way and share of the goal
+    (see `attack`); changes: (m, 4) variations of an action that are tried in turn.
+    """
+    p, style = nominal[0], styles[0]
+    mallets = np.zeros(2, MALLET)
+    park_opponent(mallets[1])
+    scratch = (np.zeros(1, PUCK), np.zeros((0, EVENT_COLUMNS)), np.zeros((MOST_CANDIDATES, 4)), np.zeros(4))
+    for i in range(pucks.shape[0]):
+        puck, own = pucks[i], owns[i]
+        ahead = puck[0] + HORIZON * puck[2]
+        if min(puck[0], ahead) > 0.5 * p.length:
+            actions[i, 0], actions[i, 1] = guard_place(puck[0], puck[1], p, style.guard)
+            actions[i, 2], actions[i, 3] = bounds[1, 2], bounds[1, 3]
+            continue
+        fill_mallet(mallets[0], p, scales[i], own)
+        _best_of_many(
+            puck,
+            owns[i],
+            opponents[i],
+            helds[i],
+            lasts[i],
+            p,
+            style,
+            mallets,
+            bounds,
+            ways,
+            changes,
+            scratch,
+            actions[i],
+        )
