@@ -136,7 +136,7 @@ class AgentsStay(Sound):
 
     def spoil(self, *returned):
         if not self.agents:
-            self.agents, self.steps = list(AGENTS), -1
+            self.agents, self.steps = self.possible_agents[:], -1
         return returned
 
 

@@ -6,6 +6,7 @@ import importlib
 import inspect
 import re
 import warnings
+from itertools import count
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -33,8 +34,11 @@ WHOLE_MATCH = 1850  # steps: one of 180 s and the beginning of another
 
 @pytest.fixture(autouse=True)
 def reproducible(monkeypatch):
-    """Upstream resets without a seed and then counts steps, which chance can cut short (a drill ends early)."""
-    monkeypatch.setattr("puckpilot_env.parallel_env.fresh_seed", lambda: 12345)
+    """Upstream resets without a seed and then counts steps, which chance can cut short (a drill ends early).
+
+    Each environment gets another seed, lest two that ignore theirs look alike.
+    """
+    monkeypatch.setattr("puckpilot_env.parallel_env.fresh_seed", count(12345).__next__)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         yield
@@ -95,7 +99,7 @@ def test_state(id_):
 
 @pytest.mark.parametrize("id_", IDS)
 def test_observations_are_no_images(id_):
-    """Upstream's test_save_obs is for observations that are images; where it does not apply it passes without a word."""
+    """Upstream's test_save_obs is for observations that are images; elsewhere it passes without a word."""
     env = module_of(id_).env()
     env.reset()
     with pytest.raises(AssertionError, match="Observations must be 0 to 255 to save as image"):
@@ -109,7 +113,7 @@ def test_render(id_):
     def make(render_mode):
         return module_of(id_).env(render_mode="rgb_array" if render_mode == "human" else render_mode)
 
-    render_test(make)
+    render_test(make)  # pyright: ignore[reportArgumentType] - its annotation forgets render_mode
 
 
 @pytest.mark.parametrize("id_", IDS)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -17,7 +19,7 @@ def actions_for(tables: Tables, steps: int, seed: int = 5) -> np.ndarray:
     return np.random.default_rng(seed).uniform(low, high, (steps, len(tables), 2, 4)).astype(np.float32)
 
 
-def outputs(tables: Tables, rows=slice(None)) -> dict[str, np.ndarray]:
+def outputs(tables: Tables, rows: Any = slice(None)) -> dict[str, np.ndarray]:
     """Everything of these rows that a step writes, states and parameters included, as copies."""
     found = {name: getattr(tables, name)[rows].copy() for name in (*NAMES, "states", "params")}
     ended = (tables.terminated | tables.truncated)[rows]
