@@ -44,19 +44,27 @@ def _bounce(body, kind, p):
 
 @kernel
 def _other_obstacle(body, p, path, gantry, k, t, nx, ny):
-    """`(mallet, wx, wy, ox, oy)` of what else the puck touches opposite `n`; mallet is -1 for a wall, -2 for none."""
+    """`(mallet, wx, wy, ox, oy)` of what else the puck touches, most opposite `n`; mallet is -1 for a wall, -2 for none."""
     kind, wx, wy = bounce.touched(
         body[X], body[Y], nx, ny, contact.PINCH_SLACK, p.length, p.width, p.goal_width, p.puck_radius
     )
-    if kind != bounce.NOTHING:
-        return -1, wx, wy, 0.0, 0.0
     other = 1 - k
     mx, my, ox, oy = contact.mallet_motion(path, gantry, other, t)
     dx, dy = body[X] - mx, body[Y] - my
     apart = math.hypot(dx, dy)
-    if apart - p.puck_radius - p.mallet_radius < contact.PINCH_SLACK and dx * nx + dy * ny < 0.0:
+    opposed = min(wx * nx + wy * ny, 0.0) * apart
+    if apart - p.puck_radius - p.mallet_radius < contact.PINCH_SLACK and dx * nx + dy * ny < opposed:
         return other, dx / apart, dy / apart, ox, oy
-    return -2, 0.0, 0.0, 0.0, 0.0
+    return (-2 if kind == bounce.NOTHING else -1), wx, wy, 0.0, 0.0
+
+
+@kernel
+def _closes_on(body, vx, vy, p, path, gantry, k, t):
+    """Whether a puck of velocity `v` that touches player `k`'s mallet runs into it."""
+    mx, my, mvx, mvy = contact.mallet_motion(path, gantry, k, t)
+    dx, dy = body[X] - mx, body[Y] - my
+    touching = math.hypot(dx, dy) - p.puck_radius - p.mallet_radius < contact.PINCH_SLACK
+    return touching and (vx - mvx) * dx + (vy - mvy) * dy < 0.0
 
 
 @kernel
@@ -67,9 +75,7 @@ def _strike(body, p, path, gantry, k, t):
     apart = math.hypot(dx, dy)
     nx, ny = dx / apart, dy / apart
     push = contact.mallet_push(path, gantry, k, t, nx, ny)
-    vx, vy = contact.strike(
-        body[VX], body[VY], mvx, mvy, nx, ny, p.mallet_restitution, push, p.friction, p.drag
-    )
+    vx, vy = contact.strike(body[VX], body[VY], mvx, mvy, nx, ny, p.mallet_restitution, push, p.friction, p.drag)
     other, wx, wy, ox, oy = _other_obstacle(body, p, path, gantry, k, t, nx, ny)
     if other != -2 and (vx - ox) * wx + (vy - oy) * wy < 0.0:
         separation = (vx - mvx) * nx + (vy - mvy) * ny
@@ -79,7 +85,10 @@ def _strike(body, p, path, gantry, k, t):
         third, tx, ty = bounce.touched(
             body[X], body[Y], vx, vy, contact.PINCH_SLACK, p.length, p.width, p.goal_width, p.puck_radius
         )
-        if held or (third != bounce.NOTHING and (tx * wx + ty * wy) < 0.99):
+        jammed = third != bounce.NOTHING and (tx * wx + ty * wy) < 0.99
+        if other == -1 and not jammed and _closes_on(body, vx, vy, p, path, gantry, 1 - k, t):
+            other, jammed = 1 - k, True
+        if held or jammed:
             halt(path, gantry, k, t)
             if other >= 0:
                 halt(path, gantry, other, t)

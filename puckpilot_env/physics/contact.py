@@ -137,7 +137,7 @@ def pinch(vx, vy, mx, my, nx, ny, ox, oy, wx, wy, separation, wall_restitution):
 
     Both impulses act at once, so that the puck leaves the mallet with `separation` [m/s] and the other with its own
     rebound. Returns `(held, vx, vy)`; `held` is true where the two face each other so squarely that no puck slips out:
-    then the motors stall, and what remains is the puck's motion along the wedge.
+    then the motors stall, and what remains is the puck's motion along the wedge, unless that leads deeper into it.
     """
     closing = (mx - vx) * nx + (my - vy) * ny
     rebound = wall_restitution * max((ox - vx) * wx + (oy - vy) * wy, 0.0)
@@ -145,7 +145,8 @@ def pinch(vx, vy, mx, my, nx, ny, ox, oy, wx, wy, separation, wall_restitution):
     sine2 = 1.0 - cosine * cosine
     if sine2 < STEEPEST_WEDGE:
         along = -vx * ny + vy * nx
-        return True, -wall_restitution * along * ny, wall_restitution * along * nx
+        slide_x, slide_y = -wall_restitution * along * ny, wall_restitution * along * nx
+        return (True, slide_x, slide_y) if slide_x * wx + slide_y * wy >= 0.0 else (True, 0.0, 0.0)
     need_n = closing + separation
     need_w = rebound - ((vx - ox) * wx + (vy - oy) * wy)
     from_mallet = max((need_n - cosine * need_w) / sine2, 0.0)
