@@ -44,7 +44,7 @@ def _bounce(body, kind, p):
 
 @kernel
 def _other_obstacle(body, p, path, gantry, k, t, nx, ny):
-    """`(mallet, wx, wy, ox, oy)` of what else the puck touches, most opposite `n`; mallet is -1 for a wall, -2 for none."""
+    """`(mallet, wx, wy, ox, oy)` of what the puck also touches, most opposite `n`; mallet is -1: a wall, -2: none."""
     kind, wx, wy = bounce.touched(
         body[X], body[Y], nx, ny, contact.PINCH_SLACK, p.length, p.width, p.goal_width, p.puck_radius
     )

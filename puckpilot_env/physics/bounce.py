@@ -13,6 +13,8 @@ from puckpilot_env.kernel import kernel
 # Kinds of events
 NOTHING, WALL_X0, WALL_X1, WALL_Y0, WALL_Y1, POST, GOAL_X0, GOAL_X1, MIDDLE_LINE, MALLET_0, MALLET_1 = range(11)
 
+GRAZE = 1e-12  # m; a puck this close to passing a post's nearest point passes it: less is rounding, met again forever
+
 
 @kernel
 def reflect(vx, vy, nx, ny, restitution):
@@ -28,7 +30,7 @@ def distance_to_post(x, y, ux, uy, post_x, post_y, radius):
     """Distance along the path to touching a post (report G.3); infinite if it is missed or left behind."""
     dx, dy = x - post_x, y - post_y
     along = dx * ux + dy * uy
-    if along >= 0.0:
+    if along >= -GRAZE:
         return math.inf
     across = dx * uy - dy * ux
     chord = radius * radius - across * across

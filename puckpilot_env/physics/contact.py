@@ -25,6 +25,7 @@ SHORTEST_ADVANCE = 1e-9  # s
 MOST_ADVANCES = 20000
 REST_BETWEEN_TOUCHES = 1e-3  # s; a mallet that pushes the puck along touches it about this often
 PINCH_SLACK = 5e-5  # m; a puck this near to a wall while a mallet strikes it is between the two
+LEAST_REBOUND = 1e-6  # m/s; a puck squeezed against a wall leaves it, so that rounding makes no bounce of it
 STEEPEST_WEDGE = 0.0625  # sin^2 of the angle (14.5 degrees) under which a pinched puck cannot slip out
 
 
@@ -140,7 +141,7 @@ def pinch(vx, vy, mx, my, nx, ny, ox, oy, wx, wy, separation, wall_restitution):
     then the motors stall, and what remains is the puck's motion along the wedge, unless that leads deeper into it.
     """
     closing = (mx - vx) * nx + (my - vy) * ny
-    rebound = wall_restitution * max((ox - vx) * wx + (oy - vy) * wy, 0.0)
+    rebound = max(wall_restitution * ((ox - vx) * wx + (oy - vy) * wy), LEAST_REBOUND)
     cosine = nx * wx + ny * wy
     sine2 = 1.0 - cosine * cosine
     if sine2 < STEEPEST_WEDGE:

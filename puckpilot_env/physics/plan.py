@@ -41,6 +41,7 @@ from puckpilot_env.physics.mallet import (
 )
 
 SMALLEST_VOLTAGE = 1e-6  # V; keeps switching times finite
+ROUNDING = 1e-9  # m; nearer to the edge, rounding alone could ask for all the voltage, and leave the other axis none
 LARGEST_REQUEST = 1e6  # V; requests beyond it are the same to the projection
 
 
@@ -57,7 +58,7 @@ def braking_voltage(rest, slow, rest_gain, slow_gain, slow_rate, low, high):
 
     `stop_position` is monotone in the voltage, so the root is bracketed and bisected in the exponent.
     """
-    edge = min(max(rest, low), high)
+    edge = min(max(rest, low - ROUNDING), high + ROUNDING)
     if edge == rest:
         return 0.0
     shortfall = abs(rest - edge)
