@@ -20,8 +20,8 @@ from puckpilot_env.physics.mallet import (
     next_switch,
 )
 
-TOUCH = 1e-9  # m; a gap below it is a contact
-SHORTEST_ADVANCE = 1e-9  # s
+TOUCH = 1e-11  # m; a gap below it is a contact
+SHORTEST_ADVANCE = 1e-12  # s
 MOST_ADVANCES = 20000
 REST_BETWEEN_TOUCHES = 1e-3  # s; a mallet that pushes the puck along touches it about this often
 PINCH_SLACK = 5e-5  # m; a puck this near to a wall while a mallet strikes it is between the two
