@@ -27,12 +27,14 @@ class Tournament:
     ratings: Ratings
 
     def as_dict(self) -> dict[str, object]:
-        """Everything, as JSON can hold it."""
+        """Everything, as JSON can hold it; `wins` and `draws` are matrices in the order of `players`."""
         return {
             "variant": self.variant,
             "seed": self.seed,
             "games": self.games,
-            "payoff": self.payoff.as_dict(),
+            "players": list(self.players),
+            "wins": self.payoff.wins.astype(int).tolist(),
+            "draws": self.payoff.draws.astype(int).tolist(),
             "matches": list(self.match_rows()),
             "ratings": self.ratings.as_dict(),
         }

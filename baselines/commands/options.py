@@ -34,11 +34,12 @@ def parse_values(settings: Iterable[str]) -> dict[str, float]:
 
 @contextmanager
 def progress_bar(what: str) -> Iterator[Progress]:
-    """A bar on stderr that goes away at the end; what it gives is called with games done and games in all."""
+    """A bar on stderr, if that is a terminal; it goes away at the end. What it gives takes games done and in all."""
     from rich.console import Console
     from rich.markup import escape
     from rich.progress import Progress as Bar
 
-    with Bar(console=Console(stderr=True), transient=True) as bar:
+    console = Console(stderr=True)
+    with Bar(console=console, transient=True, disable=not console.is_terminal) as bar:
         task = bar.add_task(escape(what), total=None)
         yield lambda done, total: bar.update(task, completed=done, total=total)

@@ -5,8 +5,12 @@ from __future__ import annotations
 import argparse
 import json
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from baselines.commands.options import add_options, parse_values, progress_bar
+
+if TYPE_CHECKING:
+    from baselines.tournament import Tournament
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -21,10 +25,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """0: played. Raises ValueError, in one line, for what cannot be played."""
-    from rich.console import Console
-
     from baselines import player_names
-    from baselines.payoff_table import payoff_table, rating_table
     from baselines.tournament import play_tournament
     from baselines.tournament_files import write_tournament
 
@@ -40,8 +41,17 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print(json.dumps(tournament.as_dict(), indent=2))
         return 0
-    console = Console(highlight=False)
-    console.print(f"{tournament.variant}, {args.games} games of every two, seed {args.seed}")
-    console.print(payoff_table(tournament.payoff), rating_table(tournament.ratings))
-    console.print("wrote " + ", ".join(str(path) for path in written), soft_wrap=True, markup=False)
+    _print(tournament, written)
     return 0
+
+
+def _print(tournament: Tournament, written: list[Path]) -> None:
+    from rich.console import Console
+
+    from baselines.payoff_table import payoff_table, rating_table
+
+    print(f"{tournament.variant}, {tournament.games} games of every two players, seed {tournament.seed}\n")
+    for table in (payoff_table(tournament.payoff), rating_table(tournament.ratings)):
+        needed = Console(width=10_000).measure(table).maximum  # a count that is cut would say something else
+        Console(width=max(needed, len(str(table.title)))).print(table)
+    print("wrote " + ", ".join(str(path) for path in written))
