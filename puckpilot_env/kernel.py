@@ -13,6 +13,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -68,7 +69,8 @@ def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
         config.CACHE_DIR = before
 
 
+@cache
 def announce_compilation(marker: str) -> None:
-    """Say on stderr that the first call will compile, once per cache folder and `marker` (a kernel's name)."""
+    """Say on stderr that the first call of the kernel named `marker` will compile; once, and only where it will."""
     if not any(CACHE_FOLDER.rglob(f"*{marker}*.nbi")):
         print("puckpilot: compiling the simulator (once after each change, under a minute) ...", file=sys.stderr)

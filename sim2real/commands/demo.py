@@ -45,9 +45,9 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print(json.dumps({"meetings": meetings, "film": str(film), "compare": comparison}, indent=1))
         return 0
-    console = Console(highlight=False)
+    console = Console(highlight=False, soft_wrap=True)
     console.print(_table(players, meetings))
-    console.print(f"The beginning of the first {FILMED} is filmed: {film}\n", soft_wrap=True)
+    console.print(f"The beginning of the first {FILMED} is filmed: {film}\n")
     console.print("A recording of a table that has physics the simulator leaves out, beside the simulator:")
     print_summary(comparison)
     console.print(
@@ -60,7 +60,6 @@ def _meet(players: tuple[str, str], games: int, seed: int, film: Path) -> list[d
     """One row an environment; the first game of FILMED goes to `film`."""
     from baselines.commands.options import progress_bar
     from baselines.filming import FirstGame
-
     from baselines.intervals import paired_win_rate
     from baselines.match import play
     from puckpilot_env.variants import all_variants
@@ -93,21 +92,20 @@ def _table(players: tuple[str, str], meetings: list[dict[str, Any]]) -> Any:
     from rich import box
     from rich.table import Table
 
-    title = f"{players[0]} against {players[1]}, every start played from both seats"
-    table = Table(title=title, box=box.SIMPLE_HEAD, title_justify="left")
+    title = f"{players[0]} against {players[1]}; every start is played from both seats"
+    table = Table(title=title, box=box.SIMPLE_HEAD, title_justify="left", pad_edge=False)
     table.add_column("environment", no_wrap=True)
-    for heading in (f"{players[0]} wins", "draws", f"{players[1]} wins", "goals", "decisive won", "95 % interval"):
-        table.add_column(heading, justify="right")
+    for heading in ("won", "drawn", "lost", "goals", "of decisive", "95 % interval"):
+        table.add_column(heading, justify="right", no_wrap=True)
     for row in meetings:
         rate = row["decisive_win_rate"]
-        share = "-" if rate["value"] is None else f"{100 * rate['value']:.0f} %"
         table.add_row(
-            row["id"],
+            row["id"].removeprefix("puckpilot/"),
             str(row["wins"][0]),
             str(row["draws"]),
             str(row["wins"][1]),
-            f"{row['goals'][0]} : {row['goals'][1]}",
-            share,
-            f"{100 * rate['low']:.0f} to {100 * rate['high']:.0f} %",
+            f"{row['goals'][0]}:{row['goals'][1]}",
+            "-" if rate["value"] is None else f"{100 * rate['value']:.0f} %",
+            f"{100 * rate['low']:.0f}-{100 * rate['high']:.0f} %",
         )
     return table
