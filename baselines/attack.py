@@ -37,6 +37,7 @@ class Attacker(Player):
 
 @kernel
 def _decide(pucks, mallets, scales, nominal, bounds, ways, actions):
+    """Write every table's action into `actions` (n, 4)."""
     p = nominal[0]
     mallet = np.zeros(1, MALLET)[0]
     for i in range(pucks.shape[0]):

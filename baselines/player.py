@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from baselines.sight import Seen, Sight
 from puckpilot_env.tables import Tables
@@ -73,7 +73,7 @@ class Player:
         """Where to go with which voltages, (n, 4): target x, y [m] and voltages x, y [V]; `act` puts it in bounds."""
         raise NotImplementedError
 
-    def action(self, x: object, y: object, volts: object = np.inf) -> NDArray[np.float64]:
+    def action(self, x: ArrayLike, y: ArrayLike, volts: ArrayLike = np.inf) -> NDArray[np.float64]:
         """(n, 4) from scalars or (n,) arrays: go to `(x, y)` [m] with `volts` [V] on both axes, the most by default."""
         columns = np.broadcast_arrays(x, y, volts, volts, np.zeros(self.seat.tables))[:4]
         return np.stack(columns, axis=1).astype(np.float64)

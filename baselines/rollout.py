@@ -24,6 +24,7 @@ MOST_CROSSINGS = 20  # of the middle line
 FAR = 1e3  # m; where the opponent's mallet is put out of the way
 OPPONENTS = (0.2, 0.5, 1.0)  # how much of the voltage an opponent may use
 LATEST_THREAT = 1.5  # s after the horizon
+
 # What a player values. Worths are shares of a goal.
 STYLE = np.dtype(
     [
@@ -50,8 +51,11 @@ def park_opponent(mallet):
 
 @kernel
 def value_of(action, puck, opponent, held, p, style, mallets, free, log, volts):
-    """What playing `action` (4,) is worth. puck, opponent: motions; mallets: (2,) the own one where it is now, and the
-    opponent's parked; style: a record of `STYLE`; free: a puck, and log: scratch; volts: the most that anyone uses."""
+    """What playing `action` (4,) is worth.
+
+    puck, opponent: motions (x, y, vx, vy); held: see `Seen`; style: a record of `STYLE`; mallets: (2,) the own one
+    where it is now, and the opponent's, parked; free (a puck) and log are scratch; volts: the most that anyone may use.
+    """
     plan_mallet(mallets[0], action[0], action[1], action[2], action[3], mirror.area(0, p), p.max_voltage)
     free.x, free.y, free.vx, free.vy = puck[0], puck[1], puck[2], puck[3]
     now = 0.0
@@ -70,6 +74,7 @@ def value_of(action, puck, opponent, held, p, style, mallets, free, log, volts):
 
 @kernel
 def _value_of_shot(puck, now, opponent, p, style, mallet, volts):
+    """Worth of a puck that crosses the middle line at `now` [s]."""
     x, y, vx, vy = puck.x, puck.y, puck.vx, puck.vy
     early = style.early * 0.5 * p.length / max(vx, 0.5)  # the opponent sees the strike before the puck crosses the line
     chance = 0.0

@@ -16,6 +16,7 @@ from puckpilot_env.physics.mallet import MALLET
 
 MOST_CANDIDATES = 64
 TRIES, LATER = 2, 0.08  # strikes along each way, and s between them
+LINES = (0.06, 0.15, 0.3)  # m from the goal line, where an incoming puck is met
 RING = 8  # places around the puck to go to
 
 
@@ -29,7 +30,7 @@ def _suggest(puck, own, last, p, style, mallet, bounds, ways, found):
     n += 1
     found[n, 0], found[n, 1] = guard_place(puck[0], puck[1], p, style.guard)
     n += 1
-    for line in (0.06, 0.15, 0.3):
+    for line in LINES:
         t, y = crossing(puck[0], puck[1], puck[2], puck[3], p, line, 1.0)
         if t < math.inf:
             found[n, 0], found[n, 1] = line, y
@@ -65,6 +66,7 @@ def _clip(action, bounds):
 
 @kernel
 def _best_of_many(puck, own, opponent, held, last, p, style, mallets, bounds, ways, changes, scratch, out):
+    """Write the best of the suggestions, varied by `changes` in turn, into `out` (4,)."""
     free, log, found, trial = scratch
     volts = bounds[1, 3]
     best = -math.inf
@@ -82,7 +84,6 @@ def _best_of_many(puck, own, opponent, held, last, p, style, mallets, bounds, wa
         if value > best:
             best = value
             out[:] = trial
-    return best
 
 
 @kernel
@@ -105,17 +106,5 @@ def choose(pucks, owns, opponents, helds, lasts, scales, nominal, styles, bounds
             continue
         fill_mallet(mallets[0], p, scales[i], own)
         _best_of_many(
-            puck,
-            owns[i],
-            opponents[i],
-            helds[i],
-            lasts[i],
-            p,
-            style,
-            mallets,
-            bounds,
-            ways,
-            changes,
-            scratch,
-            actions[i],
-        )
+            puck, own, opponents[i], helds[i], lasts[i], p, style, mallets, bounds, ways, changes, scratch, actions[i]
+        )  # fmt: skip

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +13,7 @@ from rich.table import Table
 from sim2real.compare_predict import compare_pieces, parameters
 from sim2real.compare_summary import summarize
 from sim2real.diagnose.pieces import cut
-from sim2real.recording import RecordingError, read_recording
+from sim2real.recording import read_recording
 
 UNITS = {"m": (1e3, "mm", 1), "m/s": (1.0, "m/s", 2), "": (1.0, "", 2)}
 
@@ -27,30 +26,31 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Compare and print; 0, or 2 with one line why on stderr."""
-    console = Console(stderr=True)
-    try:
-        with console.status("reading the recording") as status:
-            recording = read_recording(args.recording)
-            status.update("cutting it into pieces")
-            pieces = cut(recording)
-            status.update("predicting each piece")
-            values = parameters(recording)
-            found = compare_pieces(pieces, values)
-            summary = summarize(recording, pieces, found, values)
-            status.update("drawing")
-            summary["picture"] = str(_draw(args.out, recording.name, pieces, found, values))
-    except RecordingError as error:
-        print(error, file=sys.stderr)
-        return 2
-    except OSError as error:
-        print(f"{args.out}: cannot write the picture there ({error.strerror}); name another --out", file=sys.stderr)
-        return 2
+    """Compare and print; 0. Raises RecordingError or OSError, in one line, where it cannot."""
+    summary = compare_recording(args.recording, args.out)
     if args.json:
         print(json.dumps(summary, indent=1, allow_nan=False))
     else:
-        _print(summary)
+        print_summary(summary)
     return 0
+
+
+def compare_recording(path: Path, out: Path) -> dict[str, Any]:
+    """Cut a recording into pieces, predict each, draw a picture into `out`; what was found, ready for JSON."""
+    with Console(stderr=True).status("reading the recording") as status:
+        recording = read_recording(path)
+        status.update("cutting it into pieces")
+        pieces = cut(recording)
+        status.update("predicting each piece")
+        values = parameters(recording)
+        found = compare_pieces(pieces, values)
+        summary = summarize(recording, pieces, found, values)
+        status.update("drawing")
+        try:
+            summary["picture"] = str(_draw(out, recording.name, pieces, found, values))
+        except OSError as error:
+            raise ValueError(f"{out}: cannot write the picture there ({error.strerror}); name another --out") from error
+    return summary
 
 
 def _draw(folder: Path, name: str, pieces, found, values: dict[str, float]) -> Path:
@@ -62,7 +62,8 @@ def _draw(folder: Path, name: str, pieces, found, values: dict[str, float]) -> P
     return file
 
 
-def _print(summary: dict[str, Any]) -> None:
+def print_summary(summary: dict[str, Any]) -> None:
+    """Print what `compare_recording` found: a table, the growth of errors, and where they part most."""
     console = Console(highlight=False, soft_wrap=True)
     console.print(f"{summary['recording']}: {_sensor(summary['sensor'])}")
     for note in summary["notes"]:

@@ -84,20 +84,18 @@ def draw_camera_error(table, p):
 
 
 @kernel
-def smooth_error(e, u, w):
-    """The error [m] at `(u, w)` in -1..1 over the table from its coefficients `e`; the terms are orthonormal there."""
-    linear = e[0] + 1.7320508075688772 * (e[1] * u + e[2] * w)
-    return linear + 3.0 * e[3] * u * w + 1.118033988749895 * e[4] * (3.0 * u * u - 1.0)
-
-
-@kernel
 def measure(camera, stream, p, x, y, noise):
-    """A place [m] of the player's frame as its camera reports it."""
+    """A place [m] of the player's frame as its camera reports it: with the smooth error and white noise.
+
+    The error's terms are orthonormal over the table, so each carries the same share of its rms.
+    """
     u, w = 2.0 * x / p.length - 1.0, 2.0 * y / p.width - 1.0
-    return (
-        x + smooth_error(camera.error_x, u, w) + noise * random_stream.normal(stream),
-        y + smooth_error(camera.error_y, u, w) + noise * random_stream.normal(stream),
-    )
+    a, b = 1.7320508075688772 * u, 1.7320508075688772 * w
+    c, d = a * b, 1.118033988749895 * (a * u * 1.7320508075688772 - 1.0)
+    e = camera.error_x
+    x += e[0] + e[1] * a + e[2] * b + e[3] * c + e[4] * d + noise * random_stream.normal(stream)
+    e = camera.error_y
+    return x, y + e[0] + e[1] * a + e[2] * b + e[3] * c + e[4] * d + noise * random_stream.normal(stream)
 
 
 @kernel

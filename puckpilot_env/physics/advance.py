@@ -56,19 +56,27 @@ def _bounce(puck, kind, p):
 
 @kernel
 def _other_obstacle(puck, p, mallets, k, t, nx, ny):
-    """`(mallet, wx, wy, ox, oy)` of what else the puck touches opposite `n`; mallet is -1 for a wall, -2 for none."""
+    """`(mallet, wx, wy, ox, oy)` of what the puck also touches, most opposite `n`; mallet is -1: a wall, -2: none."""
     kind, wx, wy = bounce.touched(
         puck.x, puck.y, nx, ny, contact.PINCH_SLACK, p.length, p.width, p.goal_width, p.puck_radius
     )
-    if kind != bounce.NOTHING:
-        return -1, wx, wy, 0.0, 0.0
     other = 1 - k
     mx, my, ox, oy = motion_at(mallets[other], t)
     dx, dy = puck.x - mx, puck.y - my
     apart = size(dx, dy)
-    if apart - p.puck_radius - p.mallet_radius < contact.PINCH_SLACK and dx * nx + dy * ny < 0.0:
+    opposed = min(wx * nx + wy * ny, 0.0) * apart
+    if apart - p.puck_radius - p.mallet_radius < contact.PINCH_SLACK and dx * nx + dy * ny < opposed:
         return other, dx / apart, dy / apart, ox, oy
-    return -2, 0.0, 0.0, 0.0, 0.0
+    return (-2 if kind == bounce.NOTHING else -1), wx, wy, 0.0, 0.0
+
+
+@kernel
+def _closes_on(puck, vx, vy, p, mallet, t):
+    """Whether a puck of velocity `v` that touches this mallet runs into it."""
+    mx, my, mvx, mvy = motion_at(mallet, t)
+    dx, dy = puck.x - mx, puck.y - my
+    touching = size(dx, dy) - p.puck_radius - p.mallet_radius < contact.PINCH_SLACK
+    return touching and (vx - mvx) * dx + (vy - mvy) * dy < 0.0
 
 
 @kernel
@@ -87,7 +95,10 @@ def _strike(puck, p, mallets, k, t):
         third, tx, ty = bounce.touched(
             puck.x, puck.y, vx, vy, contact.PINCH_SLACK, p.length, p.width, p.goal_width, p.puck_radius
         )
-        if held or (third != bounce.NOTHING and (tx * wx + ty * wy) < 0.99):
+        jammed = third != bounce.NOTHING and (tx * wx + ty * wy) < 0.99
+        if other == -1 and not jammed and _closes_on(puck, vx, vy, p, mallets[1 - k], t):
+            other, jammed = 1 - k, True
+        if held or jammed:
             halt(mallets[k], t)
             if other >= 0:
                 halt(mallets[other], t)

@@ -14,13 +14,20 @@ from puckpilot_env.physics.vector import size
 # Kinds of events
 NOTHING, WALL_X0, WALL_X1, WALL_Y0, WALL_Y1, POST, GOAL_X0, GOAL_X1, MIDDLE_LINE, MALLET_0, MALLET_1 = range(11)
 
+SLIDING = 1e-9  # m/s; a puck approaching more slowly slides along a wall
+GRAZE = 1e-12  # m; a puck this close to missing a post misses it: less is rounding, and would be met without end
+
 
 @kernel
 def reflect(vx, vy, nx, ny, restitution):
-    """Velocity after a bounce with unit normal `n`: both components keep the share `restitution` (report eq. 10)."""
+    """Velocity after a bounce with unit normal `n`: both components keep the share `restitution` (report eq. 10).
+
+    A puck that only seems to approach, by rounding, slides along.
+    """
     normal = vx * nx + vy * ny
-    if normal >= 0.0:
-        return vx, vy
+    if normal >= -SLIDING:
+        away = max(-normal, 0.0)
+        return vx + away * nx, vy + away * ny
     return restitution * (vx - 2.0 * normal * nx), restitution * (vy - 2.0 * normal * ny)
 
 
@@ -29,11 +36,11 @@ def distance_to_post(x, y, ux, uy, post_x, post_y, radius):
     """Distance along the path to touching a post (report G.3); infinite if it is missed or left behind."""
     dx, dy = x - post_x, y - post_y
     along = dx * ux + dy * uy
-    if along >= 0.0:
+    if along >= -GRAZE:
         return math.inf
     across = dx * uy - dy * ux
     chord = radius * radius - across * across
-    if chord <= 0.0:
+    if chord <= GRAZE * radius:
         return math.inf
     return max(-along - math.sqrt(chord), 0.0)
 

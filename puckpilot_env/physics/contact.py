@@ -15,11 +15,12 @@ from puckpilot_env.physics import glide
 from puckpilot_env.physics.mallet import acceleration_bound, axis_at, axis_velocity, next_switch
 from puckpilot_env.physics.vector import size
 
-TOUCH = 1e-9  # m; a gap below it is a contact
-SHORTEST_ADVANCE = 1e-9  # s
+TOUCH = 1e-11  # m; a gap below it is a contact
+SHORTEST_ADVANCE = 1e-12  # s
 MOST_ADVANCES = 20000
 REST_BETWEEN_TOUCHES = 1e-3  # s; a mallet that pushes the puck along touches it about this often
 PINCH_SLACK = 5e-5  # m; a puck this near to a wall while a mallet strikes it is between the two
+LEAST_REBOUND = 1e-6  # m/s; a puck squeezed against a wall leaves it, so that rounding makes no bounce of it
 STEEPEST_WEDGE = 0.0625  # sin^2 of the angle (14.5 degrees) under which a pinched puck cannot slip out
 
 
@@ -111,15 +112,16 @@ def pinch(vx, vy, mx, my, nx, ny, ox, oy, wx, wy, separation, wall_restitution):
 
     Both impulses act at once, so that the puck leaves the mallet with `separation` [m/s] and the other with its own
     rebound. Returns `(held, vx, vy)`; `held` is true where the two face each other so squarely that no puck slips out:
-    then the motors stall, and what remains is the puck's motion along the wedge.
+    then the motors stall, and what remains is the puck's motion along the wedge, unless that leads deeper into it.
     """
     closing = (mx - vx) * nx + (my - vy) * ny
-    rebound = wall_restitution * max((ox - vx) * wx + (oy - vy) * wy, 0.0)
+    rebound = max(wall_restitution * ((ox - vx) * wx + (oy - vy) * wy), LEAST_REBOUND)
     cosine = nx * wx + ny * wy
     sine2 = 1.0 - cosine * cosine
     if sine2 < STEEPEST_WEDGE:
         along = -vx * ny + vy * nx
-        return True, -wall_restitution * along * ny, wall_restitution * along * nx
+        slide_x, slide_y = -wall_restitution * along * ny, wall_restitution * along * nx
+        return (True, slide_x, slide_y) if slide_x * wx + slide_y * wy >= 0.0 else (True, 0.0, 0.0)
     need_n = closing + separation
     need_w = rebound - ((vx - ox) * wx + (vy - oy) * wy)
     from_mallet = max((need_n - cosine * need_w) / sine2, 0.0)

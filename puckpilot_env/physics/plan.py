@@ -19,6 +19,7 @@ from puckpilot_env.kernel import kernel
 from puckpilot_env.physics.mallet import fade
 
 SMALLEST_VOLTAGE = 1e-6  # V; keeps switching times finite
+ROUNDING = 1e-9  # m; nearer to the edge, rounding alone could ask for all the voltage, and leave the other axis none
 LARGEST_REQUEST = 1e6  # V; requests beyond it are the same to the projection
 
 
@@ -36,7 +37,7 @@ def braking_voltage(rest, slow, rest_gain, slow_gain, slow_rate, low, high):
     How far braking pulls the stop back is an increasing, concave function of the voltage, and log(1 + z) <= sqrt(z)
     gives a start below the root: from there Newton's steps rise to it and cannot pass it.
     """
-    edge = min(max(rest, low), high)
+    edge = min(max(rest, low - ROUNDING), high + ROUNDING)
     if edge == rest:
         return 0.0
     scale = abs(slow) / slow_gain

@@ -85,19 +85,23 @@ def test_an_unknown_name_is_an_error_of_one_line_with_a_suggestion() -> None:
 
 
 def _conceded(name: str) -> int:
-    return play(DEFENCE, name, "still", 60, seed=3).goals[1]
+    """Goals against player 0 in as many shots at it; all of them would be goals or near misses."""
+    return play(DEFENCE, name, "still", 400, seed=3).goals[1]
 
 
-def test_the_goalie_concedes_far_fewer_shots_than_a_mallet_that_stands_still() -> None:
-    assert _conceded("goalie") < 0.5 * _conceded("still")
+def test_a_mallet_that_stands_still_concedes_and_a_goalie_hardly_does() -> None:
+    assert _conceded("still") > 50
+    assert _conceded("goalie") <= 2
 
 
-def test_the_veteran_concedes_fewer_shots_than_the_goalie() -> None:
-    assert _conceded("veteran") < _conceded("goalie")
+@pytest.mark.parametrize("name", ["interceptor", "veteran"])
+def test_players_that_predict_keep_their_goal(name: str) -> None:
+    assert _conceded(name) <= 2
 
 
-@pytest.mark.parametrize("other", ["still", "random", "follower"])
-def test_the_veteran_beats_the_simple_ones(other: str) -> None:
-    result = play(MATCH, "veteran", other, 4, seed=1)
-    assert result.wins == (4, 0)
+@pytest.mark.parametrize("other", ["still", "random", "follower", "interceptor"])
+def test_the_veteran_beats_the_others(other: str) -> None:
+    result = play(MATCH, "veteran", other, 6, seed=1)
+    assert result.wins[0] >= 5
+    assert result.wins[1] == 0
     assert result.goals[0] > 3 * result.goals[1]

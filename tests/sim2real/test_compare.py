@@ -1,14 +1,13 @@
 """`compare`: right numbers on paths that the simulator would make, and one line of words when it cannot."""
 
-import argparse
 import json
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from puckpilot import main
 from puckpilot_env.physics import bounce, contact, glide
-from sim2real.compare import add_arguments, run
 from sim2real.compare_predict import compare_pieces, parameters, predict_glide
 from sim2real.diagnose.pieces import cut
 from sim2real.diagnose.sensor import Noise
@@ -41,9 +40,8 @@ def glides(friction: float, drag: float, noise: float = 0.0005, count: int = 12)
 
 
 def command(*words: str) -> int:
-    parser = argparse.ArgumentParser()
-    add_arguments(parser)
-    return run(parser.parse_args(words))
+    """As a user calls it."""
+    return main(["compare", *words])
 
 
 @pytest.mark.parametrize(("friction", "drag"), [(0.125, 0.125), (0.0, 0.3), (0.2, 0.0), (0.0, 0.0)])

@@ -1,0 +1,1 @@
+"""Training players by self-play; the floor above `baselines`. Not built yet."""

@@ -1,0 +1,76 @@
+"""The command `puckpilot`: a table of sub-commands, each loaded when it is called."""
+
+from __future__ import annotations
+
+import argparse
+import difflib
+import importlib
+import os
+import sys
+from collections.abc import Sequence
+from typing import NoReturn
+
+# name: (module with `add_arguments` and `run`, what it does)
+COMMANDS = {
+    "demo": ("sim2real.commands.demo", "a first look: players meet, a game is filmed, a recording is compared"),
+    "envs": ("puckpilot_env.commands.envs", "list the environments, or show the page of one"),
+    "check": ("puckpilot_env.commands.check", "does an environment keep its promises?"),
+    "match": ("baselines.commands.match", "two players against each other, in paired games"),
+    "tournament": ("baselines.commands.tournament", "all against all: payoff matrix and ratings"),
+    "bench": ("puckpilot_env.commands.bench", "how fast the simulator is here"),
+    "compare": ("sim2real.compare", "where a recording of a table departs from the simulator"),
+}
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser whose errors are one line."""
+
+    def error(self, message: str) -> NoReturn:
+        print(f"{self.prog}: {message}; see {self.prog} --help", file=sys.stderr)
+        raise SystemExit(2)
+
+
+def _overview() -> str:
+    width = max(map(len, COMMANDS))
+    rows = "\n".join(f"  {name:{width}}  {what}" for name, (_, what) in COMMANDS.items())
+    return (
+        "usage: puckpilot COMMAND [options]\n\nAir hockey for learning robots: simulator, environments, players, and "
+        f"the gap to the table.\n\n{rows}\n\npuckpilot COMMAND --help explains one. First of all: puckpilot demo"
+    )
+
+
+def _unknown(name: str) -> str:
+    near = difflib.get_close_matches(name, COMMANDS, n=1)
+    hint = f"did you mean '{near[0]}'?" if near else f"known: {', '.join(COMMANDS)}"
+    return f"puckpilot: unknown command '{name}'; {hint}"
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one sub-command. 0: did it; 1: did it, and the answer is bad news; 2: could not, with one line why."""
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    if not words or words[0] in ("-h", "--help"):
+        print(_overview())
+        return 0 if words else 2
+    name, *rest = words
+    if name not in COMMANDS:
+        print(_unknown(name), file=sys.stderr)
+        return 2
+    module_name, what = COMMANDS[name]
+    module = importlib.import_module(module_name)
+    parser = _Parser(prog=f"puckpilot {name}", description=module.__doc__ or what)
+    module.add_arguments(parser)
+    try:
+        return module.run(parser.parse_args(rest))
+    except BrokenPipeError:  # the reader, `head` say, has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except KeyboardInterrupt:
+        print(f"puckpilot {name}: stopped", file=sys.stderr)
+        return 130
+    except (ValueError, OSError) as error:
+        print(f"puckpilot {name}: {' '.join(str(error).split())}", file=sys.stderr)
+        return 2
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

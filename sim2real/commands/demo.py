@@ -1,0 +1,113 @@
+"""A first look, in a minute or two: players meet, a game is filmed, a recording is compared.
+
+1. Two scripted players meet in paired games on every registered environment; a table with 95 % intervals.
+2. The first of those matches is filmed.
+3. A small bundled recording, made by an independent table with physics that the simulator leaves out, is cut into
+   glides and hits, and each is compared with what the simulator says.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+FILMED = "puckpilot/match-v0"
+BUNDLED = Path(__file__).resolve().parent.parent / "demo_recording"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of the command."""
+    parser.add_argument("players", nargs="*", metavar="PLAYER", help="two players (veteran interceptor)")
+    parser.add_argument("--games", type=int, default=20, help="games on each environment (20)")
+    parser.add_argument("--seed", type=int, default=0, help="seed of the games (0)")
+    parser.add_argument("--out", type=Path, default=Path("out/demo"), metavar="DIR", help="folder for files (out/demo)")
+    parser.add_argument("--json", action="store_true", help="print one JSON object instead of the tables")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Show all three; 0. Raises ValueError, in one line, for unknown players."""
+    from rich.console import Console
+
+    from baselines import find_player
+    from sim2real.compare import compare_recording, print_summary
+
+    players = tuple(args.players or ("veteran", "interceptor"))
+    if len(players) != 2:
+        raise ValueError(f"{len(players)} players given; expected two, as in: puckpilot demo veteran goalie")
+    for name in players:
+        find_player(name)
+    args.out.mkdir(parents=True, exist_ok=True)
+    film = args.out / "match.gif"
+    meetings = _meet(players, args.games, args.seed, film)
+    comparison = compare_recording(BUNDLED, args.out)
+    if args.json:
+        print(json.dumps({"meetings": meetings, "film": str(film), "compare": comparison}, indent=1))
+        return 0
+    console = Console(highlight=False)
+    console.print(_table(players, meetings))
+    console.print(f"The beginning of the first {FILMED} is filmed: {film}\n", soft_wrap=True)
+    console.print("A recording of a table that has physics the simulator leaves out, beside the simulator:")
+    print_summary(comparison)
+    console.print(
+        "\nNext: puckpilot envs, puckpilot tournament, puckpilot compare RECORDING; each explains itself with --help."
+    )
+    return 0
+
+
+def _meet(players: tuple[str, str], games: int, seed: int, film: Path) -> list[dict[str, Any]]:
+    """One row an environment; the first game of FILMED goes to `film`."""
+    from baselines.commands.options import progress_bar
+    from baselines.filming import FirstGame
+
+    from baselines.intervals import paired_win_rate
+    from baselines.match import play
+    from puckpilot_env.variants import all_variants
+    from puckpilot_env.video import VideoWriter
+
+    rows = []
+    for id_ in all_variants():
+        with progress_bar(f"{players[0]} against {players[1]} in {id_}") as progress:
+            if id_ == FILMED:
+                with VideoWriter(film) as video:
+                    watch = FirstGame(video, players, longest=12.0)
+                    result = play(id_, *players, games, seed, progress=progress, watch=watch)
+            else:
+                result = play(id_, *players, games, seed, progress=progress)
+        rate = paired_win_rate(result.padded_results)
+        rows.append(
+            {
+                "id": id_,
+                "games": result.games,
+                "wins": list(result.wins),
+                "draws": result.draws,
+                "goals": list(result.goals),
+                "decisive_win_rate": rate.as_dict(),
+            }
+        )
+    return rows
+
+
+def _table(players: tuple[str, str], meetings: list[dict[str, Any]]) -> Any:
+    from rich import box
+    from rich.table import Table
+
+    title = f"{players[0]} against {players[1]}, every start played from both seats"
+    table = Table(title=title, box=box.SIMPLE_HEAD, title_justify="left")
+    table.add_column("environment", no_wrap=True)
+    for heading in (f"{players[0]} wins", "draws", f"{players[1]} wins", "goals", "decisive won", "95 % interval"):
+        table.add_column(heading, justify="right")
+    for row in meetings:
+        rate = row["decisive_win_rate"]
+        share = "-" if rate["value"] is None else f"{100 * rate['value']:.0f} %"
+        table.add_row(
+            row["id"],
+            str(row["wins"][0]),
+            str(row["draws"]),
+            str(row["wins"][1]),
+            f"{row['goals'][0]} : {row['goals'][1]}",
+            share,
+            f"{100 * rate['low']:.0f} to {100 * rate['high']:.0f} %",
+        )
+    return table
