@@ -59,15 +59,14 @@ def _print_list() -> None:
     from puckpilot_env.variants import all_variants
 
     table = Table(title="Environments", title_justify="left", title_style="bold", show_lines=True)
-    table.add_column("id", style="cyan", no_wrap=True)
-    table.add_column("what")
+    table.add_column("id and what it is")
     table.add_column("observed", justify="right", no_wrap=True)
     table.add_column("step", justify="right", no_wrap=True)
-    table.add_column("endings", no_wrap=True)
+    table.add_column("endings", min_width=15)
     for variant in all_variants().values():
         facts = describe(variant)
         size, endings = len(facts["observation"]), "\n".join(facts["endings"])
-        table.add_row(variant.id, variant.summary, str(size), f"{variant.period:g} s", endings)
+        table.add_row(f"[cyan]{variant.id}[/cyan]\n{variant.summary}", str(size), f"{variant.period:g} s", endings)
     console = Console()
     console.print(table)
     console.print("observed: numbers that each player sees. The page of one: puckpilot envs ID")
