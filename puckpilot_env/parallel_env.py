@@ -11,7 +11,6 @@ from gymnasium.spaces import Box
 from numpy.typing import NDArray
 from pettingzoo import ParallelEnv
 
-from puckpilot_env import parameters
 from puckpilot_env.game.rules import ENDING_NAMES
 from puckpilot_env.infos import drawn_info, only_row
 from puckpilot_env.motion import mallet_motion, puck_motion
@@ -168,8 +167,3 @@ class TableEnv(ParallelEnv):
 
 def _action_names() -> str:
     return ", ".join(f"{name} [{unit}]" for name, unit, _ in ACTION_COLUMNS)
-
-
-def parameter_names() -> tuple[str, ...]:
-    """Names that the argument `parameters` takes."""
-    return tuple(parameters.BY_NAME)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
@@ -219,8 +218,3 @@ def _action_bounds(p: np.void) -> NDArray[np.float32]:
 def _shares(tables: int, threads: int) -> list[tuple[int, int]]:
     edges = [tables * i // threads for i in range(threads + 1)]
     return list(pairwise(edges))
-
-
-def available_threads() -> int:
-    """How many threads can run here at once."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
