@@ -53,6 +53,7 @@ def _print_page(name: str, as_json: bool) -> None:
 
 def _print_list() -> None:
     from rich.console import Console
+    from rich.markup import escape
     from rich.table import Table
 
     from puckpilot_env.describe import describe
@@ -66,7 +67,8 @@ def _print_list() -> None:
     for variant in all_variants().values():
         facts = describe(variant)
         size, endings = len(facts["observation"]), "\n".join(facts["endings"])
-        table.add_row(f"[cyan]{variant.id}[/cyan]\n{variant.summary}", str(size), f"{variant.period:g} s", endings)
+        what = f"[cyan]{variant.id}[/cyan]\n{escape(variant.summary)}"
+        table.add_row(what, str(size), f"{variant.period:g} s", endings)
     console = Console()
     console.print(table)
     console.print("observed: numbers that each player sees. The page of one: puckpilot envs ID")
