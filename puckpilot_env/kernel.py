@@ -42,12 +42,12 @@ def _source_hash() -> str:
 
 def _make_cache_folder() -> Path:
     """The folder for this version of the sources; a temporary one where the home folder cannot be written."""
-    base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "puckpilot"
-    folder = base / _source_hash()
     try:
+        base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "puckpilot"
+        folder = base / _source_hash()
         folder.mkdir(parents=True, exist_ok=True)
         (folder / "used").touch()
-    except OSError:
+    except (OSError, RuntimeError):  # Path.home() raises the latter for a user whom the system does not know
         return Path(tempfile.mkdtemp(prefix="puckpilot-kernels-"))
     oldest = time.time() - _KEEP_DAYS * 86400
     for other in base.iterdir():

@@ -49,5 +49,9 @@ def as_rows(draws: tuple[Draw, ...]) -> np.ndarray:
         if draw.distribution not in DISTRIBUTIONS:
             raise ValueError(f"unknown distribution '{draw.distribution}'; known: {', '.join(DISTRIBUTIONS)}")
         low, high = parameters.checked(draw.parameter, draw.low), parameters.checked(draw.parameter, draw.high)
+        if low > high:
+            raise ValueError(f"the draw of '{draw.parameter}' is from {low:g} to {high:g}; expected low <= high")
+        if draw.distribution == "log-uniform" and low <= 0.0:
+            raise ValueError(f"the draw of '{draw.parameter}' is log-uniform from {low:g}; expected low > 0")
         row[:] = parameters.COLUMN[draw.parameter], DISTRIBUTIONS[draw.distribution], low, high
     return rows
