@@ -24,8 +24,8 @@ class Draw:
 
 
 REALITY: tuple[Draw, ...] = (
-    Draw("friction", "log-uniform", 0.006, 0.25, "from 0.006, fitted to glides on a real table, to twice report F.2"),
-    Draw("drag", "log-uniform", 0.014, 0.25, "from below 0.02, fitted to glides on a real table, to twice report F.2"),
+    Draw("friction", "log-uniform", 0.006, 0.25, "0.006 to 0.009 fitted on a real table, to twice report F.2"),
+    Draw("drag", "log-uniform", 0.014, 0.25, "0.02 fitted on a real table, to twice report F.2"),
     Draw("wall_restitution", "uniform", 0.65, 0.9, "report F.3 (0.7) and a real table (0.83 to 0.86)"),
     Draw("mallet_restitution", "uniform", 0.45, 0.9, "0.49 kept by the mallet on a real table; above it a choice"),
     Draw("gantry_spread", "uniform", 0.0, 0.1, "spread of gantry fits between voltages; a choice"),

@@ -12,7 +12,7 @@ from puckpilot_env.physics.vector import size
 
 DEFENCE, ATTACK, MATCH = range(3)  # the games
 UNIFORM, LOG_UNIFORM = range(2)  # distributions of a drawn parameter
-SHORTEST_FLIGHT = 0.45  # s that a shot takes at least to the goal line: four decisions
+SHORTEST_FLIGHT = 0.3  # s that a shot takes at least to the goal line: three decisions
 HOME_X = 0.25  # m from the player's own goal line; y is the middle
 
 
@@ -99,7 +99,7 @@ def _shot(table, p, subject):
         aim = 2.0 * (p.width - radius) - aim
     dx, dy = -x, aim - y
     way = size(dx, dy)
-    speed = min(random_stream.between(table.stream, 1.0, 6.0), way / SHORTEST_FLIGHT)
+    speed = min(random_stream.between(table.stream, 1.0, 8.0), way / SHORTEST_FLIGHT)
     place_puck(table, p, subject, x, y, speed * dx / way, speed * dy / way)
     shooter = min(x + radius + p.mallet_radius + 0.05, p.length - p.mallet_radius)
     place_mallet(
