@@ -49,7 +49,7 @@ def place_puck(u, kind, p):
         x, y = rp + gap, rp + small(u[0])
     elif kind == POST:
         angle = (0.5 - u[0]) * 0.5 * math.pi + 0.25 * math.pi  # from straight in front to inside the mouth
-        size = rp + gap
+        size = rp + min(gap, half_goal - rp)  # clear of the other post
         x, y = size * math.cos(angle), 0.5 * p.width - half_goal + size * math.sin(angle)
     elif kind == MOUTH:
         x, y = edged(u[0], 0.0, rp), 0.5 * p.width + (2.0 * u[1] - 1.0) * (half_goal - rp)

@@ -31,13 +31,14 @@ GRAZE = 1e-2  # m/s; a mallet that changes the puck's velocity by less has hardl
 
 @njit(error_model="numpy")
 def judge_events(log, events, verdict):
-    """Energy gained without a mallet, and whether any mallet only grazed the puck."""
+    """Share of energy gained without a mallet, and whether any mallet only grazed the puck."""
     verdict[EVENTS] = events
     verdict[MALLET_EVENTS] = verdict[GRAZED] = 0.0
     verdict[GAIN] = -math.inf
     for i in range(events):
         row = log[i]
-        change = row[AFTER_X] ** 2 + row[AFTER_Y] ** 2 - row[BEFORE_X] ** 2 - row[BEFORE_Y] ** 2
+        before = row[BEFORE_X] ** 2 + row[BEFORE_Y] ** 2
+        change = (row[AFTER_X] ** 2 + row[AFTER_Y] ** 2 - before) / (1.0 + before)
         if row[KIND] >= bounce.MALLET_0:
             verdict[MALLET_EVENTS] += 1
             if math.hypot(row[AFTER_X] - row[BEFORE_X], row[AFTER_Y] - row[BEFORE_Y]) < GRAZE:
