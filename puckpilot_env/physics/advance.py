@@ -104,6 +104,10 @@ def _strike(puck, p, mallets, k, t):
                 halt(mallets[other], t)
             if not held:
                 vx, vy = 0.0, 0.0
+    elif vx * vx + vy * vy > contact.SQUEEZED_SPEED * contact.SQUEEZED_SPEED:
+        halt(mallets[0], t)
+        halt(mallets[1], t)
+        vx, vy = 0.0, 0.0
     puck.vx, puck.vy = vx, vy
 
 

@@ -21,6 +21,7 @@ MOST_ADVANCES = 20000
 REST_BETWEEN_TOUCHES = 1e-3  # s; a mallet that pushes the puck along touches it about this often
 PINCH_SLACK = 5e-5  # m; a puck this near to a wall while a mallet strikes it is between the two
 LEAST_REBOUND = 1e-6  # m/s; a puck squeezed against a wall leaves it, so that rounding makes no bounce of it
+SQUEEZED_SPEED = 1e3  # m/s; only a puck between two that close in on each other, both perfectly elastic, gets so fast
 STEEPEST_WEDGE = 0.0625  # sin^2 of the angle (14.5 degrees) under which a pinched puck cannot slip out
 
 
