@@ -50,6 +50,16 @@ def frames_exposed(table, p):
 
 
 @kernel
+def first_told_apart(table, p, period):
+    """Number of the first frame of this step that can be wanted: of a long step, only the last MOST_WANTED frames can.
+
+    Those before them are older than any that the decision at the step's end looks at.
+    """
+    last = math.floor((table.time + period) * p.frame_rate - table.frame_phase)
+    return max(frames_exposed(table, p), last - MOST_WANTED + 1)
+
+
+@kernel
 def _bit(frame, first, last):
     return 1 << (frame - first) if first <= frame <= last else 0
 
