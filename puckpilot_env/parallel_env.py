@@ -139,11 +139,11 @@ class TableEnv(ParallelEnv):
         if not tables.variant.draws:
             return {}
         p, table = tables.params[0], tables.states[0]
-        oldest = (1.0 - table["frame_phase"] % 1.0) / p["frame_rate"]
+        waited = (-p["camera_latency"] * p["frame_rate"] - table["frame_phase"]) % 1.0  # of a frame, at time 0
         return {
             "parameters": {draw.parameter: float(p[draw.parameter]) for draw in tables.variant.draws},
             "gantry_scale": table["gantry_scale"][player].copy(),
-            "camera_delay": float(p["camera_latency"] + oldest),
+            "camera_delay": float(p["camera_latency"] + waited / p["frame_rate"]),
         }
 
     def _outcome(self, player: int) -> dict[str, Any]:
