@@ -117,8 +117,10 @@ def _check_together(record: np.void) -> None:
         raise ValueError("goal_width leaves no wall beside the mouth; expected goal_width + 2 puck_radius <= width")
     if record["goal_width"] <= 2 * record["puck_radius"]:
         raise ValueError("the puck does not fit through the goal; expected goal_width > 2 puck_radius")
-    if record["width"] < 6 * record["mallet_radius"] or record["length"] < 12 * record["mallet_radius"]:
-        raise ValueError("the table is too small for the mallets; expected width >= 6 and length >= 12 mallet radii")
+    if record["width"] < 6 * record["mallet_radius"] or record["length"] < 14 * (
+        record["mallet_radius"] + record["puck_radius"]
+    ):  # then puck and mallet do not overlap in any start
+        raise ValueError("the table is too small: expected width >= 6 mallet radii, length >= 14 of mallet and puck")
     for sign, axis in ((-1.0, "x"), (1.0, "y")):
         c5, c6, c7 = (record[f"a{i}"] + sign * record[f"b{i}"] for i in (1, 2, 3))
         if not (c5 > 0 and c6 > 0 and c7 > 0 and c6 * c6 > 4 * c5 * c7):

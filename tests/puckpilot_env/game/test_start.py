@@ -52,7 +52,7 @@ def test_shots_leave_time():
     assert (puck[:, 0] / -puck[:, 2]).min() >= 0.3 - 1e-9
     assert puck[:, 0].min() >= 1.1 and puck[:, 0].max() <= 1.7
     speed = np.linalg.norm(puck[:, 2:], axis=1)
-    assert speed.min() >= 1.0 - 1e-12 and 4.0 < speed.max() <= 6.0
+    assert speed.min() >= 1.0 - 1e-12 and 6.0 < speed.max() <= 8.0
     assert (mallets[:, 1, 0] > puck[:, 0]).all()  # the shooter is behind the puck
     np.testing.assert_allclose(mallets[:, 0], np.tile([0.25, 0.5, 0, 0], (COUNT, 1)))
 
