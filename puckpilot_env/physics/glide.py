@@ -15,6 +15,8 @@ import math
 
 from puckpilot_env.kernel import kernel
 
+LARGEST = 1e300  # beyond it, or below its inverse, products overflow or lose their digits
+
 
 @kernel
 def _sinc(x2):
@@ -66,12 +68,14 @@ def _expm1_ratio(u):
 
 @kernel
 def stop_distance(v0, friction, drag):
-    """Distance [m] at which a puck of speed `v0` [m/s] comes to rest; infinite without friction."""
+    """Distance [m] at which a puck of speed `v0` [m/s] comes to rest; infinite without friction (to speak of)."""
     if v0 <= 0.0:
         return 0.0
     if friction <= 0.0:
         return math.inf
     kinetic = v0 * v0 / friction
+    if kinetic > LARGEST:
+        return math.inf
     return 0.5 * kinetic * _log1p_ratio(drag * kinetic)
 
 
@@ -121,7 +125,8 @@ def time_to(v0, path, friction, drag):
         return math.inf, 0.0
     v1 = math.sqrt(v1_squared)
     mixed = friction + drag * v0 * v1
-    if mixed <= 0.0:  # no friction, and no drag or no speed left
-        return (path / v0 if drag <= 0.0 else math.inf), v1
+    if mixed * LARGEST < 1.0:  # no friction to speak of, and next to no drag or speed
+        u = drag * path
+        return path / v0 * _expm1_ratio(u) * math.exp(u), v0 * math.exp(-u)
     gain = lost / ((v0 + v1) * mixed)
     return gain * _atan_ratio(friction * drag * gain * gain), v1
