@@ -22,11 +22,11 @@ def drawn_info(tables: Tables, seats: NDArray[np.integer]) -> dict[str, Any]:
     if not tables.variant.draws:
         return {}
     p, states = tables.params, tables.states
-    oldest = (1.0 - states["frame_phase"] % 1.0) / p["frame_rate"]
+    waited = (-p["camera_latency"] * p["frame_rate"] - states["frame_phase"]) % 1.0  # of a frame, at the first decision
     return {
         "parameters": {draw.parameter: p[draw.parameter].copy() for draw in tables.variant.draws},
         "gantry_scale": states["gantry_scale"][np.arange(len(tables)), seats],
-        "camera_delay": p["camera_latency"] + oldest,
+        "camera_delay": p["camera_latency"] + waited / p["frame_rate"],
     }
 
 

@@ -2,7 +2,8 @@
 
 Each player has a camera and a gantry of its own, hence a beam that hides the puck from it. Frame j is exposed at
 `(j + frame_phase)/frame_rate` and can be used `camera_latency` later, so that at a decision the newest one is
-`camera_latency + U(0, 1/frame_rate)` old. Only frames that some decision will look at are taken.
+`camera_latency + U(0, 1/frame_rate)` old. Only frames that some decision will look at are taken; a held frame shows
+what the one before it showed, at the beginning of the step at the earliest.
 """
 
 from __future__ import annotations
@@ -47,6 +48,16 @@ def exposure(table, p, frame):
 def frames_exposed(table, p):
     """Number of the first frame that is exposed after now."""
     return math.floor(table.time * p.frame_rate - table.frame_phase) + 1
+
+
+@kernel
+def first_told_apart(table, p, period):
+    """Number of the first frame of this step that can be wanted: of a long step, only the last MOST_WANTED frames can.
+
+    Those before them are older than any that the decision at the step's end looks at.
+    """
+    last = math.floor((table.time + period) * p.frame_rate - table.frame_phase)
+    return max(frames_exposed(table, p), last - MOST_WANTED + 1)
 
 
 @kernel
@@ -107,13 +118,9 @@ def _copy_frame(frames, k, source, target):
 @kernel
 def _see(camera, stream, p, frames, k, frame, last, x, y, own_x, other_x, other_y):
     """Store frame number `frame` as player `k` sees it; all places in its own frame, `own_x` its mallet's."""
-    chance = random_stream.uniform(stream)
-    if chance < p.held_frames:
-        _copy_frame(frames, k, last, frame)
-        return
     slot = frame % frames.shape[1]
     beside = abs(x - own_x)
-    if beside > 0.5 * p.beam_width and chance < 1.0 - p.dropped_frames:
+    if beside > 0.5 * p.beam_width and random_stream.uniform(stream) >= p.dropped_frames:
         near = beside < p.puck_radius + 0.5 * p.beam_width
         x, y = measure(camera, stream, p, x, y, p.beam_noise if near else p.camera_noise)
         frames[k, slot, PUCK_X], frames[k, slot, PUCK_Y], frames[k, slot, SEEN] = x, y, 1.0
@@ -122,6 +129,17 @@ def _see(camera, stream, p, frames, k, frame, last, x, y, own_x, other_x, other_
         frames[k, slot, SEEN] = 0.0
     x, y = measure(camera, stream, p, other_x, other_y, p.camera_noise)
     frames[k, slot, OPPONENT_X], frames[k, slot, OPPONENT_Y] = x, y
+
+
+@kernel
+def repeat_frame(table, frames, frame):
+    """Make frame number `frame` the same as the one before it; False, and nothing done, if that one was not taken."""
+    if table.last_frame != frame - 1:
+        return False
+    for k in range(2):
+        _copy_frame(frames, k, frame - 1, frame)
+    table.last_frame = frame
+    return True
 
 
 @kernel

@@ -47,9 +47,9 @@ def aims(puck: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def test_shots_leave_time():
-    """At least 0.45 s to the goal line, even without friction, and from the other half."""
+    """At least 0.3 s to the goal line, even without friction, and from the other half."""
     puck, mallets = starts("defence-v0")
-    assert (puck[:, 0] / -puck[:, 2]).min() >= 0.45 - 1e-9
+    assert (puck[:, 0] / -puck[:, 2]).min() >= 0.3 - 1e-9
     assert puck[:, 0].min() >= 1.1 and puck[:, 0].max() <= 1.7
     speed = np.linalg.norm(puck[:, 2:], axis=1)
     assert speed.min() >= 1.0 - 1e-12 and 4.0 < speed.max() <= 6.0
@@ -67,7 +67,7 @@ def test_shots_are_aimed_as_promised():
 
 
 def test_shots_on_target_go_in():
-    """Nobody in the way: none is in within 0.4 s; those aimed well inside the mouth go in, those well beside do not."""
+    """Nobody in the way: none is in within 0.2 s; those aimed well inside the mouth go in, those well beside do not."""
     tables = Tables("defence-v0", 4000, seed=5, autoreset=False, max_steps=100)
     puck = puck_motion(tables.states)
     aim, _ = aims(puck)
@@ -77,7 +77,7 @@ def test_shots_on_target_go_in():
     for step in range(1, 31):
         tables.step(staying(tables))
         scored |= tables.states["score"][:, 1] == 1
-        assert step > 4 or not scored.any()
+        assert step > 2 or not scored.any()
     inside, beside = np.abs(aim - 0.5) < 0.5 * GOAL - PUCK, np.abs(aim - 0.5) > 0.5 * GOAL + PUCK
     assert scored[inside & fast].mean() > 0.99 and (inside & fast).sum() > 1500
     assert scored[beside].mean() < 0.01 and beside.sum() > 300
@@ -112,7 +112,7 @@ def test_face_off_favours_nobody():
     angle = np.arctan2(puck[:, 3], np.abs(puck[:, 2]))
     assert stats.kstest(angle, "uniform", (-np.pi / 4, np.pi / 2)).pvalue > 1e-3
     for name in ("puck_y", "puck_vx", "puck_vy"):
-        assert float(stats.ks_2samp(seen(tables, 0, name), seen(tables, 1, name))[1]) > 1e-3
+        assert stats.kstest(seen(tables, 0, name), seen(tables, 1, name)).pvalue > 1e-3
 
 
 def test_starts_differ_from_table_to_table_and_episode_to_episode():
