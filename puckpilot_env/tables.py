@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -162,14 +163,14 @@ class Tables:
             f"expected a number in [{low:g}, {high:g}] {unit}"
         )
 
-    def snapshot(self, tables: ArrayLike | slice = slice(None)) -> Snapshot:
+    def snapshot(self, tables: NDArray[Any] | list[int] | slice = slice(None)) -> Snapshot:
         """A copy of these tables (indices or a slice; all by default), random streams included."""
         return Snapshot(
             self.states[tables].copy(), self.params[tables].copy(), self._frames[tables].copy(),
             self.observations[tables].copy(),
         )  # fmt: skip
 
-    def restore(self, snapshot: Snapshot, tables: ArrayLike | slice = slice(None)) -> None:
+    def restore(self, snapshot: Snapshot, tables: NDArray[Any] | list[int] | slice = slice(None)) -> None:
         """Put a snapshot back onto as many tables, or one table's snapshot onto all of them (a fork)."""
         if (
             snapshot.frames.shape[1:] != self._frames.shape[1:]
