@@ -95,7 +95,7 @@ def test_paths_agree_with_the_integrated_gantry(seed):
     ("speed", "away"), [(0.0, 0.3), (1.0, 0.3), (-1.0, 0.2), (2.0, 0.01), (0.5, -0.1), (0.0, 1e-4)]
 )
 def test_no_other_two_switches_arrive_sooner(volts, speed, away):
-    """By brute force over t1 with the reference's formula for the speed: the first whose speed and place fit."""
+    """By brute force over t1, with the reference's formula for the speed: the first whose speed and place fit."""
     p, law = record(), Law()
     table, area = new_table(p), np.array([(-9.0, 9.0, -9.0, 9.0)] * 2)
     axis = table.mallets[0].y
