@@ -20,7 +20,7 @@ LAGS = (0, 1, 2, 5, 11)  # frames back from the newest, of a history
 OLDEST_LAG = 11
 VELOCITY_LAG = 2  # estimated velocities are a difference over so many frames
 PUCK_X, PUCK_Y, OPPONENT_X, OPPONENT_Y, SEEN = range(5)  # columns of a frame
-MOST_WANTED = 62  # frames in a step that can be told apart
+MOST_WANTED = 62  # frames in a step; those on their way and the oldest lag are fewer
 
 
 def frames_kept(sensing: int, camera_latency: float, frame_rate: float) -> int:
@@ -55,13 +55,18 @@ def _bit(frame, first, last):
 
 
 @kernel
-def wanted_frames(table, p, sensing, first, period):
-    """Which of the frames exposed in this step, from number `first` on, some decision will look at, as bits."""
+def wanted_frames(table, p, sensing, period):
+    """`(first, bits)`: which frames exposed in this step some decision will look at; bit i stands for `first + i`.
+
+    No decision looks further back than the next one, so `first` skips what even that one will not need, and the bits
+    are enough for a step of any length.
+    """
     last = math.floor((table.time + period) * p.frame_rate - table.frame_phase)
-    wanted = 0
     step = table.steps + 1
     newest = newest_frame(table, p, step * period)
     oldest = OLDEST_LAG if sensing == HISTORY else VELOCITY_LAG
+    first = max(frames_exposed(table, p), newest - oldest)
+    wanted = 0
     while newest - oldest <= last:
         if sensing == HISTORY:
             for lag in LAGS:
@@ -70,7 +75,7 @@ def wanted_frames(table, p, sensing, first, period):
             wanted |= _bit(newest, first, last) | _bit(newest - VELOCITY_LAG, first, last)
         step += 1
         newest = newest_frame(table, p, step * period)
-    return wanted
+    return first, wanted
 
 
 @kernel

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from puckpilot_env import Tables, find_variant
+from puckpilot_env.trace import trace
 
 NAMES = ("observations", "rewards", "terminated", "truncated")
 SHORT = ["match-randomized-v0", "match-v0", "defence-randomized-v0", "attack-v0"]
@@ -231,3 +233,28 @@ def test_a_finer_period_is_the_same_table():
 def test_what_cannot_be_is_refused(options, told):
     with pytest.raises(ValueError, match=told.replace("?", r"\?")):
         Tables(**{"variant": "match-v0", "tables": 1, **options})
+
+
+@pytest.mark.parametrize("frame_rate", [10.0, 120.0, 300.0])
+@pytest.mark.parametrize("period", [1 / 120, 0.1, 0.55, 1.0])
+@pytest.mark.parametrize("variant", ["match-sensors-v0", "match-randomized-v0"])
+def test_the_newest_frame_shows_the_table_as_it_was(variant, period, frame_rate):
+    """Without noise, it is where a puck that nobody touches was `age` ago, however many frames a step has."""
+    clean = ("camera_noise", "beam_noise", "camera_error", "dropped_frames", "held_frames", "beam_width")
+    given = {"frame_rate": frame_rate, "camera_latency": 0.06, "mallet_radius": 0.02, **dict.fromkeys(clean, 0.0)}
+    known = find_variant(variant)
+    tables = Tables(replace(known, draws=()), 8, seed=4, period=period, values=given)
+    names = [column.name for column in tables.observation_columns]
+    seen = names.index("puck_0_x" if variant == "match-sensors-v0" else "puck_x")
+    stay = np.concatenate([tables.observations[:, :, :2], np.full((8, 2, 2), 0.3, np.float32)], axis=2)
+    for _ in range(max(1, round(1.0 / period))):
+        tables.step(stay)
+    now, phase = tables.states["time"], tables.states["frame_phase"]
+    exposed = (np.floor((now - 0.06) * frame_rate - phase + 1e-9) + phase) / frame_rate
+    for i in range(8):
+        past = Tables(replace(known, draws=()), 8, seed=4, period=1 / 120, values=given)
+        for _ in range(int(exposed[i] * 120)):
+            past.step(stay)
+        (moment,), _ = trace(past, i, stay[i], [exposed[i] - past.states["time"][i]])
+        expected = [moment["puck"]["x"], moment["puck"]["y"]]
+        np.testing.assert_allclose(tables.observations[i, 0, seen : seen + 2], expected, atol=1e-5)
