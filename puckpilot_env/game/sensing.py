@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from puckpilot_env import random_stream
 from puckpilot_env.game import mirror
 from puckpilot_env.kernel import kernel
@@ -35,6 +37,12 @@ def frames_kept(sensing: int, camera_latency: float, frame_rate: float) -> int:
 def newest_frame(table, p, time):
     """Number of the newest frame that can be used at `time` [s]."""
     return math.floor((time - p.camera_latency) * p.frame_rate - table.frame_phase + 1e-9)
+
+
+def first_delay(frame_phase: np.ndarray, p: np.ndarray) -> np.ndarray:
+    """How old the newest frame is at an episode's first decision [s]; `newest_frame` at time 0, for many tables."""
+    newest = np.floor(-p["camera_latency"] * p["frame_rate"] - frame_phase + 1e-9)
+    return -(newest + frame_phase) / p["frame_rate"]
 
 
 @kernel

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from puckpilot_env import Tables, find_variant
+from puckpilot_env.infos import drawn_info
 from puckpilot_env.trace import trace
 
 NAMES = ("observations", "rewards", "terminated", "truncated")
@@ -258,3 +259,19 @@ def test_the_newest_frame_shows_the_table_as_it_was(variant, period, frame_rate)
         (moment,), _ = trace(past, i, stay[i], [exposed[i] - past.states["time"][i]])
         expected = [moment["puck"]["x"], moment["puck"]["y"]]
         np.testing.assert_allclose(tables.observations[i, 0, seen : seen + 2], expected, atol=1e-5)
+
+
+def test_the_told_camera_delay_is_that_of_the_first_observation():
+    """A puck that comes straight is seen `camera_delay` times its velocity before the place where it is."""
+    clean = dict.fromkeys(("camera_noise", "camera_error", "beam_width", "dropped_frames", "held_frames"), 0.0)
+    known = find_variant("match-randomized-v0")
+    draws = tuple(draw for draw in known.draws if draw.parameter not in clean)
+    for latency in (0.0, 0.0134, 0.06):
+        given = {**clean, "camera_latency": latency}
+        tables = Tables(replace(known, draws=draws), 200, seed=2, values=given)
+        names = [column.name for column in tables.observation_columns]
+        puck = tables.states["puck"]
+        seen = tables.observations[:, 0, names.index("puck_x")]
+        told = drawn_info(tables, np.zeros(200, int))["camera_delay"]
+        np.testing.assert_allclose((puck["x"] - seen) / puck["vx"], told, atol=1e-5)
+        assert told.min() >= latency - 1e-9 and told.max() <= latency + 1 / 120
