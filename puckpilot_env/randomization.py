@@ -42,12 +42,17 @@ REALITY: tuple[Draw, ...] = (
 def as_rows(draws: tuple[Draw, ...]) -> np.ndarray:
     """`(draws, 4)` float64 for the kernels: column of the parameter, kind of distribution, low, high.
 
-    Raises ValueError for a parameter or distribution that does not exist, or a range that the parameter cannot have.
+    Raises ValueError for a parameter or distribution that does not exist, or a range that one of them cannot have.
     """
     rows = np.zeros((len(draws), 4))
     for row, draw in zip(rows, draws, strict=True):
         if draw.distribution not in DISTRIBUTIONS:
             raise ValueError(f"unknown distribution '{draw.distribution}'; known: {', '.join(DISTRIBUTIONS)}")
         low, high = parameters.checked(draw.parameter, draw.low), parameters.checked(draw.parameter, draw.high)
+        if low > high or (draw.distribution == "log-uniform" and low <= 0.0):
+            least = "0 < low <= high" if draw.distribution == "log-uniform" else "low <= high"
+            raise ValueError(
+                f"draw of '{draw.parameter}' from {low:g} to {high:g}, {draw.distribution}; expected {least}"
+            )
         row[:] = parameters.COLUMN[draw.parameter], DISTRIBUTIONS[draw.distribution], low, high
     return rows

@@ -10,6 +10,7 @@ import pytest
 
 from puckpilot_env import Tables, find_variant
 from puckpilot_env.infos import drawn_info
+from puckpilot_env.randomization import Draw
 from puckpilot_env.trace import trace
 
 NAMES = ("observations", "rewards", "terminated", "truncated")
@@ -275,3 +276,33 @@ def test_the_told_camera_delay_is_that_of_the_first_observation():
         told = drawn_info(tables, np.zeros(200, int))["camera_delay"]
         np.testing.assert_allclose((puck["x"] - seen) / puck["vx"], told, atol=1e-5)
         assert told.min() >= latency - 1e-9 and told.max() <= latency + 1 / 120
+
+
+@pytest.mark.parametrize(
+    "draw, told",
+    [
+        (
+            Draw("drag", "log-uniform", 0.0, 0.2, ""),
+            "from 0 to 0.2, log-uniform; expected 0 < low <= high",
+        ),
+        (Draw("drag", "uniform", 0.2, 0.1, ""), "draw of 'drag' from 0.2 to 0.1, uniform; expected low <= high"),
+        (Draw("drag", "normal", 0.1, 0.2, ""), "unknown distribution 'normal'"),
+    ],
+)
+def test_draws_that_cannot_be_are_refused(draw, told):
+    with pytest.raises(ValueError, match=told):
+        Tables(replace(find_variant("match-v0"), draws=(draw,)), 1)
+
+
+def test_a_spread_that_makes_a_gantry_swing_is_refused():
+    """Poles are real as long as C6^2 > 4 C5 C7, for the worst of the drawn coefficients too."""
+    slow = {"a1": 3e-4, "b1": 0.0}  # y: C6^2 / (4 C5 C7) = 0.138; x likewise 1.12
+    with pytest.raises(ValueError, match="not overdamped"):
+        Tables("match-v0", 1, values=slow)
+    nearly = {"a1": 3e-5, "b1": 0.0}  # y: 1.38, and with 20 % of spread 0.61
+    Tables("match-v0", 1, values=nearly)
+    with pytest.raises(ValueError, match=r"gantry axis y is not overdamped.*gantry_spread"):
+        Tables("match-v0", 1, values={**nearly, "gantry_spread": 0.2})
+    drawn = replace(find_variant("match-v0"), draws=(Draw("gantry_spread", "uniform", 0.0, 0.2, ""),))
+    with pytest.raises(ValueError, match=r"gantry axis y is not overdamped.*gantry_spread"):
+        Tables(drawn, 1, values=nearly)
