@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from puckpilot_env.game.rules import ENDING_NAMES
+from puckpilot_env.game.sensing import first_delay
 from puckpilot_env.tables import Tables
 
 _ENDINGS = np.array(ENDING_NAMES, dtype=object)
@@ -22,11 +23,10 @@ def drawn_info(tables: Tables, seats: NDArray[np.integer]) -> dict[str, Any]:
     if not tables.variant.draws:
         return {}
     p, states = tables.params, tables.states
-    waited = (-p["camera_latency"] * p["frame_rate"] - states["frame_phase"]) % 1.0  # of a frame, at the first decision
     return {
         "parameters": {draw.parameter: p[draw.parameter].copy() for draw in tables.variant.draws},
         "gantry_scale": states["gantry_scale"][np.arange(len(tables)), seats],
-        "camera_delay": p["camera_latency"] + waited / p["frame_rate"],
+        "camera_delay": first_delay(states["frame_phase"], p),
     }
 
 

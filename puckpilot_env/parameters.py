@@ -85,7 +85,7 @@ def make_records(tables: int, values: Mapping[str, float] | None = None) -> np.n
     for name, value in (values or {}).items():
         records[name] = checked(name, value)
     if tables:
-        _check_together(records[0])
+        check_together(records[0])
     return records
 
 
@@ -112,7 +112,8 @@ def checked(name: str, value: float) -> float:
     return number
 
 
-def _check_together(record: np.void) -> None:
+def check_together(record: np.void) -> None:
+    """ValueError, in one line, if numbers that are each in their range do not make a table together."""
     if record["goal_width"] + 2 * record["puck_radius"] > record["width"]:
         raise ValueError("goal_width leaves no wall beside the mouth; expected goal_width + 2 puck_radius <= width")
     if record["goal_width"] <= 2 * record["puck_radius"]:
@@ -123,5 +124,9 @@ def _check_together(record: np.void) -> None:
         raise ValueError("the table is too small: expected width >= 6 mallet radii, length >= 14 of mallet and puck")
     for sign, axis in ((-1.0, "x"), (1.0, "y")):
         c5, c6, c7 = (record[f"a{i}"] + sign * record[f"b{i}"] for i in (1, 2, 3))
-        if not (c5 > 0 and c6 > 0 and c7 > 0 and c6 * c6 > 4 * c5 * c7):
-            raise ValueError(f"gantry axis {axis} is not overdamped: C5, C6, C7 = {c5:g}, {c6:g}, {c7:g}; change a, b")
+        spread = record["gantry_spread"]
+        if not (c5 > 0 and c6 > 0 and c7 > 0 and (1 - spread) ** 2 * c6 * c6 > (1 + spread) ** 2 * 4 * c5 * c7):
+            raise ValueError(
+                f"gantry axis {axis} is not overdamped: C5, C6, C7 = {c5:g}, {c6:g}, {c7:g}, each up to {spread:g} of "
+                "itself off; change a, b or gantry_spread"
+            )

@@ -80,6 +80,7 @@ class Tables:
         self.nominal = self.params[:1].copy()
         self._rules = variant.rules()
         self._drawn = variant.drawn()
+        self._check_draws()
         self.states = np.zeros(tables, state.TABLE)
         kept = self._frames_kept()
         self._frames = np.zeros((tables, 2, kept, state.FRAME_COLUMNS))
@@ -96,6 +97,13 @@ class Tables:
         self._pool = ThreadPoolExecutor(self.threads - 1) if self.threads > 1 else None
         announce_compilation("step_range")
         self.reset(seed)
+
+    def _check_draws(self) -> None:
+        for bound in ("low", "high"):
+            extreme = self.nominal[0].copy()
+            for draw in self.variant.draws:
+                extreme[draw.parameter] = getattr(draw, bound)
+            parameters.check_together(extreme)
 
     def _frames_kept(self) -> int:
         worst = {name: float(self.nominal[name][0]) for name in ("camera_latency", "frame_rate")}

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from puckpilot_env import random_stream
 from puckpilot_env.game import mirror
 from puckpilot_env.kernel import kernel
@@ -21,7 +23,7 @@ LAGS = (0, 1, 2, 5, 11)  # frames back from the newest, of a history
 OLDEST_LAG = 11
 VELOCITY_LAG = 2  # estimated velocities are a difference over so many frames
 PUCK_X, PUCK_Y, OPPONENT_X, OPPONENT_Y, SEEN = range(5)  # columns of a frame
-MOST_WANTED = 62  # frames in a step that can be told apart
+MOST_WANTED = 62  # frames in a step; those on their way and the oldest lag are fewer
 
 
 def frames_kept(sensing: int, camera_latency: float, frame_rate: float) -> int:
@@ -38,6 +40,12 @@ def newest_frame(table, p, time):
     return math.floor((time - p.camera_latency) * p.frame_rate - table.frame_phase + 1e-9)
 
 
+def first_delay(frame_phase: np.ndarray, p: np.ndarray) -> np.ndarray:
+    """How old the newest frame is at an episode's first decision [s]; `newest_frame` at time 0, for many tables."""
+    newest = np.floor(-p["camera_latency"] * p["frame_rate"] - frame_phase + 1e-9)
+    return -(newest + frame_phase) / p["frame_rate"]
+
+
 @kernel
 def exposure(table, p, frame):
     """When frame number `frame` is exposed [s]."""
@@ -51,28 +59,23 @@ def frames_exposed(table, p):
 
 
 @kernel
-def first_told_apart(table, p, period):
-    """Number of the first frame of this step that can be wanted: of a long step, only the last MOST_WANTED frames can.
-
-    Those before them are older than any that the decision at the step's end looks at.
-    """
-    last = math.floor((table.time + period) * p.frame_rate - table.frame_phase)
-    return max(frames_exposed(table, p), last - MOST_WANTED + 1)
-
-
-@kernel
 def _bit(frame, first, last):
     return 1 << (frame - first) if first <= frame <= last else 0
 
 
 @kernel
-def wanted_frames(table, p, sensing, first, period):
-    """Which of the frames exposed in this step, from number `first` on, some decision will look at, as bits."""
+def wanted_frames(table, p, sensing, period):
+    """`(first, bits)`: which frames exposed in this step some decision will look at; bit i stands for `first + i`.
+
+    No decision looks further back than the next one, so `first` skips what even that one will not need, and the bits
+    are enough for a step of any length.
+    """
     last = math.floor((table.time + period) * p.frame_rate - table.frame_phase)
-    wanted = 0
     step = table.steps + 1
     newest = newest_frame(table, p, step * period)
     oldest = OLDEST_LAG if sensing == HISTORY else VELOCITY_LAG
+    first = max(frames_exposed(table, p), newest - oldest)
+    wanted = 0
     while newest - oldest <= last:
         if sensing == HISTORY:
             for lag in LAGS:
@@ -81,7 +84,7 @@ def wanted_frames(table, p, sensing, first, period):
             wanted |= _bit(newest, first, last) | _bit(newest - VELOCITY_LAG, first, last)
         step += 1
         newest = newest_frame(table, p, step * period)
-    return wanted
+    return first, wanted
 
 
 @kernel

@@ -50,8 +50,7 @@ def play(table, p, rule, until, rewards, log, film):
 @kernel
 def play_and_film(table, p, rule, frames, rewards, log, film):
     """`play` for a whole step, and the camera frames exposed meanwhile that some decision will look at."""
-    first = sensing.first_told_apart(table, p, rule.period)
-    wanted = sensing.wanted_frames(table, p, rule.sensing, first, rule.period)
+    first, wanted = sensing.wanted_frames(table, p, rule.sensing, rule.period)
     shots, held = 0, 0
     frame, left = first, wanted
     while left:
