@@ -14,6 +14,7 @@ from puckpilot_env.tables import Tables
 from puckpilot_env.variants import Variant
 
 Contestant = str | Callable[[Seat], Player]  # a name, or what makes a player for a seat
+MOST_GAMES = 1_000_000
 Progress = Callable[[int, int], None]  # called with games done and games in all
 Watch = Callable[
     [Tables, NDArray[np.float32]], None
@@ -69,8 +70,8 @@ def play(
     parameters in place of the variant's by name. `watch` sees every step of the games with first in seat 0, table 0
     the first of them. The same call gives the same result.
     """
-    if games < 1:
-        raise ValueError(f"games is {games!r}; expected a whole number >= 1")
+    if not 1 <= games <= MOST_GAMES:
+        raise ValueError(f"games is {games!r}; expected a whole number from 1 to {MOST_GAMES:,}")
     halves = []
     done = 0
     for seats, count in (((first, second), (games + 1) // 2), ((second, first), games // 2)):

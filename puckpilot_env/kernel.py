@@ -13,12 +13,11 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numba
-from numba.core import config
+from numba.core import config as numba_config
 
 _ROOT = Path(__file__).parent
 _KEEP_DAYS = 30
@@ -57,20 +56,25 @@ def _make_cache_folder() -> Path:
     return folder
 
 
+_config: Any = numba_config  # its settings are made at run time
 CACHE_FOLDER = _make_cache_folder()
 
 
 def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     """Compile `function` with numba on its first call: no GIL, IEEE divisions, cached in `CACHE_FOLDER`."""
-    before, config.CACHE_DIR = config.CACHE_DIR, str(CACHE_FOLDER)
+    before, _config.CACHE_DIR = _config.CACHE_DIR, str(CACHE_FOLDER)
     try:
         return numba.njit(cache=True, nogil=True, error_model="numpy")(function)
     finally:
-        config.CACHE_DIR = before
+        _config.CACHE_DIR = before
 
 
-@cache
+_announced = False
+
+
 def announce_compilation(marker: str) -> None:
-    """Say on stderr that the first call of the kernel named `marker` will compile; once, and only where it will."""
-    if not any(CACHE_FOLDER.rglob(f"*{marker}*.nbi")):
+    """Say on stderr that the first call of the kernel named `marker` will compile: once a process, where it will."""
+    global _announced
+    if not _announced and not any(CACHE_FOLDER.rglob(f"*{marker}*.nbi")):
         print("puckpilot: compiling the simulator (once after each change, under a minute) ...", file=sys.stderr)
+        _announced = True

@@ -23,6 +23,7 @@ ACTION_COLUMNS = (
     ("volts_y", "V", "magnitude of the voltage of axis y"),
 )
 LEAST_VOLTS, MOST_VOLTS = 0.3, 10.0  # report K.1
+MOST_TABLES, MOST_STEPS = 1_000_000, 1_000_000_000
 SHORTEST_PERIOD, LONGEST_PERIOD = 1.0 / 120.0, 1.0  # s
 
 
@@ -66,8 +67,8 @@ class Tables:
 
         Raises ValueError, in one line, for anything that cannot be.
         """
-        if not isinstance(tables, int | np.integer) or tables < 1:
-            raise ValueError(f"tables is {tables!r}; expected a whole number >= 1")
+        if not isinstance(tables, int | np.integer) or not 1 <= tables <= MOST_TABLES:
+            raise ValueError(f"tables is {tables!r}; expected a whole number from 1 to {MOST_TABLES:,}")
         if not isinstance(threads, int | np.integer) or not 1 <= threads <= 256:
             raise ValueError(f"threads is {threads!r}; expected a whole number from 1 to 256")
         if isinstance(variant, str):
@@ -173,6 +174,7 @@ class Tables:
 
     def snapshot(self, tables: NDArray[Any] | list[int] | slice = slice(None)) -> Snapshot:
         """A copy of these tables (indices or a slice; all by default), random streams included."""
+        tables = _rows_of(tables)
         return Snapshot(
             self.states[tables].copy(), self.params[tables].copy(), self._frames[tables].copy(),
             self.observations[tables].copy(),
@@ -204,6 +206,11 @@ class Tables:
             self._pool.shutdown()
 
 
+def _rows_of(tables: Any) -> Any:
+    """An index of tables that keeps the first axis: a number stands for a list of one."""
+    return tables if isinstance(tables, slice) else np.atleast_1d(tables)
+
+
 def _with_timing(variant: Variant, period: float | None, max_steps: int | None) -> Variant:
     if period is not None:
         if not isinstance(period, int | float) or not SHORTEST_PERIOD - 1e-9 <= period <= LONGEST_PERIOD:
@@ -211,8 +218,8 @@ def _with_timing(variant: Variant, period: float | None, max_steps: int | None) 
         limit = round(variant.step_limit * variant.period / period)
         variant = replace(variant, period=float(period), step_limit=limit)
     if max_steps is not None:
-        if not isinstance(max_steps, int | np.integer) or max_steps < 1:
-            raise ValueError(f"max_steps is {max_steps!r}; expected a whole number >= 1")
+        if not isinstance(max_steps, int | np.integer) or not 1 <= max_steps <= MOST_STEPS:
+            raise ValueError(f"the limit of steps is {max_steps!r}; expected a whole number from 1 to {MOST_STEPS:,}")
         variant = replace(variant, step_limit=int(max_steps))
     return variant
 

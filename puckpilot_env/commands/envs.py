@@ -1,4 +1,4 @@
-"""`puckpilot envs`: which environments there are, and the page of each."""
+"""Which environments there are, and the page of each."""
 
 from __future__ import annotations
 

@@ -31,6 +31,7 @@ def run(args: argparse.Namespace) -> int:
     from rich.console import Console
 
     from baselines import find_player
+    from baselines.match import MOST_GAMES
     from sim2real.compare import compare_recording, print_summary
 
     players = tuple(args.players or ("veteran", "interceptor"))
@@ -38,6 +39,8 @@ def run(args: argparse.Namespace) -> int:
         raise ValueError(f"{len(players)} players given; expected two, as in: puckpilot demo veteran goalie")
     for name in players:
         find_player(name)
+    if not 1 <= args.games <= MOST_GAMES:
+        raise ValueError(f"--games is {args.games}; expected a whole number from 1 to {MOST_GAMES:,}")
     args.out.mkdir(parents=True, exist_ok=True)
     film = args.out / "match.gif"
     meetings = _meet(players, args.games, args.seed, film)
@@ -47,8 +50,14 @@ def run(args: argparse.Namespace) -> int:
         return 0
     console = Console(highlight=False, soft_wrap=True)
     console.print(_table(players, meetings))
+    console.print(
+        "Every start is played twice, with the seats exchanged. share: of the decisive games; 95 %: its interval,\n"
+        "in which the two games of a start count as one where they come out alike. In a drill the first seat is\n"
+        "tested (defence: no goal conceded; attack: a shot that would score), and it ends before a shot arrives.\n"
+    )
     console.print(f"The beginning of the first {FILMED} is filmed: {film}\n")
-    console.print("A recording of a table that has physics the simulator leaves out, beside the simulator:")
+    console.print("A recording of a table with physics that the simulator leaves out, beside the simulator")
+    console.print("(puckpilot compare --help explains the words):")
     print_summary(comparison)
     console.print(
         "\nNext: puckpilot envs, puckpilot tournament, puckpilot compare RECORDING; each explains itself with --help."
@@ -92,10 +101,10 @@ def _table(players: tuple[str, str], meetings: list[dict[str, Any]]) -> Any:
     from rich import box
     from rich.table import Table
 
-    title = f"{players[0]} against {players[1]}; every start is played from both seats"
+    title = f"{players[0]} against {players[1]}, in games won by {players[0]}"
     table = Table(title=title, box=box.SIMPLE_HEAD, title_justify="left", pad_edge=False)
     table.add_column("environment", no_wrap=True)
-    for heading in ("won", "drawn", "lost", "goals", "of decisive", "95 % interval"):
+    for heading in ("won", "drawn", "lost", "goals", "share", "95 %"):
         table.add_column(heading, justify="right", no_wrap=True)
     for row in meetings:
         rate = row["decisive_win_rate"]
