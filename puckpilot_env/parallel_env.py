@@ -48,7 +48,8 @@ class TableEnv(ParallelEnv):
         period: float | None = None,
         parameters: Mapping[str, float] | None = None,
     ) -> None:
-        """`max_cycles`: truncate after so many steps; `period` [s] of a step, from 1/120 s; `parameters` by name.
+        """`max_cycles`: truncate after so many steps; `period` [s] of a step, from 1/120 s; `parameters` by name,
+        which are then not drawn.
 
         Raises ValueError, in one line, for anything that cannot be.
         """

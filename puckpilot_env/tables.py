@@ -61,7 +61,7 @@ class Tables:
         """Make `tables` tables of a variant (or its id) and reset them.
 
         `period` [s] of a step replaces the variant's (from 1/120 s on), `max_steps` its step limit (truncation);
-        `values` puts parameters in place of the defaults, by name.
+        `values` puts parameters in place of the defaults, by name; one that the variant draws is then drawn no more.
 
         Raises ValueError, in one line, for anything that cannot be.
         """
@@ -72,10 +72,12 @@ class Tables:
         if isinstance(variant, str):
             variant = find_variant(variant)
         variant = _with_timing(variant, period, max_steps)
+        given = values or {}
+        variant = replace(variant, draws=tuple(draw for draw in variant.draws if draw.parameter not in given))
         self.variant = variant
         self.threads = min(int(threads), int(tables))
         self.autoreset = autoreset
-        self.params = parameters.make_records(tables, {**variant.parameters, **(values or {})})
+        self.params = parameters.make_records(tables, {**variant.parameters, **given})
         self.nominal = self.params[:1].copy()
         self._rules = variant.rules()
         self._drawn = variant.drawn()

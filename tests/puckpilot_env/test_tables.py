@@ -306,3 +306,9 @@ def test_a_spread_that_makes_a_gantry_swing_is_refused():
     drawn = replace(find_variant("match-v0"), draws=(Draw("gantry_spread", "uniform", 0.0, 0.2, ""),))
     with pytest.raises(ValueError, match=r"gantry axis y is not overdamped.*gantry_spread"):
         Tables(drawn, 1, values=nearly)
+
+
+def test_given_parameters_are_not_drawn():
+    tables = Tables("match-randomized-v0", 16, seed=1, values={"friction": 0.2})
+    assert (tables.params["friction"] == 0.2).all() and len(set(tables.params["drag"])) == 16
+    assert "friction" not in drawn_info(tables, np.zeros(16, int))["parameters"]
