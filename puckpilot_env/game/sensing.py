@@ -2,7 +2,8 @@
 
 Each player has a camera and a gantry of its own, hence a beam that hides the puck from it. Frame j is exposed at
 `(j + frame_phase)/frame_rate` and can be used `camera_latency` later, so that at a decision the newest one is
-`camera_latency + U(0, 1/frame_rate)` old. Only frames that some decision will look at are taken.
+`camera_latency + U(0, 1/frame_rate)` old. Only frames that some decision will look at are taken, and
+the ones before them, which a held frame repeats.
 """
 
 from __future__ import annotations
@@ -58,13 +59,16 @@ def frames_exposed(table, p):
 
 
 @kernel
-def _bit(frame, first, last):
-    return 1 << (frame - first) if first <= frame <= last else 0
+def _bits(frame, first, last):
+    """Of a frame that is looked at, and of the one before, which it may repeat."""
+    bits = 1 << (frame - first) if first <= frame <= last else 0
+    return bits | (1 << (frame - 1 - first) if first < frame <= last + 1 else 0)
 
 
 @kernel
 def wanted_frames(table, p, sensing, period):
-    """`(first, bits)`: which frames exposed in this step some decision will look at; bit i stands for `first + i`.
+    """`(first, bits)`: which frames exposed in this step some decision will look at, or a held frame repeat; bit i
+    stands for `first + i`.
 
     No decision looks further back than the next one, so `first` skips what even that one will not need, and the bits
     are enough for a step of any length.
@@ -73,14 +77,14 @@ def wanted_frames(table, p, sensing, period):
     step = table.steps + 1
     newest = newest_frame(table, p, step * period)
     oldest = OLDEST_LAG if sensing == HISTORY else VELOCITY_LAG
-    first = max(frames_exposed(table, p), newest - oldest)
+    first = max(frames_exposed(table, p), newest - oldest - 1)
     wanted = 0
-    while newest - oldest <= last:
+    while newest - oldest - 1 <= last:
         if sensing == HISTORY:
             for lag in LAGS:
-                wanted |= _bit(newest - lag, first, last)
+                wanted |= _bits(newest - lag, first, last)
         else:
-            wanted |= _bit(newest, first, last) | _bit(newest - VELOCITY_LAG, first, last)
+            wanted |= _bits(newest, first, last) | _bits(newest - VELOCITY_LAG, first, last)
         step += 1
         newest = newest_frame(table, p, step * period)
     return first, wanted
