@@ -41,7 +41,6 @@ _IN_MATCH = "both"
 RECEIVERS: dict[str, dict[int, str]] = {
     "clear_reward": {
         DEFENCE: "player_0; ends the episode",
-        ATTACK: "player_1, if it clears at once, in the step in which the puck arrived",
         MATCH: _IN_MATCH,
     },
     "conceded_reward": {
@@ -52,7 +51,6 @@ RECEIVERS: dict[str, dict[int, str]] = {
     "scored_reward": {MATCH: _IN_MATCH},
     "possession_lost_reward": {
         DEFENCE: "player_0; ends the episode",
-        ATTACK: "player_1, if the puck comes back in the step in which it arrived",
         MATCH: _IN_MATCH,
     },
     "shot_reward": {

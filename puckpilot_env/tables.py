@@ -31,6 +31,7 @@ SHORTEST_PERIOD, LONGEST_PERIOD = 1.0 / 120.0, 1.0  # s
 class Snapshot:
     """Some tables at an instant, random streams included. Made by `Tables.snapshot`, taken by `Tables.restore`."""
 
+    variant: str
     states: NDArray[np.void]
     params: NDArray[np.void]
     frames: NDArray[np.float64]
@@ -176,17 +177,16 @@ class Tables:
         """A copy of these tables (indices or a slice; all by default), random streams included."""
         tables = _rows_of(tables)
         return Snapshot(
+            self.variant.id,
             self.states[tables].copy(), self.params[tables].copy(), self._frames[tables].copy(),
             self.observations[tables].copy(),
         )  # fmt: skip
 
     def restore(self, snapshot: Snapshot, tables: NDArray[Any] | list[int] | slice = slice(None)) -> None:
         """Put a snapshot back onto as many tables, or one table's snapshot onto all of them (a fork)."""
-        if (
-            snapshot.frames.shape[1:] != self._frames.shape[1:]
-            or snapshot.observations.shape[1:] != (self.observations.shape[1:])
-        ):
-            raise ValueError("the snapshot is of another variant; restore it onto tables of its own")
+        tables = _rows_of(tables)
+        if snapshot.variant != self.variant.id or snapshot.frames.shape[1:] != self._frames.shape[1:]:
+            raise ValueError(f"the snapshot is of {snapshot.variant}; these tables are of another variant or camera")
         count = len(self.states[tables])
         if len(snapshot.states) not in (1, count):
             raise ValueError(f"the snapshot has {len(snapshot.states)} tables; expected 1 or {count}")
@@ -215,7 +215,7 @@ def _with_timing(variant: Variant, period: float | None, max_steps: int | None) 
     if period is not None:
         if not isinstance(period, int | float) or not SHORTEST_PERIOD - 1e-9 <= period <= LONGEST_PERIOD:
             raise ValueError(f"period is {period!r}; expected a number of seconds from 1/120 to {LONGEST_PERIOD:g}")
-        limit = round(variant.step_limit * variant.period / period)
+        limit = max(round(variant.step_limit * variant.period / period), min(variant.step_limit, 1))
         variant = replace(variant, period=float(period), step_limit=limit)
     if max_steps is not None:
         if not isinstance(max_steps, int | np.integer) or not 1 <= max_steps <= MOST_STEPS:

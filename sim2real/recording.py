@@ -61,7 +61,7 @@ class Recording:
 
 
 def read_recording(path: Path | str) -> Recording:
-    """Read the recording folder `path` (shared/recordings/FORMAT.md).
+    """Read the recording folder `path`, of format puckpilot-recording/1.
 
     Errors: RecordingError, one line that names file, line and reason, if anything breaks a rule of the format.
     """

@@ -40,7 +40,6 @@ def end(table, ending, winner):
 @kernel
 def crossed_middle(table, p, rules, rewards, mallet_x, mallet_y):
     """The puck just crossed the middle line; `(mallet_x, mallet_y)`: the mallet of the half that it enters [m]."""
-    table.held = 0.0
     vx, vy = table.puck.vx, table.puck.vy
     player = 0 if vx > 0.0 else 1  # whose half it leaves
     goal = bounce.GOAL_X1 if player == 0 else bounce.GOAL_X0
@@ -63,14 +62,15 @@ def crossed_middle(table, p, rules, rewards, mallet_x, mallet_y):
 
 @kernel
 def goal(table, p, rules, rewards, kind):
-    """The puck entered a goal."""
+    """The puck entered a goal. After a shot that ended a drill in the same step that no longer matters."""
+    if table.ending != RUNNING:
+        return
     conceder = 0 if kind == bounce.GOAL_X0 else 1
     scorer = 1 - conceder
     rewards[conceder] += reward.conceded_reward()
     table.score[scorer] += 1
     if rules.game != MATCH:
-        if table.ending == RUNNING:  # a shot that ended the drill may be so fast that it is in within the same step
-            end(table, CONCEDED, scorer)
+        end(table, CONCEDED, scorer)
         return
     rewards[scorer] += reward.scored_reward()
     table.defending[0] = table.defending[1] = 1
@@ -83,6 +83,8 @@ def goal(table, p, rules, rewards, kind):
 @kernel
 def look_for_clear(table, p, rules, rewards):
     """Whether a defending player has just cleared the puck (J.1 case 1)."""
+    if table.ending != RUNNING:
+        return
     for k in range(2):
         if table.defending[k] == 1:
             x, _ = mirror.place(k, table.puck.x, table.puck.y, p)

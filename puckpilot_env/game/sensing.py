@@ -20,7 +20,7 @@ from puckpilot_env.state import ERROR_TERMS
 
 EXACT, ESTIMATED, HISTORY = range(3)  # kinds of sensing
 LAGS = (0, 1, 2, 5, 11)  # frames back from the newest, of a history
-OLDEST_LAG = 11
+OLDEST_LAG = LAGS[-1]
 VELOCITY_LAG = 2  # estimated velocities are a difference over so many frames
 PUCK_X, PUCK_Y, OPPONENT_X, OPPONENT_Y, SEEN = range(5)  # columns of a frame
 MOST_WANTED = 62  # frames in a step; those on their way and the oldest lag are fewer

@@ -40,7 +40,9 @@ def play(table, p, rule, until, rewards, log, film):
         if kind == bounce.MIDDLE_LINE:
             entered = 1 if table.puck.vx > 0.0 else 0
             x, y = place_at(table.mallets[entered], now)
-            rules.crossed_middle(table, p, rule, rewards, x, y)
+            table.held = -now  # the step's period is added at its end
+            if table.ending == rules.RUNNING:
+                rules.crossed_middle(table, p, rule, rewards, x, y)
         else:
             return True
     table.puck.vx, table.puck.vy = 0.0, 0.0

@@ -306,3 +306,27 @@ def test_a_spread_that_makes_a_gantry_swing_is_refused():
     drawn = replace(find_variant("match-v0"), draws=(Draw("gantry_spread", "uniform", 0.0, 0.2, ""),))
     with pytest.raises(ValueError, match=r"gantry axis y is not overdamped.*gantry_spread"):
         Tables(drawn, 1, values=nearly)
+
+
+def test_given_parameters_are_not_drawn():
+    tables = Tables("match-randomized-v0", 16, seed=1, values={"friction": 0.2})
+    assert (tables.params["friction"] == 0.2).all() and len(set(tables.params["drag"])) == 16
+    assert "friction" not in drawn_info(tables, np.zeros(16, int))["parameters"]
+
+
+def test_a_held_frame_repeats_the_one_before():
+    """So a velocity, a difference over two frames, is of half the way where the newer one is held, of 3/2 where the
+    older one is; twice in a row is rarer."""
+    clean = ("camera_noise", "beam_noise", "camera_error", "dropped_frames", "beam_width", "friction", "drag")
+    values = {**dict.fromkeys(clean, 0.0), "held_frames": 0.05}
+    tables = Tables(replace(find_variant("defence-randomized-v0"), draws=()), 2000, seed=1, values=values)
+    column = [column.name for column in tables.observation_columns].index("puck_vx")
+    stay = np.concatenate([tables.observations[:, :, :2], np.full((2000, 2, 2), 0.3, np.float32)], axis=2)
+    before = tables.states["puck"]["vx"].copy()
+    for _ in range(2):
+        tables.step(stay)
+    free = (tables.states["puck"]["vx"] == before) & (tables.states["steps"] == 2)
+    ratios = (tables.observations[:, 0, column] / before)[free].round(3)
+    assert len(ratios) > 300
+    assert ((ratios == 0.5) | (ratios == 1.5)).mean() == pytest.approx(0.09, abs=0.04)
+    assert (ratios > 2.0).mean() < 0.005
