@@ -64,7 +64,7 @@ class Tables:
         """Make `tables` tables of a variant (or its id) and reset them.
 
         `period` [s] of a step replaces the variant's (from 1/120 s on), `max_steps` its step limit (truncation);
-        `values` puts parameters in place of the defaults, by name.
+        `values` puts parameters in place of the defaults, by name; one that is given is no longer drawn.
 
         Raises ValueError, in one line, for anything that cannot be.
         """
@@ -74,7 +74,7 @@ class Tables:
             raise ValueError(f"threads is {threads!r}; expected a whole number from 1 to 256")
         if isinstance(variant, str):
             variant = find_variant(variant)
-        variant = _with_timing(variant, period, max_steps)
+        variant = _without_draws(_with_timing(variant, period, max_steps), values or {})
         self.variant = variant
         self.threads = min(int(threads), int(tables))
         self.autoreset = autoreset
@@ -222,6 +222,11 @@ def _with_timing(variant: Variant, period: float | None, max_steps: int | None) 
             raise ValueError(f"the limit of steps is {max_steps!r}; expected a whole number from 1 to {MOST_STEPS:,}")
         variant = replace(variant, step_limit=int(max_steps))
     return variant
+
+
+def _without_draws(variant: Variant, values: Mapping[str, float]) -> Variant:
+    """The variant without the draws of parameters that are given."""
+    return replace(variant, draws=tuple(draw for draw in variant.draws if draw.parameter not in values))
 
 
 def _action_bounds(p: np.void) -> NDArray[np.float32]:

@@ -106,6 +106,15 @@ def test_nothing_to_tell_without_draws():
     assert TableEnv(find_variant("match-v0")).reset(seed=3)[1] == {"player_0": {}, "player_1": {}}
 
 
+def test_what_is_given_is_not_drawn():
+    """Neither at first nor in later episodes; nor is it among what infos tell as drawn. The rest is drawn."""
+    env = TableEnv(find_variant("match-randomized-v0"), parameters={"friction": 0.2, "drag": 0.01})
+    for _ in range(3):
+        _, infos = env.reset()
+        assert env.tables.params["friction"][0] == 0.2 and env.tables.params["drag"][0] == 0.01
+        assert set(infos["player_0"]["parameters"]) == set(NAMES) - {"friction", "drag"}
+
+
 @pytest.mark.parametrize(
     "draw, told",
     [
