@@ -80,7 +80,7 @@ def test_overview(word, capsys):
             ["envs", "matsch-v0"],
             "puckpilot envs: unknown variant 'matsch-v0'; did you mean 'puckpilot/match-v0'?",
         ),
-        (["bench", "--tables", "0"], "puckpilot bench: tables is 0; expected a whole number >= 1"),
+        (["bench", "--tables", "0"], "puckpilot bench: tables is 0; expected a whole number from 1 to 1,000,000"),
         (["bench", "--threads", "0"], "puckpilot bench: threads is 0; expected a whole number from 1 to 256"),
         (["bench", "--seconds", "0"], "puckpilot bench: --seconds is 0; expected a number above 0, at most 3600"),
         (["bench", "--seconds", "nan"], "puckpilot bench: --seconds is nan; expected a number above 0, at most 3600"),

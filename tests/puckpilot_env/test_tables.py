@@ -127,7 +127,7 @@ def test_fork(variant):
 
 def test_restore_refuses_what_does_not_fit():
     match, drill = Tables("match-v0", 2), Tables("defence-v0", 2)
-    with pytest.raises(ValueError, match="snapshot is of another variant"):
+    with pytest.raises(ValueError, match="another variant or camera"):
         match.restore(drill.snapshot())
     with pytest.raises(ValueError, match="snapshot has 2 tables; expected 1 or 3"):
         Tables("match-v0", 3).restore(match.snapshot())
@@ -224,10 +224,10 @@ def test_a_finer_period_is_the_same_table():
 @pytest.mark.parametrize(
     "options, told",
     [
-        ({"tables": 0}, "tables is 0; expected a whole number >= 1"),
+        ({"tables": 0}, "tables is 0; expected a whole number from 1"),
         ({"threads": 0}, "threads is 0; expected a whole number from 1 to 256"),
         ({"period": 0.008}, "period is 0.008; expected a number of seconds from 1/120 to 1"),
-        ({"max_steps": 0}, "max_steps is 0; expected a whole number >= 1"),
+        ({"max_steps": 0}, "limit of steps is 0; expected a whole number from 1"),
         ({"seed": -1}, r"seed is -1; expected a whole number from 0 to 2\*\*64 - 1"),
         ({"variant": "mach-v0"}, "unknown variant 'mach-v0'; did you mean 'puckpilot/match-v0'?"),
     ],
@@ -283,9 +283,9 @@ def test_the_told_camera_delay_is_that_of_the_first_observation():
     [
         (
             Draw("drag", "log-uniform", 0.0, 0.2, ""),
-            "from 0 to 0.2, log-uniform; expected 0 < low <= high",
+            "log-uniform from 0; expected low > 0",
         ),
-        (Draw("drag", "uniform", 0.2, 0.1, ""), "draw of 'drag' from 0.2 to 0.1, uniform; expected low <= high"),
+        (Draw("drag", "uniform", 0.2, 0.1, ""), "draw of 'drag' is from 0.2 to 0.1; expected low <= high"),
         (Draw("drag", "normal", 0.1, 0.2, ""), "unknown distribution 'normal'"),
     ],
 )
