@@ -11,9 +11,10 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from puckpilot_env.physics.plan import plan_axis
 from tests.puckpilot_env.physics import sweeps
 from tests.puckpilot_env.physics.scenes import KINDS, UNITS
-from tests.puckpilot_env.physics.table_driver import record
+from tests.puckpilot_env.physics.table_driver import SAMPLE_COLUMNS, new_log, new_table, play, put_at_rest, record
 
 DEEPEST_OUTSIDE, DEEPEST_IN_MALLET = 1e-6, 1e-4  # m, the bars of the specification
 DEEPEST_SEEN = 1e-7  # m, what is kept in fact, even by an elastic puck squeezed to a kilometre a second
@@ -70,6 +71,25 @@ def test_cutting_an_interval_changes_nothing(effort):
     assert found[few, sweeps.MOVED_BY_CUTS].max() <= 1e-7
     assert np.median(found[:, sweeps.MOVED_BY_CUTS]) <= 1e-12
     assert np.quantile(found[~few, sweeps.MOVED_BY_CUTS], 0.97) <= 1e-7
+
+
+def test_a_puck_that_brushes_a_post_meets_it_once():
+    """Touching, and moving at a right angle to the normal but for rounding: no endless contact, no speed lost twice."""
+    p, out, log = record(), np.zeros((2, SAMPLE_COLUMNS)), new_log()
+    for angle in np.linspace(0.02, 0.5 * np.pi, 2000):
+        for turn in (-1.0, 1.0):
+            table = new_table(p)
+            for k, x in enumerate((0.9, 1.7)):
+                put_at_rest(table.mallets[k].x, x)
+                put_at_rest(table.mallets[k].y, 0.9)
+                plan_axis(table.mallets[k].x, x, 1.0)
+                plan_axis(table.mallets[k].y, 0.9, 1.0)
+            puck = table.puck
+            puck.x = p.puck_radius * np.cos(angle)
+            puck.y = 0.5 - 0.5 * p.goal_width + p.puck_radius * np.sin(angle)
+            puck.vx, puck.vy = -turn * 3.7 * np.sin(angle), turn * 3.7 * np.cos(angle)
+            _, _, events = play(puck, p, table.mallets, 0.0, 0.02, out, log)
+            assert events <= 3, angle
 
 
 @given(arrays(np.float64, UNITS, elements=st.floats(0.0, 1.0)))
