@@ -6,8 +6,12 @@ import argparse
 import difflib
 import importlib
 import os
+import re
+import shutil
 import sys
+import textwrap
 from collections.abc import Sequence
+from importlib.metadata import version
 from typing import NoReturn
 
 # name: (module with `add_arguments` and `run`, what it does)
@@ -39,6 +43,15 @@ def _overview() -> str:
     )
 
 
+def _paragraphs(text: str) -> str:
+    """A docstring for the terminal: its paragraphs, and the items of its lists, wrapped each by itself."""
+    width = min(shutil.get_terminal_size().columns, 100) - 2
+    items = re.split(r"\n\s*\n|\n(?=- |\d\. )", text.strip())
+    return "\n".join(
+        textwrap.fill(" ".join(item.split()), width, subsequent_indent="  " * (item[0] in "-1234")) for item in items
+    )
+
+
 def _unknown(name: str) -> str:
     near = difflib.get_close_matches(name, COMMANDS, n=1)
     hint = f"did you mean '{near[0]}'?" if near else f"known: {', '.join(COMMANDS)}"
@@ -48,6 +61,9 @@ def _unknown(name: str) -> str:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one sub-command. 0: did it; 1: did it, and the answer is bad news; 2: could not, with one line why."""
     words = list(sys.argv[1:] if arguments is None else arguments)
+    if words[:1] == ["--version"]:
+        print(f"puckpilot {version('puckpilot')}")
+        return 0
     if not words or words[0] in ("-h", "--help"):
         print(_overview())
         return 0 if words else 2
@@ -57,7 +73,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 2
     module_name, what = COMMANDS[name]
     module = importlib.import_module(module_name)
-    parser = _Parser(prog=f"puckpilot {name}", description=module.__doc__ or what)
+    parser = _Parser(
+        prog=f"puckpilot {name}",
+        description=_paragraphs(module.__doc__ or what),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     module.add_arguments(parser)
     try:
         return module.run(parser.parse_args(rest))
@@ -67,8 +87,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print(f"puckpilot {name}: stopped", file=sys.stderr)
         return 130
-    except (ValueError, OSError) as error:
+    except OSError as error:
+        place = f"{error.filename}: " if error.filename else ""
+        print(f"puckpilot {name}: {place}{error.strerror or error}; name another place", file=sys.stderr)
+        return 2
+    except ValueError as error:
         print(f"puckpilot {name}: {' '.join(str(error).split())}", file=sys.stderr)
+        return 2
+    except MemoryError:
+        print(f"puckpilot {name}: not enough memory for so many tables at once; ask for fewer", file=sys.stderr)
         return 2
 
 

@@ -16,7 +16,7 @@ import pkgutil
 from baselines import players
 from baselines.player import Player, Seat
 
-__all__ = ["Player", "Seat", "make_player", "player_names"]
+__all__ = ["Player", "Seat", "find_player", "make_player", "player_names"]
 
 
 def player_names() -> list[str]:
@@ -24,8 +24,8 @@ def player_names() -> list[str]:
     return sorted(name for _, name, _ in pkgutil.iter_modules(players.__path__) if not name.startswith("_"))
 
 
-def make_player(name: str, seat: Seat) -> Player:
-    """The player of this name, sitting at `seat`. Raises ValueError, in one line, for an unknown name."""
+def find_player(name: str) -> type[Player]:
+    """The class of the player of this name. Raises ValueError, in one line, for an unknown name."""
     names = player_names()
     if name not in names:
         near = difflib.get_close_matches(str(name), names, n=1)
@@ -36,4 +36,9 @@ def make_player(name: str, seat: Seat) -> Player:
     found = [c for c in found if issubclass(c, Player)]
     if len(found) != 1:
         raise ValueError(f"{module.__file__} defines {len(found)} subclasses of Player; expected one")
-    return found[0](seat)
+    return found[0]
+
+
+def make_player(name: str, seat: Seat) -> Player:
+    """The player of this name, sitting at `seat`. Raises ValueError, in one line, for an unknown name."""
+    return find_player(name)(seat)

@@ -14,7 +14,11 @@ from puckpilot_env.tables import Tables
 from puckpilot_env.variants import Variant
 
 Contestant = str | Callable[[Seat], Player]  # a name, or what makes a player for a seat
+MOST_GAMES = 1_000_000
 Progress = Callable[[int, int], None]  # called with games done and games in all
+Watch = Callable[
+    [Tables, NDArray[np.float32]], None
+]  # called with the tables and the actions (n, 2, 4) about to be played
 
 
 @dataclass(frozen=True)
@@ -28,6 +32,11 @@ class MatchResult:
     goals: tuple[int, int]
     results: NDArray[np.float64]  # (pairs, 2): 1, 0, -1 as first won, drew, lost in seat 0 and in seat 1; NaN: unplayed
     lengths: NDArray[np.int64]  # (games,) steps; the games with first in seat 0 come first
+
+    @property
+    def padded_results(self) -> NDArray[np.float64]:
+        """`results` with a game that was not played as a draw: neither says anything about a share of decided games."""
+        return np.nan_to_num(self.results)
 
     @property
     def decisive_share(self) -> float:
@@ -53,14 +62,16 @@ def play(
     values: Mapping[str, float] | None = None,
     progress: Progress | None = None,
     threads: int = 1,
+    watch: Watch | None = None,
 ) -> MatchResult:
     """Play `games` episodes of `variant` (or its id), half of them with the seats exchanged.
 
     Pair i uses random stream i of `seed` in both halves; of an odd number, the last pair is half. `values` puts
-    parameters in place of the variant's by name. The same call gives the same result.
+    parameters in place of the variant's by name. `watch` sees every step of the games with first in seat 0, table 0
+    the first of them. The same call gives the same result.
     """
-    if games < 1:
-        raise ValueError(f"games is {games!r}; expected a whole number >= 1")
+    if not 1 <= games <= MOST_GAMES:
+        raise ValueError(f"games is {games!r}; expected a whole number from 1 to {MOST_GAMES:,}")
     halves = []
     done = 0
     for seats, count in (((first, second), (games + 1) // 2), ((second, first), games // 2)):
@@ -68,14 +79,18 @@ def play(
             break
         tables = Tables(variant, count, seed=seed, threads=threads, autoreset=False, values=values)
         tick = (lambda ended, before=done: progress(before + ended, games)) if progress else None
-        halves.append(_play_half(tables, seats, seed, tick))
+        halves.append(_play_half(tables, seats, seed, tick, None if halves else watch))
         tables.close()
         done += count
     return _add_up((_name(first), _name(second)), games, halves)
 
 
 def _play_half(
-    tables: Tables, seats: tuple[Contestant, Contestant], seed: int, tick: Callable[[int], None] | None
+    tables: Tables,
+    seats: tuple[Contestant, Contestant],
+    seed: int,
+    tick: Callable[[int], None] | None,
+    watch: Watch | None,
 ) -> _Half:
     """One episode on every table; a table that has ended is stepped on but no longer looked at."""
     count = len(tables)
@@ -88,6 +103,8 @@ def _play_half(
     while running.any():
         for k, player in enumerate(players):
             actions[:, k] = player.act(tables.observations[:, k])
+        if watch:
+            watch(tables, actions)
         tables.step(actions)
         half.lengths[running] += 1
         ended = running & (tables.terminated | tables.truncated)

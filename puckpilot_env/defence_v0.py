@@ -1,7 +1,7 @@
 """Defence: keep a shot out and take control of the puck.
 
 The report's Defence episode (appendix J.1) as a drill of its own. A shot comes from player_1's half, direct or over a
-side wall, at least 0.45 s before it can reach the goal line; player_1 stands behind it and attacks (appendix J.2).
+side wall, at least 0.3 s before it can reach the goal line; player_1 stands behind it and attacks (appendix J.2).
 """
 
 from puckpilot_env.entry_points import entry_points

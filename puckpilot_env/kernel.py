@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import numba
-from numba.core import config
+from numba.core import config as numba_config
 
 _ROOT = Path(__file__).parent
 _KEEP_DAYS = 30
@@ -27,7 +27,8 @@ def _source_files() -> list[Path]:
     """Every file that defines kernels or what they are compiled against, in this package and those above it."""
     sources = [path for path in sorted(_ROOT.rglob("*.py")) if path.parent.name in ("physics", "game")]
     sources += [_ROOT / f"{name}.py" for name in ("kernel", "parameters", "random_stream", "state", "batch", "trace")]
-    return sources + sorted((_ROOT.parent / "baselines").rglob("*.py"))
+    players = sorted((_ROOT.parent / "baselines").rglob("*.py"))
+    return sources + [path for path in players if path.parent.name != "commands"]
 
 
 def _source_hash() -> str:
@@ -40,12 +41,12 @@ def _source_hash() -> str:
 
 def _make_cache_folder() -> Path:
     """The folder for this version of the sources; a temporary one where the home folder cannot be written."""
-    base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "puckpilot"
-    folder = base / _source_hash()
     try:
+        base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "puckpilot"
+        folder = base / _source_hash()
         folder.mkdir(parents=True, exist_ok=True)
         (folder / "used").touch()
-    except OSError:
+    except (OSError, RuntimeError):  # Path.home() raises the latter for a user whom the system does not know
         return Path(tempfile.mkdtemp(prefix="puckpilot-kernels-"))
     oldest = time.time() - _KEEP_DAYS * 86400
     for other in base.iterdir():
@@ -55,19 +56,25 @@ def _make_cache_folder() -> Path:
     return folder
 
 
+_config: Any = numba_config  # its settings are made at run time
 CACHE_FOLDER = _make_cache_folder()
 
 
 def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     """Compile `function` with numba on its first call: no GIL, IEEE divisions, cached in `CACHE_FOLDER`."""
-    before, config.CACHE_DIR = config.CACHE_DIR, str(CACHE_FOLDER)
+    before, _config.CACHE_DIR = _config.CACHE_DIR, str(CACHE_FOLDER)
     try:
         return numba.njit(cache=True, nogil=True, error_model="numpy")(function)
     finally:
-        config.CACHE_DIR = before
+        _config.CACHE_DIR = before
+
+
+_announced = False
 
 
 def announce_compilation(marker: str) -> None:
-    """Say on stderr that the first call will compile, once per cache folder and `marker` (a kernel's name)."""
-    if not any(CACHE_FOLDER.rglob(f"*{marker}*.nbi")):
+    """Say on stderr that the first call of the kernel named `marker` will compile: once a process, where it will."""
+    global _announced
+    if not _announced and not any(CACHE_FOLDER.rglob(f"*{marker}*.nbi")):
         print("puckpilot: compiling the simulator (once after each change, under a minute) ...", file=sys.stderr)
+        _announced = True

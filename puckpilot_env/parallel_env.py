@@ -11,8 +11,8 @@ from gymnasium.spaces import Box
 from numpy.typing import NDArray
 from pettingzoo import ParallelEnv
 
-from puckpilot_env import parameters
 from puckpilot_env.game.rules import ENDING_NAMES
+from puckpilot_env.infos import drawn_info, only_row
 from puckpilot_env.motion import mallet_motion, puck_motion
 from puckpilot_env.tables import ACTION_COLUMNS, Tables
 from puckpilot_env.variants import Variant
@@ -134,17 +134,7 @@ class TableEnv(ParallelEnv):
         return {"player_0": rows[0], "player_1": rows[1]}
 
     def _drawn(self, player: int) -> dict[str, Any]:
-        """What was drawn for this episode: randomized parameters, the player's gantry, the camera's delay."""
-        tables = self._tables
-        if not tables.variant.draws:
-            return {}
-        p, table = tables.params[0], tables.states[0]
-        oldest = (1.0 - table["frame_phase"] % 1.0) / p["frame_rate"]
-        return {
-            "parameters": {draw.parameter: float(p[draw.parameter]) for draw in tables.variant.draws},
-            "gantry_scale": table["gantry_scale"][player].copy(),
-            "camera_delay": float(p["camera_latency"] + oldest),
-        }
+        return only_row(drawn_info(self._tables, np.array([player])))
 
     def _outcome(self, player: int) -> dict[str, Any]:
         table = self._tables.states[0]
@@ -177,8 +167,3 @@ class TableEnv(ParallelEnv):
 
 def _action_names() -> str:
     return ", ".join(f"{name} [{unit}]" for name, unit, _ in ACTION_COLUMNS)
-
-
-def parameter_names() -> tuple[str, ...]:
-    """Names that the argument `parameters` takes."""
-    return tuple(parameters.BY_NAME)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,6 +23,7 @@ ACTION_COLUMNS = (
     ("volts_y", "V", "magnitude of the voltage of axis y"),
 )
 LEAST_VOLTS, MOST_VOLTS = 0.3, 10.0  # report K.1
+MOST_TABLES, MOST_STEPS = 1_000_000, 1_000_000_000
 SHORTEST_PERIOD, LONGEST_PERIOD = 1.0 / 120.0, 1.0  # s
 
 
@@ -66,8 +67,8 @@ class Tables:
 
         Raises ValueError, in one line, for anything that cannot be.
         """
-        if not isinstance(tables, int | np.integer) or tables < 1:
-            raise ValueError(f"tables is {tables!r}; expected a whole number >= 1")
+        if not isinstance(tables, int | np.integer) or not 1 <= tables <= MOST_TABLES:
+            raise ValueError(f"tables is {tables!r}; expected a whole number from 1 to {MOST_TABLES:,}")
         if not isinstance(threads, int | np.integer) or not 1 <= threads <= 256:
             raise ValueError(f"threads is {threads!r}; expected a whole number from 1 to 256")
         if isinstance(variant, str):
@@ -80,6 +81,7 @@ class Tables:
         self.nominal = self.params[:1].copy()
         self._rules = variant.rules()
         self._drawn = variant.drawn()
+        self._check_draws()
         self.states = np.zeros(tables, state.TABLE)
         kept = self._frames_kept()
         self._frames = np.zeros((tables, 2, kept, state.FRAME_COLUMNS))
@@ -96,6 +98,13 @@ class Tables:
         self._pool = ThreadPoolExecutor(self.threads - 1) if self.threads > 1 else None
         announce_compilation("step_range")
         self.reset(seed)
+
+    def _check_draws(self) -> None:
+        for bound in ("low", "high"):
+            extreme = self.nominal[0].copy()
+            for draw in self.variant.draws:
+                extreme[draw.parameter] = getattr(draw, bound)
+            parameters.check_together(extreme)
 
     def _frames_kept(self) -> int:
         worst = {name: float(self.nominal[name][0]) for name in ("camera_latency", "frame_rate")}
@@ -163,14 +172,15 @@ class Tables:
             f"expected a number in [{low:g}, {high:g}] {unit}"
         )
 
-    def snapshot(self, tables: ArrayLike | slice = slice(None)) -> Snapshot:
+    def snapshot(self, tables: NDArray[Any] | list[int] | slice = slice(None)) -> Snapshot:
         """A copy of these tables (indices or a slice; all by default), random streams included."""
+        tables = _rows_of(tables)
         return Snapshot(
             self.states[tables].copy(), self.params[tables].copy(), self._frames[tables].copy(),
             self.observations[tables].copy(),
         )  # fmt: skip
 
-    def restore(self, snapshot: Snapshot, tables: ArrayLike | slice = slice(None)) -> None:
+    def restore(self, snapshot: Snapshot, tables: NDArray[Any] | list[int] | slice = slice(None)) -> None:
         """Put a snapshot back onto as many tables, or one table's snapshot onto all of them (a fork)."""
         if (
             snapshot.frames.shape[1:] != self._frames.shape[1:]
@@ -196,6 +206,11 @@ class Tables:
             self._pool.shutdown()
 
 
+def _rows_of(tables: Any) -> Any:
+    """An index of tables that keeps the first axis: a number stands for a list of one."""
+    return tables if isinstance(tables, slice) else np.atleast_1d(tables)
+
+
 def _with_timing(variant: Variant, period: float | None, max_steps: int | None) -> Variant:
     if period is not None:
         if not isinstance(period, int | float) or not SHORTEST_PERIOD - 1e-9 <= period <= LONGEST_PERIOD:
@@ -203,8 +218,8 @@ def _with_timing(variant: Variant, period: float | None, max_steps: int | None) 
         limit = round(variant.step_limit * variant.period / period)
         variant = replace(variant, period=float(period), step_limit=limit)
     if max_steps is not None:
-        if not isinstance(max_steps, int | np.integer) or max_steps < 1:
-            raise ValueError(f"max_steps is {max_steps!r}; expected a whole number >= 1")
+        if not isinstance(max_steps, int | np.integer) or not 1 <= max_steps <= MOST_STEPS:
+            raise ValueError(f"the limit of steps is {max_steps!r}; expected a whole number from 1 to {MOST_STEPS:,}")
         variant = replace(variant, step_limit=int(max_steps))
     return variant
 
@@ -219,8 +234,3 @@ def _action_bounds(p: np.void) -> NDArray[np.float32]:
 def _shares(tables: int, threads: int) -> list[tuple[int, int]]:
     edges = [tables * i // threads for i in range(threads + 1)]
     return list(pairwise(edges))
-
-
-def available_threads() -> int:
-    """How many threads can run here at once."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -16,8 +15,6 @@ from puckpilot_env.kernel import announce_compilation, kernel
 from puckpilot_env.physics.advance import EVENT_COLUMNS
 from puckpilot_env.physics.mallet import settle
 from puckpilot_env.tables import Tables
-
-_announce_once = lru_cache(announce_compilation)
 
 
 @kernel
@@ -61,7 +58,7 @@ def trace(
         raise ValueError(f"actions have shape {actions.shape}; expected (2, 4)")
     if times.ndim != 1 or not np.all((times >= 0.0) & (times <= tables.variant.period)):
         raise ValueError(f"times are {times}; expected a row of numbers from 0 to {tables.variant.period:g} s")
-    _announce_once("trace_step")
+    announce_compilation("trace_step")
     now = tables.snapshot([table])
     moments = np.zeros(len(times), state.TABLE)
     moments[:] = now.states[0]

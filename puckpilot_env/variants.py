@@ -74,7 +74,7 @@ def find_variant(name: str) -> Variant:
     known = all_variants()
     full = name if name.startswith("puckpilot/") else f"puckpilot/{name}"
     if full not in known:
-        near = difflib.get_close_matches(full, known, n=1)
+        near = difflib.get_close_matches(full, known, n=1, cutoff=0.85)
         hint = f"did you mean '{near[0]}'?" if near else f"known: {', '.join(known)}"
         raise ValueError(f"unknown variant '{name}'; {hint}")
     return known[full]

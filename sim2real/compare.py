@@ -1,4 +1,16 @@
-"""`puckpilot compare RECORDING`: what a real table did beside what the simulator says it should have done."""
+"""What a real table did beside what the simulator says it should have done.
+
+A recording is a folder: meta.json (sizes of table, puck and mallet), frames.csv (what the camera saw of the puck) and,
+where there are any, mallet.csv and commands.csv. It is cut into pieces, and each is predicted by itself:
+
+- glide: the puck slides freely. Its start is fitted to its first part; the error is what follows, seen less predicted.
+- wall, mallet: a hit. The velocity after it is predicted from the one before. The ratio kept is what share of the speed
+  along (normal) or across (tangential) the line of contact was left; the simulator's own are printed beside.
+- rms in units of noise: 1 is what the camera's noise alone explains; the noise is estimated from the recording.
+- held: frames that repeat the one before; wild: positions that jump and come back; launch: an unbroken run of play.
+- unexplained: a change of motion where nothing known was near, an unseen hand for example.
+
+They part most where the median error is the most in units of noise."""
 
 from __future__ import annotations
 

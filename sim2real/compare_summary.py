@@ -101,7 +101,7 @@ def _part_most(summary: dict[str, Any]) -> str:
         kind: summary[kind]["times_noise"]["median"] for kind in ("glide", "wall", "mallet") if summary[kind]["pieces"]
     }
     if not ratios:
-        return "nothing to compare: the recording holds no puck in free motion that could be used"
+        return "nowhere that can be told: the recording holds no puck in free motion that could be used"
     kind = max(ratios, key=lambda name: ratios[name])
     if ratios[kind] < AGREES:
         return f"nowhere beyond noise: the largest is {kind} with {ratios[kind]:.1f} times what noise explains"

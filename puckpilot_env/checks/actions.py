@@ -28,7 +28,7 @@ def bad_actions(space: Any, good: Any) -> list[tuple[str, Any]]:
     found = [("wrong shape", np.resize(good, (*space.shape[:-1], space.shape[-1] + 1)))] if space.shape else []
     wide = np.int64 if good.dtype.kind in "iu" else good.dtype
     first = (0,) * good.ndim
-    wrong = {"number above": space.high[first] + 1.0 + abs(float(space.high[first]))}
+    wrong: dict[str, Any] = {"number above": space.high[first] + 1.0 + abs(float(space.high[first]))}
     wrong["number below"] = space.low[first] - 1.0 - abs(float(space.low[first]))
     if good.dtype.kind == "f":
         wrong["NaN"] = np.nan

@@ -1,4 +1,4 @@
-"""`puckpilot bench`: how fast the simulator is on this machine.
+"""How fast the simulator is on this machine.
 
 By default one batch of tables plays random actions, drawn beforehand, with all observation and reward work; the figure
 is the median over many short stretches, since machines are noisy. --dicts measures one table behind PettingZoo's
@@ -60,7 +60,11 @@ def run(args: argparse.Namespace) -> int:
     else:
         width = max(map(len, report))
         for key, value in report.items():
-            print(f"{key:{width}}  {value:,.4g}" if isinstance(value, float) else f"{key:{width}}  {value}")
+            print(
+                f"{key:{width}}  {value:,.0f}"
+                if isinstance(value, float) and value > 1e3
+                else f"{key:{width}}  {value}"
+            )
     return 0
 
 
@@ -89,7 +93,7 @@ def _batches(variants: list[Any], tables: int, threads: int, seconds: float) -> 
         "fastest_stretch": float(speeds[:, 0].max()),
     }
     if len(variants) > 1:
-        report |= {"against": variants[1].id, "ratio": float(np.median(speeds[:, 0] / speeds[:, 1]))}
+        report |= {"against": variants[1].id, "ratio": round(float(np.median(speeds[:, 0] / speeds[:, 1])), 4)}
     return report
 
 
@@ -136,7 +140,7 @@ def _startup(id_: str) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as cache:
         cold = _first_step(id_, cache)
         warm = [_first_step(id_, cache) for _ in range(5)]
-    return {"id": id_, "cold_start_s": cold, "warm_start_s": float(np.median(warm))}
+    return {"id": id_, "cold_start_s": round(cold, 3), "warm_start_s": round(float(np.median(warm)), 3)}
 
 
 def _first_step(id_: str, cache: str) -> float:

@@ -1,4 +1,4 @@
-"""`puckpilot check`: does an environment keep its promises? Each finding is a fact, what it means, and what to do."""
+"""Does an environment keep its promises? Each finding is a fact, what it means, and what to do."""
 
 from __future__ import annotations
 

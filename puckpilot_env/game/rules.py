@@ -69,7 +69,8 @@ def goal(table, p, rules, rewards, kind):
     rewards[conceder] += reward.conceded_reward()
     table.score[scorer] += 1
     if rules.game != MATCH:
-        end(table, CONCEDED, scorer)
+        if table.ending == RUNNING:  # a shot that ended the drill may be so fast that it is in within the same step
+            end(table, CONCEDED, scorer)
         return
     rewards[scorer] += reward.scored_reward()
     table.defending[0] = table.defending[1] = 1

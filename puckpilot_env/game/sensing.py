@@ -2,12 +2,15 @@
 
 Each player has a camera and a gantry of its own, hence a beam that hides the puck from it. Frame j is exposed at
 `(j + frame_phase)/frame_rate` and can be used `camera_latency` later, so that at a decision the newest one is
-`camera_latency + U(0, 1/frame_rate)` old. Only frames that some decision will look at are taken.
+`camera_latency + U(0, 1/frame_rate)` old. Only frames that some decision will look at are taken; a held frame shows
+what the one before it showed, at the beginning of the step at the earliest.
 """
 
 from __future__ import annotations
 
 import math
+
+import numpy as np
 
 from puckpilot_env import random_stream
 from puckpilot_env.game import mirror
@@ -20,7 +23,7 @@ LAGS = (0, 1, 2, 5, 11)  # frames back from the newest, of a history
 OLDEST_LAG = 11
 VELOCITY_LAG = 2  # estimated velocities are a difference over so many frames
 PUCK_X, PUCK_Y, OPPONENT_X, OPPONENT_Y, SEEN = range(5)  # columns of a frame
-MOST_WANTED = 62  # frames in a step that can be told apart
+MOST_WANTED = 62  # frames in a step; those on their way and the oldest lag are fewer
 
 
 def frames_kept(sensing: int, camera_latency: float, frame_rate: float) -> int:
@@ -35,6 +38,12 @@ def frames_kept(sensing: int, camera_latency: float, frame_rate: float) -> int:
 def newest_frame(table, p, time):
     """Number of the newest frame that can be used at `time` [s]."""
     return math.floor((time - p.camera_latency) * p.frame_rate - table.frame_phase + 1e-9)
+
+
+def first_delay(frame_phase: np.ndarray, p: np.ndarray) -> np.ndarray:
+    """How old the newest frame is at an episode's first decision [s]; `newest_frame` at time 0, for many tables."""
+    newest = np.floor(-p["camera_latency"] * p["frame_rate"] - frame_phase + 1e-9)
+    return -(newest + frame_phase) / p["frame_rate"]
 
 
 @kernel
@@ -55,13 +64,18 @@ def _bit(frame, first, last):
 
 
 @kernel
-def wanted_frames(table, p, sensing, first, period):
-    """Which of the frames exposed in this step, from number `first` on, some decision will look at, as bits."""
+def wanted_frames(table, p, sensing, period):
+    """`(first, bits)`: which frames exposed in this step some decision will look at; bit i stands for `first + i`.
+
+    No decision looks further back than the next one, so `first` skips what even that one will not need, and the bits
+    are enough for a step of any length.
+    """
     last = math.floor((table.time + period) * p.frame_rate - table.frame_phase)
-    wanted = 0
     step = table.steps + 1
     newest = newest_frame(table, p, step * period)
     oldest = OLDEST_LAG if sensing == HISTORY else VELOCITY_LAG
+    first = max(frames_exposed(table, p), newest - oldest)
+    wanted = 0
     while newest - oldest <= last:
         if sensing == HISTORY:
             for lag in LAGS:
@@ -70,7 +84,7 @@ def wanted_frames(table, p, sensing, first, period):
             wanted |= _bit(newest, first, last) | _bit(newest - VELOCITY_LAG, first, last)
         step += 1
         newest = newest_frame(table, p, step * period)
-    return wanted
+    return first, wanted
 
 
 @kernel
@@ -84,20 +98,18 @@ def draw_camera_error(table, p):
 
 
 @kernel
-def smooth_error(e, u, w):
-    """The error [m] at `(u, w)` in -1..1 over the table from its coefficients `e`; the terms are orthonormal there."""
-    linear = e[0] + 1.7320508075688772 * (e[1] * u + e[2] * w)
-    return linear + 3.0 * e[3] * u * w + 1.118033988749895 * e[4] * (3.0 * u * u - 1.0)
-
-
-@kernel
 def measure(camera, stream, p, x, y, noise):
-    """A place [m] of the player's frame as its camera reports it."""
+    """A place [m] of the player's frame as its camera reports it: with the smooth error and white noise.
+
+    The error's terms are orthonormal over the table, so each carries the same share of its rms.
+    """
     u, w = 2.0 * x / p.length - 1.0, 2.0 * y / p.width - 1.0
-    return (
-        x + smooth_error(camera.error_x, u, w) + noise * random_stream.normal(stream),
-        y + smooth_error(camera.error_y, u, w) + noise * random_stream.normal(stream),
-    )
+    a, b = 1.7320508075688772 * u, 1.7320508075688772 * w
+    c, d = a * b, 1.118033988749895 * (a * u * 1.7320508075688772 - 1.0)
+    e = camera.error_x
+    x += e[0] + e[1] * a + e[2] * b + e[3] * c + e[4] * d + noise * random_stream.normal(stream)
+    e = camera.error_y
+    return x, y + e[0] + e[1] * a + e[2] * b + e[3] * c + e[4] * d + noise * random_stream.normal(stream)
 
 
 @kernel
@@ -109,13 +121,9 @@ def _copy_frame(frames, k, source, target):
 @kernel
 def _see(camera, stream, p, frames, k, frame, last, x, y, own_x, other_x, other_y):
     """Store frame number `frame` as player `k` sees it; all places in its own frame, `own_x` its mallet's."""
-    chance = random_stream.uniform(stream)
-    if chance < p.held_frames:
-        _copy_frame(frames, k, last, frame)
-        return
     slot = frame % frames.shape[1]
     beside = abs(x - own_x)
-    if beside > 0.5 * p.beam_width and chance < 1.0 - p.dropped_frames:
+    if beside > 0.5 * p.beam_width and random_stream.uniform(stream) >= p.dropped_frames:
         near = beside < p.puck_radius + 0.5 * p.beam_width
         x, y = measure(camera, stream, p, x, y, p.beam_noise if near else p.camera_noise)
         frames[k, slot, PUCK_X], frames[k, slot, PUCK_Y], frames[k, slot, SEEN] = x, y, 1.0
@@ -124,6 +132,17 @@ def _see(camera, stream, p, frames, k, frame, last, x, y, own_x, other_x, other_
         frames[k, slot, SEEN] = 0.0
     x, y = measure(camera, stream, p, other_x, other_y, p.camera_noise)
     frames[k, slot, OPPONENT_X], frames[k, slot, OPPONENT_Y] = x, y
+
+
+@kernel
+def repeat_frame(table, frames, frame):
+    """Make frame number `frame` the same as the one before it; False, and nothing done, if that one was not taken."""
+    if table.last_frame != frame - 1:
+        return False
+    for k in range(2):
+        _copy_frame(frames, k, frame - 1, frame)
+    table.last_frame = frame
+    return True
 
 
 @kernel

@@ -12,8 +12,8 @@ from puckpilot_env.physics.vector import size
 
 DEFENCE, ATTACK, MATCH = range(3)  # the games
 UNIFORM, LOG_UNIFORM = range(2)  # distributions of a drawn parameter
-SHORTEST_FLIGHT = 0.45  # s that a shot takes at least to the goal line: four decisions
-HOME_X = 0.25  # m from the player's own goal line; y is the middle
+SHORTEST_FLIGHT = 0.3  # s that a shot takes at least to the goal line: three decisions
+HOME = 0.125  # of the table's length from the player's own goal line; y is the middle
 
 
 @kernel
@@ -68,7 +68,7 @@ def place_puck(table, p, player, x, y, vx, vy):
 def face_off(table, p):
     """Both at home, the puck on the middle line with a small random velocity, the same for either player."""
     for k in range(2):
-        place_mallet(table, p, k, HOME_X, 0.5 * p.width)
+        place_mallet(table, p, k, HOME * p.length, 0.5 * p.width)
     y = p.width * random_stream.between(table.stream, 0.2, 0.8)
     angle = random_stream.between(table.stream, -0.25 * math.pi, 0.25 * math.pi)
     speed = random_stream.between(table.stream, 0.3, 0.8)
@@ -80,7 +80,7 @@ def face_off(table, p):
 def serve(table, p, player):
     """Both at home, the puck at rest in front of `player`, who conceded the last goal."""
     for k in range(2):
-        place_mallet(table, p, k, HOME_X, 0.5 * p.width)
+        place_mallet(table, p, k, HOME * p.length, 0.5 * p.width)
     y = p.width * random_stream.between(table.streams[player], 0.25, 0.75)
     place_puck(table, p, player, 0.3 * p.length, y, 0.0, 0.0)
 
@@ -99,7 +99,7 @@ def _shot(table, p, subject):
         aim = 2.0 * (p.width - radius) - aim
     dx, dy = -x, aim - y
     way = size(dx, dy)
-    speed = min(random_stream.between(table.stream, 1.0, 6.0), way / SHORTEST_FLIGHT)
+    speed = min(random_stream.between(table.stream, 1.0, 8.0), way / SHORTEST_FLIGHT)
     place_puck(table, p, subject, x, y, speed * dx / way, speed * dy / way)
     shooter = min(x + radius + p.mallet_radius + 0.05, p.length - p.mallet_radius)
     place_mallet(

@@ -50,20 +50,23 @@ def play(table, p, rule, until, rewards, log, film):
 @kernel
 def play_and_film(table, p, rule, frames, rewards, log, film):
     """`play` for a whole step, and the camera frames exposed meanwhile that some decision will look at."""
-    first = sensing.frames_exposed(table, p)
-    wanted = sensing.wanted_frames(table, p, rule.sensing, first, rule.period)
-    shots = 0
+    first, wanted = sensing.wanted_frames(table, p, rule.sensing, rule.period)
+    shots, held = 0, 0
     frame, left = first, wanted
     while left:
         if left & 1:
-            film[shots, 0] = sensing.exposure(table, p, frame) - table.time
+            repeats = random_stream.uniform(table.stream) < p.held_frames
+            shown = sensing.exposure(table, p, frame - 1 if repeats else frame) - table.time
+            film[shots, 0], film[shots, 1], film[shots, 2] = max(shown, 0.0), table.puck.x, table.puck.y
+            held |= repeats << shots
             shots += 1
         frame, left = frame + 1, left >> 1
     over = play(table, p, rule, rule.period, rewards, log, film[:shots])
     shots, frame, left = 0, first, wanted
     while left:
         if left & 1:
-            sensing.take_frame(table, p, frames, frame, film[shots, 1], film[shots, 2], film[shots, 0])
+            if not (held >> shots & 1 and sensing.repeat_frame(table, frames, frame)):
+                sensing.take_frame(table, p, frames, frame, film[shots, 1], film[shots, 2], film[shots, 0])
             shots += 1
         frame, left = frame + 1, left >> 1
     return over

@@ -5,6 +5,8 @@ singular: with `w = sqrt(friction drag)`, `S = sin(w t)/w` and `H = (1 - cos(w t
 
     distance = log(1 + drag z)/drag,   z = v0 S - friction H,
     speed    = (v0 cos(w t) - friction S) / (1 + drag z).
+
+The small ratios below are power series near 0, with the coefficients as constants: a division costs four products.
 """
 
 from __future__ import annotations
@@ -20,7 +22,9 @@ LARGEST = 1e300  # beyond it, or below its inverse, products overflow or lose th
 def _sinc(x2):
     """sin(x)/x as a function of x^2."""
     if x2 < 0.25:
-        return 1.0 - x2 / 6.0 * (1.0 - x2 / 20.0 * (1.0 - x2 / 42.0 * (1.0 - x2 / 72.0 * (1.0 - x2 / 110.0))))
+        return 1.0 - x2 * (
+            1 / 6 - x2 * (1 / 120 - x2 * (1 / 5040 - x2 * (1 / 362880 - x2 * (1 / 39916800 - x2 * (1 / 6227020800)))))
+        )
     x = math.sqrt(x2)
     return math.sin(x) / x
 
@@ -29,7 +33,7 @@ def _sinc(x2):
 def _versine(x2):
     """(1 - cos(x))/x^2 as a function of x^2."""
     if x2 < 0.25:
-        return 0.5 * (1.0 - x2 / 12.0 * (1.0 - x2 / 30.0 * (1.0 - x2 / 56.0 * (1.0 - x2 / 90.0 * (1.0 - x2 / 132.0)))))
+        return 0.5 - x2 * (1 / 24 - x2 * (1 / 720 - x2 * (1 / 40320 - x2 * (1 / 3628800 - x2 * (1 / 479001600)))))
     return (1.0 - math.cos(math.sqrt(x2))) / x2
 
 
@@ -56,9 +60,9 @@ def _atan_ratio(x2):
 @kernel
 def _expm1_ratio(u):
     """(1 - exp(-u))/u, for u >= 0."""
-    if u < 0.25:
-        tail = 1.0 - u / 7.0 * (1.0 - u / 8.0 * (1.0 - u / 9.0 * (1.0 - u / 10.0 * (1.0 - u / 11.0))))
-        return 1.0 - u / 2.0 * (1.0 - u / 3.0 * (1.0 - u / 4.0 * (1.0 - u / 5.0 * (1.0 - u / 6.0 * tail))))
+    if u < 0.125:
+        tail = 1 / 5040 - u * (1 / 40320 - u * (1 / 362880 - u * (1 / 3628800)))
+        return 1.0 - u * (1 / 2 - u * (1 / 6 - u * (1 / 24 - u * (1 / 120 - u * (1 / 720 - u * tail)))))
     return (1.0 - math.exp(-u)) / u
 
 

@@ -31,6 +31,7 @@ def run(args: argparse.Namespace) -> int:
     from rich.console import Console
 
     from baselines import find_player
+    from baselines.match import MOST_GAMES
     from sim2real.compare import compare_recording, print_summary
 
     players = tuple(args.players or ("veteran", "interceptor"))
@@ -38,6 +39,8 @@ def run(args: argparse.Namespace) -> int:
         raise ValueError(f"{len(players)} players given; expected two, as in: puckpilot demo veteran goalie")
     for name in players:
         find_player(name)
+    if not 1 <= args.games <= MOST_GAMES:
+        raise ValueError(f"--games is {args.games}; expected a whole number from 1 to {MOST_GAMES:,}")
     args.out.mkdir(parents=True, exist_ok=True)
     film = args.out / "match.gif"
     meetings = _meet(players, args.games, args.seed, film)
@@ -45,10 +48,16 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print(json.dumps({"meetings": meetings, "film": str(film), "compare": comparison}, indent=1))
         return 0
-    console = Console(highlight=False)
+    console = Console(highlight=False, soft_wrap=True)
     console.print(_table(players, meetings))
-    console.print(f"The beginning of the first {FILMED} is filmed: {film}\n", soft_wrap=True)
-    console.print("A recording of a table that has physics the simulator leaves out, beside the simulator:")
+    console.print(
+        "Every start is played twice, with the seats exchanged. share: of the decisive games; 95 %: its interval,\n"
+        "in which the two games of a start count as one where they come out alike. In a drill the first seat is\n"
+        "tested (defence: no goal conceded; attack: a shot that would score), and it ends before a shot arrives.\n"
+    )
+    console.print(f"The beginning of the first {FILMED} is filmed: {film}\n")
+    console.print("A recording of a table with physics that the simulator leaves out, beside the simulator")
+    console.print("(puckpilot compare --help explains the words):")
     print_summary(comparison)
     console.print(
         "\nNext: puckpilot envs, puckpilot tournament, puckpilot compare RECORDING; each explains itself with --help."
@@ -60,7 +69,6 @@ def _meet(players: tuple[str, str], games: int, seed: int, film: Path) -> list[d
     """One row an environment; the first game of FILMED goes to `film`."""
     from baselines.commands.options import progress_bar
     from baselines.filming import FirstGame
-
     from baselines.intervals import paired_win_rate
     from baselines.match import play
     from puckpilot_env.variants import all_variants
@@ -93,21 +101,20 @@ def _table(players: tuple[str, str], meetings: list[dict[str, Any]]) -> Any:
     from rich import box
     from rich.table import Table
 
-    title = f"{players[0]} against {players[1]}, every start played from both seats"
-    table = Table(title=title, box=box.SIMPLE_HEAD, title_justify="left")
+    title = f"{players[0]} against {players[1]}, in games won by {players[0]}"
+    table = Table(title=title, box=box.SIMPLE_HEAD, title_justify="left", pad_edge=False)
     table.add_column("environment", no_wrap=True)
-    for heading in (f"{players[0]} wins", "draws", f"{players[1]} wins", "goals", "decisive won", "95 % interval"):
-        table.add_column(heading, justify="right")
+    for heading in ("won", "drawn", "lost", "goals", "share", "95 %"):
+        table.add_column(heading, justify="right", no_wrap=True)
     for row in meetings:
         rate = row["decisive_win_rate"]
-        share = "-" if rate["value"] is None else f"{100 * rate['value']:.0f} %"
         table.add_row(
-            row["id"],
+            row["id"].removeprefix("puckpilot/"),
             str(row["wins"][0]),
             str(row["draws"]),
             str(row["wins"][1]),
-            f"{row['goals'][0]} : {row['goals'][1]}",
-            share,
-            f"{100 * rate['low']:.0f} to {100 * rate['high']:.0f} %",
+            f"{row['goals'][0]}:{row['goals'][1]}",
+            "-" if rate["value"] is None else f"{100 * rate['value']:.0f} %",
+            f"{100 * rate['low']:.0f}-{100 * rate['high']:.0f} %",
         )
     return table

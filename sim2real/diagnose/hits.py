@@ -53,6 +53,7 @@ class Event:
 
 
 def find_events(path: Path, noise: Noise, strength: np.ndarray) -> list[Event]:
+    """The breaks of a path, one at every gap of positive `strength` [standard deviations]; jumps only cut it."""
     cuts = np.flatnonzero(path.jumps | (strength > 0))
     events = []
     for k in np.flatnonzero(strength > 0):

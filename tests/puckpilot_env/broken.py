@@ -192,4 +192,5 @@ class CannotBePickled(Sound):
 class PartsWhenPickled(Sound):
     def __setstate__(self, state):
         self.__dict__.update(state)
-        self._tables.states["draws"] += 1
+        self._tables.states["stream"]["draws"] += 1
+        self._tables.states["streams"]["draws"] += 1

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from puckpilot_env import Tables, find_variant
+from puckpilot_env.infos import drawn_info
+from puckpilot_env.randomization import Draw
+from puckpilot_env.trace import trace
 
 NAMES = ("observations", "rewards", "terminated", "truncated")
 SHORT = ["match-randomized-v0", "match-v0", "defence-randomized-v0", "attack-v0"]
@@ -231,3 +235,74 @@ def test_a_finer_period_is_the_same_table():
 def test_what_cannot_be_is_refused(options, told):
     with pytest.raises(ValueError, match=told.replace("?", r"\?")):
         Tables(**{"variant": "match-v0", "tables": 1, **options})
+
+
+@pytest.mark.parametrize("frame_rate", [10.0, 120.0, 300.0])
+@pytest.mark.parametrize("period", [1 / 120, 0.1, 0.55, 1.0])
+@pytest.mark.parametrize("variant", ["match-sensors-v0", "match-randomized-v0"])
+def test_the_newest_frame_shows_the_table_as_it_was(variant, period, frame_rate):
+    """Without noise, it is where a puck that nobody touches was `age` ago, however many frames a step has."""
+    clean = ("camera_noise", "beam_noise", "camera_error", "dropped_frames", "held_frames", "beam_width")
+    given = {"frame_rate": frame_rate, "camera_latency": 0.06, "mallet_radius": 0.02, **dict.fromkeys(clean, 0.0)}
+    known = find_variant(variant)
+    tables = Tables(replace(known, draws=()), 8, seed=4, period=period, values=given)
+    names = [column.name for column in tables.observation_columns]
+    seen = names.index("puck_0_x" if variant == "match-sensors-v0" else "puck_x")
+    stay = np.concatenate([tables.observations[:, :, :2], np.full((8, 2, 2), 0.3, np.float32)], axis=2)
+    for _ in range(max(1, round(1.0 / period))):
+        tables.step(stay)
+    now, phase = tables.states["time"], tables.states["frame_phase"]
+    exposed = (np.floor((now - 0.06) * frame_rate - phase + 1e-9) + phase) / frame_rate
+    for i in range(8):
+        past = Tables(replace(known, draws=()), 8, seed=4, period=1 / 120, values=given)
+        for _ in range(int(exposed[i] * 120)):
+            past.step(stay)
+        (moment,), _ = trace(past, i, stay[i], [exposed[i] - past.states["time"][i]])
+        expected = [moment["puck"]["x"], moment["puck"]["y"]]
+        np.testing.assert_allclose(tables.observations[i, 0, seen : seen + 2], expected, atol=1e-5)
+
+
+def test_the_told_camera_delay_is_that_of_the_first_observation():
+    """A puck that comes straight is seen `camera_delay` times its velocity before the place where it is."""
+    clean = dict.fromkeys(("camera_noise", "camera_error", "beam_width", "dropped_frames", "held_frames"), 0.0)
+    known = find_variant("match-randomized-v0")
+    draws = tuple(draw for draw in known.draws if draw.parameter not in clean)
+    for latency in (0.0, 0.0134, 0.06):
+        given = {**clean, "camera_latency": latency}
+        tables = Tables(replace(known, draws=draws), 200, seed=2, values=given)
+        names = [column.name for column in tables.observation_columns]
+        puck = tables.states["puck"]
+        seen = tables.observations[:, 0, names.index("puck_x")]
+        told = drawn_info(tables, np.zeros(200, int))["camera_delay"]
+        np.testing.assert_allclose((puck["x"] - seen) / puck["vx"], told, atol=1e-5)
+        assert told.min() >= latency - 1e-9 and told.max() <= latency + 1 / 120
+
+
+@pytest.mark.parametrize(
+    "draw, told",
+    [
+        (
+            Draw("drag", "log-uniform", 0.0, 0.2, ""),
+            "from 0 to 0.2, log-uniform; expected 0 < low <= high",
+        ),
+        (Draw("drag", "uniform", 0.2, 0.1, ""), "draw of 'drag' from 0.2 to 0.1, uniform; expected low <= high"),
+        (Draw("drag", "normal", 0.1, 0.2, ""), "unknown distribution 'normal'"),
+    ],
+)
+def test_draws_that_cannot_be_are_refused(draw, told):
+    with pytest.raises(ValueError, match=told):
+        Tables(replace(find_variant("match-v0"), draws=(draw,)), 1)
+
+
+def test_a_spread_that_makes_a_gantry_swing_is_refused():
+    """Poles are real as long as C6^2 > 4 C5 C7, for the worst of the drawn coefficients too."""
+    slow = {"a1": 3e-4, "b1": 0.0}  # y: C6^2 / (4 C5 C7) = 0.138; x likewise 1.12
+    with pytest.raises(ValueError, match="not overdamped"):
+        Tables("match-v0", 1, values=slow)
+    nearly = {"a1": 3e-5, "b1": 0.0}  # y: 1.38, and with 20 % of spread 0.61
+    Tables("match-v0", 1, values=nearly)
+    with pytest.raises(ValueError, match=r"gantry axis y is not overdamped.*gantry_spread"):
+        Tables("match-v0", 1, values={**nearly, "gantry_spread": 0.2})
+    drawn = replace(find_variant("match-v0"), draws=(Draw("gantry_spread", "uniform", 0.0, 0.2, ""),))
+    with pytest.raises(ValueError, match=r"gantry axis y is not overdamped.*gantry_spread"):
+        Tables(drawn, 1, values=nearly)

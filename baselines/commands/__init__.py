@@ -1,0 +1,1 @@
+"""Sub-commands of `puckpilot` that need players: each file has `add_arguments(parser)` and `run(args)`."""

@@ -1,0 +1,107 @@
+"""Two players against each other. Every start is played twice, with the seats exchanged, so that none is favoured."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from typing import TYPE_CHECKING
+
+from baselines.commands.options import add_options, parse_values, progress_bar
+
+if TYPE_CHECKING:
+    from baselines.intervals import Estimate
+    from baselines.match import MatchResult
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of the command."""
+    parser.add_argument("first", metavar="A", help="a player")
+    parser.add_argument("second", metavar="B", help="its opponent")
+    parser.add_argument("--games", type=int, default=100, metavar="N", help="games in all (default 100)")
+    parser.add_argument("--video", metavar="FILE", help="film the first game, up to 60 s of it, as a .gif or .mp4")
+    add_options(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    """0: played. Raises ValueError, in one line, for what cannot be played."""
+    from baselines import find_player
+    from baselines.intervals import paired_win_rate
+    from puckpilot_env.variants import find_variant
+
+    for name in (args.first, args.second):
+        find_player(name)
+    args.variant = find_variant(args.variant).id
+    result, filmed = _play(args)
+    rate = paired_win_rate(result.padded_results)
+    if args.json:
+        print(json.dumps(_as_dict(args, result, rate), indent=2))
+    else:
+        _print(args, result, rate)
+    if filmed:
+        print(filmed, file=sys.stderr if args.json else sys.stdout)
+    return 0
+
+
+def _play(args: argparse.Namespace) -> tuple[MatchResult, str]:
+    """The result, and what to say about the film."""
+    from baselines.filming import FirstGame
+    from baselines.match import play
+    from puckpilot_env.video import VideoWriter
+
+    def played(watch: FirstGame | None) -> MatchResult:
+        with progress_bar(f"{args.first} against {args.second}") as progress:
+            return play(
+                args.variant, args.first, args.second, args.games, args.seed, values=parse_values(args.set),
+                progress=progress, threads=args.threads, watch=watch,
+            )  # fmt: skip
+
+    if args.video is None:
+        return played(None), ""
+    with VideoWriter(args.video) as video:
+        watch = FirstGame(video, (args.first, args.second))
+        result = played(watch)
+    return result, f"wrote {args.video}: {watch.seconds:.1f} s of the first game, {video.frames} frames"
+
+
+def _as_dict(args: argparse.Namespace, result: MatchResult, rate: Estimate) -> dict[str, object]:
+    return {
+        "variant": args.variant,
+        "seed": args.seed,
+        "players": list(result.players),
+        "games": result.games,
+        "wins": list(result.wins),
+        "draws": result.draws,
+        "goals": list(result.goals),
+        "decisive_win_rate": rate.as_dict(),
+    }
+
+
+def _print(args: argparse.Namespace, result: MatchResult, rate: Estimate) -> None:
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+
+    title = f"{result.games} games of {args.variant}, seed {args.seed}"
+    table = Table(title=title, box=box.SIMPLE_HEAD, title_justify="left")
+    table.add_column("player", no_wrap=True)
+    for heading in ("wins", "draws", "losses", "goals"):
+        table.add_column(heading, justify="right")
+    for k, name in enumerate(result.players):
+        row = (result.wins[k], result.draws, result.wins[1 - k], result.goals[k])
+        table.add_row(name, *(str(number) for number in row))
+    console = Console(highlight=False)
+    console.print(table)
+    console.print(_in_words(result, rate), soft_wrap=True)
+
+
+def _in_words(result: MatchResult, rate: Estimate) -> str:
+    decisive = sum(result.wins)
+    if rate.value is None:
+        return f"No game of {result.games} was decisive; this tells nothing about who is better."
+    low, high = 100.0 * rate.low, 100.0 * rate.high
+    verdict = "better than" if rate.low > 0.5 else "worse than" if rate.high < 0.5 else "not told apart from"
+    return (
+        f"{result.players[0]} won {result.wins[0]} of {decisive} decisive games, {100.0 * rate.value:.1f} % "
+        f"(95 % interval {low:.1f} to {high:.1f} %): {verdict} {result.players[1]}."
+    )

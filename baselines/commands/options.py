@@ -1,0 +1,45 @@
+"""Options that the commands share."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+
+from baselines.match import Progress
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Declare what every command that plays games takes."""
+    parser.add_argument("--variant", default="match-v0", metavar="ID", help="what is played (default match-v0)")
+    parser.add_argument("--seed", type=int, default=0, help="seed of all games (default 0)")
+    parser.add_argument("--threads", type=int, default=1, metavar="K", help="threads to play on (default 1)")
+    parser.add_argument(
+        "--set", action="append", default=[], metavar="NAME=VALUE", help="a parameter in place of the default, SI units"
+    )
+    parser.add_argument("--json", action="store_true", help="print the result as JSON")
+
+
+def parse_values(settings: Iterable[str]) -> dict[str, float]:
+    """Parameters by name from "name=value" words. ValueError, in one line, for one that is not."""
+    values = {}
+    for setting in settings:
+        name, _, text = setting.partition("=")
+        try:
+            values[name.strip()] = float(text)
+        except ValueError:
+            raise ValueError(f"--set {setting}: expected NAME=NUMBER, as in friction=0.2") from None
+    return values
+
+
+@contextmanager
+def progress_bar(what: str) -> Iterator[Progress]:
+    """A bar on stderr, if that is a terminal; it goes away at the end. What it gives takes games done and in all."""
+    from rich.console import Console
+    from rich.markup import escape
+    from rich.progress import Progress as Bar
+
+    console = Console(stderr=True)
+    with Bar(console=console, transient=True, disable=not console.is_terminal) as bar:
+        task = bar.add_task(escape(what), total=None)
+        yield lambda done, total: bar.update(task, completed=done, total=total)

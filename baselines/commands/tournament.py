@@ -1,0 +1,57 @@
+"""All against all: who beats whom, and ratings with 95 % intervals. Writes tables and a picture into a folder."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from baselines.commands.options import add_options, parse_values, progress_bar
+
+if TYPE_CHECKING:
+    from baselines.tournament import Tournament
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of the command."""
+    parser.add_argument("players", nargs="*", metavar="player", help="who takes part; default: all")
+    parser.add_argument("--games", type=int, default=100, metavar="N", help="games of every two players (default 100)")
+    parser.add_argument(
+        "--out", default="out/tournament", metavar="DIR", help="folder for the files (default out/tournament)"
+    )
+    add_options(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    """0: played. Raises ValueError, in one line, for what cannot be played."""
+    from baselines import player_names
+    from baselines.tournament import play_tournament
+    from baselines.tournament_files import write_tournament
+
+    folder = Path(args.out)
+    if folder.exists() and not folder.is_dir():
+        raise ValueError(f"cannot write to {args.out!r}: it is a file; give a folder")
+    with progress_bar("tournament") as progress:
+        tournament = play_tournament(
+            args.variant, args.players or player_names(), args.games, args.seed, values=parse_values(args.set),
+            threads=args.threads, progress=progress,
+        )  # fmt: skip
+    written = write_tournament(folder, tournament)
+    if args.json:
+        print(json.dumps(tournament.as_dict(), indent=2))
+        return 0
+    _print(tournament, written)
+    return 0
+
+
+def _print(tournament: Tournament, written: list[Path]) -> None:
+    from rich.console import Console
+
+    from baselines.payoff_table import payoff_table, rating_table
+
+    print(f"{tournament.variant}, {tournament.games} games of every two players, seed {tournament.seed}\n")
+    for table in (payoff_table(tournament.payoff), rating_table(tournament.ratings)):
+        needed = Console(width=10_000).measure(table).maximum  # a count that is cut would say something else
+        Console(width=max(needed, len(str(table.title)))).print(table)
+    print("wrote " + ", ".join(str(path) for path in written))

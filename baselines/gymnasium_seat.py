@@ -1,0 +1,101 @@
+"""One seat against a named player: what `gymnasium.make` and `gymnasium.make_vec` call for every id.
+
+import gymnasium, puckpilot_env
+env = gymnasium.make("puckpilot/match-v0", opponent="interceptor")
+envs = gymnasium.make_vec("puckpilot/match-v0", num_envs=64, opponent="goalie", seat="alternate")
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from baselines import find_player
+from baselines.player import Player, Seat
+from puckpilot_env.parallel_env import fresh_seed
+from puckpilot_env.seats import Opponent
+from puckpilot_env.single_env import SingleEnv
+from puckpilot_env.tables import Tables
+from puckpilot_env.variants import Variant
+from puckpilot_env.vector_env import TablesVectorEnv
+
+AnyOpponent = str | Callable[[Seat], Player] | Opponent  # a name, what makes a player for a seat, or one ready to play
+
+
+class SeededPlayer:
+    """A player that is made anew for every seed, so that the same seed brings the same game."""
+
+    def __init__(self, make: Callable[[Seat], Player], seat: Seat) -> None:
+        self._make, self._seat = make, seat
+        self._player = make(seat)
+
+    def seed(self, seed: int) -> None:
+        """Begin with fresh randomness."""
+        self._player = self._make(replace(self._seat, seed=int(seed)))
+
+    def reset(self, mask: NDArray[np.bool_]) -> None:
+        """See `Player.reset`."""
+        self._player.reset(mask)
+
+    def act(self, observation: NDArray[np.float32]) -> NDArray[np.float32]:
+        """See `Player.act`."""
+        return self._player.act(observation)
+
+
+def make_seat(
+    variant: Variant | str,
+    opponent: AnyOpponent = "goalie",
+    seat: int = 0,
+    render_mode: str | None = None,
+    *,
+    period: float | None = None,
+    max_steps: int | None = None,
+    parameters: Mapping[str, float] | None = None,
+) -> SingleEnv:
+    """A Gymnasium environment of one seat (0 or 1); `opponent` plays the other.
+
+    `period` [s], `max_steps` and `parameters` are those of `Tables`, which calls the last `values`. Raises ValueError,
+    in one line, for anything that cannot be.
+    """
+    seed = fresh_seed()
+    tables = Tables(variant, 1, seed=seed, autoreset=False, period=period, max_steps=max_steps, values=parameters)
+    return SingleEnv(tables, find_opponent(opponent, tables, seed), seat=seat, render_mode=render_mode)
+
+
+def make_seats(
+    variant: Variant | str,
+    num_envs: int = 1,
+    opponent: AnyOpponent = "goalie",
+    seat: int | str = 0,
+    render_mode: str | None = None,
+    *,
+    threads: int = 1,
+    copy: bool = True,
+    period: float | None = None,
+    max_steps: int | None = None,
+    parameters: Mapping[str, float] | None = None,
+) -> TablesVectorEnv:
+    """A Gymnasium vector environment of `num_envs` seats, one a table; `seat` may also be "alternate".
+
+    The rest is as in `make_seat` and `TablesVectorEnv`.
+    """
+    seed = fresh_seed()
+    tables = Tables(
+        variant, num_envs, seed=seed, threads=threads, period=period, max_steps=max_steps, values=parameters
+    )
+    found = find_opponent(opponent, tables, seed)
+    return TablesVectorEnv(tables, found, seat=seat, render_mode=render_mode, copy=copy)
+
+
+def find_opponent(opponent: AnyOpponent, tables: Tables, seed: int) -> Opponent:
+    """Who is meant, ready to play at these tables. ValueError, in one line, for an unknown name."""
+    if isinstance(opponent, str):
+        opponent = find_player(opponent)
+    elif not isinstance(opponent, type) and hasattr(opponent, "act"):
+        return opponent  # pyright: ignore[reportReturnType]
+    if not callable(opponent):
+        raise ValueError(f"opponent is {opponent!r}; expected a player's name, what makes a Player, or an Opponent")
+    return SeededPlayer(opponent, Seat.from_tables(tables, seed=seed))

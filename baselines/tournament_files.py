@@ -1,0 +1,43 @@
+"""A tournament as files in a folder, each written whole or not at all."""
+
+from __future__ import annotations
+
+import csv
+import json
+import secrets
+from collections.abc import Callable
+from pathlib import Path
+
+from baselines.payoff_table import draw_payoff
+from baselines.tournament import Tournament
+
+
+def write_tournament(folder: Path, tournament: Tournament) -> list[Path]:
+    """Write `tournament.json` (everything), `payoff.csv` (a line a match) and `payoff.png`; returns their paths."""
+    folder.mkdir(parents=True, exist_ok=True)
+    text = json.dumps(tournament.as_dict(), indent=2) + "\n"
+    writers: dict[str, Callable[[Path], object]] = {
+        "tournament.json": lambda path: path.write_text(text),
+        "payoff.csv": lambda path: _write_csv(path, tournament),
+        "payoff.png": lambda path: draw_payoff(path, tournament.payoff, tournament.ratings),
+    }
+    return [_write_whole(folder / name, write) for name, write in writers.items()]
+
+
+def _write_csv(path: Path, tournament: Tournament) -> None:
+    rows = list(tournament.match_rows())
+    with path.open("w", newline="") as file:
+        writer = csv.DictWriter(file, list(rows[0]))
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def _write_whole(path: Path, write: Callable[[Path], object]) -> Path:
+    """Let `write` make a file beside `path`, and put it there once it is complete."""
+    temporary = path.with_name(f".{path.stem}-{secrets.token_hex(4)}{path.suffix}")
+    try:
+        write(temporary)
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
+    return path

@@ -1,0 +1,173 @@
+"""`puckpilot match` and `puckpilot tournament`, as they are called."""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from baselines.commands import match, tournament
+from baselines.intervals import paired_win_rate
+from baselines.match import play
+from baselines.tournament_files import _write_whole
+
+DRILL = ["--variant", "defence-v0"]
+
+
+def call(module, *words: str) -> int:
+    parser = argparse.ArgumentParser()
+    module.add_arguments(parser)
+    return module.run(parser.parse_args(words))
+
+
+def test_match_as_json_says_what_was_played(capsys) -> None:
+    words = ["random", "still", "--games", "9", "--seed", "4", "--json", *DRILL]
+    assert call(match, *words) == 0
+    text = capsys.readouterr().out
+    found = json.loads(text)
+    keys = ["variant", "seed", "players", "games", "wins", "draws", "goals", "decisive_win_rate"]
+    assert list(found) == keys and list(found["decisive_win_rate"]) == ["value", "low", "high"]
+    result = play("defence-v0", "random", "still", 9, 4)
+    assert (found["variant"], found["seed"], found["players"]) == ("puckpilot/defence-v0", 4, ["random", "still"])
+    assert (found["games"], found["wins"], found["draws"]) == (9, list(result.wins), result.draws)
+    assert found["goals"] == list(result.goals) and sum(found["wins"]) + found["draws"] == 9
+    assert found["decisive_win_rate"]["value"] == pytest.approx(result.decisive_share)
+    assert found["decisive_win_rate"]["low"] < result.decisive_share < found["decisive_win_rate"]["high"]
+    call(match, *words)
+    assert capsys.readouterr().out == text
+    call(match, *[word if word != "4" else "5" for word in words])
+    assert capsys.readouterr().out.replace('"seed": 5', '"seed": 4') != text
+    call(match, *words, "--set", "goal_width=0.1")
+    assert json.loads(capsys.readouterr().out)["goals"] != found["goals"]
+
+
+def test_match_in_words(capsys) -> None:
+    assert call(match, "interceptor", "still", "--games", "20", "--threads", "2", *DRILL) == 0
+    words = capsys.readouterr().out
+    result = play("defence-v0", "interceptor", "still", 20, 0)
+    rate = paired_win_rate(result.results)
+    assert f"interceptor won {result.wins[0]} of {sum(result.wins)} decisive games" in words
+    assert f"95 % interval {100 * rate.low:.1f} to {100 * rate.high:.1f} %" in words
+    assert any(line.split()[:2] == ["still", str(result.wins[1])] for line in words.splitlines() if line.strip())
+
+
+def test_a_match_without_a_decision_claims_nothing(capsys) -> None:
+    assert call(match, "still", "still", "--games", "2", "--variant", "match-v0") == 0
+    assert "No game of 2 was decisive" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("ending", ["gif", "mp4"])
+def test_match_films_its_first_game(tmp_path: Path, capsys, ending: str) -> None:
+    path = tmp_path / f"game.{ending}"
+    call(match, "veteran", "random", "--games", "6", "--seed", "2", "--json", "--video", str(path), *DRILL)
+    told = capsys.readouterr()
+    assert json.loads(told.out)["games"] == 6
+    steps = play("defence-v0", "veteran", "random", 6, 2).lengths[0]
+    assert f"wrote {path}: {0.1 * steps:.1f} s of the first game" in told.err
+    if ending == "gif":
+        with Image.open(path) as film:
+            lengths = []
+            for frame in range(film.n_frames):  # pyright: ignore[reportAttributeAccessIssue]
+                film.seek(frame)
+                lengths.append(film.info["duration"])
+        assert len(lengths) > 5 and 100 * steps <= sum(lengths) <= 100 * steps + 1000
+    assert path.stat().st_size > 2000 and list(tmp_path.iterdir()) == [path]
+
+
+def test_tournament_writes_everything(tmp_path: Path, capsys) -> None:
+    words = ["still", "goalie", "interceptor", "--games", "10", "--seed", "3", *DRILL]
+    assert call(tournament, *words, "--out", str(tmp_path / "a" / "b"), "--json") == 0
+    printed = json.loads(capsys.readouterr().out)
+    folder = tmp_path / "a" / "b"
+    assert sorted(path.name for path in folder.iterdir()) == ["payoff.csv", "payoff.png", "tournament.json"]
+    assert json.loads((folder / "tournament.json").read_text()) == printed
+    assert list(printed) == ["variant", "seed", "games", "players", "wins", "draws", "matches", "ratings"]
+    wins, draws = np.array(printed["wins"]), np.array(printed["draws"])
+    np.testing.assert_array_equal(wins + wins.T + draws, 10 * (1 - np.eye(3)))
+    alone = play("defence-v0", "goalie", "interceptor", 10, 3)
+    assert (wins[1, 2], wins[2, 1], draws[1, 2]) == (*alone.wins, alone.draws)
+    with (folder / "payoff.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [(row["first"], row["second"]) for row in rows] == [
+        ("still", "goalie"), ("still", "interceptor"), ("goalie", "interceptor")
+    ]  # fmt: skip
+    assert [int(row["wins"]) for row in rows] == [wins[0, 1], wins[0, 2], wins[1, 2]]
+    assert [row["name"] for row in printed["ratings"]["players"]] == printed["players"]
+    for row in printed["ratings"]["players"]:
+        assert row["low"] < row["elo"] < row["high"]
+    with Image.open(folder / "payoff.png") as picture:
+        assert picture.width > 500
+    before = {path.name: path.read_bytes() for path in folder.iterdir()}
+    call(tournament, *words, "--out", str(folder))
+    assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
+    told = capsys.readouterr().out
+    assert all(str(folder / name) in told for name in before)
+    cells = next(line for line in told.splitlines() if line.split()[:1] == ["interceptor"])
+    assert (
+        cells.replace(" ", "")
+        == "interceptor" + "".join(f"{wins[2, j]}/{draws[2, j]}/{wins[j, 2]}" for j in (0, 1)) + "-"
+    )
+
+
+def test_all_players_take_part_and_no_count_is_cut(tmp_path: Path, capsys, monkeypatch) -> None:
+    from baselines import player_names
+
+    monkeypatch.setenv("COLUMNS", "60")
+    call(tournament, "--games", "2", "--out", str(tmp_path), *DRILL)
+    told = capsys.readouterr().out
+    assert "…" not in told
+    assert any(line.split() == player_names() for line in told.splitlines())
+
+
+def test_files_are_written_whole_or_not_at_all(tmp_path: Path) -> None:
+    def fail(path: Path) -> None:
+        path.write_text("half")
+        raise OSError("disk full")
+
+    for before in (None, "old"):
+        if before:
+            (tmp_path / "a.json").write_text(before)
+        with pytest.raises(OSError, match="disk full"):
+            _write_whole(tmp_path / "a.json", fail)
+        assert [path.read_text() for path in tmp_path.iterdir()] == ([before] if before else [])
+
+
+@pytest.mark.parametrize(
+    ("module", "words", "told"),
+    [
+        (match, ["goaly", "still"], "unknown player 'goaly'; did you mean 'goalie'"),
+        (match, ["still", "stil"], "unknown player 'stil'; did you mean 'still'"),
+        (match, ["still", "still", "--variant", "match-v1"], "unknown variant 'match-v1'; did you mean"),
+        (match, ["still", "still", "--games", "0"], "games is 0; expected"),
+        (match, ["still", "still", "--seed", "-1"], "seed is -1; expected"),
+        (match, ["still", "still", "--threads", "0"], "threads is 0; expected"),
+        (match, ["still", "still", "--set", "frction=0.1"], "unknown parameter 'frction'; did you mean 'friction'"),
+        (match, ["still", "still", "--set", "friction"], "--set friction: expected NAME=NUMBER"),
+        (match, ["still", "still", "--set", "friction=x"], "--set friction=x: expected NAME=NUMBER"),
+        (match, ["still", "still", "--video", "game.avi"], r"ends in \.gif or \.mp4"),
+        (tournament, ["still"], "players are still; expected two or more"),
+        (tournament, ["still", "still"], "each named once"),
+        (tournament, ["still", "goaly"], "unknown player 'goaly'"),
+        (tournament, ["still", "goalie", "--games", "3"], "games is 3; expected an even number"),
+        (tournament, ["still", "goalie", "--games", "0"], "games is 0; expected an even number"),
+        (tournament, ["still", "goalie", "--variant", "x"], "unknown variant 'x'"),
+    ],
+)
+def test_mistakes_are_named_in_one_line_and_leave_no_file(module, words, told, tmp_path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ValueError, match=told) as caught:
+        call(module, *words)
+    assert "\n" not in str(caught.value)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_folder_that_cannot_be_is_told_before_playing(tmp_path: Path, monkeypatch) -> None:
+    (tmp_path / "file").write_text("")
+    monkeypatch.setattr("baselines.tournament.play", lambda *_, **__: pytest.fail("played"))
+    with pytest.raises(ValueError, match="it is a file; give a folder"):
+        call(tournament, "still", "goalie", "--out", str(tmp_path / "file"))

@@ -1,0 +1,154 @@
+"""What spoils camera frames, and how much: white noise, the smooth error, the beam's shadow, lost and held frames."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from puckpilot_env import Tables, state
+from puckpilot_env.game import sensing
+from tests.puckpilot_env.game.hand import FRICTIONLESS, LENGTH, NO_CAMERA_NOISE, WIDTH, put_puck, seen, staying
+
+LAGS = (0, 1, 2, 5, 11)
+COUNT = 4000
+BEAM = 0.04  # m; a mallet at home has its middle 0.25 m from its own end
+
+
+def watch(x: float, y: float, *, seen_by: int = 0, vx: float = 0.0, period: float = 0.1, **values: float) -> Tables:
+    """Tables whose camera has watched the puck for a while, with nothing amiss but what `values` say."""
+    clean = {**NO_CAMERA_NOISE, **FRICTIONLESS, "beam_width": BEAM, **values}
+    tables = Tables("match-sensors-v0", COUNT, seed=6, period=period, values=clean)
+    put_puck(tables, x, y, vx, player=seen_by)
+    for _ in range(round(0.3 / period)):
+        tables.step(staying(tables))
+    return tables
+
+
+def spread(tables: Tables, player: int, name: str) -> float:
+    return float(np.std([seen(tables, player, f"{name.format(lag)}") for lag in LAGS]))
+
+
+@pytest.mark.parametrize("player", [0, 1])
+@pytest.mark.parametrize(
+    "from_mallet, own",
+    [(0.0212, 0.0006), (0.035, 0.0006), (-0.035, 0.0006), (0.0507, 0.0006), (0.0511, 0.0002), (0.4, 0.0002)],
+)
+def test_white_noise(player, from_mallet, own):
+    """0.6 mm from the beam's edge to where the puck is clear of it (0.02 m + 0.0309 m), 0.2 mm beyond; for the other
+    player, whose beam is far away, 0.2 mm everywhere."""
+    tables = watch(0.25 + from_mallet, 0.2, seen_by=player, camera_noise=0.0002, beam_noise=0.0006)
+    for axis in "xy":
+        assert spread(tables, player, f"puck_{{}}_{axis}") == pytest.approx(own, rel=0.03)
+        assert spread(tables, 1 - player, f"puck_{{}}_{axis}") == pytest.approx(0.0002, rel=0.03)
+        assert spread(tables, player, f"opponent_{{}}_{axis}") == pytest.approx(0.0002, rel=0.03)
+
+
+def test_white_noise_is_white_and_normal():
+    tables = watch(0.7, 0.3, camera_noise=0.0002)
+    names = [f"{what}_{lag}_{axis}" for what in ("puck", "opponent") for lag in LAGS for axis in "xy"]
+    noise = np.array([seen(tables, k, name) for k in range(2) for name in names])
+    noise -= np.median(noise, axis=1, keepdims=True)
+    assert np.abs(noise.mean(axis=1)).max() < 5 * 0.0002 / np.sqrt(COUNT)
+    for row in noise[::7]:
+        assert stats.kstest(row / 0.0002, "norm").pvalue > 1e-4
+    assert np.abs(np.corrcoef(noise) - np.eye(len(noise))).max() < 5 / np.sqrt(COUNT)
+
+
+@pytest.mark.parametrize("player", [0, 1])
+@pytest.mark.parametrize("from_mallet, hidden", [(0.0, True), (0.0195, True), (-0.0195, True), (0.0205, False)])
+def test_hidden_under_the_own_beam_alone(player, from_mallet, hidden):
+    """The last place seen stays, the one from before the puck got there; the opponent is seen all the same."""
+    tables = watch(0.25 + from_mallet, 0.2, seen_by=player)
+    for lag in LAGS:
+        assert (seen(tables, player, f"seen_{lag}") == (0 if hidden else 1)).all()
+        assert (seen(tables, 1 - player, f"seen_{lag}") == 1).all()
+        place = seen(tables, player, f"puck_{lag}_x")
+        assert (np.abs(place - (0.25 + from_mallet)) < 1e-6).all() != hidden
+        np.testing.assert_allclose(seen(tables, 1 - player, f"puck_{lag}_x"), 1.75 - from_mallet, atol=1e-6)
+        np.testing.assert_allclose(seen(tables, player, f"opponent_{lag}_x"), 1.75, atol=1e-6)
+
+
+def loudness(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Mean square of five terms, orthonormal over the table by Legendre's polynomials; 1 on average over the table,
+    more at its ends, where no puck's middle gets."""
+    u, w = 2 * x / LENGTH - 1, 2 * y / WIDTH - 1
+    return (1 + 3 * u**2 + 3 * w**2 + 9 * u**2 * w**2 + 5 * (1.5 * u**2 - 0.5) ** 2) / 5
+
+
+def test_smooth_error_in_play():
+    """Fixed for an episode at a place, 1 mm rms over the table, of each camera its own, the same for all frames."""
+    rng = np.random.default_rng(2)
+    tables = Tables("match-sensors-v0", COUNT, seed=6, values={**NO_CAMERA_NOISE, "camera_error": 0.001})
+    x, y = rng.uniform(0, LENGTH, COUNT), rng.uniform(0, WIDTH, COUNT)
+    off = (np.abs(x - 0.25) > 0.09) & (np.abs(x - 1.75) > 0.09) & (np.abs(x - 1) < 0.97) & (np.abs(y - 0.5) < 0.47)
+    put_puck(tables, x, y)
+    for _ in range(3):
+        tables.step(staying(tables))
+    errors = np.array([
+        [seen(tables, 0, f"puck_{lag}_x") - x, seen(tables, 0, f"puck_{lag}_y") - y,
+         seen(tables, 1, f"puck_{lag}_x") - LENGTH + x, seen(tables, 1, f"puck_{lag}_y") - WIDTH + y] for lag in LAGS
+    ])[:, :, off]  # fmt: skip
+    assert np.ptp(errors, axis=0).max() < 3e-7  # float32
+    for player in (0, 2):
+        squares = errors[0, player] ** 2 + errors[0, player + 1] ** 2
+        assert np.sqrt(np.mean(squares / loudness(x[off], y[off]))) == pytest.approx(0.001, rel=0.04)
+    assert np.abs(np.corrcoef(errors[0]) - np.eye(4)).max() < 5 / np.sqrt(off.sum())
+
+
+def test_smooth_error_over_the_table():
+    """A camera's error is a quadratic surface: third differences vanish, and 1 cm changes it little. Its mean square
+    over the table is `camera_error` squared on average over cameras, and camera_error scales it."""
+    tables = Tables("match-sensors-v0", 200, seed=6, values={**NO_CAMERA_NOISE, "camera_error": 0.002})
+    stream, p = tables.states["stream"][0].copy(), tables.params[0]
+    xs, ys = (np.arange(20) + 0.5) / 20 * LENGTH, (np.arange(10) + 0.5) / 10 * WIDTH
+    squares = []
+    for camera in tables.states["cameras"][:50].ravel():
+        assert camera.dtype == state.CAMERA
+        seen_at = np.array([[sensing.measure(camera, stream, p, x, y, 0.0) for y in ys] for x in xs])
+        error = seen_at - np.stack(np.meshgrid(xs, ys, indexing="ij"), axis=2)
+        for axis in range(2):
+            assert np.abs(np.diff(error, 3, axis=axis)).max() < 1e-14
+        assert np.abs(np.diff(error, axis=0)).max() < 0.002  # over 10 cm
+        squares.append(np.mean(np.sum(error**2, axis=2)))
+    assert np.sqrt(np.mean(squares)) == pytest.approx(0.002, rel=0.12)  # of 100 cameras with ten terms each
+
+
+@pytest.mark.parametrize("share", [0.01, 0.2])
+@pytest.mark.parametrize("period", [1 / 120, 0.1])
+def test_dropped_frames(share, period):
+    """Without a position as often as said, whichever the frame; marked so; the opponent is measured all the same."""
+    tables = watch(0.7, 0.3, period=period, dropped_frames=share, camera_noise=0.0002)
+    lost = np.array([[seen(tables, k, f"seen_{lag}") == 0 for lag in LAGS] for k in range(2)])
+    sigma = np.sqrt(share / lost[0, 0].size)
+    assert np.abs(lost.mean(axis=2) - share).max() < 4.5 * sigma
+    repeated = seen(tables, 0, "puck_0_x") == seen(tables, 0, "puck_1_x")
+    assert (repeated == lost[0, 0]).mean() > 0.999  # float32 makes one or another pair equal
+    assert (seen(tables, 0, "opponent_0_x") == seen(tables, 0, "opponent_1_x")).mean() < 0.002
+    both = (lost[0] & lost[1]).mean()
+    assert both == pytest.approx(share**2, abs=5 * share / np.sqrt(lost[0].size))  # each camera loses its own
+
+
+@pytest.mark.parametrize("share", [0.02, 0.2])
+def test_held_frames(share):
+    """Repeat the frame before them in everything, as often as said, and look like any other."""
+    tables = watch(0.7, 0.3, vx=0.25, period=1 / 120, held_frames=share, camera_noise=0.0002)
+    for k in range(2):
+        same = [
+            seen(tables, k, f"{name}_0_{axis}") == seen(tables, k, f"{name}_1_{axis}")
+            for name in ("puck", "opponent")
+            for axis in "xy"
+        ]
+        assert np.all(same, axis=0).mean() == pytest.approx(share, abs=4.5 * np.sqrt(share / COUNT))
+        for lag in LAGS:
+            assert (seen(tables, k, f"seen_{lag}") == 1).all()
+
+
+def test_held_frames_are_one_frame_older():
+    """At 0.1 s a step the frames before lags 2 and 5 are not taken; a held one shows the puck there all the same."""
+    tables = watch(0.7, 0.3, vx=0.25, period=0.1, held_frames=0.2)
+    for k in range(2):
+        apart = np.abs(seen(tables, k, "puck_2_x") - seen(tables, k, "puck_5_x")) * 120 / 0.25  # in frames
+        np.testing.assert_allclose(apart, apart.round(), atol=1e-3)
+        shares = [np.mean(apart.round() == frames) for frames in (2, 3, 4)]
+        np.testing.assert_allclose(shares, [0.16, 0.68, 0.16], atol=0.03)

@@ -1,0 +1,236 @@
+"""How the three games go on and end: points, clocks, face-offs, serves, drills, truncation, and who won."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from puckpilot_env import Tables, find_variant
+from puckpilot_env.game import rules
+from puckpilot_env.motion import mallet_motion, puck_motion
+from puckpilot_env.parallel_env import TableEnv
+from tests.puckpilot_env.game.hand import FRICTIONLESS, put_mallet, put_puck, staying
+
+DRILLS = ["defence-v0", "attack-v0"]
+
+
+def make(variant: str, tables: int = 1, **options) -> Tables:
+    return Tables(variant, tables, **{"autoreset": False, "values": FRICTIONLESS, **options})
+
+
+def stay(tables: Tables) -> None:
+    tables.step(staying(tables))
+
+
+def park(tables: Tables) -> None:
+    """The puck at rest, both mallets out of its way."""
+    put_puck(tables, 0.6, 0.3)
+    for player in range(2):
+        put_mallet(tables, player, 0.2, 0.7)
+
+
+def shoot_in(tables: Tables, scorer: int) -> None:
+    """One step in which the puck enters the goal of `scorer`'s opponent."""
+    park(tables)
+    put_puck(tables, 0.1, 0.5, -3.0, 0.0, 1 - scorer)
+    stay(tables)
+
+
+def outcome(tables: Tables) -> tuple[str, int]:
+    state = tables.states[0]
+    assert (tables.terminated[0] or tables.truncated[0]) == (state["ending"] != rules.RUNNING)
+    return rules.ENDING_NAMES[state["ending"]], int(state["winner"])
+
+
+@pytest.mark.parametrize("winner", [0, 1])
+def test_first_to_seven(winner):
+    tables = make("match-v0")
+    tables.states["score"][0, 1 - winner] = 6
+    for points in range(1, 8):
+        shoot_in(tables, winner)
+        assert tables.states["score"][0, winner] == points
+        assert bool(tables.terminated[0]) == (points == 7)
+    assert outcome(tables) == ("points", winner) and not tables.truncated[0]
+    tables.reset()
+    assert tables.states["score"][0].tolist() == [0, 0]
+    assert tables.states["last_score"][0].tolist() == ([7, 6] if winner == 0 else [6, 7])
+
+
+def test_score_and_winner_outlast_an_automatic_reset():
+    tables = make("match-v0", autoreset=True)
+    tables.states["score"] = (2, 6)
+    shoot_in(tables, 1)
+    state = tables.states[0]
+    assert tables.terminated[0] and state["winner"] == 1
+    assert state["score"].tolist() == [0, 0] and state["last_score"].tolist() == [2, 7]
+    assert state["time"] == state["steps"] == 0 and state["episode"] == 2
+
+
+@pytest.mark.parametrize("conceder", [0, 1])
+def test_the_conceder_serves(conceder):
+    """The puck at rest before the conceder, both at home, the clock going on."""
+    tables = make("match-v0", 300, autoreset=True)
+    tables.states["steps"] = 99
+    shoot_in(tables, 1 - conceder)
+    puck = puck_motion(tables.states)
+    assert (puck[:, 2:] == 0).all()
+    np.testing.assert_allclose(puck[:, 0], [0.6, 1.4][conceder])
+    assert puck[:, 1].min() >= 0.25 and puck[:, 1].max() <= 0.75 and np.ptp(puck[:, 1]) > 0.45
+    np.testing.assert_allclose(
+        mallet_motion(tables.states), np.tile([[0.25, 0.5, 0, 0], [1.75, 0.5, 0, 0]], (300, 1, 1))
+    )
+    np.testing.assert_allclose(tables.states["time"], 10.0)
+    assert (tables.states["held"] == 0).all() and (tables.states["defending"] == 1).all()
+
+
+@pytest.mark.parametrize("score, winner", [((3, 2), 0), ((0, 1), 1), ((4, 4), -1)])
+def test_the_clock(score, winner):
+    """180 s; the leader wins, level is a draw."""
+    tables = make("match-v0")
+    tables.states["score"] = score
+    tables.states["steps"] = 1798
+    park(tables)
+    stay(tables)
+    assert not tables.terminated[0]
+    stay(tables)
+    assert outcome(tables) == ("clock", winner) and not tables.truncated[0]
+    assert tables.states["time"][0] == pytest.approx(180.0)
+
+
+def test_a_goal_in_the_last_step_counts():
+    tables = make("match-v0")
+    tables.states["steps"] = 1799
+    tables.states["score"] = (2, 2)
+    shoot_in(tables, 1)
+    assert outcome(tables) == ("clock", 1) and tables.states["score"][0].tolist() == [2, 3]
+
+
+@pytest.mark.parametrize("period, steps", [(0.1, 70), (0.05, 140), (1 / 120, 840), (0.3, 24)])
+@pytest.mark.parametrize("player", [0, 1])
+def test_face_off_after_seven_seconds_in_one_half(player, period, steps):
+    tables = make("match-v0", period=period)
+    park(tables)
+    put_puck(tables, 0.6, 0.3, player=player)
+    tables.states["held"] = 0.0
+    tables.states["defending"] = (0, 1)
+    for _ in range(steps - 1):
+        stay(tables)
+    assert abs(puck_motion(tables.states)[0, 0] - [0.6, 1.4][player]) < 1e-12
+    stay(tables)
+    puck = puck_motion(tables.states)[0]
+    assert puck[0] == 1.0 and 0.2 <= puck[1] <= 0.8 and 0.3 <= np.hypot(*puck[2:]) <= 0.8
+    assert tables.states["held"][0] == 0 and tables.states["defending"][0].tolist() == [1, 1]
+    assert not tables.terminated[0] and tables.states["score"][0].tolist() == [0, 0]
+
+
+def test_crossing_the_middle_starts_the_seven_seconds_anew():
+    tables = make("match-v0")
+    park(tables)
+    tables.states["held"] = 6.85
+    put_puck(tables, 0.95, 0.3, 1.0)
+    stay(tables)
+    assert tables.states["held"][0] == pytest.approx(0.1)
+    assert puck_motion(tables.states)[0].tolist() == pytest.approx([1.05, 0.3, 1.0, 0.0])
+
+
+def test_no_face_off_in_drills():
+    tables = make("attack-v0")
+    park(tables)
+    for _ in range(99):
+        stay(tables)
+        assert not tables.terminated[0] and not tables.truncated[0]
+    assert puck_motion(tables.states)[0].tolist() == [0.6, 0.3, 0.0, 0.0]
+
+
+@pytest.mark.parametrize(
+    "variant, puck, ending, winner",
+    [
+        ("defence-v0", (0.6, 0.3, 0.02, 0.6), "clear", 0),
+        ("defence-v0", (0.1, 0.5, -3.0, 0.0), "conceded", 1),
+        ("defence-v0", (0.95, 0.5, 3.0, 0.0), "possession lost", 0),
+        ("defence-v0", (1.05, 0.5, -1.0, 0.0), "running", None),
+        ("attack-v0", (0.95, 0.5, 3.0, 0.0), "shot on goal", 0),
+        ("attack-v0", (0.95, 0.3, 3.0, 0.0), "shot missed", 1),
+        ("attack-v0", (0.1, 0.5, -3.0, 0.0), "conceded", 1),
+        ("attack-v0", (0.6, 0.3, 0.02, 0.6), "running", None),
+        ("attack-v0", (1.05, 0.5, -1.0, 0.0), "running", None),
+    ],
+)
+@pytest.mark.parametrize("subject", [0, 1])
+def test_endings_of_drills(variant, puck, ending, winner, subject):
+    """Of the player whose drill it is; the winner counted from it. A turned table has the other subject."""
+    tables = make(variant)
+    park(tables)
+    tables.states["subject"] = subject
+    tables.states["defending"][0, subject] = int(variant == "defence-v0")
+    tables.states["defending"][0, 1 - subject] = int(variant == "attack-v0")
+    put_puck(tables, *puck, player=subject)
+    stay(tables)
+    assert outcome(tables)[0] == ending and not tables.truncated[0]
+    if winner is not None:
+        assert outcome(tables)[1] == (winner if subject == 0 else 1 - winner)
+
+
+def test_the_other_player_ends_no_drill():
+    """A clear of the shooter's, in its own half, is its own affair."""
+    tables = make("defence-v0")
+    park(tables)
+    put_mallet(tables, 1, 0.2, 0.2)
+    tables.states["defending"] = 1
+    put_puck(tables, 0.6, 0.3, 0.02, 0.6, player=1)
+    stay(tables)
+    assert not tables.terminated[0] and tables.states["defending"][0].tolist() == [1, 0]
+
+
+@pytest.mark.parametrize("variant, ending", [("attack-v0", "shot on goal"), ("defence-v0", "possession lost")])
+def test_a_shot_that_is_in_within_its_step_is_still_a_shot(variant, ending):
+    tables = make(variant)
+    park(tables)
+    put_puck(tables, 0.95, 0.5, 20.0)
+    stay(tables)
+    assert tables.states["score"][0].tolist() == [1, 0] and outcome(tables) == (ending, 0)
+
+
+@pytest.mark.parametrize("period, limit", [(0.1, 100), (0.05, 200), (1 / 120, 1200), (0.03, 333)])
+@pytest.mark.parametrize("variant", DRILLS)
+def test_drills_are_truncated_after_ten_seconds(variant, period, limit):
+    tables = make(variant, period=period)
+    park(tables)
+    tables.states["steps"] = limit - 2
+    stay(tables)
+    assert not tables.truncated[0]
+    stay(tables)
+    assert tables.truncated[0] and not tables.terminated[0]
+    assert outcome(tables) == ("step limit", -1)
+
+
+@pytest.mark.parametrize("variant", ["match-v0", *DRILLS])
+def test_max_steps(variant):
+    tables = make(variant, max_steps=3, period=0.05)
+    for step in range(1, 4):
+        park(tables)
+        stay(tables)
+        assert bool(tables.truncated[0]) == (step == 3) and not tables.terminated[0]
+
+
+def test_an_ending_in_the_last_step_is_no_truncation():
+    tables = make("attack-v0", max_steps=1)
+    park(tables)
+    put_puck(tables, 0.95, 0.5, 3.0)
+    stay(tables)
+    assert tables.terminated[0] and not tables.truncated[0]
+
+
+@pytest.mark.parametrize("winner", [0, 1, -1])
+def test_infos_at_the_end(winner):
+    """Each agent reads its own points first."""
+    env = TableEnv(find_variant("match-v0"))
+    env.reset(seed=1)
+    env.tables.states["score"] = score = {0: (3, 1), 1: (1, 3), -1: (2, 2)}[winner]
+    env.tables.states["steps"] = 1799
+    park(env.tables)
+    actions = staying(env.tables)[0]
+    infos = env.step({"player_0": actions[0], "player_1": actions[1]})[4]
+    name = None if winner < 0 else f"player_{winner}"
+    assert infos["player_0"] == {"ending": "clock", "winner": name, "score": score}
+    assert infos["player_1"] == {"ending": "clock", "winner": name, "score": score[::-1]}

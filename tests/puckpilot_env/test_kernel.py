@@ -1,0 +1,127 @@
+"""The kernel cache: another folder after any edit of a kernel, the same after any other; none needed to work."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import re
+import shutil
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from puckpilot_env import kernel
+
+REPOSITORY = Path(kernel.__file__).parents[1]
+COMPILED = sorted(
+    path.relative_to(REPOSITORY)
+    for folder in ("puckpilot_env", "baselines")
+    for path in (REPOSITORY / folder).rglob("*.py")
+    if re.search(r"^@kernel", path.read_text(), re.MULTILINE)
+)
+READ_BY_KERNELS = [Path("puckpilot_env") / f"{name}.py" for name in ("kernel", "parameters", "state")]
+
+
+@pytest.fixture
+def copied(tmp_path, monkeypatch):
+    """The repository's packages copied to a folder, and a cache of their own."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    for name in ("puckpilot_env", "baselines"):
+        shutil.copytree(REPOSITORY / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__"))
+    return tmp_path
+
+
+def cache_folder(root: Path) -> Path:
+    """Where a fresh import of the copy's `kernel.py` would keep what it compiles."""
+    return load(root).CACHE_FOLDER
+
+
+def load(root: Path) -> Any:
+    spec = importlib.util.spec_from_file_location("kernel_copy", root / "puckpilot_env" / "kernel.py")
+    assert spec and spec.loader
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_the_kernels_were_found():
+    names = {path.name for path in COMPILED}
+    assert {"glide.py", "advance.py", "reward.py", "step.py", "batch.py", "random_stream.py"} <= names
+    assert any(path.parts[0] == "baselines" for path in COMPILED)
+
+
+@pytest.mark.parametrize("path", COMPILED + READ_BY_KERNELS, ids=str)
+def test_an_edit_of_a_kernel_starts_a_fresh_folder(copied, path):
+    before = cache_folder(copied)
+    assert cache_folder(copied) == before
+    source = (copied / path).read_text()
+    (copied / path).write_text(source + "# edited\n")
+    after = cache_folder(copied)
+    assert after != before and after.parent == before.parent == copied / "cache" / "puckpilot"
+    (copied / path).write_text(source)
+    assert cache_folder(copied) == before
+
+
+@pytest.mark.parametrize("name", ["render", "page", "parallel_env", "commands/bench", "checks/walk"])
+def test_other_edits_keep_what_was_compiled(copied, name):
+    before = cache_folder(copied)
+    with (copied / "puckpilot_env" / f"{name}.py").open("a") as file:
+        file.write("# edited\n")
+    assert cache_folder(copied) == before
+
+
+def test_another_numba_starts_a_fresh_folder(copied, monkeypatch):
+    before = cache_folder(copied)
+    monkeypatch.setattr(kernel.numba, "__version__", "0.0.1")
+    assert cache_folder(copied) != before
+
+
+def test_unwritable_cache_falls_back_to_a_temporary_folder(copied, monkeypatch):
+    """A file in the way is what no one can write into, not even root."""
+    (copied / "file").write_text("")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(copied / "file"))
+    folder = cache_folder(copied)
+    assert folder.is_dir() and folder.name.startswith("puckpilot-kernels-")
+    assert cache_folder(copied) != folder  # shared by no two processes
+    folder.rmdir()
+
+
+def test_no_home_folder_falls_back_too(copied, monkeypatch):
+    """A container's user may be unknown to the system."""
+    monkeypatch.delenv("XDG_CACHE_HOME")
+
+    def unknown() -> Path:
+        raise RuntimeError("Could not determine home directory.")
+
+    monkeypatch.setattr(Path, "home", unknown)
+    assert cache_folder(copied).name.startswith("puckpilot-kernels-")
+
+
+def test_old_folders_are_swept(copied):
+    folder = cache_folder(copied)
+    others = {name: folder.parent / name for name in ("old", "recent", "strange")}
+    for other in others.values():
+        other.mkdir()
+    for name, days in (("old", 31), ("recent", 29)):
+        (others[name] / "used").touch()
+        os.utime(others[name] / "used", (time.time() - 86400 * days, time.time() - 86400 * days))
+    cache_folder(copied)
+    assert {path.name for path in folder.parent.iterdir()} == {folder.name, "recent", "strange"}
+
+
+def test_announces_compilation_once(copied, capsys):
+    module = load(copied)
+    module.announce_compilation("step_range")
+    assert capsys.readouterr().err.startswith("puckpilot: compiling the simulator")
+    (module.CACHE_FOLDER / "sub").mkdir()
+    (module.CACHE_FOLDER / "sub" / "batch.step_range-55.py311.nbi").touch()
+    module.announce_compilation("step_range")
+    assert capsys.readouterr().err == ""
+
+
+def test_the_running_folder_is_that_of_these_sources():
+    assert sys.modules["puckpilot_env.kernel"].CACHE_FOLDER == kernel.CACHE_FOLDER
+    assert kernel.CACHE_FOLDER.name == load(REPOSITORY).CACHE_FOLDER.name

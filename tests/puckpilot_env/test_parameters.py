@@ -1,0 +1,107 @@
+"""Parameters: by name, in their ranges, and refused in one line where they make no table."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from puckpilot_env import Tables, parameters
+
+# What the report and the errata give, by hand.
+STATED = {
+    "length": 2.0,
+    "width": 1.0,
+    "goal_width": 0.32,
+    "puck_radius": 0.0309,
+    "mallet_radius": 0.0505,
+    "friction": 0.125,
+    "drag": 0.125,
+    "wall_restitution": 0.7,
+    "max_voltage": 24.0,
+    "frame_rate": 120.0,
+    "camera_noise": 0.0002,
+    "beam_noise": 0.0006,
+    "camera_error": 0.001,
+}
+ROWS = {row.name: row for row in parameters.TABLE}
+
+
+def test_defaults_are_the_stated_numbers():
+    record = parameters.make_records(1)[0]
+    for name, value in STATED.items():
+        assert record[name] == value, name
+    for row in parameters.TABLE:
+        assert record[row.name] == row.default and row.low <= row.default <= row.high, row.name
+        assert row.unit and row.meaning and row.source, row.name
+    assert len(ROWS) == len(parameters.TABLE)
+
+
+def test_gantry_poles_are_those_of_the_errata():
+    """C5 p''' + C6 p'' + C7 p' = (R/2) V with C = a - b for x and a + b for y; poles as in the errata's first row."""
+    p = parameters.make_records(1)[0]
+    for sign, poles in ((-1.0, (-1589.0, -6.3)), (1.0, (-1577.0, -18.1))):
+        found = np.roots([p[f"a{i}"] + sign * p[f"b{i}"] for i in (1, 2, 3)])
+        assert sorted(found) == pytest.approx(poles, rel=0.01)
+
+
+@pytest.mark.parametrize("name", ROWS)
+def test_ranges_are_enforced(name):
+    row = ROWS[name]
+    assert parameters.checked(name, row.low) == row.low
+    assert parameters.checked(name, row.high) == row.high
+    below, above = math.nextafter(row.low, -math.inf), math.nextafter(row.high, math.inf)
+    for value in (below, above, math.nan, math.inf, -math.inf):
+        with pytest.raises(ValueError) as refusal:
+            parameters.checked(name, value)
+        told = str(refusal.value)
+        assert told.startswith(f"parameter '{name}' is {value!r}; expected a number in [") and "\n" not in told
+
+
+@pytest.mark.parametrize("value", ["much", None, [1.0, 2.0], {}])
+def test_what_is_no_number_is_refused(value):
+    with pytest.raises(ValueError, match=r"parameter 'friction' is .*; expected a number in \[0, 5\] m/s\^2"):
+        Tables("match-v0", 1, values={"friction": value})
+
+
+def test_unknown_names_come_with_a_suggestion():
+    with pytest.raises(ValueError, match=r"^unknown parameter 'frictoin'; did you mean 'friction'\?$"):
+        Tables("match-v0", 1, values={"frictoin": 0.1})
+    with pytest.raises(ValueError, match=r"^unknown parameter 'zzz'; known: length, width, .*, impulse_speed$"):
+        parameters.make_records(1, {"zzz": 0.1})
+
+
+@pytest.mark.parametrize(
+    "values, told",
+    [
+        ({"width": 0.5, "goal_width": 0.45}, "goal_width leaves no wall beside the mouth"),
+        ({"goal_width": 0.1, "puck_radius": 0.045, "width": 0.5}, None),
+        ({"goal_width": 0.1, "puck_radius": 0.045}, None),
+        ({"mallet_radius": 0.1, "width": 0.59}, "the table is too small"),
+        ({"mallet_radius": 0.1, "length": 1.19}, "the table is too small"),
+        ({"a1": 1e-3}, "gantry axis x is not overdamped"),
+        ({"b2": -0.0057}, "gantry axis y is not overdamped"),
+        ({"b2": 0.0058}, "gantry axis x is not overdamped"),
+        ({"b3": 0.06}, "gantry axis x is not overdamped"),
+    ],
+)
+def test_impossible_combinations(values, told):
+    """Each number alone is in its range; together they make no table, or, without a message here, just one."""
+    if told is None:
+        parameters.make_records(1, values)
+        return
+    with pytest.raises(ValueError, match=f"^{told}") as refusal:
+        parameters.make_records(3, values)
+    assert "\n" not in str(refusal.value)
+
+
+def test_by_name_and_never_by_position():
+    records = parameters.make_records(4, {"drag": 0.5, "friction": 0.25})
+    matrix = parameters.as_matrix(records)
+    assert matrix.shape == (4, len(parameters.TABLE))
+    for row in parameters.TABLE:
+        matrix[2, parameters.COLUMN[row.name]] = row.high
+        assert records[2][row.name] == row.high, row.name
+    assert records["drag"].tolist() == [0.5, 0.5, parameters.BY_NAME["drag"].high, 0.5]
+    assert (records["friction"][[0, 1, 3]] == 0.25).all()

@@ -1,0 +1,144 @@
+"""The command `puckpilot`: help, errors in one line, figures as JSON, and nothing loaded before it is needed."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import puckpilot
+
+ROOT = Path(puckpilot.__file__).parent
+OPTIONS = {
+    "demo": ["--games", "--seed", "--out", "--json"],
+    "envs": ["--json", "--write-pages"],
+    "check": ["--steps", "--seed", "--json"],
+    "match": ["--games", "--video", "--variant", "--seed", "--threads", "--json"],
+    "tournament": ["--games", "--out", "--variant", "--seed", "--threads", "--json"],
+    "bench": ["--tables", "--threads", "--seconds", "--against", "--dicts", "--startup", "--json"],
+    "compare": ["--json", "--out"],
+}
+HEAVY = ("numba", "pettingzoo", "gymnasium", "matplotlib", "rich", "scipy", "cv2", "torch", "numpy")
+
+
+def refused(words: list[str], capsys: pytest.CaptureFixture[str]) -> str:
+    """Run a command that cannot be; its one line on stderr."""
+    try:
+        code = puckpilot.main(words)
+    except SystemExit as stop:
+        code = stop.code
+    printed = capsys.readouterr()
+    assert code == 2 and printed.out == ""
+    assert printed.err.endswith("\n") and printed.err.count("\n") == 1
+    return printed.err.strip()
+
+
+def test_every_command_is_tested_here():
+    assert set(OPTIONS) == set(puckpilot.COMMANDS)
+
+
+@pytest.mark.parametrize("name", OPTIONS)
+def test_help_names_the_options(name, capsys):
+    with pytest.raises(SystemExit) as stop:
+        puckpilot.main([name, "--help"])
+    told = capsys.readouterr().out
+    assert stop.value.code == 0 and told.startswith(f"usage: puckpilot {name} ")
+    explained = told[told.index("options:") :]
+    for option in OPTIONS[name]:
+        assert f"\n  {option}" in explained, option
+
+
+@pytest.mark.parametrize("word", ["-h", "--help"])
+def test_overview(word, capsys):
+    assert puckpilot.main([word]) == 0
+    told = capsys.readouterr().out
+    for name, (_, what) in puckpilot.COMMANDS.items():
+        assert name in told and what in told
+
+
+@pytest.mark.parametrize(
+    "words, told",
+    [
+        (["bensh"], "puckpilot: unknown command 'bensh'; did you mean 'bench'?"),
+        (["xyz"], "puckpilot: unknown command 'xyz'; known: demo, envs, check, match, tournament, bench, compare"),
+        (
+            ["bench", "--tabels", "3"],
+            "puckpilot bench: unrecognized arguments: --tabels; see puckpilot bench --help",
+        ),
+        (
+            ["bench", "--tables", "many"],
+            "puckpilot bench: argument --tables: invalid int value: 'many'; see puckpilot bench --help",
+        ),
+        (
+            ["bench", "mach-v0"],
+            "puckpilot bench: unknown variant 'mach-v0'; did you mean 'puckpilot/match-v0'?",
+        ),
+        (
+            ["envs", "matsch-v0"],
+            "puckpilot envs: unknown variant 'matsch-v0'; did you mean 'puckpilot/match-v0'?",
+        ),
+        (["bench", "--tables", "0"], "puckpilot bench: tables is 0; expected a whole number >= 1"),
+        (["bench", "--threads", "0"], "puckpilot bench: threads is 0; expected a whole number from 1 to 256"),
+        (["bench", "--seconds", "0"], "puckpilot bench: --seconds is 0; expected a number above 0, at most 3600"),
+        (["bench", "--seconds", "nan"], "puckpilot bench: --seconds is nan; expected a number above 0, at most 3600"),
+    ],
+)
+def test_mistakes_get_one_line(words, told, capsys):
+    assert refused(words, capsys) == told
+
+
+@pytest.mark.parametrize("name", OPTIONS)
+def test_every_command_refuses_an_unknown_option(name, capsys):
+    assert refused([name, "--no-such-option"], capsys).startswith(f"puckpilot {name}: ")
+
+
+@pytest.mark.parametrize(
+    "words",
+    [["check", "no-such-v0"], ["compare", "/no/such/folder"], ["envs", "no-such-v0"]],
+)
+def test_unknown_ids_and_folders(words, capsys):
+    assert refused(words, capsys).startswith(f"puckpilot {words[0]}: ")
+
+
+def test_bench_prints_its_figures_as_json(capsys):
+    words = ["bench", "defence-v0", "--tables", "8", "--seconds", "0.2", "--json"]
+    assert puckpilot.main([*words, "--against", "attack-v0"]) == 0
+    report = json.loads(capsys.readouterr().out)
+    assert report["id"] == "puckpilot/defence-v0" and report["against"] == "puckpilot/attack-v0"
+    assert report["tables"] == 8 and report["threads"] == 1
+    assert 1e3 < report["agent_steps_per_s"] <= report["fastest_stretch"] < 1e9
+    # two agents to a table, 0.1 s of play to a step
+    assert report["table_seconds_per_s"] == pytest.approx(report["agent_steps_per_s"] * 0.1 / 2)
+    assert 0.05 < report["ratio"] < 20.0
+
+
+def test_bench_of_dictionaries(capsys):
+    assert puckpilot.main(["bench", "--dicts", "--seconds", "0.05", "--json"]) == 0
+    report = json.loads(capsys.readouterr().out)
+    assert report["tables"] == 1 and report["agent_steps_per_s"] > 100
+
+
+def test_envs_lists_every_id(capsys):
+    assert puckpilot.main(["envs", "--json"]) == 0
+    listed = json.loads(capsys.readouterr().out)
+    files = sorted((ROOT / "puckpilot_env").glob("*_v0.py"))
+    assert len(listed) == len(files) == 7
+
+
+@pytest.mark.parametrize("code", ["import puckpilot", "import puckpilot; puckpilot.main(['--help'])"])
+def test_nothing_heavy_is_loaded_at_start(code):
+    script = f"{code}\nimport sys\nprint(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=True)
+    loaded = {name.split(".")[0] for name in done.stdout.split("\n")[-2].split()}
+    assert "puckpilot" in loaded and not loaded & set(HEAVY)
+
+
+def test_as_a_program():
+    """Exit status and streams of a process, as a shell sees them."""
+    done = subprocess.run([sys.executable, "puckpilot.py", "bensh"], cwd=ROOT, capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+    done = subprocess.run([sys.executable, "puckpilot.py"], cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 2 and "puckpilot demo" in done.stdout

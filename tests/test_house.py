@@ -1,0 +1,156 @@
+"""The floors hold: who imports whom, what start-up loads, that everything public is explained, and the linters."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PACKAGES = ("puckpilot_env", "baselines", "agents", "sim2real")
+PHYSICS, GAME = "puckpilot_env/physics", "puckpilot_env/game"
+# folder: what the modules in it may not import, not even inside functions
+FORBIDDEN = {
+    "puckpilot_env": ("baselines", "agents", "sim2real", "puckpilot", "tests"),
+    "baselines": ("agents", "sim2real", "puckpilot", "tests"),
+    "agents": ("sim2real", "puckpilot", "tests"),
+    "sim2real": ("agents", "puckpilot", "tests"),
+    "tests/reality": (*PACKAGES, "puckpilot"),
+}
+# folder: all that the modules in it may import
+ALLOWED = {
+    PHYSICS: ("__future__", "math", "numpy", "puckpilot_env.kernel", "puckpilot_env.physics"),
+    GAME: (
+        "__future__", "dataclasses", "math", "numpy", "puckpilot_env.kernel", "puckpilot_env.physics",
+        "puckpilot_env.game", "puckpilot_env.state", "puckpilot_env.random_stream",
+    ),
+}  # fmt: skip
+HEAVY = ("torch", "cv2", "serial", "matplotlib", "rich", "PIL")
+SCIPY = ("scipy.linalg", "scipy.optimize", "scipy.stats", "scipy.sparse", "scipy.spatial", "scipy.special")
+# library: the one package whose modules may import it at the top
+HOMES = {"torch": "agents", "cv2": "sim2real", "serial": "sim2real"}
+DOCUMENTED_INSIDE = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
+
+
+def _modules(folder: str) -> list[Path]:
+    return sorted((ROOT / folder).rglob("*.py"))
+
+
+def _imports(path: Path, nodes: Iterator[ast.AST] | None = None) -> list[str]:
+    """Dotted names that a file imports: `from a import b` is both `a` and `a.b`, relative ones made absolute."""
+    found = []
+    for node in nodes or ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            found += [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            package = path.relative_to(ROOT).parts[:-1]
+            base = ".".join(package[: len(package) - node.level + 1]) if node.level else ""
+            module = ".".join(part for part in (base, node.module) if part)
+            found += [module, *(f"{module}.{alias.name}" for alias in node.names)]
+    return found
+
+
+def _at_start_up(tree: ast.AST) -> Iterator[ast.AST]:
+    """What runs when a module is imported: everything outside functions and `if TYPE_CHECKING`."""
+    for node in ast.iter_child_nodes(tree):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
+            continue
+        if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
+            continue
+        yield node
+        yield from _at_start_up(node)
+
+
+def _inside(name: str, roots: tuple[str, ...]) -> bool:
+    return any(name == root or name.startswith(f"{root}.") for root in roots)
+
+
+def _leads_to(name: str, roots: tuple[str, ...]) -> bool:
+    """Whether `name` is in one of `roots`, or a package above one, of which a listed name follows it in `_imports`."""
+    return _inside(name, roots) or any(root.startswith(f"{name}.") for root in roots)
+
+
+@pytest.mark.parametrize("folder", FORBIDDEN)
+def test_no_floor_imports_from_above_it(folder: str) -> None:
+    assert _modules(folder)
+    wrong = [(str(m), name) for m in _modules(folder) for name in _imports(m) if _inside(name, FORBIDDEN[folder])]
+    assert not wrong
+
+
+@pytest.mark.parametrize("folder", ALLOWED)
+def test_physics_and_game_import_only_what_is_below_them(folder: str) -> None:
+    assert _modules(folder)
+    wrong = [(str(m), name) for m in _modules(folder) for name in _imports(m) if not _leads_to(name, ALLOWED[folder])]
+    assert not wrong
+
+
+@pytest.mark.parametrize("library", HOMES)
+def test_a_heavy_library_is_imported_at_the_top_only_in_its_home(library: str) -> None:
+    wrong = []
+    for package in PACKAGES:
+        for path in _modules(package):
+            tree = ast.parse(path.read_text(encoding="utf-8"))
+            if package != HOMES[library] and _inside_any(_imports(path, _at_start_up(tree)), library):
+                wrong.append(str(path))
+    assert not wrong
+
+
+def _inside_any(names: list[str], root: str) -> bool:
+    return any(_inside(name, (root,)) for name in names)
+
+
+def test_the_readers_of_imports_see_what_they_should(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys.modules[__name__], "ROOT", tmp_path)
+    path = tmp_path / "house" / "room.py"
+    path.parent.mkdir()
+    path.write_text(
+        "from typing import TYPE_CHECKING\nfrom . import door\nif TYPE_CHECKING:\n    import torch\n"
+        "class A:\n    import cv2\n    def f(self):\n        from PIL import Image\n"
+    )
+    everything = _imports(path)
+    assert {"house", "house.door", "torch", "cv2", "PIL", "PIL.Image"} <= set(everything)
+    at_start = _imports(path, _at_start_up(ast.parse(path.read_text())))
+    assert "cv2" in at_start and "torch" not in at_start and "PIL" not in at_start
+
+
+def test_nothing_heavy_is_loaded_with_the_simulator() -> None:
+    """scipy's own root is loaded by numba; its parts, which cost, are not."""
+    code = "import sys, puckpilot_env; print(*sys.modules)"
+    out = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    loaded = set(out.split())
+    assert "puckpilot_env.tables" in loaded
+    assert not loaded & {*HEAVY, *SCIPY}
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_everything_public_has_a_docstring(package: str) -> None:
+    bare = []
+    for path in _modules(package):
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        if path.name != "__init__.py" and not ast.get_docstring(tree):
+            bare.append(str(path.relative_to(ROOT)))
+        for node in tree.body:
+            if isinstance(node, DOCUMENTED_INSIDE) and node.name[0] != "_" and not ast.get_docstring(node):
+                bare.append(f"{path.relative_to(ROOT)}: {node.name}")
+    assert not bare
+
+
+def _run(*words: str) -> None:
+    done = subprocess.run([sys.executable, "-m", *words], cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, f"{' '.join(words)}:\n{done.stdout}{done.stderr}"
+
+
+def test_ruff_finds_nothing() -> None:
+    _run("ruff", "check", ".")
+
+
+def test_everything_is_formatted() -> None:
+    _run("ruff", "format", "--check", ".")
+
+
+def test_types_fit() -> None:
+    _run("pyright", "--pythonpath", sys.executable)
