@@ -47,13 +47,13 @@ def check(verdicts: np.ndarray, units: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("name", TABLES)
 def test_hard_scenes_on_every_table(name, effort):
-    units = sweeps.random_units(1, 5000 * effort)
+    units = sweeps.random_units(1, 10_000 * effort)
     found = check(sweeps.judge(record(**TABLES[name]), units, 0.1, 200), units)
     assert len(found) > 0.4 * len(units)
     assert np.isin(np.arange(KINDS), (units[:, 0] * KINDS).astype(int)).all()
 
 
-@pytest.mark.parametrize(("seconds", "scenes", "pieces"), [(1 / 120, 20_000, 20), (0.1, 20_000, 200), (1.0, 3000, 400)])
+@pytest.mark.parametrize(("seconds", "scenes", "pieces"), [(1 / 120, 60_000, 20), (0.1, 40_000, 200), (1.0, 8000, 400)])
 def test_hard_scenes_of_every_length(seconds, scenes, pieces, effort):
     units = sweeps.random_units(2, scenes * effort)
     found = check(sweeps.judge(record(), units, seconds, pieces), units)
@@ -63,7 +63,7 @@ def test_hard_scenes_of_every_length(seconds, scenes, pieces, effort):
 
 
 def test_cutting_an_interval_changes_nothing(effort):
-    units = sweeps.random_units(3, 20_000 * effort)
+    units = sweeps.random_units(3, 40_000 * effort)
     found = sweeps.judge(record(), units, 0.1, 200)
     found = found[(found[:, sweeps.STALLED] == 0) & (found[:, sweeps.GRAZED] == 0)]
     few = found[:, sweeps.EVENTS] <= 3  # each contact multiplies the rounding of those before it by ten or so
