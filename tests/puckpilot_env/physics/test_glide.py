@@ -61,6 +61,14 @@ def test_limits_by_hand():
     assert glide.advance(2.0, stop + 1e-6, 0.3, 0.5)[1] == 0.0
 
 
+def test_time_to_a_place_is_exact_where_nothing_is_lost():
+    for v0 in (0.5, 2.0, 9.0, 30.0):
+        for friction, drag in ((0.125, 0.125), (0.0, 0.125), (0.125, 0.0), (2.0, 0.5)):
+            for t in np.linspace(0.001, 0.1, 34):
+                back, _ = glide.time_to(v0, glide.distance(v0, t, friction, drag), friction, drag)
+                assert back == pytest.approx(t, rel=5e-13)
+
+
 @pytest.mark.parametrize("tiny", [5e-324, 1e-310, 1e-300, 1e-200, 1e-100])
 def test_next_to_nothing_is_nothing(tiny):
     for v0, t in ((30.0, 0.1), (0.5, 2.0), (1e-3, 1.0)):

@@ -35,7 +35,7 @@ def check(verdict: np.ndarray) -> None:
 @pytest.mark.parametrize("max_voltage", [24.0, 1.0, 60.0])
 def test_chains_of_plans_are_safe(max_voltage, effort):
     p, verdict = record(max_voltage=max_voltage), driver.new_verdict()
-    units = np.random.default_rng(5).random((40_000 * effort, 2, driver.UNITS))
+    units = np.random.default_rng(5).random((100_000 * effort, 2, driver.UNITS))
     driver.chains(units, p, areas(p), new_table(p), np.zeros((2, 4)), verdict)
     check(verdict)
 
