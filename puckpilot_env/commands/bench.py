@@ -69,10 +69,13 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _batches(variants: list[Any], tables: int, threads: int, seconds: float) -> dict[str, Any]:
-    """Median speed of the first variant; with a second, stretches in turn and the median ratio of pairs."""
+    """Median speed of the first variant. Of a second one, and of one thread beside several, the median ratio of
+    stretches measured in turn."""
     from puckpilot_env.tables import Tables
 
     batches = [Tables(variant, tables, seed=1, threads=threads) for variant in variants]
+    if threads > 1:
+        batches.append(Tables(variants[0], tables, seed=1))
     actions = [_draw_actions(batch) for batch in batches]
     for batch, drawn in zip(batches, actions, strict=True):
         for step in range(WARM_UP):
@@ -94,6 +97,8 @@ def _batches(variants: list[Any], tables: int, threads: int, seconds: float) -> 
     }
     if len(variants) > 1:
         report |= {"against": variants[1].id, "ratio": round(float(np.median(speeds[:, 0] / speeds[:, 1])), 4)}
+    if threads > 1:
+        report["times_one_thread"] = round(float(np.median(speeds[:, 0] / speeds[:, -1])), 4)
     return report
 
 
