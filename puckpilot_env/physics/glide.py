@@ -124,9 +124,9 @@ def time_to(v0, path, friction, drag):
     if v1_squared < 0.0:
         return math.inf, 0.0
     v1 = math.sqrt(v1_squared)
-    mixed = friction + drag * v0 * v1
-    if mixed * LARGEST < 1.0:  # no friction to speak of, and next to no drag or speed
+    divisor = (v0 + v1) * (friction + drag * v0 * v1)
+    if divisor * LARGEST < 1.0:  # no friction to speak of, and next to no drag or speed
         u = drag * path
         return path / v0 * _expm1_ratio(u) * math.exp(u), v0 * math.exp(-u)
-    gain = lost / ((v0 + v1) * mixed)
+    gain = lost / divisor
     return gain * _atan_ratio(friction * drag * gain * gain), v1

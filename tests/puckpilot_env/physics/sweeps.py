@@ -26,7 +26,7 @@ from tests.puckpilot_env.physics.table_driver import (
 # Columns of a verdict on a scene; NaN in all of them where the numbers made no scene
 OUTSIDE, INTO_POST, INTO_MALLET, EVENTS, MALLET_EVENTS, GAIN, GRAZED, STALLED, MOVED_BY_CUTS, GOAL = range(10)
 VERDICTS = 10
-GRAZE = 1e-2  # m/s; a mallet that changes the puck's velocity by less has hardly touched it
+GRAZE = 1e-2  # of the puck's speed (and of 1 m/s); a mallet that changes its velocity by less has hardly touched it
 
 
 @njit(error_model="numpy")
@@ -41,7 +41,9 @@ def judge_events(log, events, verdict):
         change = (row[AFTER_X] ** 2 + row[AFTER_Y] ** 2 - before) / (1.0 + before)
         if row[KIND] >= bounce.MALLET_0:
             verdict[MALLET_EVENTS] += 1
-            if math.hypot(row[AFTER_X] - row[BEFORE_X], row[AFTER_Y] - row[BEFORE_Y]) < GRAZE:
+            if math.hypot(row[AFTER_X] - row[BEFORE_X], row[AFTER_Y] - row[BEFORE_Y]) < GRAZE * (
+                1.0 + math.sqrt(before)
+            ):
                 verdict[GRAZED] = 1.0
         else:
             verdict[GAIN] = max(verdict[GAIN], change)

@@ -66,11 +66,12 @@ def test_cutting_an_interval_changes_nothing(effort):
     units = sweeps.random_units(3, 40_000 * effort)
     found = sweeps.judge(record(), units, 0.1, 200)
     found = found[(found[:, sweeps.STALLED] == 0) & (found[:, sweeps.GRAZED] == 0)]
-    few = found[:, sweeps.EVENTS] <= 3  # each contact multiplies the rounding of those before it by ten or so
-    assert few.mean() > 0.8
+    # Each mallet multiplies the rounding of contacts before it by ten or so.
+    few = (found[:, sweeps.EVENTS] <= 3) & (found[:, sweeps.MALLET_EVENTS] <= 1)
+    assert few.mean() > 0.5
     assert found[few, sweeps.MOVED_BY_CUTS].max() <= 1e-7
     assert np.median(found[:, sweeps.MOVED_BY_CUTS]) <= 1e-12
-    assert np.quantile(found[~few, sweeps.MOVED_BY_CUTS], 0.97) <= 1e-7
+    assert np.quantile(found[~few, sweeps.MOVED_BY_CUTS], 0.99) <= 1e-7
 
 
 def test_a_puck_that_brushes_a_post_meets_it_once():

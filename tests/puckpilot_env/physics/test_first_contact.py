@@ -20,7 +20,7 @@ from tests.reality.law import Law
 from tests.reality.puck import advance_puck
 
 STEP = 2e-5  # s, of the scan
-CLEAR = 1e-7  # m; nearer without touching is a matter of rounding
+CLEAR = 1e-5  # m; nearer than this they may overlap between two steps without the scan knowing
 END = 0.1  # s
 
 
