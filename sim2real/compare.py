@@ -57,6 +57,8 @@ def compare_recording(path: Path, out: Path) -> dict[str, Any]:
         values = parameters(recording)
         found = compare_pieces(pieces, values)
         summary = summarize(recording, pieces, found, values)
+        if not summary["sensor"]["seen"]:
+            return summary
         status.update("drawing")
         try:
             summary["picture"] = str(_draw(out, recording.name, pieces, found, values))
@@ -80,6 +82,9 @@ def print_summary(summary: dict[str, Any]) -> None:
     console.print(f"{summary['recording']}: {_sensor(summary['sensor'])}")
     for note in summary["notes"]:
         console.print(f"note: {note}")
+    if not summary["sensor"]["seen"]:
+        console.print(f"where they part most: {summary['part_most']}")
+        return
     table = Table("piece", "what", "median", "90 % range", "count", title_justify="left")
     for kind, rows in ROWS.items():
         part = summary[kind]
