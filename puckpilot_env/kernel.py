@@ -25,8 +25,10 @@ _KEEP_DAYS = 30
 
 def _source_files() -> list[Path]:
     """Every file that defines kernels or what they are compiled against, in this package and those above it."""
-    sources = [path for path in sorted(_ROOT.rglob("*.py")) if path.parent.name in ("physics", "game")]
-    sources += [_ROOT / f"{name}.py" for name in ("kernel", "parameters", "random_stream", "state", "batch", "trace")]
+    sources = [path for path in sorted(_ROOT.rglob("*.py")) if path.parent.name in ("physics", "effects", "game")]
+    sources += [
+        _ROOT / f"{name}.py" for name in ("effect", "kernel", "parameters", "random_stream", "state", "batch", "trace")
+    ]
     players = sorted((_ROOT.parent / "baselines").rglob("*.py"))
     return sources + [path for path in players if path.parent.name != "commands"]
 

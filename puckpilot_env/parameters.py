@@ -1,6 +1,7 @@
 """Every physical number of the simulator: name, unit, default, range and where it comes from, once.
 
-The rows below are the only place where a default stands. `Record` is the numpy layout in which the kernels read
+The rows below, and those that each effect brings along (`physics/effects/`), are the only place where a default
+stands. `RECORD` is the numpy layout in which the kernels read
 them (one float64 field a row), so a set of parameters is always addressed by name, never by position.
 """
 
@@ -9,23 +10,11 @@ from __future__ import annotations
 import difflib
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
-
-@dataclass(frozen=True)
-class Parameter:
-    """One physical number. `low` and `high` bound what the simulator accepts; `default` is what a table has."""
-
-    name: str
-    unit: str
-    default: float
-    low: float
-    high: float
-    meaning: str
-    source: str
-
+from puckpilot_env.effect import Parameter
+from puckpilot_env.physics.effects import EFFECTS
 
 _CHOICE = "not in the report; a documented choice (errata, last row)"
 _FRAMES = "0 to 7 % in recordings of a real table"
@@ -67,6 +56,7 @@ TABLE: tuple[Parameter, ...] = (
     Parameter("action_noise", "1", 0.0, 0.0, 0.5, "relative noise of both voltages, drawn at each action", _CHOICE),
     Parameter("impulse_rate", "1/s", 0.0, 0.0, 10.0, "random impulses on the puck", "report, K.2 (named, no number)"),
     Parameter("impulse_speed", "m/s", 0.1, 0.0, 2.0, "size of a random impulse, each component", _CHOICE),
+    *(row for effect in EFFECTS.values() for row in effect.rows.values()),
 )
 
 BY_NAME: dict[str, Parameter] = {row.name: row for row in TABLE}

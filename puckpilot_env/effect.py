@@ -1,0 +1,40 @@
+"""What a physical number is, and what an effect is: a piece of physics beyond the baseline, in one file of its own.
+
+An effect's file in `physics/effects/` is read by the simulator (its kernels), by the table of parameters (its rows), by
+the randomization, and by the diagnosis (regime, bounds, what excites it).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One physical number. `low` and `high` bound what the simulator accepts; `default` is what a table has."""
+
+    name: str
+    unit: str
+    default: float
+    low: float
+    high: float
+    meaning: str
+    source: str
+
+
+@dataclass(frozen=True)
+class Effect:
+    """Physics that a table may have beyond the baseline. It is off while all its rows are at their defaults.
+
+    `regime`: glide, wall, corner, mallet, gantry or sensing. `law`: the formula, in words that a report can print.
+    `rows`: the parameters, keyed by the short names that a diagnosis gives them. `depends_on`: what the force or the
+    impulse depends on (position, speed, heading, time, history, command). `excited_by`: the recording that shows it.
+    """
+
+    regime: str
+    law: str
+    rows: Mapping[str, Parameter]
+    depends_on: tuple[str, ...]
+    excited_by: str
+    source: str
