@@ -61,6 +61,7 @@ def place_puck(table, p, player, x, y, vx, vy):
     puck = table.puck
     puck.x, puck.y = mirror.place(player, x, y, p)
     puck.vx, puck.vy = mirror.velocity(player, vx, vy)
+    puck.spin = 0.0
     table.held = 0.0
 
 

@@ -34,7 +34,7 @@ def play(table, p, rule, until, rewards, log, film):
     """The puck's motion until `until` [s] of the plans with what it means; True if the point is over."""
     now = 0.0
     for _ in range(MOST_CROSSINGS):
-        kind, now, _ = advance(table.puck, p, table.mallets, now, until, log, film)
+        kind, now, _ = advance(table.puck, p, table.mallets, table.time, now, until, log, film)
         if kind == bounce.NOTHING:
             return False
         if kind == bounce.MIDDLE_LINE:
