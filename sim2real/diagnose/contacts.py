@@ -142,7 +142,9 @@ def near_posts(g: Geometry, p: np.ndarray, reach: float) -> np.ndarray:
     return near
 
 
-def near_mallets(g: Geometry, tracks: Mapping[str, Track], index: np.ndarray, p: np.ndarray, reach: float) -> np.ndarray:
+def near_mallets(
+    g: Geometry, tracks: Mapping[str, Track], index: np.ndarray, p: np.ndarray, reach: float
+) -> np.ndarray:
     """Places (n, 2) at the frames `index` at which a mallet may touch the puck, allowing for its clock; (n,) bool."""
     near = np.zeros(len(p), bool)
     for track in tracks.values():

@@ -28,38 +28,63 @@ class Side:
 class Impact:
     """A hit between two glides. `cluster`: its launch; `before`, `after`: the motion on both sides at its time.
 
-    `fresh`: whether what happened to the puck before the glide that led here is unknown, hence its spin. `since` [s]:
-    time since the contact before, nan where that is unknown. `glide`: index of the glide that follows, in the problem.
+    `chain`: impacts of one number follow each other without a gap; `lost`: an earlier contact of the launch is not among
+    its chain, so that the puck's spin is unknown. `since` [s]: time since the contact before, nan where that is unknown.
+    `glide`: index of the glide that follows, in the problem.
     """
 
     hit: Hit
     cluster: int
     before: Side
     after: Side
-    fresh: bool
+    chain: int
+    lost: bool
     since: float
     glide: int
 
 
-def find_impacts(pieces: Pieces, problem: GlideProblem, values: Mapping[str, float]) -> list[Impact]:
-    """The hits of `pieces` that a fitted glide leads to and another one from, in order of time."""
+def find_impacts(
+    pieces: Pieces, problem: GlideProblem, values: Mapping[str, float], recording: int = 0
+) -> list[Impact]:
+    """The hits of `pieces` that a fitted glide leads to and another one from, in order of time.
+
+    `pieces` are those of the problem's recording of that number.
+    """
     data = problem.data
-    starts, ends, spread = problem.states(values)
-    begin, finish = data.t[data.first[:-1]], data.t[data.first[1:] - 1]
+    here = np.flatnonzero(data.recording == recording)
+    if not len(here):
+        return []
+    starts, ends, spread = (states[here] for states in problem.states(values))
+    begin, finish = data.t[data.first[here]], data.t[data.first[here + 1] - 1]
     found: list[Impact] = []
     for k, hit in enumerate(pieces.hits):
         before = int(np.searchsorted(begin, hit.t)) - 1
         after = before + 1
-        if before < 0 or after >= data.glides or hit.t < finish[before] - 0.01:
+        if before < 0 or after >= len(here) or hit.t < finish[before] - 0.01:
             continue
-        if hit.t - finish[before] > FARTHEST or begin[after] - hit.t > FARTHEST or _others(pieces, k, finish[before], begin[after]):
+        if (
+            hit.t - finish[before] > FARTHEST
+            or begin[after] - hit.t > FARTHEST
+            or _others(pieces, k, finish[before], begin[after])
+        ):
             continue
         left = _carry(ends[before], spread[before][1], hit.t - finish[before])
         right = _carry(starts[after], spread[after][0], hit.t - begin[after])
-        chained = bool(found) and found[-1].glide == before
-        since = hit.t - found[-1].hit.t if chained else np.nan
-        found.append(Impact(hit, int(data.cluster[after]), left, right, not chained, since, after))
+        cluster = int(data.cluster[here[after]])
+        last = found[-1] if found and found[-1].glide == before else None
+        since = hit.t - last.hit.t if last else np.nan
+        if last and last.hit.kind != "post":  # a post's normal is uncertain, and so is the spin that it gives
+            chain, lost = last.chain, last.lost
+        else:
+            chain, lost = len(found), _touched_before(pieces, hit)
+        found.append(Impact(hit, cluster, left, right, chain, lost, since, after))
     return found
+
+
+def _touched_before(pieces: Pieces, hit: Hit) -> bool:
+    """Whether the launch had another contact before `hit`."""
+    begun = max((start for start, _ in pieces.launches if start <= hit.frames[0]), default=0)
+    return any(other.t < hit.t and other.frames[0] >= begun for other in pieces.hits)
 
 
 def _others(pieces: Pieces, k: int, start: float, stop: float) -> bool:

@@ -144,7 +144,9 @@ class Chooser:
         """Take out laws that the others make needless: little is lost on held-out clusters without them."""
         explained = float((self.foretold(Model(model.base)) - self.foretold(model)).sum())
         while len(model.laws) > 1:
-            loss = {law.name: float((self.foretold(model.minus(law)) - self.foretold(model)).sum()) for law in model.laws}
+            loss = {
+                law.name: float((self.foretold(model.minus(law)) - self.foretold(model)).sum()) for law in model.laws
+            }
             weakest = min((law for law in model.laws), key=lambda law: loss[law.name])
             if loss[weakest.name] > max(LEAST_FORETOLD, LEAST_SHARE * explained):
                 break

@@ -18,7 +18,8 @@ MOST_LISTED = 4
 FEWEST_CLUSTERS = 4
 CLEAR = 1e-4  # chance at which the simulator's own numbers would be refused though they are right
 REMAINDER = 0.1  # share of what the listed laws explain that a remainder must exceed to be worth a law
-ROUNDS = 3
+STRAY = 6.0  # times the usual sum of squares: a launch in which something else happened
+MOST_STRAY = 0.1
 
 
 @dataclass(frozen=True)
@@ -55,6 +56,9 @@ def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray) -> 
     listed = tuple(law for law in model.laws if not law.family)
     unlisted = next((law for law in model.laws if law.family), None)
     law = _refit(problem, baseline, listed, use)
+    calm = _calm(problem, law, use, unlisted)
+    if len(calm) < len(use):
+        law = _refit(problem, baseline, listed, calm)
     theta, spread, columns = _smooth(problem, law, unlisted, model, screen, use)
     also, rivals = {}, {}
     for one in model.laws:
@@ -100,6 +104,15 @@ def _refit(problem: Problem, baseline: Fit, listed: tuple[Law, ...], use: np.nda
     return fit(problem, values, free, use)
 
 
+def _calm(problem: Problem, law: Fit, use: np.ndarray, unlisted: Law | None) -> np.ndarray:
+    """The clusters that the final law explains; a few that it does not saw something of their own, and are left out."""
+    found = problem.residuals(law.values, (), use)
+    loss = np.bincount(found.cluster, found.r**2, problem.clusters)[use] / np.maximum(problem.freedom[use], 1.0)
+    stray = loss > STRAY * max(float(np.median(loss)), 1.0)
+    few = 0 < stray.sum() <= MOST_STRAY * len(use) and unlisted is None
+    return use[~stray] if few else use
+
+
 def _smooth(problem: Problem, law: Fit, unlisted: Law | None, model: Model, screen: Columns, use: np.ndarray):
     """Coefficients of the family on top of the final fit, their covariance, and the columns that they belong to."""
     columns = screen if unlisted is None else problem.columns(law.values)
@@ -138,7 +151,9 @@ def _compare(chooser: Chooser, model: Model, law: Law, others) -> tuple[tuple[st
         if loss < AMBIGUOUS and not other.family and not law.family and chooser.passes(gain):
             also.append(other.name)
         if other.name not in rivals or loss < rivals[other.name].loss:
-            rivals[other.name] = Rival(other.name, loss, _why(gain, loss, float(chooser.foretold(without).sum() - best.sum())))
+            rivals[other.name] = Rival(
+                other.name, loss, _why(gain, loss, float(chooser.foretold(without).sum() - best.sum()))
+            )
     ordered = sorted(rivals.values(), key=lambda rival: rival.loss)
     return tuple(dict.fromkeys(also)), tuple(ordered)
 

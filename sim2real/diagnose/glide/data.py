@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -25,7 +25,7 @@ class GlideData:
     """`n` frames in `g` glides, of which number i has the frames first[i] … first[i + 1] − 1.
 
     `t` (n,) [s], `place` (n, 2) [m], `std` (n, 2) [m] of each coordinate; for each glide: its `cluster` (launch), its
-    index in `pieces`, and `since` [s], the time of the contact before it (nan where none was seen).
+    `recording`, and `since` [s], the time of the contact before it (nan where none was seen).
     """
 
     t: np.ndarray
@@ -33,7 +33,7 @@ class GlideData:
     std: np.ndarray
     first: np.ndarray
     cluster: np.ndarray
-    piece: np.ndarray
+    recording: np.ndarray
     since: np.ndarray
 
     @property
@@ -73,8 +73,23 @@ def glide_data(pieces: Pieces, g: Geometry, tracks: Mapping[str, Track]) -> Glid
         np.sqrt(excess) * pieces.noise.std(np.concatenate(speed)) if glides else np.zeros((0, 2)),
         np.concatenate([[0], np.cumsum(frames)]).astype(int),
         _clusters(pieces, glides),
-        np.array(kept, int),
+        np.zeros(len(glides), int),
         np.array([_last_contact(glide, ends) for glide in glides]),
+    )
+
+
+def join(parts: Sequence[GlideData]) -> GlideData:
+    """The glides of several recordings of one table; their launches stay apart."""
+    frames = np.cumsum([0, *(len(part.t) for part in parts)])
+    launches = np.cumsum([0, *(part.clusters for part in parts)])
+    return GlideData(
+        np.concatenate([part.t for part in parts]),
+        np.concatenate([part.place for part in parts]),
+        np.concatenate([part.std for part in parts]),
+        np.concatenate([[0], *(part.first[1:] + n for part, n in zip(parts, frames, strict=False))]).astype(int),
+        np.concatenate([part.cluster + n for part, n in zip(parts, launches, strict=False)]).astype(int),
+        np.concatenate([np.full(part.glides, k) for k, part in enumerate(parts)]).astype(int),
+        np.concatenate([part.since for part in parts]),
     )
 
 

@@ -105,7 +105,10 @@ class GlideProblem:
         first, last = data.first[:-1], data.first[1:] - 1
         inverse = np.linalg.inv(_normal(data, by_start))
         spread = np.stack([whole[at] @ inverse @ whole[at].transpose(0, 2, 1) for at in (first, last)], axis=1)
-        ends = [np.concatenate([path[at], _slope(data.t, path[:, 2:], at, step)], axis=1) for at, step in ((first, 1), (last, -1))]
+        ends = [
+            np.concatenate([path[at], _slope(data.t, path[:, 2:], at, step)], axis=1)
+            for at, step in ((first, 1), (last, -1))
+        ]
         return ends[0], ends[1], spread
 
     def _record(self, values: Mapping[str, float]) -> np.void:

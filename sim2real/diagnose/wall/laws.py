@@ -41,7 +41,9 @@ def wall_columns(problem: WallProblem, values: Mapping[str, float]) -> Columns:
     for name, (depends, shape) in FAMILIES.items():
         for component, axis in (("restitution", 0), ("tangential ratio", 1)):
             block = -problem.whitened(_impulses(problem.data, shape(problem.data), axis))
-            law = Law(f"{component} by {name}", tuple(f"{component} {name} {k}" for k in range(block.shape[1])), depends)
+            law = Law(
+                f"{component} by {name}", tuple(f"{component} {name} {k}" for k in range(block.shape[1])), depends
+            )
             names += law.columns
             blocks.append(block)
             families.append(law)

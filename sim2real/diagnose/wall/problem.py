@@ -8,6 +8,7 @@ import numpy as np
 
 from puckpilot_env.kernel import kernel
 from puckpilot_env.parameters import BY_NAME, make_records
+from puckpilot_env.physics import bounce
 from puckpilot_env.physics.advance import PUCK
 from puckpilot_env.physics.effects import EFFECTS
 from puckpilot_env.physics.rebound import rebound
@@ -18,18 +19,19 @@ from sim2real.diagnose.wall.laws import wall_columns
 
 FLIGHT = 0.1  # s; an error of a velocity is told as that of the place so much later
 STEP = 1e-5  # m/s
+SPIN_STEP = 1e-3  # rad/s
+UNKNOWN_SPIN, LAUNCH_SPIN = 30.0, 1.0  # rad/s, std of the spin after a contact that was not seen well, and of a launch
 
 
 @kernel
-def _rebounds(p, kind, normal, before, fresh, since, pucks, after):
-    """Velocities after (n, 2) of bounces in order; the spin is carried on to the next one unless that is `fresh`."""
+def _rebounds(p, kind, normal, t, chain, before, spin, pucks, after):
+    """Velocities after (n, 2) of bounces in order; each chain begins with `spin` [rad/s] and carries it on."""
     puck = pucks[0]
-    puck.spin = 0.0
     for i in range(len(kind)):
-        if fresh[i]:
-            puck.spin = 0.0
-        elif i > 0:
-            puck.spin *= np.exp(-p.spin_decay * since[i])
+        if i == 0 or chain[i] != chain[i - 1]:
+            puck.spin = spin
+        else:
+            puck.spin *= np.exp(-p.spin_decay * (t[i] - t[i - 1]))
         puck.vx, puck.vy = before[i, 0], before[i, 1]
         rebound(puck, p, kind[i], normal[i, 0], normal[i, 1])
         after[i, 0], after[i, 1] = puck.vx, puck.vy
@@ -60,6 +62,7 @@ class WallProblem:
             step = 1e-5 * (row.high - row.low) * (1.0 if at + 1e-5 * (row.high - row.low) < row.high else -1.0)
             columns[:, :, k] = (self.predicted({**values, name: at + step}) - now) / step
         r, jacobian = self.whitened(self.data.split(self.data.after) - now), -self.whitened(columns)
+        r, jacobian = self._allow_for_spin(values, now, r, jacobian)
         cluster = np.repeat(self.data.cluster, 2)
         here = np.isin(cluster, clusters)
         return Residuals(r[here], jacobian[here], cluster[here])
@@ -67,6 +70,30 @@ class WallProblem:
     def predicted(self, values: Mapping[str, float]) -> np.ndarray:
         """Velocity after (n, 2) [m/s] along the normal and the tangent, under a law."""
         return self.data.split(self._after(self._record(values), self.data.before))
+
+    def _allow_for_spin(self, values: Mapping[str, float], now, r, jacobian) -> tuple[np.ndarray, np.ndarray]:
+        """Residuals and columns with the spin at each chain's start as a further noise, where there is friction."""
+        if values.get("wall_mu", 0.0) <= 0.0 or not len(self.data):
+            return r, jacobian
+        d, record = self.data, self._record(values)
+        by_spin = self.whitened((d.split(self._after(record, d.before, SPIN_STEP)) - now) / SPIN_STEP)
+        prior = np.where(d.lost, UNKNOWN_SPIN, LAUNCH_SPIN)
+        both = np.concatenate([r[:, None], jacobian], axis=1)
+        both[1::2] /= self._blur(values)[:, None]
+        for chain in np.unique(d.chain):
+            rows = np.repeat(d.chain == chain, 2)
+            s = by_spin[rows] * prior[d.chain == chain][0]
+            size = float(s @ s)
+            if size > 1e-12:
+                both[rows] -= np.outer(s, s @ both[rows]) * ((1.0 - 1.0 / np.sqrt(1.0 + size)) / size)
+        return both[:, 0], both[:, 1:]
+
+    def _blur(self, values: Mapping[str, float]) -> np.ndarray:
+        """By how much (n,) the tangential noise grows where neither spin nor normal is known: up to what friction can do."""
+        d = self.data
+        reach = values["wall_mu"] * (1.0 + values["wall_restitution"]) * d.closing
+        unknown = d.lost | (d.kind == bounce.POST)
+        return np.where(unknown, np.hypot(1.0, reach * self._whiten[:, 1, 1]), 1.0)
 
     def whitened(self, velocities: np.ndarray) -> np.ndarray:
         """Velocities (n, 2, …) in units of their noise, as rows (2n, …)."""
@@ -88,10 +115,10 @@ class WallProblem:
             records[name] = value
         return records[0]
 
-    def _after(self, record: np.void, before: np.ndarray) -> np.ndarray:
+    def _after(self, record: np.void, before: np.ndarray, spin: float = 0.0) -> np.ndarray:
         d = self.data
         after = np.empty_like(before)
-        _rebounds(record, d.kind, d.normal, before, d.fresh, d.since, self._pucks, after)
+        _rebounds(record, d.kind, d.normal, d.t, d.chain, before, spin, self._pucks, after)
         return after
 
     def _whitening(self, record: np.void) -> np.ndarray:
