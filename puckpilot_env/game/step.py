@@ -79,7 +79,7 @@ def _random_impulse(table, p, period):
     if random_stream.uniform(table.stream) < p.impulse_rate * period:
         x = p.impulse_speed * random_stream.normal(table.stream)
         y = p.impulse_speed * random_stream.normal(table.stream)
-        x, y = mirror.velocity(table.turned, x, y)
+        x, y = mirror.velocity(table.puck.turned, x, y)
         table.puck.vx += x
         table.puck.vy += y
 

@@ -17,7 +17,17 @@ from puckpilot_env.physics.mallet import halt, place_now, reach
 from puckpilot_env.physics.rebound import rebound
 from puckpilot_env.physics.vector import size
 
-PUCK = np.dtype([(name, np.float64) for name in ("x", "y", "vx", "vy", "spin")], align=True)  # m, m/s, rad/s
+PUCK = np.dtype(
+    [
+        ("x", np.float64),  # m
+        ("y", np.float64),
+        ("vx", np.float64),  # m/s
+        ("vy", np.float64),
+        ("spin", np.float64),  # rad/s, counter-clockwise
+        ("turned", np.int64),  # 1 where the table, and with it every effect, was turned round
+    ],
+    align=True,
+)
 # Columns of an event log: time in the interval [s], kind (see bounce), the puck's place, and its velocity before, after
 EVENT_COLUMNS = 8
 MANY_EVENTS = 2000  # in one interval: a puck caught so is set to rest, and the mallets stall
@@ -106,7 +116,7 @@ def _not_through(puck, p, before_x, before_y, vx, vy):
 def _look_ahead_forced(puck, p, mallets, clock, t, end):
     """`_look_ahead` for one interval of `slide`, which is shortened so that it ends in the event; then what it needs:
     `(friction, drag, pull, duration)`."""
-    ax, ay = compose.acceleration(p, clock + t, puck.x, puck.y, puck.vx, puck.vy, puck.spin)
+    ax, ay = slide.force(puck, p, clock + t, puck.vx, puck.vy)
     pull, h = slide.plan_interval(puck, p, clock + t, ax, ay)
     h = min(h, end - t)
     cuts = 0
@@ -147,7 +157,7 @@ def _apply(puck, p, mallets, kind, clock, t, film):
     elif kind >= bounce.MALLET_0:
         ax, ay = 0.0, 0.0
         if compose.is_forced(p):
-            ax, ay = compose.acceleration(p, clock + t, puck.x, puck.y, puck.vx, puck.vy, puck.spin)
+            ax, ay = slide.force(puck, p, clock + t, puck.vx, puck.vy)
         hit(puck, p, mallets, kind - bounce.MALLET_0, t, ax, ay)
     else:
         nx, ny = bounce.boundary_normal(kind, puck.x, puck.y, p.length, p.width, p.goal_width)

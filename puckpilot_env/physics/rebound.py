@@ -10,8 +10,10 @@ from puckpilot_env.physics import bounce, compose, contact
 
 
 @kernel
-def wall_restitution(p, kind, closing):
+def wall_restitution(p, kind, closing, turned):
     """Restitution of a wall or post (`kind` as in `bounce`) at a normal speed `closing` [m/s]; from 0 to 1."""
+    if turned != 0:
+        kind = bounce.opposite(kind)
     return min(max(compose.restitution(p, kind, closing, p.wall_restitution), 0.0), 1.0)
 
 
@@ -22,7 +24,7 @@ def rebound(puck, p, kind, nx, ny):
     if closing <= bounce.SLIDING:
         puck.vx, puck.vy = bounce.reflect(puck.vx, puck.vy, nx, ny, p.wall_restitution)
         return
-    e = wall_restitution(p, kind, closing)
+    e = wall_restitution(p, kind, closing, puck.turned)
     along = puck.vy * nx - puck.vx * ny
     kept = e * along
     after, puck.spin = compose.tangent(p, closing, e, along, puck.spin, kept)

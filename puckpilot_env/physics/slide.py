@@ -19,8 +19,20 @@ SHARE = 0.25  # of the time to a stop or a turn, that an interval may take
 
 
 @kernel
-def friction_on_way(p, t, x, y, dx, dy):
-    """Mean friction [m/s^2] at about the time `t` on the way from (x, y) on by (dx, dy) [m]."""
+def force(puck, p, t, vx, vy):
+    """Acceleration (ax, ay) [m/s^2] by the effects' forces on the puck, if its velocity is `v`, at the time `t`."""
+    if puck.turned == 0:
+        return compose.acceleration(p, t, puck.x, puck.y, vx, vy, puck.spin)
+    ax, ay = compose.acceleration(p, t, p.length - puck.x, p.width - puck.y, -vx, -vy, puck.spin)
+    return -ax, -ay
+
+
+@kernel
+def friction_on_way(puck, p, t, dx, dy):
+    """Mean friction [m/s^2] at about the time `t` on the puck's way on by (dx, dy) [m]."""
+    x, y = puck.x, puck.y
+    if puck.turned != 0:
+        x, y, dx, dy = p.length - x, p.width - y, -dx, -dy
     return max(compose.friction(p, t, x, y, dx, dy, p.friction), 0.0)
 
 
@@ -33,7 +45,7 @@ def plan_interval(puck, p, t, ax, ay):
     """
     v = size(puck.vx, puck.vy)
     force = size(ax, ay)
-    friction = friction_on_way(p, t, puck.x, puck.y, puck.vx * SHORTEST, puck.vy * SHORTEST)
+    friction = friction_on_way(puck, p, t, puck.vx * SHORTEST, puck.vy * SHORTEST)
     if v == 0.0:
         return (1.0 - friction / force if force > friction else 0.0), LONGEST
     forward = (ax * puck.vx + ay * puck.vy) / v
@@ -45,9 +57,9 @@ def plan_interval(puck, p, t, ax, ay):
 @kernel
 def kicked(puck, p, t, vx, vy, pull, duration):
     """The velocity `v` after the forces alone acted for `duration` [s], which may be negative, at the puck's place."""
-    ax, ay = compose.acceleration(p, t, puck.x, puck.y, vx, vy, puck.spin)
+    ax, ay = force(puck, p, t, vx, vy)
     half = 0.5 * duration * pull
-    ax, ay = compose.acceleration(p, t, puck.x, puck.y, vx + half * ax, vy + half * ay, puck.spin)
+    ax, ay = force(puck, p, t, vx + half * ax, vy + half * ay)
     return vx + duration * pull * ax, vy + duration * pull * ay
 
 
@@ -58,7 +70,7 @@ def interval_law(puck, p, t, vx, vy, pull, duration):
         return 0.0, 0.0
     v = size(vx, vy)
     way = glide.distance(v, duration, p.friction, p.drag) / v if v > 0.0 else 0.0
-    return friction_on_way(p, t + 0.5 * duration, puck.x, puck.y, way * vx, way * vy), p.drag
+    return friction_on_way(puck, p, t + 0.5 * duration, way * vx, way * vy), p.drag
 
 
 @kernel
@@ -92,7 +104,7 @@ def slide(puck, p, t, duration):
         pull, h = 1.0, left
         vx, vy, friction, drag = puck.vx, puck.vy, p.friction, p.drag
         if forced:
-            ax, ay = compose.acceleration(p, t, puck.x, puck.y, puck.vx, puck.vy, puck.spin)
+            ax, ay = force(puck, p, t, puck.vx, puck.vy)
             pull, longest = plan_interval(puck, p, t, ax, ay)
             h = min(h, longest)
             vx, vy = kicked(puck, p, t, puck.vx, puck.vy, pull, 0.5 * h)
