@@ -24,7 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """0: diagnosed, whatever the verdict. Raises RecordingError, ValueError or OSError, in one line, where it cannot."""
+    """0: diagnosed, whatever the verdict. Raises ValueError or OSError, in one line, where it cannot."""
     from sim2real.diagnose.diagnosis import diagnose
     from sim2real.diagnose.files import as_dict, write
     from sim2real.nominal import read_baseline

@@ -59,8 +59,8 @@ class Diagnosis:
     @property
     def proof(self) -> Proof | None:
         """Held-out residuals over the regimes with findings, or over all where there are none."""
-        told = [each for each in self.accounts if each.proof is not None]
-        some = [each.proof for each in told if each.findings] or [each.proof for each in told]
+        lacking = [each for each in self.accounts if each.findings] or self.accounts
+        some = [each.proof for each in lacking if each.proof is not None]
         if not some:
             return None
         pieces = sum(one.pieces for one in some)

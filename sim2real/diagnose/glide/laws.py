@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -80,9 +80,9 @@ def _patches(motion: Motion, columns, r: np.ndarray, base: np.ndarray) -> tuple[
     return laws, np.stack([kept[k] for k in best], axis=1)
 
 
-def _patch(column: str, disc: Sequence[float]) -> Law:
-    start = dict(zip(("patch_x", "patch_y", "patch_radius"), map(float, disc), strict=True))
-    return Law("friction_patch", (column,), start=start)
+def _patch(column: str, disc: np.ndarray) -> Law:
+    x, y, radius = map(float, disc)
+    return Law("friction_patch", (column,), start={"patch_x": x, "patch_y": y, "patch_radius": radius})
 
 
 def _discs(size: np.ndarray) -> np.ndarray:

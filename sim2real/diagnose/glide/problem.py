@@ -24,7 +24,7 @@ class GlideProblem:
     """Free glides. `values` passed to its methods are parameters of the simulator by name; the rest have defaults."""
 
     regime = "glide"
-    base = ("friction", "drag")
+    base: tuple[str, ...] = ("friction", "drag")
 
     def __init__(self, data: GlideData, values: Mapping[str, float]) -> None:
         """`values`: sizes of the table, and what else every law has in common."""

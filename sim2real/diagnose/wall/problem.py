@@ -41,7 +41,7 @@ class WallProblem:
     """Bounces off walls and posts. Parameters that `values` leave out have their defaults."""
 
     regime = "wall"
-    base = ("wall_restitution",)
+    base: tuple[str, ...] = ("wall_restitution",)
 
     def __init__(self, data: Bounces, clusters: int, common: Mapping[str, float]) -> None:
         """`clusters`: how many launches the recording has; `common`: sizes of the table."""
