@@ -34,7 +34,7 @@ class Snapshot:
     variant: str
     states: NDArray[np.void]
     params: NDArray[np.void]
-    frames: NDArray[np.float64]
+    frames: NDArray[np.void]
     observations: NDArray[np.float32]
 
 
@@ -84,8 +84,7 @@ class Tables:
         self._drawn = variant.drawn()
         self._check_draws()
         self.states = np.zeros(tables, state.TABLE)
-        kept = self._frames_kept()
-        self._frames = np.zeros((tables, 2, kept, state.FRAME_COLUMNS))
+        self._frames = np.zeros((tables, self._frames_kept()), state.FRAME)
         self.observation_columns = observation.columns(self._rules[0], self.nominal[0])
         self.observation_bounds = observation.space_bounds(self._rules[0], self.nominal[0])
         self.action_bounds = _action_bounds(self.nominal[0])

@@ -22,7 +22,7 @@ def trace_step(moments, p, rules, frames, actions, times, scored):
     """Play copies of a table from where it is to different moments of its step.
 
     moments: (m,) `state.TABLE` records, all equal to the table; each is left as it is at its own time. p, rules: (1,)
-    records; frames: its camera frames (2, kept, columns), scratch; actions: float32 (2, 4); times: (m,) [s], from 0 to
+    records; frames: its (kept,) camera frames, scratch; actions: float32 (2, 4); times: (m,) [s], from 0 to
     the period of a step; scored: (m,) bool, written: the puck is in a goal.
 
     Each copy is played from the start in one stretch, because a stretch cut in two differs in its last digits.
