@@ -10,7 +10,7 @@ from baselines.aim import first_strike
 from baselines.attack import block
 from baselines.geometry import crossing, fill_mallet, guard_place
 from baselines.rollout import HORIZON, park_opponent, value_of
-from puckpilot_env.kernel import kernel
+from puckpilot_env.kernel import array_kernel, kernel
 from puckpilot_env.physics.advance import EVENT_COLUMNS, PUCK
 from puckpilot_env.physics.mallet import MALLET
 
@@ -86,7 +86,7 @@ def _best_of_many(puck, own, opponent, held, last, p, style, mallets, bounds, wa
             out[:] = trial
 
 
-@kernel
+@array_kernel
 def choose(pucks, owns, opponents, helds, lasts, scales, nominal, styles, bounds, ways, changes, actions):
     """Write the best action found on every table into `actions` (n, 4).
 

@@ -43,13 +43,26 @@ def reset_range(states, params, rows, drawn, rules, frames, bounds, observations
 
 
 @kernel
+def _copy_rows(source, target):
+    for k in range(source.shape[0]):
+        for c in range(source.shape[1]):
+            target[k, c] = source[k, c]
+
+
+def scratch() -> tuple[np.ndarray, np.ndarray]:
+    """`log, film` of `step_range`: no events are logged, and every frame of a step has its place."""
+    return np.zeros((0, EVENT_COLUMNS)), np.zeros((MOST_WANTED, 3))
+
+
+@kernel
 def step_range(
     states, params, rows, drawn, rules, frames, bounds, actions, observations, finals, rewards, terminated, truncated,
-    autoreset, first, last,
+    autoreset, log, film, first, last,
 ):  # fmt: skip
-    """Play one step on tables `first` to `last`, and begin a new episode where one ended, if `autoreset`."""
-    log = np.zeros((0, EVENT_COLUMNS))
-    film = np.zeros((MOST_WANTED, 3))
+    """Play one step on tables `first` to `last`, and begin a new episode where one ended, if `autoreset`.
+
+    log, film: scratch, see `game.step.step_table`; `scratch` makes them.
+    """
     rule = rules[0]
     for i in range(first, last):
         table, p = states[i], params[i]
@@ -59,6 +72,6 @@ def step_range(
         terminated[i] = ended and not truncated[i]
         observe_table(table, p, rule, frames[i], bounds, observations[i])
         if ended and autoreset:
-            finals[i] = observations[i]
+            _copy_rows(observations[i], finals[i])
             begin_table(table, p, rows[i], drawn, rule, frames[i])
             observe_table(table, p, rule, frames[i], bounds, observations[i])

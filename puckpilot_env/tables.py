@@ -159,7 +159,7 @@ class Tables:
         batch.step_range(
             self.states, self.params, self._rows, self._drawn, self._rules, self._frames, self.observation_bounds,
             actions, self.observations, self.final_observations, self.rewards, self.terminated, self.truncated,
-            self.autoreset, first, last,
+            self.autoreset, *batch.scratch(), first, last,
         )  # fmt: skip
 
     def _describe_bad_action(self, actions: NDArray[np.float32], flat: int) -> str:

@@ -11,13 +11,13 @@ from numpy.typing import ArrayLike, NDArray
 from puckpilot_env import state
 from puckpilot_env.game.sensing import EXACT, MOST_WANTED
 from puckpilot_env.game.step import plan_both, play, play_and_film
-from puckpilot_env.kernel import announce_compilation, kernel
+from puckpilot_env.kernel import announce_compilation, array_kernel
 from puckpilot_env.physics.advance import EVENT_COLUMNS
 from puckpilot_env.physics.mallet import settle
 from puckpilot_env.tables import Tables
 
 
-@kernel
+@array_kernel
 def trace_step(moments, p, rules, frames, actions, times, scored):
     """Play copies of a table from where it is to different moments of its step.
 
