@@ -62,10 +62,10 @@ _config: Any = numba_config  # its settings are made at run time
 CACHE_FOLDER = _make_cache_folder()
 
 
-def _compiled(function: Callable[..., Any], counts: bool) -> Callable[..., Any]:
+def _compiled(function: Callable[..., Any], **options: bool) -> Callable[..., Any]:
     before, _config.CACHE_DIR = _config.CACHE_DIR, str(CACHE_FOLDER)
     try:
-        return numba.njit(cache=True, nogil=True, error_model="numpy", _nrt=counts)(function)
+        return numba.njit(cache=True, nogil=True, error_model="numpy", **options)(function)
     finally:
         _config.CACHE_DIR = before
 
@@ -76,12 +76,17 @@ def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     It cannot make arrays. That spares it numba's counting of references to the arrays that it is given, a tenth of a
     step's time, and more where two threads count in the same place.
     """
-    return _compiled(function, counts=False)
+    return _compiled(function, _nrt=False)
+
+
+def inlined_kernel(function: Callable[..., Any]) -> Callable[..., Any]:
+    """`kernel` for a small function that is called so often that each call costs as much as what it does."""
+    return _compiled(function, _nrt=False, forceinline=True)
 
 
 def array_kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     """`kernel` for a function that makes arrays."""
-    return _compiled(function, counts=True)
+    return _compiled(function, _nrt=True)
 
 
 _announced = False

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from puckpilot_env.kernel import kernel
+from puckpilot_env.kernel import inlined_kernel, kernel
 
 STREAM = np.dtype([("key", np.uint64), ("draws", np.uint64)], align=True)
 
@@ -38,7 +38,7 @@ def _layers() -> tuple[np.ndarray, np.ndarray]:
 _EDGE, _HEIGHT = _layers()
 
 
-@kernel
+@inlined_kernel
 def mix(z):
     """SplitMix64's finalizer (Steele, Lea, Flood 2014): a bijection of 64-bit integers."""
     z = (z ^ (z >> _S30)) * _MIX_1
@@ -54,7 +54,7 @@ def seed_stream(stream, seed, index, number):
     stream.draws = np.uint64(0)
 
 
-@kernel
+@inlined_kernel
 def _next(stream):
     """The next 64 bits of the stream."""
     draws = stream.draws + _ONE
@@ -62,7 +62,7 @@ def _next(stream):
     return mix(stream.key + draws * _GOLDEN)
 
 
-@kernel
+@inlined_kernel
 def uniform(stream):
     """The next number of the stream, uniform in [0, 1)."""
     return (_next(stream) >> _S11) * (1.0 / 9007199254740992.0)
@@ -74,7 +74,7 @@ def between(stream, low, high):
     return low + (high - low) * uniform(stream)
 
 
-@kernel
+@inlined_kernel
 def normal_pair(stream):
     """Two standard normal numbers, of 24 bits each; they take 64 bits of the stream, seldom more (the ziggurat).
 
@@ -84,7 +84,7 @@ def normal_pair(stream):
     return _normal(stream, np.int64(bits >> _S32)), _normal(stream, np.int64(bits & _LOW))
 
 
-@kernel
+@inlined_kernel
 def _normal(stream, bits):
     """A standard normal number from 32 bits: 8 choose a layer, the others a place in it."""
     layer = bits & (LAYERS - 1)

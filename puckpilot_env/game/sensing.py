@@ -15,7 +15,7 @@ import numpy as np
 
 from puckpilot_env import random_stream
 from puckpilot_env.game import mirror
-from puckpilot_env.kernel import kernel
+from puckpilot_env.kernel import inlined_kernel, kernel
 from puckpilot_env.physics.mallet import place_at, place_now
 from puckpilot_env.state import ERROR_TERMS
 
@@ -23,6 +23,7 @@ EXACT, ESTIMATED, HISTORY = range(3)  # kinds of sensing
 LAGS = (0, 1, 2, 5, 11)  # frames back from the newest, of a history
 OLDEST_LAG = LAGS[-1]
 VELOCITY_LAG = 2  # estimated velocities are a difference over so many frames
+_ROOT_3, _HALF_ROOT_5 = math.sqrt(3.0), 0.5 * math.sqrt(5.0)
 MOST_WANTED = 62  # frames in a step; those on their way and the oldest lag are fewer
 
 
@@ -107,15 +108,14 @@ def draw_camera_error(table, p):
         camera.error_x[term], camera.error_y[term] = turned * scale * x, turned * scale * y
 
 
-@kernel
+@inlined_kernel
 def measure(table, p, x, y, noise, measured):
     """Write the place [m] as the camera reports `(x, y)` into `measured`: with the smooth error and white noise.
 
     The error's terms are orthonormal over the table, so each carries the same share of its rms.
     """
-    u, w = 2.0 * x / p.length - 1.0, 2.0 * y / p.width - 1.0
-    a, b = 1.7320508075688772 * u, 1.7320508075688772 * w
-    c, d = a * b, 1.118033988749895 * (a * a - 1.0)
+    a, b = _ROOT_3 * (2.0 * x / p.length - 1.0), _ROOT_3 * (2.0 * y / p.width - 1.0)
+    c, d = a * b, _HALF_ROOT_5 * (a * a - 1.0)
     dx, dy = random_stream.normal_pair(table.stream)
     dx, dy = mirror.velocity(table.turned, noise * dx, noise * dy)
     e = table.camera.error_x
@@ -134,7 +134,7 @@ def repeat_frame(table, frames, frame):
     return True
 
 
-@kernel
+@inlined_kernel
 def take_frame(table, p, frames, frame, puck_x, puck_y, time):
     """Store frame number `frame` as the camera saw the puck and both mallets at `time` of the plans.
 
