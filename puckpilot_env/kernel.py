@@ -89,6 +89,14 @@ def array_kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     return _compiled(function, _nrt=True)
 
 
+def inner(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Compile a function that was made inside another one: it becomes part of each `kernel` that calls it.
+
+    It has no cache of its own, for numba tells functions apart by where they stand; its callers' caches hold it.
+    """
+    return numba.njit(nogil=True, error_model="numpy", _nrt=False)(function)
+
+
 _announced = False
 
 

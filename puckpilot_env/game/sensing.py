@@ -104,7 +104,7 @@ def draw_camera_error(table, p):
     scale = p.camera_error / math.sqrt(2.0 * ERROR_TERMS)
     for term in range(ERROR_TERMS):
         x, y = random_stream.normal_pair(table.stream)
-        turned = mirror.TURNED_ERROR[term] if table.turned == 1 else 1.0
+        turned = mirror.TURNED_ERROR[term] if table.puck.turned == 1 else 1.0
         camera.error_x[term], camera.error_y[term] = turned * scale * x, turned * scale * y
 
 
@@ -117,7 +117,7 @@ def measure(table, p, x, y, noise, measured):
     a, b = _ROOT_3 * (2.0 * x / p.length - 1.0), _ROOT_3 * (2.0 * y / p.width - 1.0)
     c, d = a * b, _HALF_ROOT_5 * (a * a - 1.0)
     dx, dy = random_stream.normal_pair(table.stream)
-    dx, dy = mirror.velocity(table.turned, noise * dx, noise * dy)
+    dx, dy = mirror.velocity(table.puck.turned, noise * dx, noise * dy)
     e = table.camera.error_x
     measured.x = x + (e[0] + e[1] * a + e[2] * b + e[3] * c + e[4] * d + dx)
     e = table.camera.error_y
@@ -151,7 +151,7 @@ def take_frame(table, p, frames, frame, puck_x, puck_y, time):
     else:
         taken.puck.x, taken.puck.y = last.puck.x, last.puck.y
         taken.seen = 0.0
-    if table.turned == 1:
+    if table.puck.turned == 1:
         measure(table, p, x1, y1, p.camera_noise, taken.mallets[1])
         measure(table, p, x0, y0, p.camera_noise, taken.mallets[0])
     else:

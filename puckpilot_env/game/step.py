@@ -35,7 +35,7 @@ def play(table, p, rule, until, rewards, log, film):
     """The puck's motion until `until` [s] of the plans with what it means; True if the point is over."""
     now = 0.0
     for _ in range(MOST_CROSSINGS):
-        kind, now, _ = advance(table.puck, p, table.mallets, now, until, log, film)
+        kind, now, _ = advance(table.puck, p, table.mallets, table.time, now, until, log, film)
         if kind == bounce.NOTHING:
             return False
         if kind == bounce.MIDDLE_LINE:
@@ -79,7 +79,7 @@ def play_and_film(table, p, rule, frames, rewards, log, film):
 def _random_impulse(table, p, period):
     if random_stream.uniform(table.stream) < p.impulse_rate * period:
         x, y = random_stream.normal_pair(table.stream)
-        x, y = mirror.velocity(table.turned, p.impulse_speed * x, p.impulse_speed * y)
+        x, y = mirror.velocity(table.puck.turned, p.impulse_speed * x, p.impulse_speed * y)
         table.puck.vx += x
         table.puck.vy += y
 
