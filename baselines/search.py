@@ -20,7 +20,7 @@ LINES = (0.06, 0.15, 0.3)  # m from the goal line, where an incoming puck is met
 RING = 8  # places around the puck to go to
 
 
-@kernel
+@array_kernel
 def _suggest(puck, own, last, p, style, mallet, bounds, ways, found):
     """Write candidate actions into `found` (MOST_CANDIDATES, 4); returns how many."""
     n = 0
@@ -64,7 +64,7 @@ def _clip(action, bounds):
         action[c] = min(max(action[c], bounds[0, c]), bounds[1, c])
 
 
-@kernel
+@array_kernel
 def _best_of_many(puck, own, opponent, held, last, p, style, mallets, bounds, ways, changes, scratch, out):
     """Write the best of the suggestions, varied by `changes` in turn, into `out` (4,)."""
     free, log, found, trial = scratch

@@ -73,7 +73,7 @@ def _compiled(function: Callable[..., Any], **options: bool) -> Callable[..., An
 def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     """Compile `function` with numba on its first call: no GIL, IEEE divisions, cached in `CACHE_FOLDER`.
 
-    It cannot make arrays. That spares it numba's counting of references to the arrays that it is given, a tenth of a
+    It can neither make arrays nor copy whole ones. That spares it numba's counting of references to the arrays that it is given, a tenth of a
     step's time, and more where two threads count in the same place.
     """
     return _compiled(function, _nrt=False)
@@ -85,7 +85,7 @@ def inlined_kernel(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def array_kernel(function: Callable[..., Any]) -> Callable[..., Any]:
-    """`kernel` for a function that makes arrays."""
+    """`kernel` for a function that makes arrays, or copies whole ones."""
     return _compiled(function, _nrt=True)
 
 

@@ -20,7 +20,7 @@ COMPILED = sorted(
     path.relative_to(REPOSITORY)
     for folder in ("puckpilot_env", "baselines")
     for path in (REPOSITORY / folder).rglob("*.py")
-    if re.search(r"^@kernel", path.read_text(), re.MULTILINE)
+    if re.search(r"^@(array_|inlined_)?kernel", path.read_text(), re.MULTILINE)
 )
 READ_BY_KERNELS = [Path("puckpilot_env") / f"{name}.py" for name in ("kernel", "parameters", "state")]
 
