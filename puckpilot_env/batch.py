@@ -11,16 +11,32 @@ from puckpilot_env.game.step import begin_table, observe_table, step_table
 from puckpilot_env.kernel import kernel
 from puckpilot_env.physics.advance import EVENT_COLUMNS
 
+LEAST_RANGE = 64  # tables that a thread takes at once; below it, asking costs too much
+
+
+def ranges(tables: int, threads: int) -> list[tuple[int, int]]:
+    """Ranges `(first, last)` for threads to take in turn: ever smaller ones, so that all end at about the same time."""
+    ranges, first = [], 0
+    while first < tables:
+        last = min(first + max((tables - first) // (2 * threads), LEAST_RANGE), tables)
+        ranges.append((first, last))
+        first = last
+    return ranges
+
 
 @kernel
 def first_outside(actions, bounds):
     """Flat index of the first action number that is NaN or outside `bounds` (2, 4), or -1."""
-    columns = actions.shape[2]
-    flat = actions.reshape(-1)
-    for i in range(flat.size):
-        column = i % columns
-        if not (bounds[0, column] <= flat[i] <= bounds[1, column]):
-            return i
+    for i in range(actions.shape[0]):
+        outside = False  # looked for without a way out, a table's numbers are compared side by side
+        for k in range(2):
+            for c in range(4):
+                outside |= not (bounds[0, c] <= actions[i, k, c] <= bounds[1, c])
+        if outside:
+            for k in range(2):
+                for c in range(4):
+                    if not (bounds[0, c] <= actions[i, k, c] <= bounds[1, c]):
+                        return 8 * i + 4 * k + c
     return -1
 
 

@@ -24,7 +24,9 @@ CAMERA = np.dtype(
     align=True,
 )
 PLACE = np.dtype([("x", np.float64), ("y", np.float64)], align=True)  # m
-FRAME = np.dtype([("puck", PLACE), ("seen", np.float64), ("mallets", PLACE, 2)], align=True)  # as measured; seen: 1 or 0
+FRAME = np.dtype(
+    [("puck", PLACE), ("seen", np.float64), ("mallets", PLACE, 2)], align=True
+)  # as measured; seen: 1 or 0
 TABLE = np.dtype(
     [
         ("puck", PUCK),

@@ -9,7 +9,13 @@ import numpy as np
 
 from puckpilot_env.kernel import kernel
 
-TURNED_ERROR = (-1.0, 1.0, 1.0, -1.0, -1.0)  # what becomes of the terms of a camera's error: the odd ones turn by themselves
+TURNED_ERROR = (
+    -1.0,
+    1.0,
+    1.0,
+    -1.0,
+    -1.0,
+)  # what becomes of the terms of a camera's error: the odd ones turn by themselves
 
 
 @kernel

@@ -100,7 +100,7 @@ def _put_mallet(table, p, row, at, k, player):
 
 @kernel
 def _put_expected(p, rows, at, x, y, vx, vy, now):
-    """Where the puck is expected; it is at `(x, y)` with `(vx, vy)` at `now` [s]. One prediction serves both players."""
+    """Where the puck is expected that is at `(x, y)` with `(vx, vy)` at `now` [s]: one prediction for both players."""
     for horizon in HORIZONS:
         x, y, vx, vy = predict.expected_place(x, y, vx, vy, p, horizon - now)
         now = horizon
