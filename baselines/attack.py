@@ -14,7 +14,7 @@ from baselines.aim import first_strike
 from baselines.geometry import crossing, fill_mallet, guard_place, volts_to_pass
 from baselines.player import Player
 from baselines.sight import Seen
-from puckpilot_env.kernel import kernel
+from puckpilot_env.kernel import array_kernel, kernel
 from puckpilot_env.physics.mallet import MALLET
 
 GUARD = 0.2  # m from the goal line to where it waits
@@ -35,7 +35,7 @@ class Attacker(Player):
         return actions
 
 
-@kernel
+@array_kernel
 def _decide(pucks, mallets, scales, nominal, bounds, ways, actions):
     """Write every table's action into `actions` (n, 4)."""
     p = nominal[0]
@@ -46,7 +46,7 @@ def _decide(pucks, mallets, scales, nominal, bounds, ways, actions):
             block(pucks[i], mallets[i], p, mallet, bounds, actions[i])
 
 
-@kernel
+@array_kernel
 def strike_or_nothing(puck, own, p, mallet, bounds, ways, out):
     """Write the soonest strike along any of `ways` into `out` (4,); False if there is none."""
     best = math.inf

@@ -10,7 +10,7 @@ from baselines.aim import first_strike
 from baselines.attack import block
 from baselines.geometry import crossing, fill_mallet, guard_place
 from baselines.rollout import HORIZON, park_opponent, value_of
-from puckpilot_env.kernel import kernel
+from puckpilot_env.kernel import array_kernel, kernel
 from puckpilot_env.physics.advance import EVENT_COLUMNS, PUCK
 from puckpilot_env.physics.mallet import MALLET
 
@@ -20,7 +20,7 @@ LINES = (0.06, 0.15, 0.3)  # m from the goal line, where an incoming puck is met
 RING = 8  # places around the puck to go to
 
 
-@kernel
+@array_kernel
 def _suggest(puck, own, last, p, style, mallet, bounds, ways, found):
     """Write candidate actions into `found` (MOST_CANDIDATES, 4); returns how many."""
     n = 0
@@ -64,7 +64,7 @@ def _clip(action, bounds):
         action[c] = min(max(action[c], bounds[0, c]), bounds[1, c])
 
 
-@kernel
+@array_kernel
 def _best_of_many(puck, own, opponent, held, last, p, style, mallets, bounds, ways, changes, scratch, out):
     """Write the best of the suggestions, varied by `changes` in turn, into `out` (4,)."""
     free, log, found, trial = scratch
@@ -86,7 +86,7 @@ def _best_of_many(puck, own, opponent, held, last, p, style, mallets, bounds, wa
             out[:] = trial
 
 
-@kernel
+@array_kernel
 def choose(pucks, owns, opponents, helds, lasts, scales, nominal, styles, bounds, ways, changes, actions):
     """Write the best action found on every table into `actions` (n, 4).
 

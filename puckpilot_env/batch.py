@@ -11,16 +11,32 @@ from puckpilot_env.game.step import begin_table, observe_table, step_table
 from puckpilot_env.kernel import kernel
 from puckpilot_env.physics.advance import EVENT_COLUMNS
 
+LEAST_RANGE = 64  # tables that a thread takes at once; below it, asking costs too much
+
+
+def ranges(tables: int, threads: int) -> list[tuple[int, int]]:
+    """Ranges `(first, last)` for threads to take in turn: ever smaller ones, so that all end at about the same time."""
+    ranges, first = [], 0
+    while first < tables:
+        last = min(first + max((tables - first) // (2 * threads), LEAST_RANGE), tables)
+        ranges.append((first, last))
+        first = last
+    return ranges
+
 
 @kernel
 def first_outside(actions, bounds):
     """Flat index of the first action number that is NaN or outside `bounds` (2, 4), or -1."""
-    columns = actions.shape[2]
-    flat = actions.reshape(-1)
-    for i in range(flat.size):
-        column = i % columns
-        if not (bounds[0, column] <= flat[i] <= bounds[1, column]):
-            return i
+    for i in range(actions.shape[0]):
+        outside = False  # looked for without a way out, a table's numbers are compared side by side
+        for k in range(2):
+            for c in range(4):
+                outside |= not (bounds[0, c] <= actions[i, k, c] <= bounds[1, c])
+        if outside:
+            for k in range(2):
+                for c in range(4):
+                    if not (bounds[0, c] <= actions[i, k, c] <= bounds[1, c]):
+                        return 8 * i + 4 * k + c
     return -1
 
 
@@ -43,13 +59,26 @@ def reset_range(states, params, rows, drawn, rules, frames, bounds, observations
 
 
 @kernel
+def _copy_rows(source, target):
+    for k in range(source.shape[0]):
+        for c in range(source.shape[1]):
+            target[k, c] = source[k, c]
+
+
+def scratch() -> tuple[np.ndarray, np.ndarray]:
+    """`log, film` of `step_range`: no events are logged, and every frame of a step has its place."""
+    return np.zeros((0, EVENT_COLUMNS)), np.zeros((MOST_WANTED, 3))
+
+
+@kernel
 def step_range(
     states, params, rows, drawn, rules, frames, bounds, actions, observations, finals, rewards, terminated, truncated,
-    autoreset, first, last,
+    autoreset, log, film, first, last,
 ):  # fmt: skip
-    """Play one step on tables `first` to `last`, and begin a new episode where one ended, if `autoreset`."""
-    log = np.zeros((0, EVENT_COLUMNS))
-    film = np.zeros((MOST_WANTED, 3))
+    """Play one step on tables `first` to `last`, and begin a new episode where one ended, if `autoreset`.
+
+    log, film: scratch, see `game.step.step_table`; `scratch` makes them.
+    """
     rule = rules[0]
     for i in range(first, last):
         table, p = states[i], params[i]
@@ -59,6 +88,6 @@ def step_range(
         terminated[i] = ended and not truncated[i]
         observe_table(table, p, rule, frames[i], bounds, observations[i])
         if ended and autoreset:
-            finals[i] = observations[i]
+            _copy_rows(observations[i], finals[i])
             begin_table(table, p, rows[i], drawn, rule, frames[i])
             observe_table(table, p, rule, frames[i], bounds, observations[i])

@@ -51,7 +51,7 @@ TABLE: tuple[Parameter, ...] = (
     ),
     Parameter("camera_noise", "m", 0.0002, 0.0, 0.02, "white noise of a position", "measured on the real table"),
     Parameter("beam_noise", "m", 0.0006, 0.0, 0.02, "white noise near the gantry beam", "measured on the real table"),
-    Parameter("beam_width", "m", 0.04, 0.0, 0.2, "width of the gantry beam over the robot's mallet", _CHOICE),
+    Parameter("beam_width", "m", 0.04, 0.0, 0.2, "width of the gantry beam over each mallet", _CHOICE),
     Parameter("camera_error", "m", 0.001, 0.0, 0.02, "rms of the smooth position-dependent error", "report, 2.2.2"),
     Parameter("dropped_frames", "1", 0.01, 0.0, 0.9, "share of frames without a position", _FRAMES),
     Parameter("held_frames", "1", 0.02, 0.0, 0.9, "share of frames that repeat the one before", _FRAMES),

@@ -13,19 +13,20 @@ from puckpilot_env.physics.mallet import MALLET
 from puckpilot_env.random_stream import STREAM
 
 ERROR_TERMS = 5  # of the camera's smooth error, each component
-FRAME_COLUMNS = 5  # puck x, y, opponent x, y [m], puck seen (1 or 0); in the player's own frame
 
 CAMERA = np.dtype(
     [
-        ("error_x", np.float64, ERROR_TERMS),  # the smooth error's coefficients [m]
+        ("error_x", np.float64, ERROR_TERMS),  # the smooth error's coefficients [m], see `game.sensing.measure`
         ("error_y", np.float64, ERROR_TERMS),
-        ("puck_vx", np.float64),  # latest estimates in the player's own frame [m/s]
+        ("puck_vx", np.float64),  # latest estimate [m/s]
         ("puck_vy", np.float64),
-        ("opponent_vx", np.float64),
-        ("opponent_vy", np.float64),
     ],
     align=True,
 )
+PLACE = np.dtype([("x", np.float64), ("y", np.float64)], align=True)  # m
+FRAME = np.dtype(
+    [("puck", PLACE), ("seen", np.float64), ("mallets", PLACE, 2)], align=True
+)  # as measured; seen: 1 or 0
 TABLE = np.dtype(
     [
         ("puck", PUCK),
@@ -33,7 +34,7 @@ TABLE = np.dtype(
         ("gantry_scale", np.float64, (2, 2, 3)),  # C5, C6, C7 relative to the parameters', of player, axis
         ("frame_phase", np.float64),  # frame j is exposed at (j + frame_phase)/frame_rate
         ("last_frame", np.int64),  # newest frame taken
-        ("cameras", CAMERA, 2),
+        ("camera", CAMERA),
         ("time", np.float64),  # since the episode began [s]
         ("held", np.float64),  # since the puck last changed halves [s]
         ("steps", np.int64),  # since the episode began

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -35,7 +34,7 @@ class Snapshot:
     variant: str
     states: NDArray[np.void]
     params: NDArray[np.void]
-    frames: NDArray[np.float64]
+    frames: NDArray[np.void]
     observations: NDArray[np.float32]
 
 
@@ -88,8 +87,7 @@ class Tables:
         self._drawn = variant.drawn()
         self._check_draws()
         self.states = np.zeros(tables, state.TABLE)
-        kept = self._frames_kept()
-        self._frames = np.zeros((tables, 2, kept, state.FRAME_COLUMNS))
+        self._frames = np.zeros((tables, self._frames_kept()), state.FRAME)
         self.observation_columns = observation.columns(self._rules[0], self.nominal[0])
         self.observation_bounds = observation.space_bounds(self._rules[0], self.nominal[0])
         self.action_bounds = _action_bounds(self.nominal[0])
@@ -99,7 +97,7 @@ class Tables:
         self.rewards = np.zeros((tables, 2), np.float32)
         self.terminated = np.zeros(tables, np.bool_)
         self.truncated = np.zeros(tables, np.bool_)
-        self._bounds_of_work = _shares(tables, self.threads)
+        self._ranges = batch.ranges(tables, self.threads)
         self._pool = ThreadPoolExecutor(self.threads - 1) if self.threads > 1 else None
         announce_compilation("step_range")
         self.reset(seed)
@@ -153,18 +151,24 @@ class Tables:
         if bad >= 0:
             raise ValueError(self._describe_bad_action(actions, bad))
         if self._pool is None:
-            self._step_share(actions, 0, len(self.states))
+            self._step_range(actions, 0, len(self.states))
             return
-        others = [self._pool.submit(self._step_share, actions, a, b) for a, b in self._bounds_of_work[1:]]
-        self._step_share(actions, *self._bounds_of_work[0])
+        left = iter(self._ranges)
+        others = [self._pool.submit(self._step_ranges, actions, left) for _ in range(self.threads - 1)]
+        self._step_ranges(actions, left)
         for other in others:
             other.result()
 
-    def _step_share(self, actions: NDArray[np.float32], first: int, last: int) -> None:
+    def _step_ranges(self, actions: NDArray[np.float32], left: Iterator[tuple[int, int]]) -> None:
+        """Take ranges of tables from what is left, together with other threads, until nothing is."""
+        for first, last in left:
+            self._step_range(actions, first, last)
+
+    def _step_range(self, actions: NDArray[np.float32], first: int, last: int) -> None:
         batch.step_range(
             self.states, self.params, self._rows, self._drawn, self._rules, self._frames, self.observation_bounds,
             actions, self.observations, self.final_observations, self.rewards, self.terminated, self.truncated,
-            self.autoreset, first, last,
+            self.autoreset, *batch.scratch(), first, last,
         )  # fmt: skip
 
     def _describe_bad_action(self, actions: NDArray[np.float32], flat: int) -> str:
@@ -238,8 +242,3 @@ def _action_bounds(p: np.void) -> NDArray[np.float32]:
     radius = p["mallet_radius"]
     low = (radius, radius, LEAST_VOLTS, LEAST_VOLTS)
     return np.array([low, (p["length"] / 2 - radius, p["width"] - radius, MOST_VOLTS, MOST_VOLTS)], np.float32)
-
-
-def _shares(tables: int, threads: int) -> list[tuple[int, int]]:
-    edges = [tables * i // threads for i in range(threads + 1)]
-    return list(pairwise(edges))

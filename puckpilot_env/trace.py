@@ -11,18 +11,18 @@ from numpy.typing import ArrayLike, NDArray
 from puckpilot_env import state
 from puckpilot_env.game.sensing import EXACT, MOST_WANTED
 from puckpilot_env.game.step import plan_both, play, play_and_film
-from puckpilot_env.kernel import announce_compilation, kernel
+from puckpilot_env.kernel import announce_compilation, array_kernel
 from puckpilot_env.physics.advance import EVENT_COLUMNS
 from puckpilot_env.physics.mallet import settle
 from puckpilot_env.tables import Tables
 
 
-@kernel
+@array_kernel
 def trace_step(moments, p, rules, frames, actions, times, scored):
     """Play copies of a table from where it is to different moments of its step.
 
     moments: (m,) `state.TABLE` records, all equal to the table; each is left as it is at its own time. p, rules: (1,)
-    records; frames: its camera frames (2, kept, columns), scratch; actions: float32 (2, 4); times: (m,) [s], from 0 to
+    records; frames: its (kept,) camera frames, scratch; actions: float32 (2, 4); times: (m,) [s], from 0 to
     the period of a step; scored: (m,) bool, written: the puck is in a goal.
 
     Each copy is played from the start in one stretch, because a stretch cut in two differs in its last digits.

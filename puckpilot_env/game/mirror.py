@@ -9,6 +9,14 @@ import numpy as np
 
 from puckpilot_env.kernel import kernel
 
+TURNED_ERROR = (
+    -1.0,
+    1.0,
+    1.0,
+    -1.0,
+    -1.0,
+)  # what becomes of the terms of a camera's error: the odd ones turn by themselves
+
 
 @kernel
 def place(player, x, y, p):
@@ -34,19 +42,23 @@ def area(player, p):
 def turn_table(tables: np.ndarray, frames: np.ndarray, length: np.ndarray, width: np.ndarray) -> None:
     """Turn whole tables round in place, players, streams and all: the same game seen from the other end.
 
-    tables: (n,) records of `state.TABLE`; frames: (n, 2, frames, FRAME_COLUMNS); length, width: (n,) [m].
+    tables: (n,) records of `state.TABLE`; frames: (n, frames) records of `state.FRAME`; length, width: (n,) [m].
     """
     for axis, extent in (("x", length), ("y", width)):
         tables["puck"][axis] = extent - tables["puck"][axis]
         tables["puck"][f"v{axis}"] *= -1.0
+        tables["camera"][f"error_{axis}"] *= TURNED_ERROR
+        tables["camera"][f"puck_v{axis}"] *= -1.0
+        frames["puck"][axis] = extent[:, None] - frames["puck"][axis]
+        frames["mallets"][axis] = extent[:, None, None] - frames["mallets"][axis]
         mallets = tables["mallets"][axis]
         for name in ("rest", "rest1", "rest2"):
             mallets[name] = extent[:, None] - mallets[name]
         for name in ("slow", "fast", "slow1", "fast1", "fast2", "volts"):
             mallets[name] *= -1.0
-    for name in ("mallets", "gantry_scale", "cameras", "streams", "score", "last_score", "defending"):
+    for name in ("mallets", "gantry_scale", "streams", "score", "last_score", "defending"):
         tables[name] = tables[name][:, ::-1].copy()
     tables["subject"] = 1 - tables["subject"]
     tables["winner"] = np.where(tables["winner"] < 0, -1, 1 - tables["winner"])
     tables["puck"]["turned"] = 1 - tables["puck"]["turned"]
-    frames[:] = frames[:, ::-1].copy()
+    frames["mallets"] = frames["mallets"][:, :, ::-1].copy()

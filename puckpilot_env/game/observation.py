@@ -99,14 +99,8 @@ def _put_mallet(table, p, row, at, k, player):
 
 
 @kernel
-def _put_exact(table, p, rows, at):
-    """Puck, opponent and expected places, known exactly; the expectations serve both players."""
-    x, y, vx, vy = table.puck.x, table.puck.y, table.puck.vx, table.puck.vy
-    for k in range(2):
-        i = _put_velocity(rows[k], _put_place(rows[k], at, k, x, y, p), k, vx, vy)
-        _put_mallet(table, p, rows[k], i, k, 1 - k)
-    at += 8
-    now = 0.0
+def _put_expected(p, rows, at, x, y, vx, vy, now):
+    """Where the puck is expected that is at `(x, y)` with `(vx, vy)` at `now` [s]: one prediction for both players."""
     for horizon in HORIZONS:
         x, y, vx, vy = predict.expected_place(x, y, vx, vy, p, horizon - now)
         now = horizon
@@ -116,50 +110,55 @@ def _put_exact(table, p, rows, at):
 
 
 @kernel
-def _estimate(camera, p, frames, k, newest):
-    """Estimate the velocities [m/s] of puck and opponent by difference over VELOCITY_LAG frames.
-
-    While either frame lacks the puck its last estimate is kept. Returns the newest frame's slot.
-    """
-    now, then = newest % frames.shape[1], (newest - sensing.VELOCITY_LAG) % frames.shape[1]
-    rate = p.frame_rate / sensing.VELOCITY_LAG
-    if frames[k, now, sensing.SEEN] > 0.5 and frames[k, then, sensing.SEEN] > 0.5:
-        camera.puck_vx = (frames[k, now, sensing.PUCK_X] - frames[k, then, sensing.PUCK_X]) * rate
-        camera.puck_vy = (frames[k, now, sensing.PUCK_Y] - frames[k, then, sensing.PUCK_Y]) * rate
-    camera.opponent_vx = (frames[k, now, sensing.OPPONENT_X] - frames[k, then, sensing.OPPONENT_X]) * rate
-    camera.opponent_vy = (frames[k, now, sensing.OPPONENT_Y] - frames[k, then, sensing.OPPONENT_Y]) * rate
-    return now
+def _put_exact(table, p, rows, at):
+    """Puck, opponent and expected places, known exactly."""
+    x, y, vx, vy = table.puck.x, table.puck.y, table.puck.vx, table.puck.vy
+    for k in range(2):
+        i = _put_velocity(rows[k], _put_place(rows[k], at, k, x, y, p), k, vx, vy)
+        _put_mallet(table, p, rows[k], i, k, 1 - k)
+    return _put_expected(p, rows, at + 8, x, y, vx, vy, 0.0)
 
 
 @kernel
-def _put_estimated(table, p, frames, row, at, k):
-    """Puck and opponent as player `k`'s camera has them, and where the puck is expected, allowing for the delay."""
-    camera = table.cameras[k]
-    now = _estimate(camera, p, frames, k, sensing.newest_frame(table, p, table.time))
-    x, y, vx, vy = frames[k, now, sensing.PUCK_X], frames[k, now, sensing.PUCK_Y], camera.puck_vx, camera.puck_vy
-    row[at], row[at + 1], row[at + 2], row[at + 3] = x, y, vx, vy
-    row[at + 4], row[at + 5] = frames[k, now, sensing.OPPONENT_X], frames[k, now, sensing.OPPONENT_Y]
-    row[at + 6], row[at + 7] = camera.opponent_vx, camera.opponent_vy
-    at += 8
+def _estimate(camera, p, now, then):
+    """Estimate the puck's velocity [m/s] by difference over VELOCITY_LAG frames; if it is in both of them."""
+    if now.seen > 0.5 and then.seen > 0.5:
+        rate = p.frame_rate / sensing.VELOCITY_LAG
+        camera.puck_vx = (now.puck.x - then.puck.x) * rate
+        camera.puck_vy = (now.puck.y - then.puck.y) * rate
+
+
+@kernel
+def _put_estimated(table, p, frames, rows, at):
+    """Puck and opponent as the camera has them, and where the puck is expected, allowing for the delay."""
+    newest = sensing.newest_frame(table, p, table.time)
+    now = frames[sensing.slot(frames, newest)]
+    then = frames[sensing.slot(frames, newest - sensing.VELOCITY_LAG)]
+    _estimate(table.camera, p, now, then)
+    x, y, vx, vy = now.puck.x, now.puck.y, table.camera.puck_vx, table.camera.puck_vy
+    rate = p.frame_rate / sensing.VELOCITY_LAG
+    for k in range(2):
+        i = _put_velocity(rows[k], _put_place(rows[k], at, k, x, y, p), k, vx, vy)
+        mallet, before = now.mallets[1 - k], then.mallets[1 - k]
+        i = _put_place(rows[k], i, k, mallet.x, mallet.y, p)
+        _put_velocity(rows[k], i, k, (mallet.x - before.x) * rate, (mallet.y - before.y) * rate)
     x = min(max(x, p.puck_radius), p.length - p.puck_radius)
     y = min(max(y, p.puck_radius), p.width - p.puck_radius)
-    ahead = -p.camera_latency - 0.5 / p.frame_rate
-    for horizon in HORIZONS:
-        x, y, vx, vy = predict.expected_place(x, y, vx, vy, p, horizon - ahead)
-        ahead = horizon
-        row[at], row[at + 1] = x, y
-        at += 2
-    row[at] = frames[k, now, sensing.SEEN]
+    at = _put_expected(p, rows, at + 8, x, y, vx, vy, -p.camera_latency - 0.5 / p.frame_rate)
+    rows[0, at] = rows[1, at] = now.seen
     return at + 1
 
 
 @kernel
-def _put_history(table, p, frames, row, at, k):
+def _put_history(table, p, frames, rows, at):
     newest = sensing.newest_frame(table, p, table.time)
     for lag in sensing.LAGS:
-        slot = (newest - lag) % frames.shape[1]
-        for c in range(5):
-            row[at + c] = frames[k, slot, c]
+        frame = frames[sensing.slot(frames, newest - lag)]
+        for k in range(2):
+            i = _put_place(rows[k], at, k, frame.puck.x, frame.puck.y, p)
+            other = frame.mallets[1 - k]
+            i = _put_place(rows[k], i, k, other.x, other.y, p)
+            rows[k, i] = frame.seen
         at += 5
     return at
 
@@ -174,13 +173,10 @@ def write(table, p, rules, frames, bounds, rows):
     at += 1
     if rules.sensing == sensing.EXACT:
         at = _put_exact(table, p, rows, at)
+    elif rules.sensing == sensing.HISTORY:
+        at = _put_history(table, p, frames, rows, at)
     else:
-        first = at
-        for k in range(2):
-            if rules.sensing == sensing.HISTORY:
-                at = _put_history(table, p, frames, rows[k], first, k)
-            else:
-                at = _put_estimated(table, p, frames, rows[k], first, k)
+        at = _put_estimated(table, p, frames, rows, at)
     if rules.shows_gantry == 1:
         for k in range(2):
             for a in range(2):

@@ -1,6 +1,7 @@
-"""What the cameras see: frames on their own clock, late, noisy, smoothly distorted, sometimes hidden, held or dropped.
+"""What the camera sees: frames on its own clock, late, noisy, smoothly distorted, sometimes hidden, held or dropped.
 
-Each player has a camera and a gantry of its own, hence a beam that hides the puck from it. Frame j is exposed at
+One camera hangs over the table, and both players get its frames. Between it and the table move the beams of both
+gantries, and either may hide the puck. Frame j is exposed at
 `(j + frame_phase)/frame_rate` and can be used `camera_latency` later, so that at a decision the newest one is
 `camera_latency + U(0, 1/frame_rate)` old. Only frames that some decision will look at are taken; a held frame shows
 what the one before it showed, at the beginning of the step at the earliest.
@@ -14,7 +15,7 @@ import numpy as np
 
 from puckpilot_env import random_stream
 from puckpilot_env.game import mirror
-from puckpilot_env.kernel import kernel
+from puckpilot_env.kernel import inlined_kernel, kernel
 from puckpilot_env.physics.mallet import place_at, place_now
 from puckpilot_env.state import ERROR_TERMS
 
@@ -22,16 +23,25 @@ EXACT, ESTIMATED, HISTORY = range(3)  # kinds of sensing
 LAGS = (0, 1, 2, 5, 11)  # frames back from the newest, of a history
 OLDEST_LAG = LAGS[-1]
 VELOCITY_LAG = 2  # estimated velocities are a difference over so many frames
-PUCK_X, PUCK_Y, OPPONENT_X, OPPONENT_Y, SEEN = range(5)  # columns of a frame
+_ROOT_3, _HALF_ROOT_5 = math.sqrt(3.0), 0.5 * math.sqrt(5.0)
 MOST_WANTED = 62  # frames in a step; those on their way and the oldest lag are fewer
 
 
 def frames_kept(sensing: int, camera_latency: float, frame_rate: float) -> int:
-    """How many frames a player's history must hold: the oldest one looked at, and those still on their way."""
+    """How many frames a history holds: back to the oldest one looked at, and those still on their way.
+
+    A power of two, so that `slot` needs no division.
+    """
     if sensing == EXACT:
         return 1
     oldest = OLDEST_LAG if sensing == HISTORY else VELOCITY_LAG
-    return oldest + math.ceil(camera_latency * frame_rate) + 3
+    return 1 << (oldest + math.ceil(camera_latency * frame_rate) + 2).bit_length()
+
+
+@kernel
+def slot(frames, frame):
+    """Where in a history of `frames_kept` frames number `frame` is."""
+    return frame & (frames.size - 1)
 
 
 @kernel
@@ -89,49 +99,29 @@ def wanted_frames(table, p, sensing, period):
 
 @kernel
 def draw_camera_error(table, p):
-    """Draw each player's smooth error: a quadratic surface a component, `camera_error` [m] rms over the table."""
-    for k in range(2):
-        camera, stream = table.cameras[k], table.streams[k]
-        for term in range(ERROR_TERMS):
-            camera.error_x[term] = p.camera_error * random_stream.normal(stream) / math.sqrt(2.0 * ERROR_TERMS)
-            camera.error_y[term] = p.camera_error * random_stream.normal(stream) / math.sqrt(2.0 * ERROR_TERMS)
+    """Draw the camera's smooth error: a quadratic surface a component, `camera_error` [m] rms over the table."""
+    camera = table.camera
+    scale = p.camera_error / math.sqrt(2.0 * ERROR_TERMS)
+    for term in range(ERROR_TERMS):
+        x, y = random_stream.normal_pair(table.stream)
+        turned = mirror.TURNED_ERROR[term] if table.puck.turned == 1 else 1.0
+        camera.error_x[term], camera.error_y[term] = turned * scale * x, turned * scale * y
 
 
-@kernel
-def measure(camera, stream, p, x, y, noise):
-    """A place [m] of the player's frame as its camera reports it: with the smooth error and white noise.
+@inlined_kernel
+def measure(table, p, x, y, noise, measured):
+    """Write the place [m] as the camera reports `(x, y)` into `measured`: with the smooth error and white noise.
 
     The error's terms are orthonormal over the table, so each carries the same share of its rms.
     """
-    u, w = 2.0 * x / p.length - 1.0, 2.0 * y / p.width - 1.0
-    a, b = 1.7320508075688772 * u, 1.7320508075688772 * w
-    c, d = a * b, 1.118033988749895 * (a * u * 1.7320508075688772 - 1.0)
-    e = camera.error_x
-    x += e[0] + e[1] * a + e[2] * b + e[3] * c + e[4] * d + noise * random_stream.normal(stream)
-    e = camera.error_y
-    return x, y + e[0] + e[1] * a + e[2] * b + e[3] * c + e[4] * d + noise * random_stream.normal(stream)
-
-
-@kernel
-def _copy_frame(frames, k, source, target):
-    for c in range(frames.shape[2]):
-        frames[k, target % frames.shape[1], c] = frames[k, source % frames.shape[1], c]
-
-
-@kernel
-def _see(camera, stream, p, frames, k, frame, last, x, y, own_x, other_x, other_y):
-    """Store frame number `frame` as player `k` sees it; all places in its own frame, `own_x` its mallet's."""
-    slot = frame % frames.shape[1]
-    beside = abs(x - own_x)
-    if beside > 0.5 * p.beam_width and random_stream.uniform(stream) >= p.dropped_frames:
-        near = beside < p.puck_radius + 0.5 * p.beam_width
-        x, y = measure(camera, stream, p, x, y, p.beam_noise if near else p.camera_noise)
-        frames[k, slot, PUCK_X], frames[k, slot, PUCK_Y], frames[k, slot, SEEN] = x, y, 1.0
-    else:
-        _copy_frame(frames, k, last, frame)
-        frames[k, slot, SEEN] = 0.0
-    x, y = measure(camera, stream, p, other_x, other_y, p.camera_noise)
-    frames[k, slot, OPPONENT_X], frames[k, slot, OPPONENT_Y] = x, y
+    a, b = _ROOT_3 * (2.0 * x / p.length - 1.0), _ROOT_3 * (2.0 * y / p.width - 1.0)
+    c, d = a * b, _HALF_ROOT_5 * (a * a - 1.0)
+    dx, dy = random_stream.normal_pair(table.stream)
+    dx, dy = mirror.velocity(table.puck.turned, noise * dx, noise * dy)
+    e = table.camera.error_x
+    measured.x = x + (e[0] + e[1] * a + e[2] * b + e[3] * c + e[4] * d + dx)
+    e = table.camera.error_y
+    measured.y = y + (e[0] + e[1] * a + e[2] * b + e[3] * c + e[4] * d + dy)
 
 
 @kernel
@@ -139,23 +129,34 @@ def repeat_frame(table, frames, frame):
     """Make frame number `frame` the same as the one before it; False, and nothing done, if that one was not taken."""
     if table.last_frame != frame - 1:
         return False
-    for k in range(2):
-        _copy_frame(frames, k, frame - 1, frame)
+    frames[slot(frames, frame)] = frames[slot(frames, frame - 1)]
     table.last_frame = frame
     return True
 
 
-@kernel
+@inlined_kernel
 def take_frame(table, p, frames, frame, puck_x, puck_y, time):
-    """Store frame number `frame` as each player's camera saw the puck and the other mallet at `time` of the plans."""
+    """Store frame number `frame` as the camera saw the puck and both mallets at `time` of the plans.
+
+    Where the puck is not seen, its place is the one in the frame before.
+    """
+    taken, last = frames[slot(frames, frame)], frames[slot(frames, table.last_frame)]
     x0, y0 = place_at(table.mallets[0], time)
     x1, y1 = place_at(table.mallets[1], time)
-    last = table.last_frame
-    _see(table.cameras[0], table.streams[0], p, frames, 0, frame, last, puck_x, puck_y, x0, x1, y1)
-    puck_x, puck_y = mirror.place(1, puck_x, puck_y, p)
-    x0, y0 = mirror.place(1, x0, y0, p)
-    x1, y1 = mirror.place(1, x1, y1, p)
-    _see(table.cameras[1], table.streams[1], p, frames, 1, frame, last, puck_x, puck_y, x1, x0, y0)
+    beside = min(abs(puck_x - x0), abs(puck_x - x1))  # the nearer beam
+    if beside > 0.5 * p.beam_width and random_stream.uniform(table.stream) >= p.dropped_frames:
+        near = beside < p.puck_radius + 0.5 * p.beam_width
+        measure(table, p, puck_x, puck_y, p.beam_noise if near else p.camera_noise, taken.puck)
+        taken.seen = 1.0
+    else:
+        taken.puck.x, taken.puck.y = last.puck.x, last.puck.y
+        taken.seen = 0.0
+    if table.puck.turned == 1:
+        measure(table, p, x1, y1, p.camera_noise, taken.mallets[1])
+        measure(table, p, x0, y0, p.camera_noise, taken.mallets[0])
+    else:
+        measure(table, p, x0, y0, p.camera_noise, taken.mallets[0])
+        measure(table, p, x1, y1, p.camera_noise, taken.mallets[1])
     table.last_frame = frame
 
 
@@ -170,20 +171,14 @@ def begin_frames(table, p, frames):
 def fill_frames(table, p, frames):
     """Fill the history as if the puck had come straight to where it is, and the mallets had stood still."""
     last = frames_exposed(table, p) - 1
-    for k in range(2):
-        x, y = mirror.place(k, table.puck.x, table.puck.y, p)
-        vx, vy = mirror.velocity(k, table.puck.vx, table.puck.vy)
-        other_x, other_y = place_now(table.mallets[1 - k])
-        other_x, other_y = mirror.place(k, other_x, other_y, p)
-        for frame in range(last + 1 - frames.shape[1], last + 1):
-            slot = frame % frames.shape[1]
-            age = table.time - exposure(table, p, frame)
-            past_x = min(max(x - vx * age, p.puck_radius), p.length - p.puck_radius)
-            past_y = min(max(y - vy * age, p.puck_radius), p.width - p.puck_radius)
-            frames[k, slot, PUCK_X], frames[k, slot, PUCK_Y] = past_x, past_y
-            frames[k, slot, OPPONENT_X], frames[k, slot, OPPONENT_Y] = other_x, other_y
-            frames[k, slot, SEEN] = 1.0
-        camera = table.cameras[k]
-        camera.puck_vx, camera.puck_vy = vx, vy
-        camera.opponent_vx, camera.opponent_vy = 0.0, 0.0
+    puck = table.puck
+    for number in range(last + 1 - frames.size, last + 1):
+        frame = frames[slot(frames, number)]
+        age = table.time - exposure(table, p, number)
+        frame.puck.x = min(max(puck.x - puck.vx * age, p.puck_radius), p.length - p.puck_radius)
+        frame.puck.y = min(max(puck.y - puck.vy * age, p.puck_radius), p.width - p.puck_radius)
+        frame.seen = 1.0
+        for k in range(2):
+            frame.mallets[k].x, frame.mallets[k].y = place_now(table.mallets[k])
+    table.camera.puck_vx, table.camera.puck_vy = puck.vx, puck.vy
     table.last_frame = last

@@ -24,8 +24,9 @@ def plan_both(table, p, actions, rewards):
         x, y = place_now(mallet)
         rewards[k] = reward.movement_cost(x, y, x_f, y_f) + reward.voltage_cost(vx, vy)
         if p.action_noise > 0.0:
-            vx *= 1.0 + p.action_noise * random_stream.normal(table.streams[k])
-            vy *= 1.0 + p.action_noise * random_stream.normal(table.streams[k])
+            dx, dy = random_stream.normal_pair(table.streams[k])
+            vx *= 1.0 + p.action_noise * dx
+            vy *= 1.0 + p.action_noise * dy
         plan_mallet(mallet, x_f, y_f, vx, vy, mirror.area(k, p), p.max_voltage)
 
 
@@ -77,9 +78,8 @@ def play_and_film(table, p, rule, frames, rewards, log, film):
 @kernel
 def _random_impulse(table, p, period):
     if random_stream.uniform(table.stream) < p.impulse_rate * period:
-        x = p.impulse_speed * random_stream.normal(table.stream)
-        y = p.impulse_speed * random_stream.normal(table.stream)
-        x, y = mirror.velocity(table.puck.turned, x, y)
+        x, y = random_stream.normal_pair(table.stream)
+        x, y = mirror.velocity(table.puck.turned, p.impulse_speed * x, p.impulse_speed * y)
         table.puck.vx += x
         table.puck.vy += y
 

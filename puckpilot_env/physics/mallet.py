@@ -16,7 +16,7 @@ import math
 
 import numpy as np
 
-from puckpilot_env.kernel import kernel
+from puckpilot_env.kernel import inlined_kernel, kernel
 
 AXIS = np.dtype(
     [
@@ -78,14 +78,14 @@ def place_axis(axis, position, velocity, acceleration):
     axis.rest = position - axis.slow - axis.fast
 
 
-@kernel
+@inlined_kernel
 def fade(rate, t):
     """exp(-rate t), 0 where that no longer matters."""
     exponent = rate * t
     return math.exp(-exponent) if exponent < _NEGLIGIBLE else 0.0
 
 
-@kernel
+@inlined_kernel
 def axis_at(axis, t):
     """`(rest, slow, fast, volts)` at time `t` [s] of the plan."""
     if t >= axis.halt:
@@ -94,7 +94,7 @@ def axis_at(axis, t):
     return _running_axis_at(axis, t)
 
 
-@kernel
+@inlined_kernel
 def _running_axis_at(axis, t):
     """`axis_at` of a plan that no stall has cut short."""
     if t >= axis.t2:
@@ -144,7 +144,7 @@ def motion_now(mallet):
     return x.rest + x.slow + x.fast, y.rest + y.slow + y.fast, vx, vy
 
 
-@kernel
+@inlined_kernel
 def place_at(mallet, t):
     """`(x, y)` [m] of a mallet at time `t` of its plan."""
     rest_x, slow_x, fast_x, _ = axis_at(mallet.x, t)

@@ -11,6 +11,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from puckpilot_env import kernel
@@ -20,7 +21,7 @@ COMPILED = sorted(
     path.relative_to(REPOSITORY)
     for folder in ("puckpilot_env", "baselines")
     for path in (REPOSITORY / folder).rglob("*.py")
-    if re.search(r"^@kernel", path.read_text(), re.MULTILINE)
+    if re.search(r"^@(array_|inlined_)?kernel", path.read_text(), re.MULTILINE)
 )
 READ_BY_KERNELS = [Path("puckpilot_env") / f"{name}.py" for name in ("kernel", "parameters", "state")]
 
@@ -120,6 +121,22 @@ def test_announces_compilation_once(copied, capsys):
     (module.CACHE_FOLDER / "sub" / "batch.step_range-55.py311.nbi").touch()
     module.announce_compilation("step_range")
     assert capsys.readouterr().err == ""
+
+
+def first_of_each(rows, out):
+    for i in range(rows.shape[0]):
+        row = rows[i]
+        out[i] = row[0]
+
+
+@pytest.mark.parametrize("decorator, counts", [("kernel", False), ("inlined_kernel", False), ("array_kernel", True)])
+def test_only_kernels_that_make_arrays_count_references(copied, decorator, counts):
+    compiled = getattr(load(copied), decorator)(first_of_each)
+    out = np.zeros(3)
+    compiled(np.arange(6.0).reshape(3, 2), out)
+    assert out.tolist() == [0.0, 2.0, 4.0]
+    (code,) = compiled.inspect_llvm().values()
+    assert ("NRT_" in code) == counts
 
 
 def test_the_running_folder_is_that_of_these_sources():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numba
 import numpy as np
 import pytest
 from scipy import stats
@@ -89,12 +90,48 @@ def test_between():
     np.testing.assert_allclose(between, -3.0 + 8.0 * numbers, rtol=1e-14)
 
 
-def test_normal_is_the_inverse_of_the_distribution():
-    """One number is used for each, so that both kinds can be compared draw by draw; to its promised 1.2e-9."""
-    numbers, normals = take(seeded(9, 0, 2), 40_000), take(seeded(9, 0, 2), 40_000, random_stream.normal)
-    np.testing.assert_allclose(normals, stats.norm.ppf(numbers), rtol=1.2e-9, atol=1e-12)
-    assert (numbers < 0.01).sum() > 300 and (numbers > 0.99).sum() > 300  # both tails were met
-    assert stats.kstest(normals, "norm").pvalue > 1e-3
+@numba.njit
+def take_pairs(stream, out):
+    for i in range(len(out)):
+        out[i] = random_stream.normal_pair(stream)
+
+
+PAIRS = 4_000_000
+
+
+@pytest.fixture(scope="module")
+def pairs() -> np.ndarray:
+    """(PAIRS, 2) normal numbers of one stream."""
+    found = np.zeros((PAIRS, 2))
+    stream = seeded(9, 0, 2)
+    take_pairs(stream, found)
+    assert PAIRS < stream["draws"] < 1.06 * PAIRS  # seldom more than 64 bits
+    return found
+
+
+@pytest.mark.parametrize("which", [0, 1])
+def test_normal_numbers_are_normal(pairs, which):
+    """Each of a pair: the whole distribution, bins of a thousandth, moments."""
+    numbers = pairs[:, which]
+    assert stats.kstest(numbers, "norm").pvalue > 1e-3
+    edges = stats.norm.ppf(np.linspace(0.0, 1.0, 1001))
+    assert stats.chisquare(np.histogram(numbers, edges)[0]).pvalue > 1e-3
+    for power, moment, variance in ((1, 0.0, 1.0), (2, 1.0, 2.0), (3, 0.0, 15.0), (4, 3.0, 96.0)):
+        assert np.mean(numbers**power) == pytest.approx(moment, abs=4.0 * np.sqrt(variance / PAIRS))
+
+
+@pytest.mark.parametrize("beyond", [3.0, 3.65, 3.66, 4.0, 4.5])
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_the_tails_of_normal_numbers(pairs, beyond, sign):
+    """As many as there should be, before and after the ziggurat's tail begins at 3.654."""
+    expected = pairs.size * stats.norm.sf(beyond)
+    assert (sign * pairs > beyond).sum() == pytest.approx(expected, abs=4.0 * np.sqrt(expected))
+
+
+def test_normal_numbers_do_not_tell_each_other(pairs):
+    for a, b in ((pairs[:, 0], pairs[:, 1]), (pairs[:-1, 0], pairs[1:, 0]), (pairs[:-1, 1], pairs[1:, 0])):
+        for power in (1, 2):
+            assert abs(np.corrcoef(a**power, b**power)[0, 1]) < 4.0 / np.sqrt(len(a))
 
 
 def test_streams_tables_and_seeds_are_independent():

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from puckpilot_env import Tables, find_variant
+from puckpilot_env import Tables, batch, find_variant
 from puckpilot_env.infos import drawn_info
 from puckpilot_env.randomization import Draw
 from puckpilot_env.trace import trace
@@ -64,7 +64,7 @@ def test_the_first_tables_of_a_batch_do_not_depend_on_its_size(variant):
 
 @pytest.mark.parametrize("variant", SHORT)
 def test_one_thread_or_more(variant):
-    one, two, three = (Tables(variant, 64, seed=3, threads=n, max_steps=15) for n in (1, 2, 3))
+    one, two, three = (Tables(variant, 500, seed=3, threads=n, max_steps=15) for n in (1, 2, 3))
     for actions in actions_for(one, 40):
         for tables in (one, two, three):
             tables.step(actions)
@@ -72,6 +72,17 @@ def test_one_thread_or_more(variant):
         assert_same(outputs(one), outputs(three))
     two.close()
     three.close()
+
+
+@pytest.mark.parametrize("tables, threads", [(1, 1), (5, 3), (500, 2), (2048, 2), (8191, 16)])
+def test_threads_share_all_tables(tables, threads):
+    """Ranges join up and are taken by size; the last ones are a small part of what a thread does."""
+    ranges = batch.ranges(tables, threads)
+    assert [a for a, _ in ranges] + [tables] == [0] + [b for _, b in ranges]
+    sizes = [b - a for a, b in ranges]
+    assert min(sizes) > 0 and sizes == sorted(sizes, reverse=True)
+    if tables >= 1000:
+        assert len(sizes) > 2 * threads and sizes[-1] <= 0.1 * tables / threads + 64
 
 
 @pytest.mark.parametrize("variant", SHORT)

@@ -142,13 +142,19 @@ def index(tables: Tables, name: str) -> int:
 def set_frames(tables: Tables, lags: dict[int, tuple[float, ...]], player: int) -> None:
     """Write camera frames (puck x, y, opponent x, y, seen, as `player` sees them) so many before the newest.
 
+    What the camera knows of the player's own mallet is set to what nobody may see.
     At 42 s with a latency of 13.4 ms, frame j being exposed at (j + 0.25)/120 s, the newest is number
     floor(41.9866 * 120 - 0.25) = 5038.
     """
     tables.states["frame_phase"] = 0.25
     snapshot = tables.snapshot()
     for lag, frame in lags.items():
-        snapshot.frames[0, player, (5038 - lag) % snapshot.frames.shape[2]] = frame
+        x, y, other_x, other_y, seen = frame
+        if player == 1:
+            x, y, other_x, other_y = 2.0 - x, 1.0 - y, 2.0 - other_x, 1.0 - other_y
+        row = snapshot.frames[0, (5038 - lag) % snapshot.frames.shape[1]]
+        row["puck"], row["seen"] = (x, y), seen
+        row["mallets"][1 - player], row["mallets"][player] = (other_x, other_y), (9.0 + lag, 9.0)
     tables.restore(snapshot)
 
 
@@ -186,7 +192,7 @@ def test_estimated(player):
 def test_estimates_outlast_a_hidden_puck(missing):
     """Without the puck in one of the two frames its last velocity is kept; the opponent's is known all the same."""
     tables = set_match(ESTIMATED)
-    tables.states["cameras"]["puck_vx"], tables.states["cameras"]["puck_vy"] = 0.7, -0.4
+    tables.states["camera"]["puck_vx"], tables.states["camera"]["puck_vy"] = 0.7, -0.4
     frames = {0: (0.5, 0.2, 1.5, 0.6, 1.0), 2: (0.48, 0.23, 1.48, 0.62, 1.0)}
     frames[missing] = (*frames[missing][:4], 0.0)
     set_frames(tables, frames, 0)
