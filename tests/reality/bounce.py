@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from math import isnan
+from math import isnan, pi, sin
 
 from numba import njit
 
-from tests.reality.puck import SPIN, VX, VY
+from tests.reality.puck import SINCE, SPIN, VX, VY, X, Y
 from tests.reality.table import MALLET, POST
 
 RESTING = 1e-6  # m/s, a slower approach than this is not a bounce but a contact that lasts
@@ -23,12 +23,13 @@ def approach(which, puck, mallets, nx, ny):
 
 
 @njit(error_model="numpy")
-def bounce(law, which, puck, mallets, nx, ny):
-    """Apply the impulse of a contact with obstacle `which` in place."""
+def bounce(law, t, which, puck, mallets, nx, ny):
+    """Apply the impulse of a contact with obstacle `which` at time t in place."""
+    puck[SINCE] = 0.0
     if which >= MALLET:
-        off_mallet(law, which - MALLET, puck, mallets, nx, ny)
+        off_mallet(law, t, which - MALLET, puck, mallets, nx, ny)
     else:
-        off_wall(law, which, puck, nx, ny)
+        off_wall(law, t, which, puck, nx, ny)
 
 
 @njit(error_model="numpy")
@@ -46,7 +47,7 @@ def rub(law, mu, pressure, along, spin):
 
 
 @njit(error_model="numpy")
-def off_wall(law, which, puck, nx, ny):
+def off_wall(law, t, which, puck, nx, ny):
     """Eq. (10): v_n -> -e v_n, v_t -> e v_t; or, as effects, other constants and friction with spin."""
     closing = -(puck[VX] * nx + puck[VY] * ny)
     along = -puck[VX] * ny + puck[VY] * nx
@@ -55,6 +56,11 @@ def off_wall(law, which, puck, nx, ny):
         e = law.post_restitution
     if which == law.odd_wall:
         e += law.odd_wall_extra
+    e += law.wall_warming * t
+    if law.wall_wave != 0.0:
+        e += law.wall_wave * sin(2.0 * pi * (puck[Y] if nx != 0.0 else puck[X]) / law.wall_wave_length)
+    if law.restitution_power != 0.0 and closing > 0.0:
+        e = min(1.0, e * closing**-law.restitution_power)
     e = max(0.0, e - law.restitution_slope * closing)
     if law.wall_spin > 0.0:
         j, puck[SPIN] = rub(law, law.wall_mu, (1.0 + e) * closing, along, puck[SPIN])
@@ -69,11 +75,12 @@ def off_wall(law, which, puck, nx, ny):
 
 
 @njit(error_model="numpy")
-def off_mallet(law, k, puck, mallets, nx, ny):
+def off_mallet(law, t, k, puck, mallets, nx, ny):
     """Reflect the velocity relative to the mallet: normal part with e, tangent kept. By `mallet_give`, it yields."""
     wx, wy = puck[VX] - mallets[k, 1], puck[VY] - mallets[k, 4]
     closing = -(wx * nx + wy * ny)
-    e = max(0.0, law.mallet_restitution - law.mallet_restitution_slope * closing) if closing > RESTING else 0.0
+    e = law.mallet_restitution + law.mallet_warming * t - law.mallet_restitution_slope * closing
+    e = max(0.0, e) if closing > RESTING else 0.0
     j_normal = (1.0 + e) * closing / (1.0 + law.mallet_give)
     j_along = 0.0
     if law.mallet_mu > 0.0:

@@ -22,11 +22,11 @@ LOG_COLUMNS = 8
 
 @njit(error_model="numpy")
 def march(law, puck, mallets, times, volts, clock, duration, dt, sample, out_puck, out_mallets, log):
-    """Fill `out_puck` (n, 5), `out_mallets` (n, k, 6) every `sample` seconds, and `log` (rows, 8).
+    """Fill `out_puck` (n, 6), `out_mallets` (n, k, 6 or 12) every `sample` seconds, and `log` (rows, 8).
 
-    `clock` is the time at the start, for laws that change with time. `puck` (5,) and `mallets` (k, 6) are the start
-    and become the end. Returns the number of contacts (more than the log has rows: the rest was not written) and the
-    nearest miss [m]: the smallest gap at which the puck passed a post or a mallet without touching it.
+    `clock` is the time at the start, for laws that change with time. `puck` (6,) and `mallets` (k, 6 or 12) are the
+    start and become the end. Returns the number of contacts (more than the log has rows: the rest was not written) and
+    the nearest miss [m]: the smallest gap at which the puck passed a post or a mallet without touching it.
     """
     obstacles = MALLET + mallets.shape[0]
     now = np.empty(obstacles)  # gaps at the start of the step
@@ -81,7 +81,7 @@ def march(law, puck, mallets, times, volts, clock, duration, dt, sample, out_puc
                 for i in range(puck.shape[0]):
                     puck[i] = next_puck[i] = np.nan
             else:
-                bounce(law, which, puck, mallets, nx, ny)
+                bounce(law, clock + t, which, puck, mallets, nx, ny)
         t = end
         copy(next_puck, puck)
         copy_rows(next_mallets, mallets)

@@ -8,12 +8,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tests.reality.gantry import MOTOR
 from tests.reality.law import Law
 from tests.reality.march import LOG_COLUMNS, march
 from tests.reality.table import GOAL, MALLET, NAMES, POST
 from tests.reality.volts import Plans, schedule
 
 LOG_ROWS = 10_000
+LONG_AGO = 1e3  # s since its last contact, for a puck that is let go
 
 
 class Contact(NamedTuple):
@@ -45,12 +47,12 @@ class Trace:
     t: np.ndarray  # (n,)
     puck: np.ndarray  # (n, 4): x, y, vx, vy
     spin: np.ndarray  # (n,)
-    mallets: np.ndarray  # (k, n, 6): x, x', x'', y, y', y''
+    mallets: np.ndarray  # (k, n, 6): x, x', x'', y, y', y''; where belt or gap give way, its motors' six too
     contacts: list[Contact]
     unlogged: int  # contacts beyond the log's LOG_ROWS; a puck jammed for long can make so many
     near_miss: float
-    end_puck: np.ndarray  # (5,): x, y, vx, vy, spin
-    end_mallets: np.ndarray  # (k, 6)
+    end_puck: np.ndarray  # (6,): x, y, vx, vy, spin, seconds since its last contact
+    end_mallets: np.ndarray  # (k, 6 or 12)
 
 
 def run(
@@ -65,7 +67,8 @@ def run(
 ) -> Trace:
     """Simulate `duration` seconds.
 
-    `puck`: (x, y, vx, vy[, spin]), or None for no puck. `mallets`: up to two starts, (x, y) or (x, vx, ax, y, vy, ay).
+    `puck`: (x, y, vx, vy[, spin[, seconds since its last contact]]), or None for no puck. `mallets`: up to two starts,
+    (x, y), (x, vx, ax, y, vy, ay), or those twelve numbers with which another run ended.
     `plans`: one for each mallet: (Vx, Vy, tx1, ty1, tx2, ty2) in signed volts and seconds, None (no voltage), or a
     list of (start, plan) in order of time. `clock`: time at the start, for laws that change with time (plans and
     trace count from the start).
@@ -75,16 +78,14 @@ def run(
         raise ValueError(f"expected up to two mallets and a plan for each, got {len(mallets)} and {len(plans)} plans")
     if not (dt > 0.0 and sample > 0.0 and duration >= 0.0):
         raise ValueError(f"expected dt > 0, sample > 0, duration >= 0, got {dt}, {sample}, {duration}")
-    end_puck = np.full(5, np.nan)
+    end_puck = np.full(6, np.nan)
     if puck is not None:
-        end_puck[:] = 0.0
+        end_puck[:] = 0.0, 0.0, 0.0, 0.0, 0.0, LONG_AGO
         end_puck[: len(puck)] = puck
-    end_mallets = np.zeros((len(mallets), 6))
-    for state, start in zip(end_mallets, mallets, strict=True):
-        state[[0, 3] if len(start) == 2 else slice(None)] = start
+    end_mallets = begin(law, mallets)
     times, volts = schedule(law, plans)
     rows = int(duration / sample + 1e-9) + 1
-    out_puck, out_mallets = np.full((rows, 5), np.nan), np.full((rows, len(mallets), 6), np.nan)
+    out_puck, out_mallets = np.full((rows, 6), np.nan), np.full((rows, *end_mallets.shape), np.nan)
     log = np.zeros((LOG_ROWS, LOG_COLUMNS))
     count, near_miss = march(
         law.numbers(), end_puck, end_mallets, times, volts, clock, duration, dt, sample, out_puck, out_mallets, log
@@ -100,6 +101,22 @@ def run(
         end_puck=end_puck,
         end_mallets=end_mallets,
     )
+
+
+def begin(law: Law, mallets: Sequence[Sequence[float]] | np.ndarray) -> np.ndarray:
+    """States (k, 6) of the mallets; (k, 12), the motors behind, where the law has something that gives between them."""
+    if law.belt_hz > 0.0 and law.backlash > 0.0:
+        raise ValueError("a belt that gives and a gap in one law: expected one of belt_hz and backlash")
+    apart = law.belt_hz > 0.0 or law.backlash > 0.0
+    states = np.zeros((len(mallets), 2 * MOTOR if apart else MOTOR))
+    for state, start in zip(states, mallets, strict=True):
+        if len(start) == 2:
+            state[[0, 3]] = start
+        else:
+            state[: len(start)] = start
+        if apart and len(start) <= MOTOR:
+            state[MOTOR:] = state[:MOTOR]
+    return states
 
 
 def contact(row: np.ndarray) -> Contact:
