@@ -220,8 +220,8 @@ def _effects(facts: dict[str, Any]) -> str:
 
     rows = [(f"`{e['name']}`", e["regime"], e["law"], ", ".join(map(number, e["numbers"]))) for e in facts["effects"]]
     return (
-        "## Effects\n\nPhysics that the baseline leaves out; all are off. Option `effects={effect: {number: value}}`, or "
-        "a file's name.\nA number is a parameter too, by the name in brackets.\n\n"
+        "## Effects\n\nPhysics that the baseline leaves out; all are off. Option `effects={effect: {number: value}}`, "
+        "or a file's name.\nA number is a parameter too, by the name in brackets.\n\n"
         + _table(("effect", "where", "law", "numbers"), rows)
     )
 
