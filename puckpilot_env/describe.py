@@ -22,6 +22,7 @@ from puckpilot_env.game.rules import (
     STEP_LIMIT,
 )
 from puckpilot_env.game.start import ATTACK, DEFENCE, MATCH
+from puckpilot_env.physics.effects import EFFECTS
 from puckpilot_env.tables import ACTION_COLUMNS, _action_bounds
 from puckpilot_env.variants import Variant
 
@@ -115,7 +116,18 @@ def describe(variant: Variant) -> dict[str, Any]:
             if variant.game in RECEIVERS[name]
         ],
         "parameters": [
-            {**vars(row), "default": float(nominal[row.name]), "usual": row.default} for row in parameters.TABLE
+            {**vars(row), "default": float(nominal[row.name]), "usual": row.default}
+            for row in parameters.TABLE
+            if row not in parameters.EFFECT_ROWS
+        ],
+        "effects": [
+            {
+                "name": name,
+                "regime": effect.regime,
+                "law": effect.law,
+                "numbers": [{"short": short, **vars(row)} for short, row in effect.rows.items()],
+            }
+            for name, effect in EFFECTS.items()
         ],
         "draws": [vars(draw) for draw in variant.draws],
         "infos_at_reset": dict(INFOS_AT_RESET) if variant.draws else {},

@@ -95,6 +95,8 @@ def write_page(variant: Variant) -> str:
         _rewards(facts),
         _endings_and_timing(facts),
         _parameters(facts),
+        _draws(facts),
+        _effects(facts),
         _infos(facts),
         _history(facts),
     )
@@ -195,11 +197,13 @@ def _parameters(facts: dict[str, Any]) -> str:
         changed = "" if p["default"] == p["usual"] else f" (elsewhere {p['usual']:g})"
         default = f"{p['default']:g}{changed}{', drawn' if p['name'] in drawn else ''}"
         rows.append((f"`{p['name']}`", p["unit"], default, f"{p['low']:g} to {p['high']:g}", p["meaning"], p["source"]))
-    text = (
-        "## Parameters\n\nOption `parameters={name: value}`; a value outside the range is an error.\n\n"
-        + _table(("name", "unit", "default", "range", "meaning", "source"), rows)
-        + "\n## Drawn for every episode\n\n"
+    return "## Parameters\n\nOption `parameters={name: value}`; a value outside the range is an error.\n\n" + _table(
+        ("name", "unit", "default", "range", "meaning", "source"), rows
     )
+
+
+def _draws(facts: dict[str, Any]) -> str:
+    text = "## Drawn for every episode\n\n"
     if not facts["draws"]:
         return text + "Nothing; every table is the same.\n"
     draws = [
@@ -207,6 +211,19 @@ def _parameters(facts: dict[str, Any]) -> str:
         for d in facts["draws"]
     ]
     return text + _table(("parameter", "distribution", "low", "high", "source"), draws)
+
+
+def _effects(facts: dict[str, Any]) -> str:
+    def number(n: dict[str, Any]) -> str:
+        parameter = "" if n["name"] == n["short"] else f" (`{n['name']}`)"
+        return f"`{n['short']}`{parameter} [{n['unit']}] {n['low']:g} to {n['high']:g}"
+
+    rows = [(f"`{e['name']}`", e["regime"], e["law"], ", ".join(map(number, e["numbers"]))) for e in facts["effects"]]
+    return (
+        "## Effects\n\nPhysics that the baseline leaves out; all are off. Option `effects={effect: {number: value}}`, "
+        "or a file's name.\nA number is a parameter too, by the name in brackets.\n\n"
+        + _table(("effect", "where", "law", "numbers"), rows)
+    )
 
 
 def _infos(facts: dict[str, Any]) -> str:

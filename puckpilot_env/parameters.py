@@ -98,7 +98,11 @@ def checked(name: str, value: float) -> float:
     """`value` as a float if `name` is a parameter and it lies in its range; otherwise ValueError."""
     if name not in BY_NAME:
         near = difflib.get_close_matches(name, BY_NAME, n=1)
-        hint = f"; did you mean '{near[0]}'?" if near else f"; known: {', '.join(BY_NAME)}"
+        hint = (
+            f"; did you mean '{near[0]}'?"
+            if near
+            else f"; known: {', '.join(row.name for row in TABLE if row not in EFFECT_ROWS)}"
+        )
         raise ValueError(f"unknown parameter '{name}'{hint}")
     row = BY_NAME[name]
     try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import re
 import shutil
@@ -50,6 +51,11 @@ shadow = make_player("shadow", Seat.from_tables(tables))
 seen, before = tables.observations.copy(), tables.observations[:, 0, 1].copy()
 for _ in range(5):
     tables.step(np.stack([shadow.act(tables.observations[:, 0]), shadow.act(tables.observations[:, 1])], axis=1))
+windy = Tables("match-v0", 1, effects={"wind": {"wind": 2.0, "pull": 0.1}}, values={"friction": 0.0, "drag": 0.0})
+windy.states["puck"][0] = (1.2, 0.3, 0.0, 0.0, 0.0, 0)
+stay = np.concatenate([windy.observations[:, :, :2], np.full((1, 2, 2), 0.3, np.float32)], axis=2)
+windy.step(stay)
+gust = np.array([windy.states["puck"][0]["vx"], windy.states["puck"][0]["vy"]])
 column = {column.name: i for i, column in enumerate(tables.observation_columns)}
 print(json.dumps({
     "home": puckpilot_env.__file__,
@@ -65,6 +71,7 @@ print(json.dumps({
     "usual": speeds(),
     "slow": speeds(face_off_speed=0.3),
     "refusal": refusal(face_off_speed=9.0),
+    "wind": gust.tolist(),
     "doubled": read(parameters.make_records(1, {"face_off_speed": 1.25})[0]),
 }))
 """
@@ -113,6 +120,7 @@ def test_every_recipe_was_followed_on_the_copy(facts: dict[str, Any]) -> None:
         "puckpilot_env/match_small_goals_v0.py",
         "puckpilot_env/parameters.py",
         "puckpilot_env/game/start.py",
+        "puckpilot_env/physics/effects/wind.py",
     ]
     assert Path(facts["home"]).is_relative_to(facts["root"])
 
@@ -140,3 +148,12 @@ def test_the_new_parameter_is_accepted_refused_read_and_on_the_page(facts: dict[
     assert facts["refusal"] == "parameter 'face_off_speed' is 9.0; expected a number in [0.3, 3] m/s"
     assert facts["doubled"] == 2.5
     assert "| `face_off_speed` | m/s | 0.8 | 0.3 to 3 | highest speed of the puck at a face-off |" in facts["page"]
+
+
+def test_the_new_effect_blows_and_is_on_the_page(facts: dict[str, Any]) -> None:
+    """v = wind (1 - exp(-pull t)) after the 0.1 s of a step."""
+    assert facts["wind"] == pytest.approx([2.0 * (1.0 - math.exp(-0.01)), 0.0], abs=1e-7)
+    assert (
+        "| `wind` | glide | a = pull (wind - v_x) along x | `wind` [m/s] -20 to 20, `pull` (`wind_pull`)"
+        in facts["page"]
+    )

@@ -97,7 +97,7 @@ def _look_ahead(puck, p, mallets, vx, vy, friction, drag, t, end):
 
 @kernel
 def _not_through(puck, p, before_x, before_y, vx, vy):
-    """The velocity `v` after a kick from `before`: a wall or post that the puck leans against holds it."""
+    """The velocity (or force) `v` of a puck whose velocity was `before`, less what a wall or post it leans on holds."""
     for _ in range(2):  # in a corner there are two
         speed = size(vx, vy)
         if speed == 0.0:
@@ -117,6 +117,7 @@ def _look_ahead_forced(puck, p, mallets, clock, t, end):
     """`_look_ahead` for one interval of `slide`, which is shortened so that it ends in the event; then what it needs:
     `(friction, drag, pull, duration)`."""
     ax, ay = slide.force(puck, p, clock + t, puck.vx, puck.vy)
+    ax, ay = _not_through(puck, p, puck.vx, puck.vy, ax, ay)
     pull, h = slide.plan_interval(puck, p, clock + t, ax, ay)
     h = min(h, end - t)
     cuts = 0

@@ -16,7 +16,8 @@ from puckpilot_env.game import reward
 from puckpilot_env.game.rules import ENDING_NAMES, RUNNING
 from puckpilot_env.game.start import ATTACK, MATCH
 from puckpilot_env.parallel_env import TableEnv
-from puckpilot_env.parameters import TABLE
+from puckpilot_env.parameters import EFFECT_ROWS, TABLE
+from puckpilot_env.physics.effects import EFFECTS
 from puckpilot_env.variants import Variant, all_variants
 
 VARIANTS = list(all_variants().values())
@@ -134,13 +135,23 @@ def test_infos_are_those_on_the_page(variant: Variant) -> None:
 def test_parameters_and_draws_are_all_there(variant: Variant) -> None:
     text = page.write_page(variant)
     rows = _rows(_section(text, "Parameters"))
-    assert [row[0] for row in rows] == [f"`{row.name}`" for row in TABLE]
+    assert [row[0] for row in rows] == [f"`{row.name}`" for row in TABLE if row not in EFFECT_ROWS]
     nominal = Tables(variant, 1).nominal
-    for row, name in zip(rows, (row.name for row in TABLE), strict=True):
+    for row, name in zip(rows, (row.name for row in TABLE if row not in EFFECT_ROWS), strict=True):
         assert float(re.split(r"[ ,]", row[2])[0]) == pytest.approx(float(nominal[name][0]), rel=1e-5)
     drawn = _rows(_section(text, "Drawn for every episode"))
     assert [row[0] for row in drawn] == [f"`{draw.parameter}`" for draw in variant.draws]
     assert all(row[4] for row in drawn)
+
+
+@every_variant
+def test_effects_and_their_numbers_are_all_there(variant: Variant) -> None:
+    rows = _rows(_section(page.write_page(variant), "Effects"))
+    assert [row[0] for row in rows] == [f"`{name}`" for name in EFFECTS]
+    for row, effect in zip(rows, EFFECTS.values(), strict=True):
+        assert row[1] == effect.regime and row[2]
+        for short, number in effect.rows.items():
+            assert f"`{short}`" in row[3] and f"`{number.name}`" in row[3] and f"[{number.unit}]" in row[3]
 
 
 @every_variant

@@ -1,0 +1,51 @@
+"""The same piece of physics in both worlds: parameters of the simulator beside the law of the reference."""
+
+from __future__ import annotations
+
+from tests.reality import Law
+
+Pair = tuple[dict[str, float], Law]
+
+# Places are relative to the middle of the table where they matter; the reference names some numbers otherwise.
+GLIDE: dict[str, Pair] = {
+    "table_tilt": ({"tilt_x": 0.12, "tilt_y": -0.08}, Law(tilt_x=0.12, tilt_y=-0.08)),
+    "table_warp": (
+        {"warp_xx": 0.5, "warp_yy": -0.3, "warp_xy": 0.2},
+        Law(warp_xx=0.5, warp_yy=-0.3, warp_xy=0.2),
+    ),
+    "linear_drag": ({"linear_drag": 0.8}, Law(linear_drag=0.8)),
+    "friction_patch": (
+        {"patch_x": 1.0, "patch_y": 0.5, "patch_radius": 0.3, "patch_extra": 0.4},
+        Law(patch_x=1.0, patch_y=0.5, patch_radius=0.3, patch_friction=0.4),
+    ),
+    "air_drift": ({"air_drift": 0.05}, Law(friction_drift=0.05)),
+    "friction_anisotropy": ({"friction_anisotropy": 0.5}, Law(friction_anisotropy=0.5)),
+    "side_force": ({"side_force": 0.8}, Law(side_force=0.8)),
+    "side_force with spin": ({"spin_side_force": 0.02}, Law(spin_side_force=0.02)),
+    "several": (
+        {"tilt_x": 0.05, "warp_yy": 0.3, "linear_drag": 0.3, "side_force": -0.4, "air_drift": 0.02},
+        Law(tilt_x=0.05, warp_yy=0.3, linear_drag=0.3, side_force=-0.4, friction_drift=0.02),
+    ),
+}
+CONTACTS: dict[str, Pair] = {
+    "table_tilt": ({"tilt_x": 0.2, "tilt_y": -0.15}, Law(tilt_x=0.2, tilt_y=-0.15)),
+    "table_warp": ({"warp_xx": 0.5, "warp_yy": 0.8}, Law(warp_xx=0.5, warp_yy=0.8)),
+    "side_force": ({"side_force": 0.8}, Law(side_force=0.8)),
+    "speed_dependent_restitution": ({"restitution_slope": 0.05}, Law(restitution_slope=0.05)),
+    "tangential_restitution": ({"tangential_ratio": 9 / 7}, Law(tangential_restitution=0.9)),
+    "tangential_restitution, and the normal one falls": (
+        {"tangential_ratio": 9 / 7, "restitution_slope": 0.05},
+        Law(tangential_restitution=0.9, restitution_slope=0.05),
+    ),
+    "wall_friction_spin": ({"wall_mu": 0.15}, Law(wall_spin=True, wall_mu=0.15)),
+    "wall_friction_spin, a heavy rim, and a spin that pulls": (
+        {"wall_mu": 0.3, "spin_inertia": 0.9, "spin_decay": 2.0, "spin_side_force": 0.01},
+        Law(wall_spin=True, wall_mu=0.3, spin_inertia=0.9, spin_decay=2.0, spin_side_force=0.01),
+    ),
+    "wall_to_wall_restitution": ({"restitution_y1": -0.2}, Law(odd_wall=3, odd_wall_extra=-0.2)),
+    "wall_to_wall_restitution at an end": ({"restitution_x0": 0.1}, Law(odd_wall=0, odd_wall_extra=0.1)),
+    "corner_restitution": ({"post_extra": -0.3}, Law(post_restitution=0.4)),
+    "mallet_speed_restitution": ({"mallet_restitution_slope": 0.06}, Law(mallet_restitution_slope=0.06)),
+    "mallet_friction": ({"mallet_mu": 0.2}, Law(mallet_mu=0.2)),
+    "mallet_give": ({"mallet_give": 0.15}, Law(mallet_give=0.15)),
+}
