@@ -23,6 +23,7 @@ COMMANDS = {
     "tournament": ("baselines.commands.tournament", "all against all: payoff matrix and ratings"),
     "bench": ("puckpilot_env.commands.bench", "how fast the simulator is here"),
     "compare": ("sim2real.compare", "where a recording of a table departs from the simulator"),
+    "diagnose": ("sim2real.commands.diagnose", "which physics the simulator lacks, with proof on untouched data"),
 }
 
 

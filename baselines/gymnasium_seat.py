@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from baselines import find_player
 from baselines.player import Player, Seat
+from puckpilot_env.effects_file import Effects
 from puckpilot_env.parallel_env import fresh_seed
 from puckpilot_env.seats import Opponent
 from puckpilot_env.single_env import SingleEnv
@@ -54,14 +55,17 @@ def make_seat(
     period: float | None = None,
     max_steps: int | None = None,
     parameters: Mapping[str, float] | None = None,
+    effects: Effects | None = None,
 ) -> SingleEnv:
     """A Gymnasium environment of one seat (0 or 1); `opponent` plays the other.
 
-    `period` [s], `max_steps` and `parameters` are those of `Tables`, which calls the last `values`. Raises ValueError,
-    in one line, for anything that cannot be.
+    `period` [s], `max_steps`, `parameters` and `effects` are those of `Tables`, which calls the third `values`. Raises
+    ValueError, in one line, for anything that cannot be.
     """
     seed = fresh_seed()
-    tables = Tables(variant, 1, seed=seed, autoreset=False, period=period, max_steps=max_steps, values=parameters)
+    tables = Tables(
+        variant, 1, seed=seed, autoreset=False, period=period, max_steps=max_steps, values=parameters, effects=effects
+    )
     return SingleEnv(tables, find_opponent(opponent, tables, seed), seat=seat, render_mode=render_mode)
 
 
@@ -77,6 +81,7 @@ def make_seats(
     period: float | None = None,
     max_steps: int | None = None,
     parameters: Mapping[str, float] | None = None,
+    effects: Effects | None = None,
 ) -> TablesVectorEnv:
     """A Gymnasium vector environment of `num_envs` seats, one a table; `seat` may also be "alternate".
 
@@ -84,8 +89,9 @@ def make_seats(
     """
     seed = fresh_seed()
     tables = Tables(
-        variant, num_envs, seed=seed, threads=threads, period=period, max_steps=max_steps, values=parameters
-    )
+        variant, num_envs, seed=seed, threads=threads, period=period, max_steps=max_steps, values=parameters,
+        effects=effects,
+    )  # fmt: skip
     found = find_opponent(opponent, tables, seed)
     return TablesVectorEnv(tables, found, seat=seat, render_mode=render_mode, copy=copy)
 

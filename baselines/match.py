@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from baselines import make_player
 from baselines.player import Player, Seat
+from puckpilot_env.effects_file import Effects
 from puckpilot_env.tables import Tables
 from puckpilot_env.variants import Variant
 
@@ -60,15 +61,16 @@ def play(
     seed: int,
     *,
     values: Mapping[str, float] | None = None,
+    effects: Effects | None = None,
     progress: Progress | None = None,
     threads: int = 1,
     watch: Watch | None = None,
 ) -> MatchResult:
     """Play `games` episodes of `variant` (or its id), half of them with the seats exchanged.
 
-    Pair i uses random stream i of `seed` in both halves; of an odd number, the last pair is half. `values` puts
-    parameters in place of the variant's by name. `watch` sees every step of the games with first in seat 0, table 0
-    the first of them. The same call gives the same result.
+    Pair i uses random stream i of `seed` in both halves; of an odd number, the last pair is half. `values` and
+    `effects` are those of `Tables`. `watch` sees every step of the games with first in seat 0, table 0 the first of
+    them. The same call gives the same result.
     """
     if not 1 <= games <= MOST_GAMES:
         raise ValueError(f"games is {games!r}; expected a whole number from 1 to {MOST_GAMES:,}")
@@ -77,7 +79,7 @@ def play(
     for seats, count in (((first, second), (games + 1) // 2), ((second, first), games // 2)):
         if count == 0:
             break
-        tables = Tables(variant, count, seed=seed, threads=threads, autoreset=False, values=values)
+        tables = Tables(variant, count, seed=seed, threads=threads, autoreset=False, values=values, effects=effects)
         tick = (lambda ended, before=done: progress(before + ended, games)) if progress else None
         halves.append(_play_half(tables, seats, seed, tick, None if halves else watch))
         tables.close()

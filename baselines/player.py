@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from baselines.sight import Seen, Sight
+from puckpilot_env.parameters import without_effects
 from puckpilot_env.tables import Tables
 
 
@@ -16,7 +17,7 @@ class Seat:
     """What a player knows before the game: no more than an agent could. Both ends of the table look the same.
 
     - `variant`: id of the variant; `rules`: (1,) record of `game.rules.RULES`.
-    - `nominal`: (1,) record of the parameters as they are on average; a table may differ from them.
+    - `nominal`: (1,) record of the parameters as they are on average, effects left out; a table may differ from them.
     - `columns`: index of every column of the observation by its name.
     - `action_bounds`: (2, 4) float32, low and high of target x, y [m] and voltages x, y [V].
     - `tables`: how many tables are played at once; `seed`: of the player's own randomness.
@@ -36,7 +37,7 @@ class Seat:
         return cls(
             tables.variant.id,
             tables.variant.rules(),
-            tables.nominal.copy(),
+            without_effects(tables.nominal),
             {column.name: index for index, column in enumerate(tables.observation_columns)},
             tables.action_bounds.copy(),
             len(tables),

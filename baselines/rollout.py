@@ -57,10 +57,10 @@ def value_of(action, puck, opponent, held, p, style, mallets, free, log, volts):
     where it is now, and the opponent's, parked; free (a puck) and log are scratch; volts: the most that anyone may use.
     """
     plan_mallet(mallets[0], action[0], action[1], action[2], action[3], mirror.area(0, p), p.max_voltage)
-    free.x, free.y, free.vx, free.vy = puck[0], puck[1], puck[2], puck[3]
+    free.x, free.y, free.vx, free.vy, free.spin = puck[0], puck[1], puck[2], puck[3], 0.0
     now = 0.0
     for _ in range(MOST_CROSSINGS):
-        kind, now, _ = advance(free, p, mallets, now, HORIZON, log, log[:, :3])
+        kind, now, _ = advance(free, p, mallets, 0.0, now, HORIZON, log, log[:, :3])
         if kind == bounce.GOAL_X0:
             return -1.0 - (HORIZON - now)
         if kind == bounce.GOAL_X1:

@@ -11,6 +11,7 @@ from baselines.intervals import paired_win_rate
 from baselines.match import MatchResult, Progress, play
 from baselines.payoff import Payoff, count_games
 from baselines.rating import Ratings, fit_ratings_from_pairs
+from puckpilot_env.effects_file import Effects
 from puckpilot_env.variants import find_variant
 
 
@@ -65,6 +66,7 @@ def play_tournament(
     seed: int,
     *,
     values: Mapping[str, float] | None = None,
+    effects: Effects | None = None,
     threads: int = 1,
     progress: Progress | None = None,
 ) -> Tournament:
@@ -84,7 +86,9 @@ def play_tournament(
     matches = []
     for number, (first, second) in enumerate(pairs):
         tick = _counting_on(progress, number * games, len(pairs) * games)
-        matches.append(play(variant, first, second, games, seed, values=values, progress=tick, threads=threads))
+        matches.append(
+            play(variant, first, second, games, seed, values=values, effects=effects, progress=tick, threads=threads)
+        )
     results = {match.players: match.results for match in matches}
     payoff, ratings = count_games(results), fit_ratings_from_pairs(results, seed)
     return Tournament(variant, seed, games, payoff.players, tuple(matches), payoff, ratings)

@@ -71,6 +71,14 @@ def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
         _config.CACHE_DIR = before
 
 
+def inner(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Compile a function that was made inside another one: it becomes part of each `kernel` that calls it.
+
+    It has no cache of its own, for numba tells functions apart by where they stand; its callers' caches hold it.
+    """
+    return numba.njit(nogil=True, error_model="numpy")(function)
+
+
 _announced = False
 
 

@@ -11,6 +11,7 @@ from gymnasium.spaces import Box
 from numpy.typing import NDArray
 from pettingzoo import ParallelEnv
 
+from puckpilot_env.effects_file import Effects
 from puckpilot_env.game.rules import ENDING_NAMES
 from puckpilot_env.infos import drawn_info, only_row
 from puckpilot_env.motion import mallet_motion, puck_motion
@@ -47,16 +48,19 @@ class TableEnv(ParallelEnv):
         max_cycles: int | None = None,
         period: float | None = None,
         parameters: Mapping[str, float] | None = None,
+        effects: Effects | None = None,
     ) -> None:
-        """`max_cycles`: truncate after so many steps; `period` [s] of a step, from 1/120 s; `parameters` by name.
+        """`max_cycles`: truncate after so many steps; `period` [s] of a step, from 1/120 s; `parameters` by name;
+        `effects`: physics beyond the baseline, by name or from a file (see `effects_file`).
 
         Raises ValueError, in one line, for anything that cannot be.
         """
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise ValueError(f"render_mode is {render_mode!r}; expected None or 'rgb_array'")
         self._tables = Tables(
-            variant, 1, autoreset=False, period=period, max_steps=max_cycles, values=parameters, seed=fresh_seed()
-        )
+            variant, 1, autoreset=False, period=period, max_steps=max_cycles, values=parameters, effects=effects,
+            seed=fresh_seed(),
+        )  # fmt: skip
         self.metadata = {
             **self.metadata,
             "name": variant.module,

@@ -20,6 +20,8 @@ _CHOICE = "not in the report; a documented choice (errata, last row)"
 _FRAMES = "0 to 7 % in recordings of a real table"
 _E2 = "report, appendix E.2"
 
+EFFECT_ROWS = tuple(row for effect in EFFECTS.values() for row in effect.rows.values())
+
 TABLE: tuple[Parameter, ...] = (
     Parameter(
         "length", "m", 2.0, 1.0, 4.0, "table length, x from the robot's end to the opponent's", "report, appendix J"
@@ -56,7 +58,7 @@ TABLE: tuple[Parameter, ...] = (
     Parameter("action_noise", "1", 0.0, 0.0, 0.5, "relative noise of both voltages, drawn at each action", _CHOICE),
     Parameter("impulse_rate", "1/s", 0.0, 0.0, 10.0, "random impulses on the puck", "report, K.2 (named, no number)"),
     Parameter("impulse_speed", "m/s", 0.1, 0.0, 2.0, "size of a random impulse, each component", _CHOICE),
-    *(row for effect in EFFECTS.values() for row in effect.rows.values()),
+    *EFFECT_ROWS,
 )
 
 BY_NAME: dict[str, Parameter] = {row.name: row for row in TABLE}
@@ -76,6 +78,14 @@ def make_records(tables: int, values: Mapping[str, float] | None = None) -> np.n
         records[name] = checked(name, value)
     if tables:
         check_together(records[0])
+    return records
+
+
+def without_effects(records: np.ndarray) -> np.ndarray:
+    """A copy of the records with every effect off."""
+    records = records.copy()
+    for row in EFFECT_ROWS:
+        records[row.name] = row.default
     return records
 
 

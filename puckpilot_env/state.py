@@ -1,7 +1,7 @@
 """What a table is at an instant, as one numpy record: snapshot, restore and fork are copies of it.
 
-All places are in the table's frame. `turned` is 1 for a table that was turned round (see `game.mirror`): what its own
-random stream draws is then turned too, so that a turned table plays the same game.
+All places are in the table's frame. The puck's `turned` is 1 on a table that was turned round (see `game.mirror`): what
+its own random stream draws is then turned too, and so are the effects, so that a turned table plays the same game.
 """
 
 from __future__ import annotations
@@ -44,7 +44,6 @@ TABLE = np.dtype(
         ("subject", np.int64),  # the player whose episode a drill is
         ("ending", np.int64),  # how the last step ended the episode (see game.rules), 0 if it did not
         ("winner", np.int64),  # of the last episode: 0, 1, or -1 for none
-        ("turned", np.int64),
         ("streams", STREAM, 2),  # of each player: what happens to it alone, in its own frame
         ("stream", STREAM),  # of the table
     ],

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from puckpilot_env import batch, parameters, state
+from puckpilot_env.effects_file import Effects, effect_values
 from puckpilot_env.game import mirror, observation, sensing
 from puckpilot_env.kernel import announce_compilation
 from puckpilot_env.variants import Variant, find_variant
@@ -60,11 +61,13 @@ class Tables:
         period: float | None = None,
         max_steps: int | None = None,
         values: Mapping[str, float] | None = None,
+        effects: Effects | None = None,
     ) -> None:
         """Make `tables` tables of a variant (or its id) and reset them.
 
         `period` [s] of a step replaces the variant's (from 1/120 s on), `max_steps` its step limit (truncation);
-        `values` puts parameters in place of the defaults, by name; one that is given is no longer drawn.
+        `effects` adds physics beyond the baseline (see `effects_file`), `values` puts parameters in place of all
+        others, by name; one that is given is no longer drawn.
 
         Raises ValueError, in one line, for anything that cannot be.
         """
@@ -74,11 +77,12 @@ class Tables:
             raise ValueError(f"threads is {threads!r}; expected a whole number from 1 to 256")
         if isinstance(variant, str):
             variant = find_variant(variant)
-        variant = _without_draws(_with_timing(variant, period, max_steps), values or {})
+        values = {**effect_values(effects), **(values or {})}
+        variant = _without_draws(_with_timing(variant, period, max_steps), values)
         self.variant = variant
         self.threads = min(int(threads), int(tables))
         self.autoreset = autoreset
-        self.params = parameters.make_records(tables, {**variant.parameters, **(values or {})})
+        self.params = parameters.make_records(tables, {**variant.parameters, **values})
         self.nominal = self.params[:1].copy()
         self._rules = variant.rules()
         self._drawn = variant.drawn()

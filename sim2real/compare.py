@@ -22,9 +22,10 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from sim2real.compare_predict import compare_pieces, parameters
+from sim2real.compare_predict import compare_pieces
 from sim2real.compare_summary import summarize
 from sim2real.diagnose.pieces import cut
+from sim2real.nominal import parameters
 from sim2real.recording import read_recording
 
 UNITS = {"m": (1e3, "mm", 1), "m/s": (1.0, "m/s", 2), "": (1.0, "", 2)}

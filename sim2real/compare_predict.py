@@ -7,23 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from puckpilot_env.parameters import TABLE
 from puckpilot_env.physics import bounce, contact, glide
 from sim2real.diagnose.hits import Hit
 from sim2real.diagnose.pieces import Glide, Pieces
 from sim2real.diagnose.sensor import Noise
-from sim2real.recording import Recording
 
 FITTED_PART = 0.4
 FEWEST_FRAMES = 24
 SLOWEST = 0.05
-FROM_META = {
-    "length": ("table", "length_m"),
-    "width": ("table", "width_m"),
-    "goal_width": ("table", "goal_width_m"),
-    "puck_radius": ("puck", "radius_m"),
-    "mallet_radius": ("mallet", "radius_m"),
-}
 
 
 @dataclass(frozen=True)
@@ -65,15 +56,6 @@ class Comparison:
     walls: tuple[HitError, ...]
     mallets: tuple[HitError, ...]
     unusable: dict[str, Counter]
-
-
-def parameters(recording: Recording) -> dict[str, float]:
-    """The simulator's parameters by name: defaults, with the sizes that the recording states."""
-    values = {row.name: row.default for row in TABLE}
-    for name, (section, key) in FROM_META.items():
-        stated = recording.nominal(section, key)
-        values[name] = values[name] if stated is None else stated
-    return values
 
 
 def compare_pieces(pieces: Pieces, values: dict[str, float]) -> Comparison:

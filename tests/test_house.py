@@ -23,7 +23,10 @@ FORBIDDEN = {
 }
 # folder: all that the modules in it may import
 ALLOWED = {
-    PHYSICS: ("__future__", "math", "numpy", "puckpilot_env.kernel", "puckpilot_env.physics"),
+    PHYSICS: (
+        "__future__", "collections", "functools", "importlib", "math", "numpy", "pkgutil", "types", "typing",
+        "puckpilot_env.effect", "puckpilot_env.kernel", "puckpilot_env.physics",
+    ),
     GAME: (
         "__future__", "dataclasses", "math", "numpy", "puckpilot_env.kernel", "puckpilot_env.physics",
         "puckpilot_env.game", "puckpilot_env.state", "puckpilot_env.random_stream",

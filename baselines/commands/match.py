@@ -53,7 +53,7 @@ def _play(args: argparse.Namespace) -> tuple[MatchResult, str]:
         with progress_bar(f"{args.first} against {args.second}") as progress:
             return play(
                 args.variant, args.first, args.second, args.games, args.seed, values=parse_values(args.set),
-                progress=progress, threads=args.threads, watch=watch,
+                effects=args.effects, progress=progress, threads=args.threads, watch=watch,
             )  # fmt: skip
 
     if args.video is None:

@@ -17,6 +17,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--set", action="append", default=[], metavar="NAME=VALUE", help="a parameter in place of the default, SI units"
     )
+    parser.add_argument("--effects", metavar="FILE", help="physics beyond the baseline, as `diagnose` writes it")
     parser.add_argument("--json", action="store_true", help="print the result as JSON")
 
 

@@ -35,7 +35,7 @@ def run(args: argparse.Namespace) -> int:
     with progress_bar("tournament") as progress:
         tournament = play_tournament(
             args.variant, args.players or player_names(), args.games, args.seed, values=parse_values(args.set),
-            threads=args.threads, progress=progress,
+            effects=args.effects, threads=args.threads, progress=progress,
         )  # fmt: skip
     written = write_tournament(folder, tournament)
     if args.json:

@@ -36,6 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--threads", type=int, default=1, help="threads that share them (1)")
     parser.add_argument("--seconds", type=float, default=5.0, help="how long to measure (5)")
     parser.add_argument("--against", metavar="ID", help="measure this variant too, in turn, and print the ratio")
+    parser.add_argument("--effects", metavar="FILE", help="physics beyond the baseline on the first variant's tables")
     parser.add_argument("--dicts", action="store_true", help="one table behind PettingZoo's dictionaries instead")
     parser.add_argument("--startup", action="store_true", help="a fresh process to its first step instead")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
@@ -54,7 +55,7 @@ def run(args: argparse.Namespace) -> int:
     elif args.dicts:
         report = _dicts(variant, args.seconds)
     else:
-        report = _batches(rivals, args.tables, args.threads, args.seconds)
+        report = _batches(rivals, args.tables, args.threads, args.seconds, args.effects)
     if args.json:
         print(json.dumps(report, indent=1))
     else:
@@ -68,14 +69,17 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _batches(variants: list[Any], tables: int, threads: int, seconds: float) -> dict[str, Any]:
+def _batches(
+    variants: list[Any], tables: int, threads: int, seconds: float, effects: str | None = None
+) -> dict[str, Any]:
     """Median speed of the first variant. Of a second one, and of one thread beside several, the median ratio of
     stretches measured in turn."""
     from puckpilot_env.tables import Tables
 
-    batches = [Tables(variant, tables, seed=1, threads=threads) for variant in variants]
+    given = [effects] + [None] * (len(variants) - 1)
+    batches = [Tables(v, tables, seed=1, threads=threads, effects=e) for v, e in zip(variants, given, strict=True)]
     if threads > 1:
-        batches.append(Tables(variants[0], tables, seed=1))
+        batches.append(Tables(variants[0], tables, seed=1, effects=effects))
     actions = [_draw_actions(batch) for batch in batches]
     for batch, drawn in zip(batches, actions, strict=True):
         for step in range(WARM_UP):

@@ -48,5 +48,5 @@ def turn_table(tables: np.ndarray, frames: np.ndarray, length: np.ndarray, width
         tables[name] = tables[name][:, ::-1].copy()
     tables["subject"] = 1 - tables["subject"]
     tables["winner"] = np.where(tables["winner"] < 0, -1, 1 - tables["winner"])
-    tables["turned"] = 1 - tables["turned"]
+    tables["puck"]["turned"] = 1 - tables["puck"]["turned"]
     frames[:] = frames[:, ::-1].copy()

@@ -61,6 +61,7 @@ def place_puck(table, p, player, x, y, vx, vy):
     puck = table.puck
     puck.x, puck.y = mirror.place(player, x, y, p)
     puck.vx, puck.vy = mirror.velocity(player, vx, vy)
+    puck.spin = 0.0
     table.held = 0.0
 
 
@@ -73,7 +74,7 @@ def face_off(table, p):
     angle = random_stream.between(table.stream, -0.25 * math.pi, 0.25 * math.pi)
     speed = random_stream.between(table.stream, 0.3, 0.8)
     end = 1.0 if random_stream.uniform(table.stream) < 0.5 else -1.0
-    place_puck(table, p, table.turned, 0.5 * p.length, y, end * speed * math.cos(angle), speed * math.sin(angle))
+    place_puck(table, p, table.puck.turned, 0.5 * p.length, y, end * speed * math.cos(angle), speed * math.sin(angle))
 
 
 @kernel

@@ -34,7 +34,7 @@ def play(table, p, rule, until, rewards, log, film):
     """The puck's motion until `until` [s] of the plans with what it means; True if the point is over."""
     now = 0.0
     for _ in range(MOST_CROSSINGS):
-        kind, now, _ = advance(table.puck, p, table.mallets, now, until, log, film)
+        kind, now, _ = advance(table.puck, p, table.mallets, table.time, now, until, log, film)
         if kind == bounce.NOTHING:
             return False
         if kind == bounce.MIDDLE_LINE:
@@ -79,7 +79,7 @@ def _random_impulse(table, p, period):
     if random_stream.uniform(table.stream) < p.impulse_rate * period:
         x = p.impulse_speed * random_stream.normal(table.stream)
         y = p.impulse_speed * random_stream.normal(table.stream)
-        x, y = mirror.velocity(table.turned, x, y)
+        x, y = mirror.velocity(table.puck.turned, x, y)
         table.puck.vx += x
         table.puck.vy += y
 

@@ -1,7 +1,7 @@
 """One table through one interval, from event to event: the nearest contact, apply it, again.
 
 The puck is a record that is updated in place; the mallets, an array of two, follow their plans (see `mallet`).
-Nothing here steps through time: between two events everything is a closed form.
+Between two events everything is a closed form; only the forces of effects cut time into intervals (see `slide`).
 """
 
 from __future__ import annotations
@@ -11,23 +11,29 @@ import math
 import numpy as np
 
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics import bounce, contact, glide
-from puckpilot_env.physics.mallet import halt, motion_at, place_now, push_at, reach
+from puckpilot_env.physics import bounce, compose, contact, glide, slide
+from puckpilot_env.physics.hit import closes_on, hit
+from puckpilot_env.physics.mallet import halt, place_now, reach
+from puckpilot_env.physics.rebound import rebound
 from puckpilot_env.physics.vector import size
 
-PUCK = np.dtype([("x", np.float64), ("y", np.float64), ("vx", np.float64), ("vy", np.float64)], align=True)  # m, m/s
+PUCK = np.dtype(
+    [
+        ("x", np.float64),  # m
+        ("y", np.float64),
+        ("vx", np.float64),  # m/s
+        ("vy", np.float64),
+        ("spin", np.float64),  # rad/s, counter-clockwise
+        ("turned", np.int64),  # 1 where the table, and with it every effect, was turned round
+    ],
+    align=True,
+)
 # Columns of an event log: time in the interval [s], kind (see bounce), the puck's place, and its velocity before, after
 EVENT_COLUMNS = 8
 MANY_EVENTS = 2000  # in one interval: a puck caught so is set to rest, and the mallets stall
-
-
-@kernel
-def _move(puck, ux, uy, v, duration, friction, drag):
-    path_length, speed = glide.advance(v, duration, friction, drag)
-    puck.x += ux * path_length
-    puck.y += uy * path_length
-    puck.vx = ux * speed
-    puck.vy = uy * speed
+LEANING = 1e-7  # m; a puck this near to a wall leans against it if the forces push it there
+MOST_CUTS = 5  # of an interval of `slide`, so that it ends in an event
+NEARLY_ALL, AT_ONCE = 0.99, 1e-3  # of an interval: where an event counts as being at its end, or at its beginning
 
 
 @kernel
@@ -49,70 +55,7 @@ def _keep_inside(puck, p):
 
 
 @kernel
-def _bounce(puck, kind, p):
-    nx, ny = bounce.boundary_normal(kind, puck.x, puck.y, p.length, p.width, p.goal_width)
-    puck.vx, puck.vy = bounce.reflect(puck.vx, puck.vy, nx, ny, p.wall_restitution)
-
-
-@kernel
-def _other_obstacle(puck, p, mallets, k, t, nx, ny):
-    """`(mallet, wx, wy, ox, oy)` of what the puck also touches, most opposite `n`; mallet is -1: a wall, -2: none."""
-    kind, wx, wy = bounce.touched(
-        puck.x, puck.y, nx, ny, contact.PINCH_SLACK, p.length, p.width, p.goal_width, p.puck_radius
-    )
-    other = 1 - k
-    mx, my, ox, oy = motion_at(mallets[other], t)
-    dx, dy = puck.x - mx, puck.y - my
-    apart = size(dx, dy)
-    opposed = min(wx * nx + wy * ny, 0.0) * apart
-    if apart - p.puck_radius - p.mallet_radius < contact.PINCH_SLACK and dx * nx + dy * ny < opposed:
-        return other, dx / apart, dy / apart, ox, oy
-    return (-2 if kind == bounce.NOTHING else -1), wx, wy, 0.0, 0.0
-
-
-@kernel
-def _closes_on(puck, vx, vy, p, mallet, t):
-    """Whether a puck of velocity `v` that touches this mallet runs into it."""
-    mx, my, mvx, mvy = motion_at(mallet, t)
-    dx, dy = puck.x - mx, puck.y - my
-    touching = size(dx, dy) - p.puck_radius - p.mallet_radius < contact.PINCH_SLACK
-    return touching and (vx - mvx) * dx + (vy - mvy) * dy < 0.0
-
-
-@kernel
-def _strike(puck, p, mallets, k, t):
-    """Apply the impulse of player `k`'s mallet at `t`, seeing to it that no puck is driven through anything."""
-    mx, my, mvx, mvy = motion_at(mallets[k], t)
-    dx, dy = puck.x - mx, puck.y - my
-    apart = size(dx, dy)
-    nx, ny = dx / apart, dy / apart
-    push = push_at(mallets[k], t, nx, ny)
-    vx, vy = contact.strike(puck.vx, puck.vy, mvx, mvy, nx, ny, p.mallet_restitution, push, p.friction, p.drag)
-    other, wx, wy, ox, oy = _other_obstacle(puck, p, mallets, k, t, nx, ny)
-    if other != -2 and (vx - ox) * wx + (vy - oy) * wy < 0.0:
-        separation = (vx - mvx) * nx + (vy - mvy) * ny
-        held, vx, vy = contact.pinch(puck.vx, puck.vy, mvx, mvy, nx, ny, ox, oy, wx, wy, separation, p.wall_restitution)
-        third, tx, ty = bounce.touched(
-            puck.x, puck.y, vx, vy, contact.PINCH_SLACK, p.length, p.width, p.goal_width, p.puck_radius
-        )
-        jammed = third != bounce.NOTHING and (tx * wx + ty * wy) < 0.99
-        if other == -1 and not jammed and _closes_on(puck, vx, vy, p, mallets[1 - k], t):
-            other, jammed = 1 - k, True
-        if held or jammed:
-            halt(mallets[k], t)
-            if other >= 0:
-                halt(mallets[other], t)
-            if not held:
-                vx, vy = 0.0, 0.0
-    elif vx * vx + vy * vy > contact.SQUEEZED_SPEED * contact.SQUEEZED_SPEED:
-        halt(mallets[0], t)
-        halt(mallets[1], t)
-        vx, vy = 0.0, 0.0
-    puck.vx, puck.vy = vx, vy
-
-
-@kernel
-def _first_strike(puck, p, mallets, ux, uy, v, t, end, travel):
+def _first_strike(puck, p, mallets, ux, uy, v, friction, drag, t, end, travel):
     """`(time, player)` of the first contact with a mallet in [t, end); time is infinite if there is none."""
     distance = p.puck_radius + p.mallet_radius
     first, player = math.inf, 0
@@ -121,63 +64,140 @@ def _first_strike(puck, p, mallets, ux, uy, v, t, end, travel):
         reach_x, reach_y = reach(mallets[k].x, end), reach(mallets[k].y, end)
         if contact.stays_clear(puck.x, puck.y, ux, uy, travel, home_x, home_y, reach_x, reach_y, distance):
             continue
-        met = contact.first_contact(
-            puck.x, puck.y, ux, uy, v, p.friction, p.drag, mallets[k], t, min(end, first), distance
-        )
+        met = contact.first_contact(puck.x, puck.y, ux, uy, v, friction, drag, mallets[k], t, min(end, first), distance)
         if met < first:
             first, player = met, k
     return first, player
 
 
 @kernel
-def advance(puck, p, mallets, start, end, log, film):
+def _look_ahead(puck, p, mallets, vx, vy, friction, drag, t, end):
+    """`(kind, time, ux, uy, v)`: what a puck of velocity `v u` from `t` on meets first; NOTHING at `end`."""
+    v = math.sqrt(vx * vx + vy * vy)
+    ux, uy = (vx / v, vy / v) if v > 0.0 else (1.0, 0.0)
+    travel = glide.distance(v, end - t, friction, drag)
+    gap, kind = travel, bounce.NOTHING
+    if v > 0.0:  # a resting puck meets no wall, however near
+        gap, kind = bounce.first_boundary(
+            puck.x, puck.y, ux, uy, travel, p.length, p.width, p.goal_width, p.puck_radius
+        )
+        middle = bounce.distance_to_middle(puck.x, ux, p.length)
+        if middle < gap:
+            gap, kind = middle, bounce.MIDDLE_LINE
+    until = end
+    if kind != bounce.NOTHING:
+        travel = gap
+        until = min(t + glide.time_to(v, gap, friction, drag)[0], end)
+    met, player = _first_strike(puck, p, mallets, ux, uy, v, friction, drag, t, until, travel)
+    if met < until or (met == until and kind == bounce.NOTHING):
+        kind = bounce.MALLET_0 + player
+        until = met
+    return kind, until, ux, uy, v
+
+
+@kernel
+def _not_through(puck, p, before_x, before_y, vx, vy):
+    """The velocity `v` after a kick from `before`: a wall or post that the puck leans against holds it."""
+    for _ in range(2):  # in a corner there are two
+        speed = size(vx, vy)
+        if speed == 0.0:
+            break
+        kind, wx, wy = bounce.touched(
+            puck.x, puck.y, vx / speed, vy / speed, LEANING, p.length, p.width, p.goal_width, p.puck_radius
+        )
+        if kind == bounce.NOTHING or before_x * wx + before_y * wy < -bounce.SLIDING:
+            break
+        into = vx * wx + vy * wy
+        vx, vy = vx - into * wx, vy - into * wy
+    return vx, vy
+
+
+@kernel
+def _look_ahead_forced(puck, p, mallets, clock, t, end):
+    """`_look_ahead` for one interval of `slide`, which is shortened so that it ends in the event; then what it needs:
+    `(friction, drag, pull, duration)`."""
+    ax, ay = slide.force(puck, p, clock + t, puck.vx, puck.vy)
+    pull, h = slide.plan_interval(puck, p, clock + t, ax, ay)
+    h = min(h, end - t)
+    cuts = 0
+    while True:
+        vx, vy = slide.kicked(puck, p, clock + t, puck.vx, puck.vy, pull, 0.5 * h)
+        vx, vy = _not_through(puck, p, puck.vx, puck.vy, vx, vy)
+        friction, drag = slide.interval_law(puck, p, clock + t, vx, vy, pull, h)
+        until = end if h == end - t else t + h
+        kind, until, ux, uy, v = _look_ahead(puck, p, mallets, vx, vy, friction, drag, t, until)
+        soon, cuts = until - t, cuts + 1
+        if kind == bounce.NOTHING or soon >= NEARLY_ALL * h or cuts > MOST_CUTS:
+            break
+        if soon > AT_ONCE * h:
+            h = soon
+        elif kind >= bounce.MALLET_0 and not closes_on(
+            puck, puck.vx, puck.vy, p, mallets[kind - bounce.MALLET_0], t
+        ):  # it was the kick that turned the puck round
+            h *= 0.125
+        else:
+            break
+    return kind, until, ux, uy, v, friction, drag, pull, h
+
+
+@kernel
+def _finish_forced(puck, p, now, pull, duration):
+    """The kick at the end of an interval, at the time `now` of the episode."""
+    before_x, before_y = puck.vx, puck.vy
+    slide.finish(puck, p, now, pull, duration)
+    puck.vx, puck.vy = _not_through(puck, p, before_x, before_y, puck.vx, puck.vy)
+
+
+@kernel
+def _apply(puck, p, mallets, kind, clock, t, film):
+    """What happens to the puck, and to what is noted of it, at an event."""
+    if kind == bounce.GOAL_X0 or kind == bounce.GOAL_X1:
+        puck.vx, puck.vy, puck.spin = 0.0, 0.0, 0.0
+        _take_pictures(film, puck, 1.0, 0.0, 0.0, t, math.inf, p.friction, p.drag)
+    elif kind >= bounce.MALLET_0:
+        ax, ay = 0.0, 0.0
+        if compose.is_forced(p):
+            ax, ay = slide.force(puck, p, clock + t, puck.vx, puck.vy)
+        hit(puck, p, mallets, kind - bounce.MALLET_0, t, ax, ay)
+    else:
+        nx, ny = bounce.boundary_normal(kind, puck.x, puck.y, p.length, p.width, p.goal_width)
+        rebound(puck, p, kind, nx, ny)
+    _keep_inside(puck, p)
+
+
+@kernel
+def advance(puck, p, mallets, clock, start, end, log, film):
     """Move the puck from `start` to `end` [s] of the current plans. `p` is a parameter record.
 
-    Returns `(kind, time, events)`. `kind` says what it stopped at: GOAL_X0 or GOAL_X1 (the puck then rests on the goal
-    line), MIDDLE_LINE (it is about to cross: call again from `time`), or NOTHING (it is `end`). `log` is a float64
-    (m, EVENT_COLUMNS) array that takes the first m events; (0, EVENT_COLUMNS) to log none. `film` is a float64
-    (m, 3) array of times [s] and, written here where start < time <= end, the puck's places then [m].
+    `clock` [s] is the time of the episode when the plans began. Returns `(kind, time, events)`. `kind` says what it
+    stopped at: GOAL_X0 or GOAL_X1 (the puck then rests on the goal line), MIDDLE_LINE (it is about to cross: call again
+    from `time`), or NOTHING (it is `end`). `log` is a float64 (m, EVENT_COLUMNS) array that takes the first m events;
+    (0, EVENT_COLUMNS) to log none. `film` is a float64 (m, 3) array of times [s] and, written here where start < time
+    <= end, the puck's places then [m].
     """
     t = start
     events = 0
+    forced = compose.is_forced(p)
+    pull, planned = 1.0, 0.0
     while t < end:
-        v = math.sqrt(puck.vx * puck.vx + puck.vy * puck.vy)
-        ux, uy = (puck.vx / v, puck.vy / v) if v > 0.0 else (1.0, 0.0)
-        travel = glide.distance(v, end - t, p.friction, p.drag)
-        gap, kind = travel, bounce.NOTHING
-        if v > 0.0:  # a resting puck meets no wall, however near
-            gap, kind = bounce.first_boundary(
-                puck.x, puck.y, ux, uy, travel, p.length, p.width, p.goal_width, p.puck_radius
-            )
-            middle = bounce.distance_to_middle(puck.x, ux, p.length)
-            if middle < gap:
-                gap, kind = middle, bounce.MIDDLE_LINE
-        until = end
-        if kind != bounce.NOTHING:
-            travel = gap
-            until = min(t + glide.time_to(v, gap, p.friction, p.drag)[0], end)
-        met, player = _first_strike(puck, p, mallets, ux, uy, v, t, until, travel)
-        if met < until or (met == until and kind == bounce.NOTHING):
-            kind = bounce.MALLET_0 + player
-            until = met
+        if forced:
+            kind, until, ux, uy, v, friction, drag, pull, planned = _look_ahead_forced(puck, p, mallets, clock, t, end)
+        else:
+            friction, drag = p.friction, p.drag
+            kind, until, ux, uy, v = _look_ahead(puck, p, mallets, puck.vx, puck.vy, friction, drag, t, end)
         if film.shape[0] > 0:
-            _take_pictures(film, puck, ux, uy, v, t, until, p.friction, p.drag)
-        _move(puck, ux, uy, v, until - t, p.friction, p.drag)
+            _take_pictures(film, puck, ux, uy, v, t, until, friction, drag)
+        slide.move(puck, p, ux, uy, v, until - t, friction, drag)
+        if forced:
+            _finish_forced(puck, p, clock + until, pull, until - t - 0.5 * planned)
         t = until
         if kind == bounce.NOTHING:
-            break
+            continue
         if kind == bounce.MIDDLE_LINE:
             puck.x = 0.5 * p.length
             return kind, t, events
         before_x, before_y = puck.vx, puck.vy
-        if kind == bounce.GOAL_X0 or kind == bounce.GOAL_X1:
-            puck.vx, puck.vy = 0.0, 0.0
-            _take_pictures(film, puck, 1.0, 0.0, 0.0, t, math.inf, p.friction, p.drag)
-        elif kind >= bounce.MALLET_0:
-            _strike(puck, p, mallets, player, t)
-        else:
-            _bounce(puck, kind, p)
-        _keep_inside(puck, p)
+        _apply(puck, p, mallets, kind, clock, t, film)
         if events < log.shape[0]:
             log[events, 0], log[events, 1] = t, kind
             log[events, 2], log[events, 3] = puck.x, puck.y

@@ -19,6 +19,18 @@ GRAZE = 1e-12  # m; a puck this close to missing a post misses it: less is round
 
 
 @kernel
+def opposite(kind):
+    """The wall across the table; posts are as they are."""
+    if kind == WALL_X0:
+        return WALL_X1
+    if kind == WALL_X1:
+        return WALL_X0
+    if kind == WALL_Y0:
+        return WALL_Y1
+    return WALL_Y0 if kind == WALL_Y1 else kind
+
+
+@kernel
 def reflect(vx, vy, nx, ny, restitution):
     """Velocity after a bounce with unit normal `n`: both components keep the share `restitution` (report eq. 10).
 

@@ -92,13 +92,13 @@ def reflect(vx, vy, mx, my, nx, ny, restitution):
 
 
 @kernel
-def strike(vx, vy, mx, my, nx, ny, restitution, push, friction, drag):
-    """`reflect`, but apart at least so fast that a mallet accelerating by `push` is met again only a moment later.
+def part(vx, vy, mx, my, nx, ny, push, friction, drag):
+    """Puck velocity after a rebound from a mallet, away from it at least so fast that they meet again only later.
 
-    That replaces the endless sequence of ever smaller bounces of a puck being pushed along; the gap that it opens
-    stays under `(push + braking) REST_BETWEEN_TOUCHES^2 / 8`, where `braking` bounds the puck's own loss of speed.
+    `push` [m/s^2] is how fast they close in on each other, friction and drag of the puck apart. That replaces the
+    endless sequence of ever smaller bounces of a puck being pushed along; the gap that it opens stays under
+    `(push + braking) REST_BETWEEN_TOUCHES^2 / 8`, where `braking` bounds the puck's own loss of speed.
     """
-    vx, vy = reflect(vx, vy, mx, my, nx, ny, restitution)
     apart = (vx - mx) * nx + (vy - my) * ny
     braking = friction + drag * size(vx, vy) * max(vx * nx + vy * ny, 0.0)
     least = max(0.5 * (push + braking) * REST_BETWEEN_TOUCHES, 1e-6)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -115,14 +116,40 @@ def wall_axis(wall: str) -> tuple[int, int]:
 
 def possible(g: Geometry, p: np.ndarray, tracks: dict[str, Track], noise: float) -> np.ndarray:
     """Frames (n,) bool at which the puck is so near to a wall, post or mallet that a contact may be."""
-    near = np.zeros(len(p), bool)
     reach = 3 * NEAR + 6 * noise
-    for wall, line in nominal_lines(g).items():
+    near = near_walls(nominal_lines(g), p, reach)
+    return near | near_mallets(g, tracks, np.arange(len(p)), p, reach)
+
+
+def near_walls(lines: dict[str, float], p: np.ndarray, reach: float) -> np.ndarray:
+    """Places (n, 2) at which the puck is within `reach` [m] of a wall's contact line, shape (n,) bool."""
+    near = np.zeros(len(p), bool)
+    for wall, line in lines.items():
         axis, inward = wall_axis(wall)
         near |= (p[:, axis] - line) * inward < reach
+    return near
+
+
+def near_posts(g: Geometry, p: np.ndarray, reach: float) -> np.ndarray:
+    """Places (n, 2) at which the puck is within `reach` [m] of touching a goal post, shape (n,) bool."""
+    near = np.zeros(len(p), bool)
+    if g.goal_width is None:
+        return near
+    for x in (0.0, g.length):
+        for sign in (-1, 1):
+            away = p - np.array([x, g.width / 2 + sign * g.goal_width / 2])
+            near |= np.linalg.norm(away, axis=1) < g.puck_radius + reach
+    return near
+
+
+def near_mallets(
+    g: Geometry, tracks: Mapping[str, Track], index: np.ndarray, p: np.ndarray, reach: float
+) -> np.ndarray:
+    """Places (n, 2) at the frames `index` at which a mallet may touch the puck, allowing for its clock; (n,) bool."""
+    near = np.zeros(len(p), bool)
     for track in tracks.values():
-        distance = np.linalg.norm(p - track.place, axis=1) - g.puck_radius - g.mallet_radius
-        speed = np.linalg.norm(track.velocity, axis=1)
+        distance = np.linalg.norm(p - track.place[index], axis=1) - g.puck_radius - g.mallet_radius
+        speed = np.linalg.norm(track.velocity[index], axis=1)
         near |= distance < reach + MALLET_CLOCK * np.nan_to_num(speed)
     return near
 

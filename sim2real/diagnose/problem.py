@@ -8,6 +8,9 @@ from typing import Protocol
 
 import numpy as np
 
+from sim2real.diagnose.engine.choose import Law
+from sim2real.diagnose.engine.gram import Grams
+
 
 @dataclass(frozen=True)
 class Residuals:
@@ -22,22 +25,42 @@ class Residuals:
     cluster: np.ndarray
 
 
+@dataclass(frozen=True)
+class Columns:
+    """Everything that a regime may lack, as columns of its residuals at one law.
+
+    `listed`: mechanisms; `families`: smooth laws of any shape, by what they depend on (`Law.family`).
+    """
+
+    grams: Grams
+    listed: Sequence[Law]
+    families: Sequence[Law]
+
+
 class Problem(Protocol):
-    """A regime's data. `clusters`: how many launches (units of resampling) there are."""
+    """A regime's data.
+
+    `clusters`: how many launches (units of resampling) there are; `freedom` (clusters,): how many of each one's
+    residuals are left free by its nuisances; `noise_m`: the sensor's noise [m], rms over the residuals. `base`: the
+    baseline's parameters that it can tell; `regime` as in the format.
+    """
 
     regime: str
+    base: tuple[str, ...]
     clusters: int
+    freedom: np.ndarray
+    noise_m: float
 
     def residuals(self, values: Mapping[str, float], free: Sequence[str], clusters: np.ndarray) -> Residuals:
         """Residuals of the pieces in `clusters` (indices) under the law whose parameters are `values`, by the names of
-        `puckpilot_env.parameters`; the Jacobian is by the parameters `free`."""
+        `puckpilot_env.parameters`; the Jacobian is by the parameters `free`. Names missing in `values` are at default.
+        """
         ...
 
+    def columns(self, values: Mapping[str, float]) -> Columns:
+        """The columns of all clusters at a law: the base's, the listed effects' and the families'."""
+        ...
 
-@dataclass(frozen=True)
-class Candidate:
-    """A mechanism that a problem may lack: the parameters that it frees, and where to start the fit of each."""
-
-    mechanism: str
-    free: tuple[str, ...]
-    starts: tuple[Mapping[str, float], ...] = ({},)
+    def rows(self, law: Law) -> tuple[str, ...]:
+        """The parameters that a nonlinear fit of a listed law frees."""
+        ...

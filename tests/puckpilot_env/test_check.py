@@ -103,9 +103,10 @@ def without(field):
     """`turn_table` forgetting a field: still its own inverse, but another game."""
 
     def turn(tables, frames, length, width, right=mirror.turn_table):
-        kept = tables[field].copy()
+        home = tables["puck"] if field == "turned" else tables
+        kept = home[field].copy()
         right(tables, frames, length, width)
-        tables[field] = kept
+        home[field] = kept
 
     return turn
 
@@ -113,7 +114,7 @@ def without(field):
 def sets_turned(tables, frames, length, width, right=mirror.turn_table):
     """`turn_table` that sets where it should change: right the first time only."""
     right(tables, frames, length, width)
-    tables["turned"] = 1
+    tables["puck"]["turned"] = 1
 
 
 @pytest.mark.parametrize(

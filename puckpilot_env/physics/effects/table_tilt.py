@@ -21,6 +21,12 @@ EFFECT = Effect(
 
 
 @kernel
+def is_on(p):
+    """Whether the table is tilted."""
+    return p.tilt_x != 0.0 or p.tilt_y != 0.0
+
+
+@kernel
 def acceleration(p, t, x, y, vx, vy, spin):
-    """Acceleration (ax, ay) [m/s^2] of a puck at the time `t` of the episode."""
+    """The same everywhere and always."""
     return p.tilt_x, p.tilt_y

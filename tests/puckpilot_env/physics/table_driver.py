@@ -104,7 +104,7 @@ def play(puck, p, mallets, start, end, out, log):
     for i in range(1, pieces + 1):
         until = end if i == pieces else start + (end - start) * i / pieces
         while True:
-            kind, now, count = advance(puck, p, mallets, now, until, log[events:], no_film)
+            kind, now, count = advance(puck, p, mallets, 0.0, now, until, log[events:], no_film)
             events = min(events + count, log.shape[0])
             if kind != bounce.MIDDLE_LINE:
                 break

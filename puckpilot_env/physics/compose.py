@@ -1,0 +1,111 @@
+"""The hooks of all effects as one kernel each, in the order of the effects' names.
+
+An effect's file has the hooks of its regime, every one a kernel; those that it does not have change nothing.
+
+| regime | hook | returns |
+| --- | --- | --- |
+| glide | `is_on(p)` | whether the record `p` has this effect at all; every effect of the regime has it |
+| glide | `acceleration(p, t, x, y, vx, vy, spin)` | (ax, ay) [m/s^2], which is added to that of the others |
+| glide | `friction(p, t, x, y, dx, dy, friction)` | friction [m/s^2] from that so far: its mean over the way (dx, dy) |
+| wall, corner | `restitution(p, kind, closing, e)` | restitution from that so far; `kind` as in `bounce` |
+| wall | `tangent(p, closing, e, along, spin, after)` | (tangential speed, spin) after it, from the speed so far |
+| mallet | `mallet_restitution(p, closing, e)` | restitution from that so far |
+| mallet | `mallet_impulse(p, impulse)` | normal impulse [m/s] from that so far |
+| mallet | `mallet_tangent(p, impulse, along, spin, after)` | (tangential speed, spin), relative to the mallet |
+
+`t` [s] is the time of the episode, (x, y) [m] a place, spin [rad/s] counter-clockwise, `closing` [m/s] > 0 the normal
+speed before; the tangent is the normal turned counter-clockwise. Impulses are per unit mass of the puck.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import reduce
+from typing import Any
+
+from puckpilot_env.kernel import inner
+from puckpilot_env.physics.effects import MODULES
+
+Hook = Callable[..., Any]
+
+
+def _hooks(name: str) -> list[Hook]:
+    return [getattr(module, name) for module in MODULES.values() if hasattr(module, name)]
+
+
+def _either(first: Hook, second: Hook) -> Hook:
+    @inner
+    def either(p):
+        return first(p) or second(p)
+
+    return either
+
+
+def _sum(first: Hook, second: Hook) -> Hook:
+    @inner
+    def both(p, t, x, y, vx, vy, spin):
+        ax, ay = first(p, t, x, y, vx, vy, spin)
+        bx, by = second(p, t, x, y, vx, vy, spin)
+        return ax + bx, ay + by
+
+    return both
+
+
+def _friction(first: Hook, second: Hook) -> Hook:
+    @inner
+    def both(p, t, x, y, dx, dy, friction):
+        return second(p, t, x, y, dx, dy, first(p, t, x, y, dx, dy, friction))
+
+    return both
+
+
+def _restitution(first: Hook, second: Hook) -> Hook:
+    @inner
+    def both(p, kind, closing, e):
+        return second(p, kind, closing, first(p, kind, closing, e))
+
+    return both
+
+
+def _tangent(first: Hook, second: Hook) -> Hook:
+    @inner
+    def both(p, closing, e, along, spin, after):
+        after, turned = first(p, closing, e, along, spin, after)
+        return second(p, closing, e, along, turned, after)
+
+    return both
+
+
+def _mallet_restitution(first: Hook, second: Hook) -> Hook:
+    @inner
+    def both(p, closing, e):
+        return second(p, closing, first(p, closing, e))
+
+    return both
+
+
+def _mallet_impulse(first: Hook, second: Hook) -> Hook:
+    @inner
+    def both(p, impulse):
+        return second(p, first(p, impulse))
+
+    return both
+
+
+def _mallet_tangent(first: Hook, second: Hook) -> Hook:
+    @inner
+    def both(p, impulse, along, spin, after):
+        after, turned = first(p, impulse, along, spin, after)
+        return second(p, impulse, along, turned, after)
+
+    return both
+
+
+is_forced = reduce(_either, _hooks("is_on"))
+acceleration = reduce(_sum, _hooks("acceleration"))
+friction = reduce(_friction, _hooks("friction"))
+restitution = reduce(_restitution, _hooks("restitution"))
+tangent = reduce(_tangent, _hooks("tangent"))
+mallet_restitution = reduce(_mallet_restitution, _hooks("mallet_restitution"))
+mallet_impulse = reduce(_mallet_impulse, _hooks("mallet_impulse"))
+mallet_tangent = reduce(_mallet_tangent, _hooks("mallet_tangent"))

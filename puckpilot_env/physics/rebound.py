@@ -1,0 +1,54 @@
+"""What a wall, a post or a mallet does to the puck's velocity and spin: the baseline's law, and the effects on it.
+
+Where no effect changes anything, the result is the baseline's to the last digit.
+"""
+
+from __future__ import annotations
+
+from puckpilot_env.kernel import kernel
+from puckpilot_env.physics import bounce, compose, contact
+
+
+@kernel
+def wall_restitution(p, kind, closing, turned):
+    """Restitution of a wall or post (`kind` as in `bounce`) at a normal speed `closing` [m/s]; from 0 to 1."""
+    if turned != 0:
+        kind = bounce.opposite(kind)
+    return min(max(compose.restitution(p, kind, closing, p.wall_restitution), 0.0), 1.0)
+
+
+@kernel
+def rebound(puck, p, kind, nx, ny):
+    """Let a puck bounce off a wall or post (`kind` as in `bounce`), of unit normal `n` towards the puck, in place."""
+    closing = -(puck.vx * nx + puck.vy * ny)
+    if closing <= bounce.SLIDING:
+        puck.vx, puck.vy = bounce.reflect(puck.vx, puck.vy, nx, ny, p.wall_restitution)
+        return
+    e = wall_restitution(p, kind, closing, puck.turned)
+    along = puck.vy * nx - puck.vx * ny
+    kept = e * along
+    after, puck.spin = compose.tangent(p, closing, e, along, puck.spin, kept)
+    puck.vx, puck.vy = bounce.reflect(puck.vx, puck.vy, nx, ny, e)
+    if after != kept:
+        puck.vx, puck.vy = puck.vx - (after - kept) * ny, puck.vy + (after - kept) * nx
+
+
+@kernel
+def strike(puck, p, mx, my, nx, ny):
+    """Let a puck bounce off a mallet of velocity `m` [m/s], of unit normal `n` towards the puck, in place.
+
+    The mallet keeps to its path: its drive makes up for what the puck gives it.
+    """
+    vx, vy = puck.vx - mx, puck.vy - my
+    closing = -(vx * nx + vy * ny)
+    if closing <= 0.0:
+        return
+    e = min(max(compose.mallet_restitution(p, closing, p.mallet_restitution), 0.0), 1.0)
+    plain = (1.0 + e) * closing
+    impulse = compose.mallet_impulse(p, plain)
+    along = vy * nx - vx * ny
+    after, puck.spin = compose.mallet_tangent(p, impulse, along, puck.spin, along)
+    puck.vx, puck.vy = contact.reflect(puck.vx, puck.vy, mx, my, nx, ny, e)
+    if impulse != plain or after != along:
+        gain, rub = impulse - plain, after - along
+        puck.vx, puck.vy = puck.vx + gain * nx - rub * ny, puck.vy + gain * ny + rub * nx

@@ -1,0 +1,60 @@
+"""Where a table and the simulator part, which physics is missing, and proof on untouched data that adding it helps.
+
+Give one or more recordings (folders in the format puckpilot-recording/1) of one table. Writes diagnosis.json, report.html
+and effects.toml into --out; with `puckpilot match A B --effects OUT/effects.toml` players meet on the mended simulator.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The arguments of the command."""
+    parser.add_argument("recordings", nargs="+", type=Path, metavar="RECORDING", help="folder of a recording")
+    parser.add_argument(
+        "--holdout", nargs="+", type=Path, default=[], metavar="RECORDING",
+        help="recordings of the same table that serve the proof alone; else whole launches are kept apart",
+    )  # fmt: skip
+    parser.add_argument("--baseline", type=Path, metavar="FILE", help="TOML file of the simulator's parameters")
+    parser.add_argument("--out", type=Path, default=Path("out/diagnosis"), metavar="DIR", help="folder (out/diagnosis)")
+    parser.add_argument("--json", action="store_true", help="print diagnosis.json instead of the summary")
+
+
+def run(args: argparse.Namespace) -> int:
+    """0: diagnosed, whatever the verdict. Raises RecordingError, ValueError or OSError, in one line, where it cannot."""
+    from sim2real.diagnose.diagnosis import diagnose
+    from sim2real.diagnose.files import as_dict, write
+    from sim2real.nominal import read_baseline
+    from sim2real.recording import read_recording
+
+    if args.out.exists() and not args.out.is_dir():
+        raise ValueError(f"cannot write to {str(args.out)!r}: it is a file; give a folder")
+    shipped = read_baseline(args.baseline) if args.baseline else {}
+    with _bar() as bar:
+        task = bar.add_task("reading", total=1.0)
+        recordings, heldout = ([read_recording(path) for path in paths] for paths in (args.recordings, args.holdout))
+
+        def progress(stage: str, share: float) -> None:
+            bar.update(task, description=stage, completed=share)
+
+        diagnosis = diagnose(recordings, heldout, shipped, progress)
+        progress("writing", 0.95)
+        written = write(diagnosis, args.out)
+    if args.json:
+        print(json.dumps(as_dict(diagnosis), indent=1, allow_nan=False))
+    else:
+        from sim2real.diagnose.summary import summary
+
+        print("\n".join(summary(diagnosis, written)))
+    return 0
+
+
+def _bar():
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = (TextColumn("{task.description:10}"), BarColumn(), TimeElapsedColumn())
+    return Progress(*columns, console=Console(stderr=True), transient=True)

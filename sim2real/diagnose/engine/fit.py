@@ -1,0 +1,85 @@
+"""Fits of a law to a problem: Gauss-Newton with bounds, and intervals that hold where launches scatter."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import t as student
+
+from puckpilot_env.parameters import BY_NAME
+from sim2real.diagnose.engine import gram
+from sim2real.diagnose.finding import Estimate
+from sim2real.diagnose.problem import Problem
+
+ROUNDS = 25
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A fitted law: all its `values` by name, the `free` ones' covariance (k, k), and what it leaves.
+
+    `loss`: sum of squares in units of the sensor's noise; `count`: residuals; `bound`: parameters that ended at a
+    bound of their range.
+    """
+
+    values: Mapping[str, float]
+    free: tuple[str, ...]
+    covariance: np.ndarray
+    loss: float
+    count: int
+    clusters: int
+    bound: tuple[str, ...]
+
+    def estimate(self, name: str) -> Estimate:
+        """A free parameter with its 95 % interval."""
+        k = self.free.index(name)
+        half = float(np.sqrt(self.covariance[k, k]) * student.ppf(0.975, max(self.clusters - 1, 2)))
+        value = float(self.values[name])
+        return Estimate(value, value - half, value + half, BY_NAME[name].unit)
+
+
+def fit(problem: Problem, values: Mapping[str, float], free: Sequence[str], clusters: np.ndarray) -> Fit:
+    """Fit the parameters `free` to the residuals of `clusters`, starting from `values`; the others stay."""
+    free = tuple(free)
+    now = dict(values)
+    low = np.array([BY_NAME[name].low for name in free])
+    high = np.array([BY_NAME[name].high for name in free])
+    at = np.clip([now.get(name, BY_NAME[name].default) for name in free], low, high)
+    columns, everything = np.arange(len(free)), np.arange(problem.clusters)
+    loss, damping, grams = np.inf, 1e-6, None
+    best = at
+    for _ in range(ROUNDS):
+        now.update(zip(free, map(float, at), strict=True))
+        found = problem.residuals(now, free, clusters)
+        fresh = float(found.r @ found.r)
+        if fresh <= loss * (1.0 + 1e-12):
+            grams = gram.make_grams(free, found.r, found.jacobian, found.cluster, problem.clusters)
+            gained, loss, best, damping = loss - fresh, fresh, at, damping * 0.1
+            if gained < 1e-3:
+                break
+        else:
+            damping = max(damping, 1e-8) * 30.0
+        assert grams is not None
+        step = _step(grams, damping, best, low, high, clusters)
+        at = np.clip(best + step, low, high)
+        if damping > 1e6 or not len(free):
+            break
+    now.update(zip(free, map(float, best), strict=True))
+    assert grams is not None
+    spread = gram.covariance(grams, columns, np.zeros(len(free)), everything[clusters])
+    bound = tuple(n for n, a, lo, hi in zip(free, best, low, high, strict=True) if a <= lo or a >= hi)
+    return Fit(now, free, spread, loss, int(grams.count.sum()), len(clusters), bound)
+
+
+def _step(grams, damping: float, at, low, high, clusters) -> np.ndarray:
+    """Levenberg-Marquardt step of the parameters that are not held by a bound."""
+    g, b = grams.g[clusters].sum(axis=0), grams.b[clusters].sum(axis=0)
+    held = ((at <= low) & (b > 0.0)) | ((at >= high) & (b < 0.0))
+    step = np.zeros(len(at))
+    go = ~held
+    if go.any():
+        inner = g[np.ix_(go, go)]
+        step[go] = gram.solve_normal(inner + damping * np.diag(np.diag(inner)), -b[go])
+    return step

@@ -1,0 +1,95 @@
+"""Residuals and their derivatives, summed up a launch: any set of columns can then be fitted to any launches at once.
+
+Residuals are `r + J theta` in units of the sensor's noise. With `G = J'J`, `b = J'r` and `s = r'r` for each launch,
+fits, held-out losses and resampling of launches are sums of small matrices, whatever the recording's length.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+TINY = 1e-10
+
+
+@dataclass(frozen=True)
+class Grams:
+    """Sums over each of `c` clusters: `g` (c, k, k), `b` (c, k), `s` (c,), and the `count` (c,) of residuals."""
+
+    names: tuple[str, ...]
+    g: np.ndarray
+    b: np.ndarray
+    s: np.ndarray
+    count: np.ndarray
+
+    @property
+    def clusters(self) -> int:
+        return len(self.s)
+
+    def columns(self, names: Sequence[str]) -> np.ndarray:
+        """Indices of the columns with these names."""
+        place = {name: k for k, name in enumerate(self.names)}
+        return np.array([place[name] for name in names], int)
+
+
+def make_grams(names: Sequence[str], r: np.ndarray, jacobian: np.ndarray, cluster: np.ndarray, clusters: int) -> Grams:
+    """Sum residuals `r` (n,) and `jacobian` (n, k) by `cluster` (n,), in order of clusters or not."""
+    k = jacobian.shape[1]
+    g, b = np.zeros((clusters, k, k)), np.zeros((clusters, k))
+    s, count = np.zeros(clusters), np.zeros(clusters)
+    order = np.argsort(cluster, kind="stable")
+    edges = np.searchsorted(cluster[order], np.arange(clusters + 1))
+    for c in range(clusters):
+        rows = order[edges[c] : edges[c + 1]]
+        j, rest = jacobian[rows], r[rows]
+        g[c], b[c] = j.T @ j, j.T @ rest
+        s[c], count[c] = rest @ rest, len(rows)
+    return Grams(tuple(names), g, b, s, count)
+
+
+def solve(grams: Grams, columns: np.ndarray, clusters: np.ndarray, ridge: np.ndarray | float = 0.0) -> np.ndarray:
+    """Least squares theta (k,) of `columns` on `clusters`, with penalties `ridge` (k,); columns that are nought stay 0."""
+    g = grams.g[np.ix_(clusters, columns, columns)].sum(axis=0)
+    b = grams.b[np.ix_(clusters, columns)].sum(axis=0)
+    return solve_normal(g + np.diag(np.broadcast_to(ridge, len(columns)).astype(float)), -b)
+
+
+def solve_normal(g: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Solve g theta = b for a symmetric g >= 0, scaled to unit diagonal; directions without data get 0."""
+    scale = np.sqrt(np.maximum(np.diag(g), 0.0))
+    good = scale > 0.0
+    theta = np.zeros(len(b))
+    if not good.any():
+        return theta
+    unit = scale[good]
+    value, vector = np.linalg.eigh(g[np.ix_(good, good)] / unit[:, None] / unit)
+    keep = value > TINY * value[-1]
+    theta[good] = (vector[:, keep] @ ((vector[:, keep].T @ (b[good] / unit)) / value[keep])) / unit
+    return theta
+
+
+def losses(grams: Grams, columns: np.ndarray, theta: np.ndarray, clusters: np.ndarray) -> np.ndarray:
+    """Sum of squares (clusters,) that `theta` leaves of each cluster."""
+    g = grams.g[np.ix_(clusters, columns, columns)]
+    b = grams.b[np.ix_(clusters, columns)]
+    return grams.s[clusters] + 2.0 * b @ theta + np.einsum("i,cij,j->c", theta, g, theta)
+
+
+def covariance(grams: Grams, columns: np.ndarray, theta: np.ndarray, clusters: np.ndarray) -> np.ndarray:
+    """Covariance (k, k) of a least-squares theta: from the sensor's noise, or from the scatter between clusters.
+
+    The larger of the two on each diagonal; the sandwich is corrected for few clusters (CR1).
+    """
+    g = grams.g[np.ix_(clusters, columns, columns)]
+    inverse = np.linalg.pinv(g.sum(axis=0), hermitian=True)
+    count, c = grams.count[clusters].sum(), len(clusters)
+    rest = max(losses(grams, columns, theta, clusters).sum() / max(count - len(columns), 1.0), 1.0)
+    model = inverse * rest
+    if c <= len(columns) + 2:
+        return model
+    scores = grams.b[np.ix_(clusters, columns)] + np.einsum("cij,j->ci", g, theta)
+    sandwich = inverse @ (scores.T @ scores) @ inverse * c / (c - 1.0)
+    more = np.sqrt(np.maximum(np.diag(sandwich) / np.maximum(np.diag(model), 1e-300), 1.0))
+    return model * np.outer(more, more)

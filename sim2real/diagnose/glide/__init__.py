@@ -1,0 +1,1 @@
+"""Free glides: what brakes and pushes the puck between two contacts."""

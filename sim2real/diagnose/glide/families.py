@@ -1,0 +1,98 @@
+"""Smooth forces of any shape on a gliding puck, by what they depend on: what no listed effect says, one of these may.
+
+Each family is a set of accelerations (n, 2, k) [m/s^2] along paths (n, 4), to be weighted by coefficients of order 1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+UNIT = 0.1  # m/s^2, what a coefficient of 1 stands for
+WAVES_X, WAVES_Y = 6, 4  # of cosines over the table
+HARMONICS = 4  # of the heading
+SPEED_KNOTS, TIME_KNOTS, HISTORY_KNOTS = 8, 10, 6
+LONGEST_MEMORY = 2.0  # s after a contact
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Glides as the families see them: `t` (n,) [s], `place`, `velocity` (n, 2), `since` (n,) [s] after the last
+    contact (nan where none), and the table's `size` (2,) [m]."""
+
+    t: np.ndarray
+    place: np.ndarray
+    velocity: np.ndarray
+    since: np.ndarray
+    size: np.ndarray
+
+    @property
+    def along(self) -> np.ndarray:
+        """Unit vectors (n, 2) of the motion."""
+        return self.velocity / np.maximum(np.linalg.norm(self.velocity, axis=1, keepdims=True), 1e-9)
+
+    @property
+    def across(self) -> np.ndarray:
+        """Unit vectors (n, 2) to the left of the motion."""
+        return np.stack([-self.along[:, 1], self.along[:, 0]], axis=1)
+
+
+def cosines(motion: Motion) -> np.ndarray:
+    """Smooth functions (n, WAVES_X WAVES_Y) of the place on the table."""
+    u, w = (motion.place / motion.size).T
+    x = np.stack([np.cos(np.pi * i * u) for i in range(WAVES_X)])
+    y = np.stack([np.cos(np.pi * j * w) for j in range(WAVES_Y)])
+    return (x[:, None] * y[None]).reshape(-1, len(u)).T
+
+
+def hats(x: np.ndarray, knots: np.ndarray) -> np.ndarray:
+    """Piecewise linear functions (n, knots) that are 1 at a knot and 0 at the others; constant beyond the ends."""
+    return np.stack([np.interp(x, knots, row) for row in np.eye(len(knots))], axis=1)
+
+
+def harmonics(motion: Motion) -> np.ndarray:
+    """Sines and cosines (n, 2 HARMONICS) of multiples of the heading."""
+    angle = np.arctan2(motion.velocity[:, 1], motion.velocity[:, 0])
+    return np.stack([f(k * angle) for k in range(1, HARMONICS + 1) for f in (np.cos, np.sin)], axis=1)
+
+
+def _times(weights: np.ndarray, *vectors: np.ndarray) -> np.ndarray:
+    """Accelerations (n, 2, …): every weight (n, k) along every vector (n, 2)."""
+    return UNIT * np.concatenate([weights[:, None, :] * vector[:, :, None] for vector in vectors], axis=2)
+
+
+def _axes(motion: Motion) -> tuple[np.ndarray, np.ndarray]:
+    n = len(motion.t)
+    return np.tile([1.0, 0.0], (n, 1)), np.tile([0.0, 1.0], (n, 1))
+
+
+def _speeds(motion: Motion) -> np.ndarray:
+    speed = np.linalg.norm(motion.velocity, axis=1)
+    knots = np.unique(np.quantile(speed, np.linspace(0.0, 1.0, SPEED_KNOTS)))
+    return hats(speed, knots)
+
+
+def _moments(motion: Motion) -> np.ndarray:
+    return hats(motion.t, np.linspace(motion.t.min(), motion.t.max(), TIME_KNOTS))
+
+
+def _memory(motion: Motion) -> np.ndarray:
+    since = np.where(np.isfinite(motion.since), motion.since, np.inf)
+    knots = LONGEST_MEMORY * np.linspace(0.0, 1.0, HISTORY_KNOTS) ** 2
+    return hats(np.minimum(since, LONGEST_MEMORY), knots)[:, :-1]
+
+
+Family = Callable[[Motion], np.ndarray]
+FAMILIES: dict[str, tuple[str, Family]] = {
+    "push by position": ("position", lambda m: _times(cosines(m), *_axes(m))),
+    "brake by position": ("position", lambda m: _times(cosines(m), -m.along)),
+    "brake by speed": ("speed", lambda m: _times(_speeds(m), -m.along)),
+    "side force by speed": ("speed", lambda m: _times(_speeds(m), m.across)),
+    "force by heading": ("heading", lambda m: _times(harmonics(m), -m.along, m.across)),
+    "push by time": ("time", lambda m: _times(_moments(m), *_axes(m))),
+    "brake by time": ("time", lambda m: _times(_moments(m), -m.along)),
+    "brake after a contact": ("history", lambda m: _times(_memory(m), -m.along)),
+    "side force after a contact": ("history", lambda m: _times(_memory(m), m.across)),
+}

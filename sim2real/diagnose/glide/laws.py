@@ -1,0 +1,103 @@
+"""All that a glide may lack, as columns of its residuals: the listed effects, and smooth forces of any shape."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from puckpilot_env.physics.effects import EFFECTS
+from sim2real.diagnose.engine import gram
+from sim2real.diagnose.engine.choose import Law
+from sim2real.diagnose.glide.families import FAMILIES, UNIT, Motion
+from sim2real.diagnose.glide.trace import bend
+from sim2real.diagnose.problem import Columns
+
+if TYPE_CHECKING:
+    from sim2real.diagnose.glide.problem import GlideProblem
+
+PATCH_RADII = (0.05, 0.1, 0.15, 0.2, 0.3)  # m, at which a patch is looked for
+PATCHES_KEPT = 3
+CHUNK = 120
+SPINNING = "spin_side_force"
+
+
+def listed_laws() -> list[Law]:
+    """The listed effects of the glide whose columns are derivatives at the baseline."""
+    found = []
+    for name, effect in EFFECTS.items():
+        if effect.regime != "glide" or name == "friction_patch":
+            continue
+        rows = tuple(row.name for row in effect.rows.values() if row.name != SPINNING)
+        found.append(Law(name, rows))
+    return found
+
+
+def glide_columns(problem: GlideProblem, values: Mapping[str, float]) -> Columns:
+    """Every column of a glide problem at one law."""
+    path, by_start = problem.linearised(values)
+    motion = problem.motion(path)
+
+    def columns(force: np.ndarray) -> np.ndarray:
+        moved = np.empty_like(force)
+        data = problem.data
+        bend(data.first, data.t, path, values["friction"], values["drag"], np.ascontiguousarray(force), moved)
+        return problem.profiled(path, by_start, moved)[1]
+
+    listed = listed_laws()
+    free = (*problem.base, *(name for law in listed for name in law.columns))
+    exact = problem.residuals(values, free, np.arange(problem.clusters))
+    patches, patch_columns = _patches(motion, columns, exact.r, exact.jacobian[:, : len(problem.base)])
+    blocks, names, families = [exact.jacobian, patch_columns], [*free, *(law.columns[0] for law in patches)], []
+    for name, (depends, shape) in FAMILIES.items():
+        block = columns(shape(motion))
+        families.append(Law(name, tuple(f"{name} {k}" for k in range(block.shape[1])), depends))
+        names += families[-1].columns
+        blocks.append(block)
+    jacobian = np.concatenate(blocks, axis=1)
+    grams = gram.make_grams(names, exact.r, jacobian, exact.cluster, problem.clusters)
+    return Columns(grams, [*listed, *patches], families)
+
+
+def _patches(motion: Motion, columns, r: np.ndarray, base: np.ndarray) -> tuple[list[Law], np.ndarray]:
+    """The discs of other friction that explain most of the residuals, one at a time; with their columns."""
+    grid = _discs(motion.size)
+    frame = np.linalg.qr(base)[0]
+    rest = r - frame @ (frame.T @ r)
+    score, kept = np.zeros(len(grid)), {}
+    for first in range(0, len(grid), CHUNK):
+        some = grid[first : first + CHUNK]
+        block = columns(_inside(motion, some))
+        alone = block - frame @ (frame.T @ block)
+        size = np.einsum("ik,ik->k", alone, alone)
+        gain = np.where(size > 1e-9, (alone.T @ rest) ** 2 / np.maximum(size, 1e-9), 0.0)
+        score[first : first + len(some)] = gain
+        for k in np.argsort(-gain)[:PATCHES_KEPT]:
+            kept[first + int(k)] = block[:, k] / UNIT
+    best = sorted(kept, key=lambda k: -score[k])[:PATCHES_KEPT]
+    laws = [_patch(f"patch_extra@{k}", grid[k]) for k in best]
+    return laws, np.stack([kept[k] for k in best], axis=1)
+
+
+def _patch(column: str, disc: Sequence[float]) -> Law:
+    start = dict(zip(("patch_x", "patch_y", "patch_radius"), map(float, disc), strict=True))
+    return Law("friction_patch", (column,), start=start)
+
+
+def _discs(size: np.ndarray) -> np.ndarray:
+    """Middles and radii (k, 3) [m] of discs that cover the table, nearer to each other where they are small."""
+    found = []
+    for radius in PATCH_RADII:
+        step = max(0.7 * radius, 0.06)
+        x = np.linspace(0.0, size[0], max(int(size[0] / step), 2) + 1)
+        y = np.linspace(0.0, size[1], max(int(size[1] / step), 2) + 1)
+        found.append(np.array([(a, b, radius) for a in x for b in y]))
+    return np.concatenate(found)
+
+
+def _inside(motion: Motion, discs: np.ndarray) -> np.ndarray:
+    """Accelerations (n, 2, k) of a brake of UNIT inside each disc."""
+    away = motion.place[:, None, :] - discs[None, :, :2]
+    inside = (away**2).sum(axis=2) < discs[:, 2] ** 2
+    return -UNIT * motion.along[:, :, None] * inside[:, None, :]

@@ -1,0 +1,167 @@
+"""The glides as a problem for the engine: residuals under a law, with each glide's start fitted away."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from puckpilot_env.parameters import BY_NAME, make_records
+from puckpilot_env.physics.advance import PUCK
+from puckpilot_env.physics.effects import EFFECTS
+from sim2real.diagnose.glide.data import GlideData
+from sim2real.diagnose.engine.choose import Law
+from sim2real.diagnose.glide.families import Motion
+from sim2real.diagnose.glide.laws import glide_columns
+from sim2real.diagnose.glide.trace import trace
+from sim2real.diagnose.problem import Columns, Residuals
+
+ROUNDS = 3
+STEP = np.array([1e-6, 1e-6, 1e-5, 1e-5])  # of a start: m, m/s
+
+
+class GlideProblem:
+    """Free glides. `values` passed to its methods are parameters of the simulator by name; the rest have defaults."""
+
+    regime = "glide"
+    base = ("friction", "drag")
+
+    def __init__(self, data: GlideData, values: Mapping[str, float]) -> None:
+        """`values`: sizes of the table, and what else every law has in common."""
+        self.data = data
+        self.clusters = data.clusters
+        self._common = dict(values)
+        self._starts = _first_guess(data)
+        self._pucks = np.zeros(1, PUCK)
+        frames = np.bincount(data.cluster, np.diff(data.first), data.clusters)
+        self.freedom = 2.0 * frames - 4.0 * np.bincount(data.cluster, minlength=data.clusters)
+        self.noise_m = float(np.sqrt(np.mean(data.std**2)))
+
+    def columns(self, values: Mapping[str, float]) -> Columns:
+        """See `Problem.columns`."""
+        return glide_columns(self, values)
+
+    def rows(self, law: Law) -> tuple[str, ...]:
+        """See `Problem.rows`."""
+        if law.start:
+            return tuple(row.name for row in EFFECTS[law.name].rows.values())
+        return law.columns
+
+    def motion(self, path: np.ndarray) -> Motion:
+        """A path (n, 4) as the families of smooth forces see it."""
+        since = self.data.t - self.data.of_frame(self.data.since)
+        size = np.array([self._common["length"], self._common["width"]])
+        return Motion(self.data.t, path[:, :2], path[:, 2:], since, size)
+
+    def residuals(self, values: Mapping[str, float], free: Sequence[str], clusters: np.ndarray) -> Residuals:
+        """See `Problem.residuals`."""
+        data = self.data
+        record = self._record(values)
+        path, by_start = self._fit_starts(record)
+        columns = np.empty((len(data.t), 2, len(free)))
+        other = np.empty_like(path)
+        for k, name in enumerate(free):
+            step = 1e-5 * max(BY_NAME[name].high - BY_NAME[name].low, 1e-3)
+            now = values.get(name, BY_NAME[name].default)
+            self._trace(self._record({**values, name: now + step}), self._starts, other)
+            columns[:, :, k] = (other[:, :2] - path[:, :2]) / step
+        r, jacobian = self.profiled(path, by_start, columns)
+        cluster = np.repeat(data.of_frame(data.cluster), 2)
+        here = np.isin(cluster, clusters)
+        return Residuals(r[here], jacobian[here], cluster[here])
+
+    def profiled(self, path, by_start, columns) -> tuple[np.ndarray, np.ndarray]:
+        """Residuals (2n,) and columns (2n, k) in units of the noise, less what each glide's start can explain.
+
+        `columns` (n, 2, k): how the predicted place moves with each parameter [m]; the result is d residual.
+        """
+        data = self.data
+        r = ((data.place - path[:, :2]) / data.std).reshape(-1)
+        jacobian = -(columns / data.std[:, :, None]).reshape(len(r), -1)
+        starts = (by_start / data.std[:, :, None]).reshape(len(r), 4)
+        for a, b in zip(2 * data.first[:-1], 2 * data.first[1:], strict=True):
+            q = np.linalg.qr(starts[a:b])[0]
+            r[a:b] -= q @ (q.T @ r[a:b])
+            jacobian[a:b] -= q @ (q.T @ jacobian[a:b])
+        return r, jacobian
+
+    def linearised(self, values: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
+        """The path (n, 4) under a law with the starts fitted, and its derivatives (n, 2, 4) by the starts."""
+        return self._fit_starts(self._record(values))
+
+    def states(self, values: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Each glide's motion at its first and last frame under a law: starts, ends (g, 6): place, velocity and
+        acceleration; and the covariance (g, 2, 4, 4) of place and velocity at both."""
+        data, record = self.data, self._record(values)
+        path, by_start = self._fit_starts(record)
+        velocity_by_start = np.empty_like(by_start)
+        other = np.empty_like(path)
+        for k in range(4):
+            moved = self._starts.copy()
+            moved[:, k] += STEP[k]
+            self._trace(record, moved, other)
+            velocity_by_start[:, :, k] = (other[:, 2:] - path[:, 2:]) / STEP[k]
+        whole = np.concatenate([by_start, velocity_by_start], axis=1)
+        first, last = data.first[:-1], data.first[1:] - 1
+        inverse = np.linalg.inv(_normal(data, by_start))
+        spread = np.stack([whole[at] @ inverse @ whole[at].transpose(0, 2, 1) for at in (first, last)], axis=1)
+        ends = [
+            np.concatenate([path[at], _slope(data.t, path[:, 2:], at, step)], axis=1)
+            for at, step in ((first, 1), (last, -1))
+        ]
+        return ends[0], ends[1], spread
+
+    def _record(self, values: Mapping[str, float]) -> np.void:
+        records = make_records(1)
+        for name, value in {**self._common, **values}.items():
+            records[name] = value
+        return records[0]
+
+    def _trace(self, record: np.void, starts: np.ndarray, path: np.ndarray) -> None:
+        trace(record, self.data.first, self.data.t, starts, self._pucks, path)
+
+    def _fit_starts(self, record) -> tuple[np.ndarray, np.ndarray]:
+        data = self.data
+        path, other = np.empty((len(data.t), 4)), np.empty((len(data.t), 4))
+        by_start = np.empty((len(data.t), 2, 4))
+        for _ in range(ROUNDS):
+            self._trace(record, self._starts, path)
+            for k in range(4):
+                moved = self._starts.copy()
+                moved[:, k] += STEP[k]
+                self._trace(record, moved, other)
+                by_start[:, :, k] = (other[:, :2] - path[:, :2]) / STEP[k]
+            change = _steps(data, path, by_start)
+            self._starts[:, :4] += change
+            if np.all(np.abs(change) < 10 * STEP):
+                break
+        self._trace(record, self._starts, path)
+        return path, by_start
+
+
+def _first_guess(data: GlideData) -> np.ndarray:
+    starts = np.zeros((data.glides, 5))
+    for g, (a, b) in enumerate(zip(data.first[:-1], data.first[1:], strict=True)):
+        u = data.t[a:b] - data.t[a]
+        fit = np.polyfit(u, data.place[a:b], 2)
+        starts[g, :2], starts[g, 2:4] = fit[2], fit[1]
+    return starts
+
+
+def _steps(data: GlideData, path: np.ndarray, by_start: np.ndarray) -> np.ndarray:
+    """Gauss-Newton steps (g, 4) of the starts towards the data."""
+    r = (data.place - path[:, :2]) / data.std
+    right = np.add.reduceat(np.einsum("nai,na->ni", by_start / data.std[:, :, None], r), data.first[:-1], axis=0)
+    return np.linalg.solve(_normal(data, by_start), right[..., None])[..., 0]
+
+
+def _normal(data: GlideData, by_start: np.ndarray) -> np.ndarray:
+    """Normal matrices (g, 4, 4) of the starts; a touch is added to what no frame tells."""
+    j = by_start / data.std[:, :, None]
+    normal = np.add.reduceat(np.einsum("nai,naj->nij", j, j), data.first[:-1], axis=0)
+    return normal + 1e-9 * np.eye(4) * np.trace(normal, axis1=1, axis2=2)[:, None, None]
+
+
+def _slope(t: np.ndarray, velocity: np.ndarray, at: np.ndarray, step: int) -> np.ndarray:
+    """Acceleration (k, 2) [m/s^2] at the frames `at`, from the frame `step` beside them."""
+    return (velocity[at + step] - velocity[at]) / (t[at + step] - t[at])[:, None]

@@ -1,0 +1,105 @@
+"""Hits with the motion before and after them, told by the whole glides on both sides under the fitted law."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim2real.diagnose.glide.problem import GlideProblem
+from sim2real.diagnose.hits import Hit
+from sim2real.diagnose.pieces import Pieces
+
+FARTHEST = 0.12  # s from a glide's last frame to the hit
+CORNER_APART = 0.02  # s; hits nearer to each other have no glide between them
+
+
+@dataclass(frozen=True)
+class Side:
+    """Motion at the time of a hit: place (2,) [m], velocity (2,) [m/s], and the covariance (4, 4) of both."""
+
+    place: np.ndarray
+    velocity: np.ndarray
+    covariance: np.ndarray
+
+
+@dataclass(frozen=True)
+class Impact:
+    """A hit between two glides. `cluster`: its launch; `before`, `after`: the motion on both sides at its time.
+
+    `chain`: impacts of one number follow each other without a gap; `lost`: an earlier contact of the launch is not among
+    its chain, so that the puck's spin is unknown. `since` [s]: time since the contact before, nan where that is unknown.
+    `glide`: index of the glide that follows, in the problem.
+    """
+
+    hit: Hit
+    cluster: int
+    before: Side
+    after: Side
+    chain: int
+    lost: bool
+    since: float
+    glide: int
+
+
+def find_impacts(
+    pieces: Pieces, problem: GlideProblem, values: Mapping[str, float], recording: int = 0
+) -> list[Impact]:
+    """The hits of `pieces` that a fitted glide leads to and another one from, in order of time.
+
+    `pieces` are those of the problem's recording of that number.
+    """
+    data = problem.data
+    here = np.flatnonzero(data.recording == recording)
+    if not len(here):
+        return []
+    starts, ends, spread = (states[here] for states in problem.states(values))
+    begin, finish = data.t[data.first[here]], data.t[data.first[here + 1] - 1]
+    found: list[Impact] = []
+    for k, hit in enumerate(pieces.hits):
+        before = int(np.searchsorted(begin, hit.t)) - 1
+        after = before + 1
+        if before < 0 or after >= len(here) or hit.t < finish[before] - 0.01:
+            continue
+        if (
+            hit.t - finish[before] > FARTHEST
+            or begin[after] - hit.t > FARTHEST
+            or _others(pieces, k, finish[before], begin[after])
+        ):
+            continue
+        left = _carry(ends[before], spread[before][1], hit.t - finish[before])
+        right = _carry(starts[after], spread[after][0], hit.t - begin[after])
+        cluster = int(data.cluster[here[after]])
+        last = found[-1] if found and found[-1].glide == before else None
+        since = hit.t - last.hit.t if last else np.nan
+        if last and last.hit.kind != "post":  # a post's normal is uncertain, and so is the spin that it gives
+            chain, lost = last.chain, last.lost
+        else:
+            chain, lost = len(found), _touched_before(pieces, hit)
+        found.append(Impact(hit, cluster, left, right, chain, lost, since, after))
+    return found
+
+
+def _touched_before(pieces: Pieces, hit: Hit) -> bool:
+    """Whether the launch had another contact before `hit`."""
+    begun = max((start for start, _ in pieces.launches if start <= hit.frames[0]), default=0)
+    return any(other.t < hit.t and other.frames[0] >= begun for other in pieces.hits)
+
+
+def _others(pieces: Pieces, k: int, start: float, stop: float) -> bool:
+    """Whether another hit lies between the same two glides."""
+    near = [pieces.hits[i] for i in (k - 1, k + 1) if 0 <= i < len(pieces.hits)]
+    return any(start - 0.005 < other.t < stop + 0.005 for other in near)
+
+
+def _carry(state: np.ndarray, covariance: np.ndarray, duration: float) -> Side:
+    """A state (6,): place, velocity, acceleration, `duration` later (or before, if it is negative)."""
+    place, velocity, acceleration = state[:2], state[2:4], state[4:]
+    moved = np.eye(4)
+    moved[0, 2] = moved[1, 3] = duration
+    return Side(
+        place + velocity * duration + 0.5 * acceleration * duration**2,
+        velocity + acceleration * duration,
+        moved @ covariance @ moved.T,
+    )

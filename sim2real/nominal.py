@@ -1,0 +1,41 @@
+"""The simulator's numbers for the table that a recording was made on."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+
+from puckpilot_env.parameters import TABLE, checked
+from sim2real.recording import Recording
+
+FROM_META = {
+    "length": ("table", "length_m"),
+    "width": ("table", "width_m"),
+    "goal_width": ("table", "goal_width_m"),
+    "puck_radius": ("puck", "radius_m"),
+    "mallet_radius": ("mallet", "radius_m"),
+    "max_voltage": ("gantry", "supply_V"),
+    "pulley_radius": ("gantry", "pulley_radius_m"),
+}
+
+
+def parameters(recording: Recording, shipped: Mapping[str, float] | None = None) -> dict[str, float]:
+    """Parameters by name: `shipped` or the defaults, with the sizes that the recording states."""
+    values = {row.name: row.default for row in TABLE} | dict(shipped or {})
+    for name, (section, key) in FROM_META.items():
+        stated = recording.nominal(section, key)
+        values[name] = values[name] if stated is None else stated
+    return values
+
+
+def read_baseline(path: Path) -> dict[str, float]:
+    """Parameters by name from a file like `friction = 0.1`, one a line (TOML). ValueError, in one line, if it is none."""
+    try:
+        found = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise ValueError(f"{path}: not a TOML file ({error}); expected lines like 'friction = 0.1'") from error
+    try:
+        return {name: checked(name, value) for name, value in found.items()}
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from error
