@@ -68,11 +68,10 @@ def _asker(folder: Path, kept: Path, tool: Sequence[str], heldout: bool) -> Call
             begun = time.perf_counter()
             error = _run(command, Path(place))
             answer: dict[str, Any] = {"seconds": time.perf_counter() - begun, "diagnosis": None, "error": error}
-            if error is None:
-                try:
-                    answer["diagnosis"] = json.loads((out / "diagnosis.json").read_text())
-                except (OSError, ValueError) as problem:
-                    answer["error"] = f"no diagnosis.json that can be read: {problem}"
+            try:
+                answer.update(diagnosis=json.loads((out / "diagnosis.json").read_text()), error=None)
+            except (OSError, ValueError) as problem:
+                answer["error"] = error or f"no diagnosis.json that can be read: {problem}"
         whole = kept / f".{label}.part"
         whole.write_text(json.dumps(answer) + "\n")
         whole.replace(kept / f"{label}.json")
@@ -92,7 +91,7 @@ def _run(command: Sequence[str], place: Path) -> str | None:
         )
     except subprocess.TimeoutExpired:
         return f"no answer within {LONGEST:.0f} s"
-    if done.returncode in (0, 1):  # 1: it did it, and the answer is bad news
+    if done.returncode == 0:
         return None
     said = done.stderr.strip().splitlines()
     return said[-1] if said else f"exit {done.returncode}"

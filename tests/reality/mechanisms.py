@@ -1,8 +1,8 @@
 """The vocabulary of mechanisms, from the side of who hides them: what each changes, how large, and where it shows.
 
 A mechanism draws its own size: the `share` that it is given times what is typical, so that 0.5 is a weak one and 2 a
-strong one. What it says of itself, `values`, goes into the key by the names that a diagnosis may give its numbers: where
-the format leaves the choice (the ratio e_t / e_n, or e_n and e_t), by all of them.
+strong one. What it says of itself, `values`, goes into the key by the names that a diagnosis may give its numbers:
+where the format leaves the choice (the ratio e_t / e_n, or e_n and e_t), by all of them.
 """
 
 from __future__ import annotations
