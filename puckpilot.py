@@ -24,6 +24,7 @@ COMMANDS = {
     "bench": ("puckpilot_env.commands.bench", "how fast the simulator is here"),
     "compare": ("sim2real.compare", "where a recording of a table departs from the simulator"),
     "diagnose": ("sim2real.commands.diagnose", "which physics the simulator lacks, with proof on untouched data"),
+    "study": ("sim2real.commands.study", "how often a diagnosis is right, on cases with something hidden"),
 }
 
 

@@ -20,6 +20,7 @@ OPTIONS = {
     "tournament": ["--games", "--out", "--variant", "--seed", "--threads", "--json"],
     "bench": ["--tables", "--threads", "--seconds", "--against", "--dicts", "--startup", "--json"],
     "compare": ["--json", "--out"],
+    "study": ["--cases", "--seed", "--out", "--seconds", "--only", "--mechanism", "--peer", "--workers", "--json"],
 }
 HEAVY = ("numba", "pettingzoo", "gymnasium", "matplotlib", "rich", "scipy", "cv2", "torch", "numpy")
 

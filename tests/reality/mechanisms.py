@@ -1,7 +1,8 @@
 """The vocabulary of mechanisms, from the side of who hides them: what each changes, how large, and where it shows.
 
 A mechanism draws its own size: the `share` that it is given times what is typical, so that 0.5 is a weak one and 2 a
-strong one. What it says of itself, `values`, goes into the key by the names that the format gives.
+strong one. What it says of itself, `values`, goes into the key by the names that a diagnosis may give its numbers:
+where the format leaves the choice (the ratio e_t / e_n, or e_n and e_t), by all of them.
 """
 
 from __future__ import annotations
@@ -100,7 +101,7 @@ def _speed_restitution(rng: Rng, share: float, law: Law, scenario: str) -> Chang
 def _tangential(rng: Rng, share: float, law: Law, scenario: str) -> Change:
     step = 0.1 * share
     e_t = law.wall_restitution + (step if law.wall_restitution + step < 0.98 else -step)
-    values = {"e_n": law.wall_restitution, "e_t": e_t}
+    values = {"e_n": law.wall_restitution, "e_t": e_t, "ratio": e_t / law.wall_restitution}
     return Change(law={"tangential_restitution": e_t}, values=values)
 
 
@@ -111,13 +112,14 @@ def _wall_spin(rng: Rng, share: float, law: Law, scenario: str) -> Change:
 
 def _odd_wall(rng: Rng, share: float, law: Law, scenario: str) -> Change:
     wall, delta = int(rng.integers(4)), 0.06 * share * _sign(rng)
-    where = {"walls": [("x0", "xL", "y0", "yW")[wall]]}
-    return Change(law={"odd_wall": wall, "odd_wall_extra": delta}, values={"delta": delta}, where=where)
+    name = ("x0", "x1", "y0", "y1")[wall]
+    changes = {"odd_wall": wall, "odd_wall_extra": delta}
+    return Change(law=changes, values={"delta": delta, name: delta}, where={"walls": [name]})
 
 
 def _corner(rng: Rng, share: float, law: Law, scenario: str) -> Change:
     e = max(0.05, law.wall_restitution - 0.2 * share)
-    return Change(law={"post_restitution": e}, values={"e": e})
+    return Change(law={"post_restitution": e}, values={"e": e, "extra": e - law.wall_restitution})
 
 
 def _mallet_speed(rng: Rng, share: float, law: Law, scenario: str) -> Change:
@@ -126,12 +128,12 @@ def _mallet_speed(rng: Rng, share: float, law: Law, scenario: str) -> Change:
     return Change(law={"mallet_restitution_slope": slope}, values=values)
 
 
-def _plain(name: str, label: str, typical: float, signed: bool = False, scale: float = 1.0) -> Callable[..., Change]:
-    """A mechanism of one number: the law's `name`, which the key calls `label` and states times `scale`."""
+def _plain(name: str, typical: float, *labels: str) -> Callable[..., Change]:
+    """A mechanism of one number: the law's `name`, which a diagnosis may call by any of `labels`."""
 
     def draw(rng: Rng, share: float, law: Law, scenario: str) -> Change:
-        value = typical * share * (_sign(rng) if signed else 1.0)
-        return Change(law={name: value}, values={label: scale * value})
+        value = typical * share
+        return Change(law={name: value}, values=dict.fromkeys(labels, value))
 
     return draw
 
@@ -172,14 +174,14 @@ MECHANISMS = {
     "wall_to_wall_restitution": Mechanism("wall", PUCK, _odd_wall),
     "corner_restitution": Mechanism("corner", ("posts",), _corner),
     "mallet_speed_restitution": Mechanism("mallet", ROBOT, _mallet_speed),
-    "mallet_friction": Mechanism("mallet", ROBOT, _plain("mallet_mu", "mu", 0.15)),
-    "mallet_give": Mechanism("mallet", ROBOT, _plain("mallet_give", "mass_ratio", 0.2)),
-    "voltage_sag": Mechanism("gantry", GANTRY, _plain("voltage_sag", "sag", 0.02)),
-    "motor_deadband": Mechanism("gantry", GANTRY, _plain("deadband", "V", 0.4)),
-    "command_delay": Mechanism("gantry", ("gantry",), _plain("command_delay", "delay_s", 0.015)),
+    "mallet_friction": Mechanism("mallet", ROBOT, _plain("mallet_mu", 0.15, "mu")),
+    "mallet_give": Mechanism("mallet", ROBOT, _plain("mallet_give", 0.2, "mass_ratio", "ratio")),
+    "voltage_sag": Mechanism("gantry", GANTRY, _plain("voltage_sag", 0.02, "sag")),
+    "motor_deadband": Mechanism("gantry", GANTRY, _plain("deadband", 0.4, "V")),
+    "command_delay": Mechanism("gantry", ("gantry",), _plain("command_delay", 0.015, "delay_s")),
     "belt_compliance": Mechanism("gantry", GANTRY, _belt),
-    "backlash": Mechanism("gantry", GANTRY, _plain("backlash", "gap", 0.001)),
-    "camera_delay": Mechanism("sensing", ROBOT, _plain("camera_delay", "delay_s", 0.018)),
+    "backlash": Mechanism("gantry", GANTRY, _plain("backlash", 0.001, "gap")),
+    "camera_delay": Mechanism("sensing", ROBOT, _plain("camera_delay", 0.018, "delay_s")),
     "clock_drift": Mechanism("sensing", ("gantry", "rally"), _clock),
     "scale_error": Mechanism("sensing", PUCK, _scale),
     "held_frames": Mechanism("sensing", ("launches", "rally"), _held),

@@ -1,0 +1,136 @@
+"""How often a diagnosis is right: cases with something hidden, diagnosed blindly, then scored.
+
+Tables are drawn at random by an independent simulator (tests/reality): nothing missing, other parameters only, one
+effect, two, or a law that is in no list. A separate process diagnoses each and sees the recording alone; the key is
+opened for scoring only. A study that was stopped goes on where it was.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import shlex
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from sim2real.study.run import Study
+
+KINDS = ("nothing", "parameters", "one", "two", "unlisted")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of the command."""
+    parser.add_argument("--cases", type=int, default=100, metavar="N", help="how many cases (default 100)")
+    parser.add_argument("--seed", type=int, default=0, metavar="S", help="seed of the draw (default 0)")
+    parser.add_argument("--out", type=Path, default=Path("out/study"), metavar="DIR", help="folder (default out/study)")
+    parser.add_argument("--seconds", type=float, default=60.0, help="length of a recording (default 60)")
+    parser.add_argument("--only", choices=KINDS, metavar="KIND", help=f"one kind of case: {', '.join(KINDS)}")
+    parser.add_argument("--mechanism", metavar="NAME", help="one mechanism, or one unlisted law")
+    parser.add_argument("--holdout", action="store_true", help="give the diagnosis a second recording for its proof")
+    parser.add_argument("--peer", action="store_true", help="ask PySINDy too, on the cases of gliding pucks")
+    parser.add_argument("--tool", metavar="COMMAND", help="judge another program that is called as puckpilot is")
+    parser.add_argument("--workers", type=int, default=2, metavar="K", help="processes (default 2)")
+    parser.add_argument("--json", action="store_true", help="print the result as JSON")
+
+
+def run(args: argparse.Namespace) -> int:
+    """0: the study is done; 1: it is, and a bar was missed. Raises ValueError, in one line, for what cannot be run."""
+    from sim2real.study.making import Plan
+    from sim2real.study.run import run_study
+
+    for option in ("cases", "seconds", "workers"):
+        if getattr(args, option) <= 0:
+            raise ValueError(f"--{option} is {getattr(args, option)}; expected more than 0")
+    if args.seed < 0:
+        raise ValueError(f"--seed is {args.seed}; expected 0 or more")
+    plan = Plan(args.cases, args.seed, args.seconds, args.only, args.mechanism)
+    tool = shlex.split(args.tool) if args.tool else None
+    study = run_study(plan, args.out, args.workers, tool, args.holdout, args.peer)
+    if args.json:
+        print(json.dumps(study.as_dict(), indent=1))
+    else:
+        _print(study, args.out)
+    return int(any(figure.reached is False for figure in study.figures))
+
+
+def _print(study: Study, folder: Path) -> None:
+    from rich.console import Console
+
+    tables = [_figures(study), _mechanisms(study), _confusion(study)]
+    needed = max(Console(width=10_000).measure(table).maximum for table in tables)
+    console = Console(width=max(needed, 100), highlight=False)
+    for table in tables:
+        console.print(table)
+    for score in study.scores:
+        if score.error:
+            print(f"{score.label}: {score.error}")
+    print(f"wrote {folder / 'study.json'}, {folder / 'confusion.png'}")
+
+
+def _figures(study: Study) -> Any:
+    from rich.table import Table
+
+    plan = study.plan
+    title = f"{plan.cases} cases of {plan.seconds:g} s, seed {plan.seed}"
+    table = _plain_table(Table, title)
+    peers = dict(zip((f.name for f in study.peer_figures), study.peer_figures, strict=True))
+    headings = ["figure", "value", "95 %", "of", "bar", ""] + (["PySINDy, glide", "of"] if peers else [])
+    for k, heading in enumerate(headings):
+        table.add_column(heading, justify="left" if k in (0, 5) else "right", no_wrap=True)
+    for one in study.figures:
+        value = "-" if one.value is None else f"{one.value:.3g}"
+        interval = "" if one.value is None else f"{one.low:.3g} to {one.high:.3g}"
+        reached = {True: "reached", False: "MISSED", None: ""}[one.reached if _bar(one) else None]
+        row = [one.name, value, interval, str(one.count), _bar(one), reached]
+        if peers:
+            peer = peers[one.name]
+            row += ["-" if peer.value is None else f"{peer.value:.3g}", str(peer.count)]
+        table.add_row(*row)
+    return table
+
+
+def _bar(figure: Any) -> str:
+    low, high = figure.least > 0.0 and figure.least > float("-inf"), figure.most != 1.0 and figure.most < float("inf")
+    if low and high:
+        return f"{figure.least:g} to {figure.most:g}"
+    return f"≥ {figure.least:g}" if low else f"≤ {figure.most:g}" if high else ""
+
+
+def _mechanisms(study: Study) -> Any:
+    from rich.table import Table
+
+    table = _plain_table(Table, "named right, alone on the table")
+    for k, heading in enumerate(("mechanism", "share", "95 %", "of")):
+        table.add_column(heading, justify="left" if k == 0 else "right", no_wrap=True)
+    for one in study.by_mechanism:
+        table.add_row(one.name, f"{one.value:.2f}", f"{one.low:.2f} to {one.high:.2f}", str(one.count))
+    return table
+
+
+def _confusion(study: Study) -> Any:
+    """What is off the diagonal, row by row; the picture shows the whole."""
+    from rich.table import Table
+
+    table = _plain_table(Table, "taken for something else (rows truth, columns what was said)")
+    confusion = study.confusion
+    wrong = [
+        (row, said, count)
+        for row, counts in zip(confusion.rows, confusion.counts, strict=True)
+        for said, count in zip(confusion.columns, counts, strict=True)
+        if count and said != row
+    ]
+    columns = [column for column in confusion.columns if any(said == column for _, said, _ in wrong)]
+    table.add_column("truth", no_wrap=True)
+    for column in columns:
+        table.add_column(column, justify="right", no_wrap=True)
+    for row in dict.fromkeys(truth for truth, _, _ in wrong):
+        counts = {said: count for truth, said, count in wrong if truth == row}
+        table.add_row(row, *(str(counts.get(column, "")) for column in columns))
+    return table
+
+
+def _plain_table(make: Any, title: str) -> Any:
+    from rich import box
+
+    return make(title=title, box=box.SIMPLE_HEAD, title_justify="left", pad_edge=False)

@@ -1,0 +1,104 @@
+"""The figures that a study is judged by: shares and medians with 95 % intervals, each beside its bar."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from sim2real.study.scoring import SILENT, Score
+
+LONG = 60.0  # s of a recording, from which on the stricter bar for one effect holds
+DRAWS = 2000  # of the bootstrap
+
+
+@dataclass(frozen=True)
+class Figure:
+    """`value` of `count` cases (or numbers) with its 95 % interval. It shall lie in [least, most]."""
+
+    name: str
+    value: float | None
+    low: float
+    high: float
+    count: int
+    least: float
+    most: float
+
+    @property
+    def reached(self) -> bool | None:
+        """Whether it does; None where there was nothing to measure."""
+        return None if self.value is None else self.least <= self.value <= self.most
+
+    def as_dict(self) -> dict[str, Any]:
+        """The same as plain data."""
+        return {**asdict(self), "reached": self.reached}
+
+
+def share(name: str, answers: Iterable[bool | None], least: float = 0.0, most: float = 1.0) -> Figure:
+    """A share of yes among yes and no, with the interval of Clopper and Pearson (see `baselines.intervals`)."""
+    from scipy.stats import binomtest
+
+    known = [answer for answer in answers if answer is not None]
+    if not known:
+        return Figure(name, None, 0.0, 1.0, 0, least, most)
+    interval = binomtest(sum(known), len(known)).proportion_ci(0.95, "exact")
+    return Figure(name, sum(known) / len(known), interval.low, interval.high, len(known), least, most)
+
+
+def median(
+    name: str, values: Iterable[float | None], least: float = -np.inf, most: float = np.inf, seed: int = 0
+) -> Figure:
+    """A median with the percentile interval of a bootstrap (Efron and Tibshirani, 1993, chapter 13)."""
+    known = np.array([value for value in values if value is not None], dtype=float)
+    if not len(known):
+        return Figure(name, None, -np.inf, np.inf, 0, least, most)
+    rng = np.random.default_rng(seed)
+    medians = [np.median(known[rng.integers(len(known), size=len(known))]) for _ in range(DRAWS)]
+    low, high = np.quantile(medians, (0.025, 0.975))
+    return Figure(name, float(np.median(known)), float(low), float(high), len(known), least, most)
+
+
+def figures(scores: Sequence[Score], seconds: float) -> list[Figure]:
+    """The table of a study. `seconds`: how long its recordings are."""
+    one, two, unlisted = (_of(scores, kind) for kind in ("one", "two", "unlisted"))
+    silent = [score for score in scores if score.kind in SILENT]
+    listed, missing = one + two, one + two + unlisted
+    numbers = [number for score in listed for number in score.numbers]
+    return [
+        share("regime located, one effect", _each(one, lambda s: s.located), least=0.98),
+        share("named right, one effect", _each(one, lambda s: s.named), least=0.97 if seconds >= LONG else 0.93),
+        share("both of two effects named", _each(two, lambda s: s.named), least=0.85),
+        share("truth in winner + also_possible", _each(listed, lambda s: s.within), least=0.99),
+        median("size of that set for each true name", _each(listed, lambda s: s.set_size), most=1.5),
+        share("false alarms where nothing is missing", _each(silent, lambda s: s.false_alarm), most=0.01),
+        share("unlisted: flagged as such", _each(unlisted, lambda s: "unlisted" in s.said), least=0.95),
+        share("unlisted: what it depends on", _each(unlisted, lambda s: s.depends_right), least=0.85),
+        median("excess held-out error removed, listed", _each(listed, lambda s: s.excess_removed), least=0.95),
+        median("excess held-out error removed, unlisted", _each(unlisted, lambda s: s.excess_removed), least=0.7),
+        median("relative error of a parameter", [number.error for number in numbers], most=0.03),
+        share("95 % intervals that hold the truth", [number.covered for number in numbers], 0.92, 0.98),
+        share("nothing missing, and says so", _each(silent, lambda s: s.named)),
+        share("gave no name: undetermined", _each(missing, lambda s: s.verdict == "undetermined")),
+        share("no diagnosis at all", _each(scores, lambda s: s.verdict == "failed"), most=0.0),
+        median("seconds for a diagnosis", _each(scores, lambda s: s.seconds or None)),
+    ]
+
+
+def by_mechanism(scores: Sequence[Score]) -> list[Figure]:
+    """The share named right for each mechanism and each unlisted law that came up alone."""
+    groups: dict[str, list[Score]] = {}
+    for score in scores:
+        if score.kind in ("one", "unlisted"):
+            name = f"unlisted: {score.law}" if score.law else score.truth[0]
+            groups.setdefault(name, []).append(score)
+    return [share(name, _each(groups[name], lambda s: s.named)) for name in sorted(groups)]
+
+
+def _of(scores: Sequence[Score], kind: str) -> list[Score]:
+    return [score for score in scores if score.kind == kind]
+
+
+def _each(scores: Sequence[Score], question: Callable[[Score], Any]) -> list[Any]:
+    return [question(score) for score in scores]
