@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from puckpilot_env.kernel import kernel
+from puckpilot_env.kernel import array_kernel, kernel
 from puckpilot_env.physics.slide import slide
 
 X, Y, VX, VY, SPIN = range(5)
@@ -26,7 +26,7 @@ def trace(p, first, t, starts, pucks, path):
             path[i, X], path[i, Y], path[i, VX], path[i, VY] = puck.x, puck.y, puck.vx, puck.vy
 
 
-@kernel
+@array_kernel
 def bend(first, t, path, friction, drag, force, moved):
     """Displacements moved (n, 2, k) [m] that small accelerations force (n, 2, k) [m/s^2] make along `path` (n, 4).
 

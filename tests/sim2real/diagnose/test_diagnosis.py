@@ -1,0 +1,98 @@
+"""A diagnosis of recordings whose truth an independent table knows: named, silent, or undetermined."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from puckpilot import main
+from puckpilot_env.effects_file import effect_values
+from sim2real.diagnose.diagnosis import diagnose
+from sim2real.diagnose.summary import summary
+from sim2real.recording import read_recording
+from tests.reality.camera import Camera
+from tests.reality.law import Law
+from tests.reality.record import make_recording
+
+SCORE = Path(__file__).resolve().parents[3].parent / "shared" / "recordings" / "score.py"
+PRACTICE = SCORE.parent / "practice"
+NOISE = Camera(noise=0.0006, rate=150.0)
+SECONDS = 60.0
+
+
+def _diagnosis(folder: Path, law: Law, seconds: float = SECONDS, seed: int = 5, scenario: str = "launches"):
+    make_recording(folder, law, scenario, seed, seconds, camera=NOISE)
+    return diagnose([read_recording(folder)], [], {}, lambda stage, share: None)
+
+
+def test_silent_where_nothing_is_missing(tmp_path):
+    found = _diagnosis(tmp_path, Law())
+    assert (found.verdict, found.findings) == ("agrees", [])
+
+
+def test_other_numbers_are_no_missing_physics(tmp_path):
+    found = _diagnosis(tmp_path, Law(friction=0.06, drag=0.05, wall_restitution=0.88))
+    assert (found.verdict, found.findings) == ("parameters_only", [])
+    glide = next(each for each in found.accounts if each.regime == "glide")
+    assert glide.baseline["friction"].low < 0.06 < glide.baseline["friction"].high
+
+
+@pytest.mark.parametrize(
+    "law, name, parameter, value",
+    [
+        (Law(tilt_x=0.015, tilt_y=-0.01), "table_tilt", "tilt_x", 0.015),
+        (Law(linear_drag=0.06), "linear_drag", "k", 0.06),
+        (Law(restitution_slope=0.05, wall_restitution=0.85), "speed_dependent_restitution", "slope", 0.05),
+        (Law(wall_spin=True, wall_mu=0.15), "wall_friction_spin", "mu", 0.15),
+    ],
+)
+def test_one_effect_is_named_and_measured(tmp_path, law, name, parameter, value):
+    found = _diagnosis(tmp_path, law)
+    assert [one.mechanism for one in found.findings] == [name]
+    estimate = found.findings[0].parameters[parameter]
+    assert estimate.value == pytest.approx(value, rel=0.05)
+    assert estimate.low < estimate.high
+    proof = found.proof
+    assert proof is not None and proof.after_m < 0.6 * proof.before_m
+
+
+def test_too_little_data_is_undetermined_and_says_so(tmp_path):
+    found = _diagnosis(tmp_path, Law(tilt_x=0.02), seconds=3.0)
+    assert found.verdict == "undetermined"
+    assert "too little data" in summary(found, [])[0]
+
+
+def test_the_command_writes_files_that_others_read(tmp_path, capsys):
+    make_recording(tmp_path / "table", Law(tilt_x=0.02), "launches", 3, SECONDS, camera=NOISE)
+    assert main(["diagnose", str(tmp_path / "table"), "--out", str(tmp_path / "out"), "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert printed == json.loads((tmp_path / "out" / "diagnosis.json").read_text())
+    assert printed["findings"][0]["mechanism"] == "table_tilt"
+    values = effect_values(tmp_path / "out" / "effects.toml")
+    assert values["tilt_x"] == pytest.approx(0.02, rel=0.05)
+    if SCORE.exists():
+        file = str(tmp_path / "out" / "diagnosis.json")
+        assert subprocess.run([sys.executable, str(SCORE), "check", file], check=False).returncode == 0
+
+
+@pytest.mark.parametrize(
+    "words, told",
+    [(["/no/such/place"], "no/such"), (["."], "meta.json")],
+)
+def test_what_is_no_recording_gets_one_line(words, told, tmp_path, capsys):
+    assert main(["diagnose", *words, "--out", str(tmp_path / "out")]) == 2
+    error = capsys.readouterr().err
+    assert told in error and error.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.skipif(not PRACTICE.exists(), reason="the shared practice recordings are not here")
+@pytest.mark.parametrize("name", ["null", "other_parameters", "tilt", "restitution_speed", "unlisted_vortex"])
+def test_labelled_practice(name):
+    truth = json.loads((PRACTICE / "key.json").read_text())[name]
+    found = diagnose([read_recording(PRACTICE / name)], [], {}, lambda stage, share: None)
+    assert [one.mechanism for one in found.findings] == truth["mechanisms"]
+    if truth["depends"]:
+        assert list(found.findings[0].depends_on) == truth["depends"]
