@@ -20,6 +20,8 @@ OPTIONS = {
     "tournament": ["--games", "--out", "--variant", "--seed", "--threads", "--json"],
     "bench": ["--tables", "--threads", "--seconds", "--against", "--dicts", "--startup", "--json"],
     "compare": ["--json", "--out"],
+    "diagnose": ["--holdout", "--baseline", "--out", "--json"],
+    "study": ["--cases", "--seed", "--out", "--json"],
     "study": ["--cases", "--seed", "--out", "--seconds", "--only", "--mechanism", "--peer", "--workers", "--json"],
 }
 HEAVY = ("numba", "pettingzoo", "gymnasium", "matplotlib", "rich", "scipy", "cv2", "torch", "numpy")
@@ -64,7 +66,7 @@ def test_overview(word, capsys):
     "words, told",
     [
         (["bensh"], "puckpilot: unknown command 'bensh'; did you mean 'bench'?"),
-        (["xyz"], "puckpilot: unknown command 'xyz'; known: demo, envs, check, match, tournament, bench, compare"),
+        (["xyz"], "puckpilot: unknown command 'xyz'; known: " + ", ".join(puckpilot.COMMANDS)),
         (
             ["bench", "--tabels", "3"],
             "puckpilot bench: unrecognized arguments: --tabels; see puckpilot bench --help",
