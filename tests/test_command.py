@@ -21,7 +21,6 @@ OPTIONS = {
     "bench": ["--tables", "--threads", "--seconds", "--against", "--dicts", "--startup", "--json"],
     "compare": ["--json", "--out"],
     "diagnose": ["--holdout", "--baseline", "--out", "--json"],
-    "study": ["--cases", "--seed", "--out", "--json"],
     "study": ["--cases", "--seed", "--out", "--seconds", "--only", "--mechanism", "--peer", "--workers", "--json"],
 }
 HEAVY = ("numba", "pettingzoo", "gymnasium", "matplotlib", "rich", "scipy", "cv2", "torch", "numpy")
