@@ -72,7 +72,7 @@ def test_every_entry_point_takes_them(tmp_path: Path) -> None:
     file.write_text('format = "puckpilot-effects/1"\n[effects.table_tilt]\ntilt_x = 0.1\ntilt_y = -0.05\n')
     for effects in (TILT, file, str(file)):
         environments = (
-            pettingzoo.make("parallel", "puckpilot/match-v0", effects=effects).unwrapped.tables,
+            pettingzoo.make("parallel", "puckpilot/match-v0", effects=effects).unwrapped.tables,  # pyright: ignore[reportAttributeAccessIssue]
             gymnasium.make("puckpilot/match-v0", effects=effects).unwrapped.tables,  # pyright: ignore[reportAttributeAccessIssue]
             gymnasium.make_vec("puckpilot/match-v0", num_envs=2, effects=effects).tables,  # pyright: ignore[reportAttributeAccessIssue]
             Tables("match-v0", 3, effects=effects),
@@ -128,7 +128,9 @@ def test_a_draw_on_an_effect_s_row_is_drawn_and_acts() -> None:
 
 def test_the_camera_sees_the_bent_path() -> None:
     """A frame shows where a copy of the table is at the frame's time."""
-    clean = dict.fromkeys(("camera_noise", "camera_error", "beam_width", "dropped_frames", "held_frames"), 0.0)
+    clean: dict[str, float] = dict.fromkeys(
+        ("camera_noise", "beam_noise", "camera_error", "beam_width", "dropped_frames", "held_frames"), 0.0
+    )
     tables = Tables("match-sensors-v0", 8, seed=4, values=clean, effects=SOME)
     names = [column.name for column in tables.observation_columns]
     seen, frame_rate = names.index("puck_0_x"), 120.0

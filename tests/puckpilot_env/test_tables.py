@@ -275,7 +275,9 @@ def test_the_newest_frame_shows_the_table_as_it_was(variant, period, frame_rate)
 
 def test_the_told_camera_delay_is_that_of_the_first_observation():
     """A puck that comes straight is seen `camera_delay` times its velocity before the place where it is."""
-    clean = dict.fromkeys(("camera_noise", "camera_error", "beam_width", "dropped_frames", "held_frames"), 0.0)
+    clean = dict.fromkeys(
+        ("camera_noise", "beam_noise", "camera_error", "beam_width", "dropped_frames", "held_frames"), 0.0
+    )
     known = find_variant("match-randomized-v0")
     draws = tuple(draw for draw in known.draws if draw.parameter not in clean)
     for latency in (0.0, 0.0134, 0.06):

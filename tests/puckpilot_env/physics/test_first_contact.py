@@ -30,7 +30,7 @@ def volts_at(axis, t):
 
 
 @njit(error_model="numpy")
-def step_axis(c5, c6, c7, half_radius, axis, state, t, h):
+def step_axis(law, c5, c6, c7, half_radius, axis, state, t, h):
     """Advance (p, p', p'') from t to t + h by the reference's Runge-Kutta, stopping at each change of voltage."""
     end = t + h
     while t < end:
@@ -38,7 +38,7 @@ def step_axis(c5, c6, c7, half_radius, axis, state, t, h):
         for switch in (axis.t1, axis.t2):
             if t < switch < until:
                 until = switch
-        advance_axis(c5, c6, c7, half_radius * volts_at(axis, t), state, 0, until - t, state)
+        advance_axis(law, c5, c6, c7, half_radius * volts_at(axis, t), state, 0, until - t, state)
         t = until
 
 
@@ -47,8 +47,8 @@ def gap_after(law, puck, mallet, sx, sy, t, h, reach):
     """Gap [m] at t + h; puck and both axis states are advanced in place."""
     advance_puck(law, t, puck, h, puck)
     half = 0.5 * law.pulley_radius
-    step_axis(law.a1 - law.b1, law.a2 - law.b2, law.a3 - law.b3, half, mallet.x, sx, t, h)
-    step_axis(law.a1 + law.b1, law.a2 + law.b2, law.a3 + law.b3, half, mallet.y, sy, t, h)
+    step_axis(law, law.a1 - law.b1, law.a2 - law.b2, law.a3 - law.b3, half, mallet.x, sx, t, h)
+    step_axis(law, law.a1 + law.b1, law.a2 + law.b2, law.a3 + law.b3, half, mallet.y, sy, t, h)
     return math.hypot(puck[0] - sx[0], puck[1] - sy[0]) - reach
 
 
@@ -92,7 +92,7 @@ def ask_both(p, law, puck, mallet, end, answer):
     v, reach = math.hypot(puck.vx, puck.vy), p.puck_radius + p.mallet_radius
     ux, uy = (puck.vx / v, puck.vy / v) if v > 0.0 else (1.0, 0.0)
     answer[0] = first_contact(puck.x, puck.y, ux, uy, v, p.friction, p.drag, mallet, 0.0, end, reach)
-    state = np.array([puck.x, puck.y, puck.vx, puck.vy, 0.0])
+    state = np.array([puck.x, puck.y, puck.vx, puck.vy, 0.0, 0.0])
     answer[1], answer[2] = scan(law, state, mallet, reach, end)
 
 
@@ -164,6 +164,6 @@ def test_scan_agrees_with_scipy_on_the_mallet():
 
     mine = state.copy()
     for i in range(1000):
-        step_axis(c5, c6, c7, half, axis, mine, i * STEP, STEP)
+        step_axis(law.numbers(), c5, c6, c7, half, axis, mine, i * STEP, STEP)
     theirs = solve_ivp(slope, (0.0, 1000 * STEP), state, method="Radau", rtol=1e-10, atol=1e-13, max_step=1e-4)
     assert abs(mine[0] - theirs.y[0, -1]) < 1e-7
