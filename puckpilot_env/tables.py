@@ -1,4 +1,4 @@
-"""N tables at once in flat arrays: the only parallel code. Everything else that plays is an adapter over this."""
+"""N tables at once in flat arrays. Everything else that plays is an adapter over this."""
 
 from __future__ import annotations
 
