@@ -140,7 +140,7 @@ def _lively(encoders: Encoders) -> np.ndarray:
 def restless(u: np.ndarray) -> np.ndarray:
     """Covariance (n, n) of places at the times `u` if the acceleration is a Wiener process of unit intensity, 0 at 0.
 
-    Thrice integrated white noise on either side of 0: integral over s of ((a - s)^2 / 2) ((b - s)^2 / 2), 0 < s < a < b.
+    Thrice integrated white noise on either side of 0: integral of (a - s)^2 (b - s)^2 / 4 over 0 < s < a < b.
     """
     a = np.minimum(np.abs(u)[:, None], np.abs(u))
     gap = np.abs(np.abs(u)[:, None] - np.abs(u))

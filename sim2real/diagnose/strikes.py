@@ -1,4 +1,4 @@
-"""Sudden changes of the puck's velocity with all their errors: when, where, the velocities, and the joint covariance."""
+"""Sudden changes of the puck's velocity: when, where, the velocities, and the joint covariance of it all."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def strikes(recording: Recording, pieces: Pieces) -> list[Strike]:
     found = []
     for hit in pieces.hits:
         k = int(np.searchsorted(edges, hit.frames[1]))
-        if hit.kind == "unexplained" and hit.where == "pushed" or k == 0 or k + 1 >= len(edges):
+        if hit.where == "pushed" or k == 0 or k + 1 >= len(edges):
             continue
         left = valid[(valid >= edges[k - 1]) & (valid < edges[k])]
         right = valid[(valid >= edges[k]) & (valid < edges[k + 1])]

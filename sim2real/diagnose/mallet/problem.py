@@ -26,7 +26,7 @@ STEP = 1e-5  # m/s
 
 @kernel
 def _strikes(p, normal, t, chain, driven, before, pucks, after):
-    """Velocities after (n, 2) of blows in order, by a mallet of velocity `driven` (n, 2); a chain begins without spin."""
+    """Velocities after (n, 2) of blows in order, by a mallet of velocity `driven`; a chain begins without spin."""
     puck = pucks[0]
     for i in range(len(normal)):
         if i == 0 or chain[i] != chain[i - 1]:
@@ -42,7 +42,7 @@ class MalletProblem:
     """Blows of the robot's mallet, three residuals each. Parameters that `values` leave out have their defaults."""
 
     regime = "mallet"
-    base = ("mallet_restitution",)
+    base: tuple[str, ...] = ("mallet_restitution",)
 
     def __init__(self, data: Blows, clusters: int, common: Mapping[str, float]) -> None:
         """`clusters`: how many launches the recordings have; `common`: sizes of the table."""

@@ -2,7 +2,7 @@
 
 At a blow their centres are as far apart as their radii add up to. Read too late, a moving mallet is elsewhere by its
 velocity times the delay, so each blow by a moving mallet measures the delay, and all of them its drift. A constant
-error of the radii or of the camera's map tells itself from a delay by the blows of slow and of otherwise moving mallets.
+error of the radii or of the camera's map differs from a delay in blows of slow and of otherwise moving mallets.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class Meetings:
     touch: float  # m, the sum of the radii
 
     def gaps(self, delay: np.ndarray, rate: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Gaps (..., n) [m] between puck and mallet, and directions (..., n, 2) from the mallet, for each clock (...)."""
+        """Gaps (..., n) [m] of puck and mallet, and directions (..., n, 2) from the mallet, for each clock."""
         away = self.place - self.encoders.at(encoder_time(self.t, delay[..., None], rate[..., None]))
         distance = np.linalg.norm(away, axis=-1)
         return distance - self.touch, away / distance[..., None]
@@ -94,7 +94,7 @@ def _within_reach(strike: Strike, encoders: Encoders, g: Geometry) -> bool:
 
 
 def search(tables: list[Meetings]) -> tuple[float, float]:
-    """The likeliest delay [s] and rate of all on a grid: most blows meet their mallet, pushed along the line of centres."""
+    """The likeliest delay [s] and rate on a grid: most blows meet their mallet, pushed along the line of centres."""
     span = max(float(np.ptp(each.t)) for each in tables)
     rates = np.linspace(-FASTEST, FASTEST, 2 * max(1, round(FASTEST * span / (4 * GRID))) + 1)
     delays = np.arange(-LONGEST, LONGEST + GRID / 2, GRID)

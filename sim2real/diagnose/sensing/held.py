@@ -20,7 +20,7 @@ WORDS = "a frame repeats the position before it, with this probability"
 
 @dataclass(frozen=True)
 class Repeats:
-    """Frames of a moving puck: how many, how many of these are `held`, and how far [m] each of those is from the path."""
+    """Frames of a moving puck: how many, how many of them are `held`, and how far [m] each of those is off the path."""
 
     frames: int
     held: int

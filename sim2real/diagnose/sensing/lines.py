@@ -1,4 +1,4 @@
-"""The lines on which the puck's centre turns round at the walls, as the camera shows them: place and slant, with errors."""
+"""The lines on which the puck's centre turns round at the walls, as the camera shows them: place and slant."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ TAIL = 4.0
 
 @dataclass(frozen=True)
 class Line:
-    """A wall's line: `values` (2,) its place [m] at the middle of the wall and its slant [1]; their `covariance` (2, 2);
+    """A wall's line: `values` (2,) its place [m] at the middle of the wall and its slant [1]; their `covariance`;
     `along`, `place`, `std` (n,) [m] of its touches, from the middle of the wall; `launch` (n,) of each."""
 
     values: np.ndarray

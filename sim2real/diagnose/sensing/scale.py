@@ -79,14 +79,14 @@ def _wrong_size(values: np.ndarray, std: np.ndarray, g: Geometry) -> str:
         if abs(values[axis]) > WRONG_SIZE + 2 * std[axis] or (abs(values[axis]) > WRONG_SIZE and std[axis] < KNOWN):
             seen = (1 + values[axis]) * size
             return (
-                f"the stated {name} of {size:.3f} m is {abs(values[axis]):.1%} off what the camera shows, {seen:.3f} m: "
+                f"the stated {name} of {size:.3f} m is {abs(values[axis]):.1%} off the {seen:.3f} m seen: "
                 "measure the table and state its size, or calibrate the camera"
             )
     return ""
 
 
 def _design(walls: dict[str, Line], g: Geometry) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The lines' displacements from nominal (2n,), the Jacobian (2n, 7) by NAMES, radius, offset x, y and turn, and their
+    """The lines' displacements from nominal (2n,), the Jacobian (2n, 7) by NAMES, radius, offsets and turn, and their
     covariance (2n, 2n)."""
     nominal = nominal_lines(g)
     seen, rows = [], []
@@ -114,7 +114,7 @@ def _solve(walls: dict[str, Line], g: Geometry) -> tuple[np.ndarray, np.ndarray]
 
 
 def _prove(found: list[Strike], g: Geometry) -> tuple[float, float, Proof]:
-    """Distances of touches from their lines in launches that no fit saw: rms in their errors before, after; in metres."""
+    """Distances of touches from their lines in launches that no fit saw: rms in errors before, after; in metres."""
     launches = sorted({s.launch for s in found})
     whole = lines(found, g)
     rest: list[tuple[float, float, float]] = []
