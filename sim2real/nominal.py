@@ -30,7 +30,7 @@ def parameters(recording: Recording, shipped: Mapping[str, float] | None = None)
 
 
 def read_baseline(path: Path) -> dict[str, float]:
-    """Parameters by name from a file like `friction = 0.1`, one a line (TOML). ValueError, in one line, if it is none."""
+    """Parameters by name from a TOML file of lines like `friction = 0.1`. ValueError, in one line, if it is none."""
     try:
         found = tomllib.loads(path.read_text(encoding="utf-8"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:

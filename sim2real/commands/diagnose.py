@@ -1,7 +1,7 @@
 """Where a table and the simulator part, which physics is missing, and proof on untouched data that adding it helps.
 
-Give one or more recordings (folders in the format puckpilot-recording/1) of one table. Writes diagnosis.json, report.html
-and effects.toml into --out; with `puckpilot match A B --effects OUT/effects.toml` players meet on the mended simulator.
+Give one or more recordings (folders in the format puckpilot-recording/1) of one table. Writes diagnosis.json and
+effects.toml into --out; with `puckpilot match A B --effects OUT/effects.toml` players meet on the mended simulator.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="recordings of the same table that serve the proof alone; else whole launches are kept apart",
     )  # fmt: skip
     parser.add_argument("--baseline", type=Path, metavar="FILE", help="TOML file of the simulator's parameters")
-    parser.add_argument("--out", type=Path, default=Path("out/diagnosis"), metavar="DIR", help="folder (out/diagnosis)")
+    parser.add_argument("--out", type=Path, default=Path("out/diagnosis"), metavar="DIR", help="(out/diagnosis)")
     parser.add_argument("--json", action="store_true", help="print diagnosis.json instead of the summary")
 
 

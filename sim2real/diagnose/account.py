@@ -1,4 +1,4 @@
-"""From what the engine found to what a diagnosis says: findings with formula, numbers, and proof on untouched pieces."""
+"""From what the engine found to what a diagnosis says: findings with formula, numbers, and proof."""
 
 from __future__ import annotations
 

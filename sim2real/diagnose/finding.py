@@ -79,7 +79,7 @@ class Finding:
 class Account:
     """What one regime of the recording says. `undetermined` gives the reason why it cannot tell, "" if it can.
 
-    `baseline`: the refitted parameters of the baseline law; `shipped` says whether the simulator's own numbers do as well.
+    `baseline`: the refitted parameters of the baseline law; `shipped`: whether the simulator's own numbers do as well.
     """
 
     regime: str

@@ -28,9 +28,9 @@ class Side:
 class Impact:
     """A hit between two glides. `cluster`: its launch; `before`, `after`: the motion on both sides at its time.
 
-    `chain`: impacts of one number follow each other without a gap; `lost`: an earlier contact of the launch is not among
-    its chain, so that the puck's spin is unknown. `since` [s]: time since the contact before, nan where that is unknown.
-    `glide`: index of the glide that follows, in the problem.
+    `chain`: impacts of one number follow each other without a gap; `lost`: an earlier contact of the launch is not
+    among its chain, so that the puck's spin is unknown. `since` [s]: time since the contact before, nan where that is
+    unknown. `glide`: index of the glide that follows, among those of the recording.
     """
 
     hit: Hit

@@ -8,9 +8,10 @@ import pytest
 
 from puckpilot import main
 from puckpilot_env.physics import bounce, contact, glide
-from sim2real.compare_predict import compare_pieces, parameters, predict_glide
+from sim2real.compare_predict import compare_pieces, predict_glide
 from sim2real.diagnose.pieces import cut
 from sim2real.diagnose.sensor import Noise
+from sim2real.nominal import parameters
 from sim2real.recording import Recording, Stream, read_recording, write_recording
 
 SHARED = Path(__file__).resolve().parents[2].parent / "shared" / "recordings"

@@ -1,4 +1,4 @@
-"""Which laws a recording asks for: candidates compared by how well they foretell launches that they were not fitted to."""
+"""Which laws a recording asks for: candidates compared by how well they foretell launches that no fit saw."""
 
 from __future__ import annotations
 

@@ -50,7 +50,7 @@ def make_grams(names: Sequence[str], r: np.ndarray, jacobian: np.ndarray, cluste
 
 
 def solve(grams: Grams, columns: np.ndarray, clusters: np.ndarray, ridge: np.ndarray | float = 0.0) -> np.ndarray:
-    """Least squares theta (k,) of `columns` on `clusters`, with penalties `ridge` (k,); columns that are nought stay 0."""
+    """Least squares theta (k,) of `columns` on `clusters`, with penalties `ridge` (k,); columns of zeros get 0."""
     g = grams.g[np.ix_(clusters, columns, columns)].sum(axis=0)
     b = grams.b[np.ix_(clusters, columns)].sum(axis=0)
     return solve_normal(g + np.diag(np.broadcast_to(ridge, len(columns)).astype(float)), -b)

@@ -9,8 +9,8 @@ import numpy as np
 from puckpilot_env.parameters import BY_NAME, make_records
 from puckpilot_env.physics.advance import PUCK
 from puckpilot_env.physics.effects import EFFECTS
-from sim2real.diagnose.glide.data import GlideData
 from sim2real.diagnose.engine.choose import Law
+from sim2real.diagnose.glide.data import GlideData
 from sim2real.diagnose.glide.families import Motion
 from sim2real.diagnose.glide.laws import glide_columns
 from sim2real.diagnose.glide.trace import trace

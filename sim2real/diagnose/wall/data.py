@@ -18,11 +18,11 @@ STRAY = 12.0  # standard deviations of a jump in place across a bounce that is n
 
 @dataclass(frozen=True)
 class Bounces:
-    """`n` bounces. `kind` (n,) as in `bounce`; `normal` (n, 2); `t` (n,) [s]; `place`, `before`, `after` (n, 2) [m, m/s].
+    """`n` bounces. `kind` (n,) as in `bounce`; `normal` (n, 2); `t` (n,) [s]; `place`, `before`, `after` (n, 2) [SI].
 
     `spread` (n, 2, 2, 2): covariance of the velocity before and after, in axes along the normal and the tangent;
-    `turn` (n,): std of the normal's angle; `chain` (n,): bounces of one number carry the spin on, which is unknown at the
-    chain's start where `lost` (n,); `since` (n,) [s] after the contact before; `cluster` (n,).
+    `turn` (n,): std of the normal's angle; `chain` (n,): bounces of one number carry the spin on, which is unknown at
+    the chain's start where `lost` (n,); `since` (n,) [s] after the contact before; `cluster` (n,).
     """
 
     kind: np.ndarray

@@ -89,7 +89,7 @@ class WallProblem:
         return both[:, 0], both[:, 1:]
 
     def _blur(self, values: Mapping[str, float]) -> np.ndarray:
-        """By how much (n,) the tangential noise grows where neither spin nor normal is known: up to what friction can do."""
+        """By how much (n,) the tangential noise grows where spin or normal is not known: up to what friction can do."""
         d = self.data
         reach = values["wall_mu"] * (1.0 + values["wall_restitution"]) * d.closing
         unknown = d.lost | (d.kind == bounce.POST)
