@@ -93,14 +93,14 @@ def _squares(each: Fit, full: Fit) -> float:
 def _prove(tables, start, name: str, full: Fit) -> tuple[float, float, Proof]:
     """Residuals of blows in launches that no fit saw: rms in units of their errors before and after, and in metres."""
     launches = np.unique(full.launch)
-    before, after = np.full(len(full.residual), np.nan), np.full(len(full.residual), np.nan)
+    before = np.concatenate([each.gaps(np.array(0.0), np.array(0.0))[0] for each in tables])
+    before, after = np.where(full.met, before, np.nan), np.full(len(before), np.nan)
     for fold in range(FOLDS):
         skip = launches[fold::FOLDS]
         here = np.isin(full.launch, skip) & full.met
-        for kept, free in ((before, MODELS["none"]), (after, MODELS[name])):
-            each = fit(tables, start, free, skip)
-            if each is not None:
-                kept[here] = each.residual[here]
+        each = fit(tables, start, MODELS[name], skip)
+        if each is not None:
+            after[here] = each.residual[here]
     both = np.isfinite(before) & np.isfinite(after)
 
     def rms(r: np.ndarray) -> float:
