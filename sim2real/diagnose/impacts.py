@@ -76,7 +76,7 @@ def find_impacts(
         if last and last.hit.kind != "post":  # a post's normal is uncertain, and so is the spin that it gives
             chain, lost = last.chain, last.lost
         else:
-            chain, lost = len(found), _touched_before(pieces, hit)
+            chain, lost = int(here[after]), _touched_before(pieces, hit)
         found.append(Impact(hit, cluster, left, right, chain, lost, since, after))
     return found
 
