@@ -57,8 +57,9 @@ class Problem(Protocol):
         """
         ...
 
-    def columns(self, values: Mapping[str, float]) -> Columns:
-        """The columns of all clusters at a law: the base's, the listed effects' and the families'."""
+    def columns(self, values: Mapping[str, float], free: Sequence[str] = ()) -> Columns:
+        """The columns of all clusters at a law: the base's, those of other parameters `free`, the listed effects' and
+        the families'."""
         ...
 
     def rows(self, law: Law) -> tuple[str, ...]:

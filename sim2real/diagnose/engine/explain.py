@@ -50,7 +50,9 @@ def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray) -> 
     chooser = Chooser(screen.grams, use, _dispersion(problem, screen, use))
     model, rounds = chooser.add(base, screen.listed, MOST_LISTED)
     model = chooser.prune(model)
-    family = _remainder(chooser, model, screen.families)
+    law = _refit(problem, baseline, model.laws, use)
+    columns = screen if law is baseline else problem.columns(law.values, law.free)
+    family = _remainder(chooser, model, Chooser(columns.grams, use, chooser.dispersion), law, columns)
     if family is not None:
         model = chooser.prune(model.plus(family.law, family.spread))
     listed = tuple(law for law in model.laws if not law.family)
@@ -59,7 +61,7 @@ def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray) -> 
     calm = _calm(problem, law, use, unlisted)
     if len(calm) < len(use):
         law = _refit(problem, baseline, listed, calm)
-    theta, spread, columns = _smooth(problem, law, unlisted, model, screen, use)
+    theta, spread, columns = _smooth(problem, law, unlisted, model, columns, use)
     also, rivals = {}, {}
     for one in model.laws:
         also[one.name], rivals[one.name] = _compare(chooser, model, one, [*screen.listed, *screen.families])
@@ -83,12 +85,13 @@ def _dispersion(problem: Problem, screen: Columns, use: np.ndarray) -> float:
     return float(max(typical, 1.0))
 
 
-def _remainder(chooser: Chooser, model: Model, families) -> Gain | None:
-    """The family that explains most of what the listed laws leave, if that is more than chance and worth a law."""
-    gains = sorted((chooser.gain(model, law) for law in families), key=lambda gain: -gain.total)
+def _remainder(chooser: Chooser, model: Model, refitted: Chooser, law: Fit, columns: Columns) -> Gain | None:
+    """The family that explains most of what the listed laws leave once they are refitted (`law`, with its `columns`),
+    if that is more than chance and worth a law."""
+    gains = sorted((refitted.gain(Model(law.free), one) for one in columns.families), key=lambda gain: -gain.total)
     explained = float((chooser.foretold(Model(model.base)) - chooser.foretold(model)).sum())
     for gain in gains:
-        if chooser.passes(gain) and gain.total > REMAINDER * explained:
+        if refitted.passes(gain) and gain.total > REMAINDER * explained:
             return gain
     return None
 
@@ -113,11 +116,11 @@ def _calm(problem: Problem, law: Fit, use: np.ndarray, unlisted: Law | None) -> 
     return use[~stray] if few else use
 
 
-def _smooth(problem: Problem, law: Fit, unlisted: Law | None, model: Model, screen: Columns, use: np.ndarray):
+def _smooth(problem: Problem, law: Fit, unlisted: Law | None, model: Model, columns: Columns, use: np.ndarray):
     """Coefficients of the family on top of the final fit, their covariance, and the columns that they belong to."""
-    columns = screen if unlisted is None else problem.columns(law.values)
     if unlisted is None:
         return np.zeros(0), np.zeros((0, 0)), columns
+    columns = problem.columns(law.values, law.free)
     spread = model.spreads[model.laws.index(unlisted)]
     index, ridge = Model(law.free, (unlisted,), (spread,)).columns(columns.grams)
     theta = gram.solve(columns.grams, index, use, ridge)

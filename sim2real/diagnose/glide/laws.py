@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -34,7 +34,7 @@ def listed_laws() -> list[Law]:
     return found
 
 
-def glide_columns(problem: GlideProblem, values: Mapping[str, float]) -> Columns:
+def glide_columns(problem: GlideProblem, values: Mapping[str, float], free: Sequence[str]) -> Columns:
     """Every column of a glide problem at one law."""
     path, by_start = problem.linearised(values)
     motion = problem.motion(path)
@@ -46,7 +46,7 @@ def glide_columns(problem: GlideProblem, values: Mapping[str, float]) -> Columns
         return problem.profiled(path, by_start, moved)[1]
 
     listed = listed_laws()
-    free = (*problem.base, *(name for law in listed for name in law.columns))
+    free = tuple(dict.fromkeys((*problem.base, *(name for law in listed for name in law.columns), *free)))
     exact = problem.residuals(values, free, np.arange(problem.clusters))
     patches, patch_columns = _patches(motion, columns, exact.r, exact.jacobian[:, : len(problem.base)])
     blocks, names, families = [exact.jacobian, patch_columns], [*free, *(law.columns[0] for law in patches)], []

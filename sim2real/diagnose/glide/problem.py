@@ -37,9 +37,9 @@ class GlideProblem:
         self.freedom = 2.0 * frames - 4.0 * np.bincount(data.cluster, minlength=data.clusters)
         self.noise_m = float(np.sqrt(np.mean(data.std**2)))
 
-    def columns(self, values: Mapping[str, float]) -> Columns:
+    def columns(self, values: Mapping[str, float], free: Sequence[str] = ()) -> Columns:
         """See `Problem.columns`."""
-        return glide_columns(self, values)
+        return glide_columns(self, values, free)
 
     def rows(self, law: Law) -> tuple[str, ...]:
         """See `Problem.rows`."""

@@ -65,8 +65,7 @@ class MalletProblem:
             columns[:, :, k] = (self.predicted({**values, name: at + step}) - now) / step
         seen = np.concatenate([self.data.split(self.data.after), self.data.step[:, None]], axis=1)
         r, jacobian = self.whitened(seen - now), -self.whitened(columns)
-        blur = self._blur(values)
-        r[1::3], jacobian[1::3] = r[1::3] / blur, jacobian[1::3] / blur[:, None]
+        r, jacobian = self.blurred(values, r[:, None])[:, 0], self.blurred(values, jacobian)
         cluster = np.repeat(self.data.cluster, 3)
         here = np.isin(cluster, clusters)
         return Residuals(r[here], jacobian[here], cluster[here])
@@ -75,12 +74,15 @@ class MalletProblem:
         """Velocity after along the normal and the tangent, and the mallet's step along the normal: (n, 3) [m/s]."""
         return self._predicted(self._record(values), self.data.before, self.data.driven)
 
-    def _blur(self, values: Mapping[str, float]) -> np.ndarray:
-        """By how much (n,) the tangential noise grows where the spin is unknown: up to what friction can do."""
+    def blurred(self, values: Mapping[str, float], rows: np.ndarray) -> np.ndarray:
+        """Residuals or columns (3n, k) with more noise along the tangent where the spin is unknown: up to what friction
+        can do."""
         d = self.data
         e = values.get("mallet_restitution", BY_NAME["mallet_restitution"].default)
         reach = values.get("mallet_mu", 0.0) * (1.0 + e) * d.closing
-        return np.where(d.lost, np.hypot(1.0, reach * self._whiten[:, 1, 1]), 1.0)
+        rows = rows.copy()
+        rows[1::3] /= np.where(d.lost, np.hypot(1.0, reach * self._whiten[:, 1, 1]), 1.0)[:, None]
+        return rows
 
     def whitened(self, velocities: np.ndarray) -> np.ndarray:
         """Velocities (n, 3, …) in units of their noise, as rows (3n, …)."""
@@ -88,9 +90,9 @@ class MalletProblem:
         flat = velocities.reshape(len(self.data), 3, -1)
         return np.einsum("nij,njk->nik", self._whiten, flat).reshape(3 * len(self.data), *shape[2:])
 
-    def columns(self, values: Mapping[str, float]) -> Columns:
+    def columns(self, values: Mapping[str, float], free: Sequence[str] = ()) -> Columns:
         """See `Problem.columns`."""
-        return mallet_columns(self, values)
+        return mallet_columns(self, values, free)
 
     def rows(self, law: Law) -> tuple[str, ...]:
         """See `Problem.rows`."""

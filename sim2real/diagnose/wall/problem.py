@@ -62,31 +62,34 @@ class WallProblem:
             step = 1e-5 * (row.high - row.low) * (1.0 if at + 1e-5 * (row.high - row.low) < row.high else -1.0)
             columns[:, :, k] = (self.predicted({**values, name: at + step}) - now) / step
         r, jacobian = self.whitened(self.data.split(self.data.after) - now), -self.whitened(columns)
-        r, jacobian = self._allow_for_spin(values, now, r, jacobian)
+        both = self.allowing_for_spin(values, now, np.concatenate([r[:, None], jacobian], axis=1))
         cluster = np.repeat(self.data.cluster, 2)
         here = np.isin(cluster, clusters)
-        return Residuals(r[here], jacobian[here], cluster[here])
+        return Residuals(both[here, 0], both[here, 1:], cluster[here])
 
     def predicted(self, values: Mapping[str, float]) -> np.ndarray:
         """Velocity after (n, 2) [m/s] along the normal and the tangent, under a law."""
         return self.data.split(self._after(self._record(values), self.data.before))
 
-    def _allow_for_spin(self, values: Mapping[str, float], now, r, jacobian) -> tuple[np.ndarray, np.ndarray]:
-        """Residuals and columns with the spin at each chain's start as a further noise, where there is friction."""
+    def allowing_for_spin(self, values: Mapping[str, float], now: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        """Residuals or columns (2n, k) with the spin at each chain's start as a further noise, where there is friction.
+
+        now: what the law foretells, as `predicted` gives it.
+        """
         if values.get("wall_mu", 0.0) <= 0.0 or not len(self.data):
-            return r, jacobian
+            return rows
         d, record = self.data, self._record(values)
         by_spin = self.whitened((d.split(self._after(record, d.before, SPIN_STEP)) - now) / SPIN_STEP)
         prior = np.where(d.lost, UNKNOWN_SPIN, LAUNCH_SPIN)
-        both = np.concatenate([r[:, None], jacobian], axis=1)
-        both[1::2] /= self._blur(values)[:, None]
+        rows = rows.copy()
+        rows[1::2] /= self._blur(values)[:, None]
         for chain in np.unique(d.chain):
-            rows = np.repeat(d.chain == chain, 2)
-            s = by_spin[rows] * prior[d.chain == chain][0]
+            here = np.repeat(d.chain == chain, 2)
+            s = by_spin[here] * prior[d.chain == chain][0]
             size = float(s @ s)
             if size > 1e-12:
-                both[rows] -= np.outer(s, s @ both[rows]) * ((1.0 - 1.0 / np.sqrt(1.0 + size)) / size)
-        return both[:, 0], both[:, 1:]
+                rows[here] -= np.outer(s, s @ rows[here]) * ((1.0 - 1.0 / np.sqrt(1.0 + size)) / size)
+        return rows
 
     def _blur(self, values: Mapping[str, float]) -> np.ndarray:
         """By how much (n,) the tangential noise grows where spin or normal is not known: up to what friction can do."""
@@ -101,9 +104,9 @@ class WallProblem:
         flat = velocities.reshape(len(self.data), 2, -1)
         return np.einsum("nij,njk->nik", self._whiten, flat).reshape(2 * len(self.data), *shape[2:])
 
-    def columns(self, values: Mapping[str, float]) -> Columns:
+    def columns(self, values: Mapping[str, float], free: Sequence[str] = ()) -> Columns:
         """See `Problem.columns`."""
-        return wall_columns(self, values)
+        return wall_columns(self, values, free)
 
     def rows(self, law: Law) -> tuple[str, ...]:
         """See `Problem.rows`."""
