@@ -4,17 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.gram import Grams
 
+if TYPE_CHECKING:
+    from sim2real.diagnose.problem import Units
+
 FOLDS = 10
-LEAST_FIT = 30.0  # drop of the sum of squares (and 2 more a parameter) that chance does not make
-LEAST_FORETOLD = 12.0  # drop of the held-out sum of squares
+LEAST_FIT = 30.0  # drop of the loss (and 2 more a parameter) that chance does not make
+LEAST_FORETOLD = 12.0  # drop of the held-out loss
+RESAMPLED, UNSURE = 400, 0.02  # draws of launches, and the share of them in which a law may be of no use
 LEAST_SHARE = 0.05  # of what all laws together explain
-AMBIGUOUS = 9.0  # held-out sums of squares nearer than this do not tell two laws apart
+AMBIGUOUS = 9.0  # held-out losses nearer than this do not tell two laws apart
 SPREADS = (0.03, 0.3, 3.0)  # tried for the coefficients of a family
 
 
@@ -34,7 +39,7 @@ class Law:
 
 @dataclass(frozen=True)
 class Gain:
-    """What a law adds to others: drop of the sum of squares when fitted, and of each cluster's when foretold."""
+    """What a law adds to others: drop of the soft loss when fitted, and of each launch's when foretold."""
 
     law: Law
     fitted: float
@@ -47,7 +52,7 @@ class Gain:
 
     @property
     def without_best(self) -> float:
-        """The total without the cluster that gains most: no single launch may carry a discovery."""
+        """The total without the launch that gains most: no single one may carry a discovery."""
         return self.total - float(self.foretold.max())
 
 
@@ -77,27 +82,39 @@ class Model:
 
 
 class Chooser:
-    """Compares models on the clusters `use` of `grams`; `dispersion` >= 1 is noise beyond the sensor's, in variance."""
+    """Compares models on the units of the clusters `use`; `dispersion` >= 1 is noise beyond the sensor's, in variance.
 
-    def __init__(self, grams: Grams, use: np.ndarray, dispersion: float = 1.0) -> None:
-        self.grams, self.use, self.dispersion = grams, use, dispersion
-        self._folds = np.arange(len(use)) % min(FOLDS, len(use))
+    Losses are soft (`gram.soft`): a few parts of the data that no law explains outweigh the rest in no comparison.
+    """
+
+    def __init__(self, grams: Grams, units: Units, use: np.ndarray, dispersion: float = 1.0) -> None:
+        self.grams, self.use, self.dispersion = grams, units.of(use), dispersion
+        self._freedom = units.freedom[self.use] * dispersion
+        self._launch = np.unique(units.cluster[self.use], return_inverse=True)[1]
+        self._folds = np.arange(len(self.use)) % min(FOLDS, len(self.use))
+        draws = np.random.default_rng(0).integers(self._launches, size=(RESAMPLED, self._launches))
+        self._resampled = np.stack([np.bincount(row, minlength=self._launches) for row in draws])
+
+    @property
+    def _launches(self) -> int:
+        return int(self._launch.max()) + 1
 
     def fitted(self, model: Model) -> float:
-        """Sum of squares that a model leaves when fitted to all clusters."""
+        """Loss that a model leaves when fitted to all units."""
         columns, ridge = model.columns(self.grams)
-        theta = gram.solve(self.grams, columns, self.use, ridge)
-        return float(gram.losses(self.grams, columns, theta, self.use).sum()) / self.dispersion
+        theta = gram.solve_softly(self.grams, columns, self.use, self._freedom, ridge)
+        left = gram.losses(self.grams, columns, theta, self.use)
+        return float(gram.soft(left, self._freedom).sum()) / self.dispersion
 
     def foretold(self, model: Model) -> np.ndarray:
-        """Sum of squares of each cluster under the model fitted to the clusters of the other folds."""
+        """Loss of each launch, its units foretold by the model fitted to those of the other folds."""
         columns, ridge = model.columns(self.grams)
-        loss = np.zeros(len(self.use))
+        left = np.zeros(len(self.use))
         for fold in range(self._folds.max() + 1):
             out = self._folds == fold
-            theta = gram.solve(self.grams, columns, self.use[~out], ridge)
-            loss[out] = gram.losses(self.grams, columns, theta, self.use[out])
-        return loss / self.dispersion
+            theta = gram.solve_softly(self.grams, columns, self.use[~out], self._freedom[~out], ridge)
+            left[out] = gram.losses(self.grams, columns, theta, self.use[out])
+        return np.bincount(self._launch, gram.soft(left, self._freedom)) / self.dispersion
 
     def gain(self, model: Model, law: Law) -> Gain:
         """What `law` adds to `model`; a family with the best of SPREADS."""
@@ -112,16 +129,19 @@ class Chooser:
         return best
 
     def passes(self, gain: Gain) -> bool:
-        """Whether a gain is more than chance, in the fit and on held-out clusters, and not one launch's doing."""
+        """Whether a gain is more than chance, in the fit and on held-out units, and not the doing of few launches."""
         k = len(gain.law.columns)
-        enough = gain.fitted > LEAST_FIT + 2.0 * k and gain.total > LEAST_FORETOLD
-        return enough and gain.without_best > 0.0 and bool((gain.foretold > 0.0).mean() > 0.5 or gain.law.family)
+        enough = gain.fitted > LEAST_FIT + 2.0 * k and gain.total > LEAST_FORETOLD and gain.without_best > 0.0
+        return enough and float(np.quantile(self._resampled @ gain.foretold, UNSURE)) > 0.0
 
     def same_in_both_halves(self, model: Model, law: Law) -> bool:
-        """Whether the odd and the even clusters ask for the law with the same sign."""
+        """Whether the odd and the even launches ask for the law with the same sign."""
         columns, ridge = model.plus(law, 1.0).columns(self.grams)
         at = np.isin(columns, self.grams.columns(law.columns))
-        halves = [gram.solve(self.grams, columns, self.use[k::2], ridge)[at] for k in (0, 1)]
+        halves = []
+        for k in (0, 1):
+            some = self._launch % 2 == k
+            halves.append(gram.solve_softly(self.grams, columns, self.use[some], self._freedom[some], ridge)[at])
         weight = self.grams.g[np.ix_(self.use, columns[at], columns[at])].sum(axis=0)
         return float(halves[0] @ weight @ halves[1]) > 0.0
 

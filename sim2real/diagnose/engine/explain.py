@@ -9,7 +9,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from sim2real.diagnose.engine import gram
-from sim2real.diagnose.engine.choose import AMBIGUOUS, Chooser, Gain, Law, Model
+from sim2real.diagnose.engine.choose import AMBIGUOUS, LEAST_FORETOLD, LEAST_SHARE, Chooser, Gain, Law, Model
 from sim2real.diagnose.engine.fit import Fit, fit
 from sim2real.diagnose.finding import Rival
 from sim2real.diagnose.problem import Columns, Problem
@@ -18,6 +18,7 @@ MOST_LISTED = 4
 FEWEST_CLUSTERS = 4
 CLEAR = 1e-4  # chance at which the simulator's own numbers would be refused though they are right
 REMAINDER = 0.1  # share of what the listed laws explain that a remainder must exceed to be worth a law
+FAR_OFF = 3.0  # mean square residual, in units of the noise, of a typical launch of which something is not explained
 STRAY = 6.0  # times the usual sum of squares: a launch in which something else happened
 MOST_STRAY = 0.1
 
@@ -46,15 +47,15 @@ def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray) -> 
     """Explain the clusters `use` of a problem, starting from the simulator's own numbers `shipped`."""
     baseline = fit(problem, shipped, problem.base, use)
     screen = problem.columns(baseline.values)
-    base = Model(problem.base)
-    chooser = Chooser(screen.grams, use, _dispersion(problem, screen, use))
-    model, rounds = chooser.add(base, screen.listed, MOST_LISTED)
+    chooser = Chooser(screen.grams, problem.units, use, _dispersion(problem, screen, use))
+    model, rounds = chooser.add(Model(problem.base), screen.listed, MOST_LISTED)
     model = chooser.prune(model)
     law = _refit(problem, baseline, model.laws, use)
     columns = screen if law is baseline else problem.columns(law.values, law.free)
-    family = _remainder(chooser, model, Chooser(columns.grams, use, chooser.dispersion), law, columns)
-    if family is not None:
-        model = chooser.prune(model.plus(family.law, family.spread))
+    refitted = Chooser(columns.grams, problem.units, use, chooser.dispersion)
+    model = _with_remainder(chooser, model, _remainder(chooser, model, refitted, law, columns), screen)
+    if not model.laws and _far_off(problem, baseline, use):
+        model = _likeliest(chooser, model, screen)
     listed = tuple(law for law in model.laws if not law.family)
     unlisted = next((law for law in model.laws if law.family), None)
     law = _refit(problem, baseline, listed, use)
@@ -73,27 +74,58 @@ def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray) -> 
 
 
 def _dispersion(problem: Problem, screen: Columns, use: np.ndarray) -> float:
-    """Noise beyond the sensor's, in variance: what even the richest law leaves. At least 1."""
+    """Noise beyond the sensor's, in variance: what even the richest law leaves of a typical launch. At least 1."""
     every = Model(problem.base)
     for law in (*screen.listed, *screen.families):
         every = every.plus(law, 1.0)
     columns, ridge = every.columns(screen.grams)
-    theta = gram.solve(screen.grams, columns, use, ridge + 1e-6)
-    left = gram.losses(screen.grams, columns, theta, use)
-    freedom = problem.freedom[use]
-    typical = np.median(left / np.maximum(freedom, 1.0))
-    return float(max(typical, 1.0))
+    units = problem.units.of(use)
+    theta = gram.solve(screen.grams, columns, units, ridge + 1e-6)
+    left = np.bincount(problem.units.cluster[units], gram.losses(screen.grams, columns, theta, units), problem.clusters)
+    return float(max(np.median(left[use] / np.maximum(problem.freedom[use], 1.0)), 1.0))
 
 
 def _remainder(chooser: Chooser, model: Model, refitted: Chooser, law: Fit, columns: Columns) -> Gain | None:
     """The family that explains most of what the listed laws leave once they are refitted (`law`, with its `columns`),
     if that is more than chance and worth a law."""
     gains = sorted((refitted.gain(Model(law.free), one) for one in columns.families), key=lambda gain: -gain.total)
-    explained = float((chooser.foretold(Model(model.base)) - chooser.foretold(model)).sum())
+    explained = _explained(chooser, model)
     for gain in gains:
         if refitted.passes(gain) and gain.total > REMAINDER * explained:
             return gain
     return None
+
+
+def _with_remainder(chooser: Chooser, model: Model, rest: Gain | None, screen: Columns) -> Model:
+    """The model with the family `rest` on top; or a family alone, where that does as well: then listed laws only stood
+    in for parts of it."""
+    if rest is None:
+        return model
+    both = chooser.prune(model.plus(rest.law, rest.spread))
+    alone = _likeliest(chooser, Model(model.base), screen)
+    worse = _explained(chooser, both) - _explained(chooser, alone)
+    return alone if worse < max(LEAST_FORETOLD, LEAST_SHARE * _explained(chooser, both)) else both
+
+
+def _likeliest(chooser: Chooser, base: Model, screen: Columns) -> Model:
+    """The baseline and the family that alone foretells best."""
+    best = max((chooser.gain(base, law) for law in screen.families), key=lambda gain: gain.total)
+    return base.plus(best.law, best.spread)
+
+
+def _explained(chooser: Chooser, model: Model) -> float:
+    return float((chooser.foretold(Model(model.base)) - chooser.foretold(model)).sum())
+
+
+def _far_off(problem: Problem, law: Fit, use: np.ndarray) -> bool:
+    """Whether a law leaves far more than noise of most launches, so that something must be missing."""
+    return bool(np.median(_left(problem, law, use)) > FAR_OFF)
+
+
+def _left(problem: Problem, law: Fit, use: np.ndarray) -> np.ndarray:
+    """What a law leaves of each cluster in `use`: its mean square residual in units of the noise."""
+    found = problem.residuals(law.values, (), use)
+    return np.bincount(found.cluster, found.r**2, problem.clusters)[use] / np.maximum(problem.freedom[use], 1.0)
 
 
 def _refit(problem: Problem, baseline: Fit, listed: tuple[Law, ...], use: np.ndarray) -> Fit:
@@ -109,8 +141,7 @@ def _refit(problem: Problem, baseline: Fit, listed: tuple[Law, ...], use: np.nda
 
 def _calm(problem: Problem, law: Fit, use: np.ndarray, unlisted: Law | None) -> np.ndarray:
     """The clusters that the final law explains; a few that it does not saw something of their own, and are left out."""
-    found = problem.residuals(law.values, (), use)
-    loss = np.bincount(found.cluster, found.r**2, problem.clusters)[use] / np.maximum(problem.freedom[use], 1.0)
+    loss = _left(problem, law, use)
     stray = loss > STRAY * max(float(np.median(loss)), 1.0)
     few = 0 < stray.sum() <= MOST_STRAY * len(use) and unlisted is None
     return use[~stray] if few else use
@@ -123,8 +154,9 @@ def _smooth(problem: Problem, law: Fit, unlisted: Law | None, model: Model, colu
     columns = problem.columns(law.values, law.free)
     spread = model.spreads[model.laws.index(unlisted)]
     index, ridge = Model(law.free, (unlisted,), (spread,)).columns(columns.grams)
-    theta = gram.solve(columns.grams, index, use, ridge)
-    return theta, gram.covariance(columns.grams, index, theta, use), columns
+    units = problem.units.of(use)
+    theta = gram.solve_softly(columns.grams, index, units, problem.units.freedom[units], ridge)
+    return theta, gram.covariance(columns.grams, index, theta, units), columns
 
 
 def _as_shipped(problem: Problem, shipped: Mapping[str, float], baseline: Fit, use, dispersion: float) -> bool:

@@ -13,7 +13,7 @@ import numpy as np
 UNIT = 0.1  # m/s^2, what a coefficient of 1 stands for
 WAVES_X, WAVES_Y = 6, 4  # of cosines over the table
 HARMONICS = 4  # of the heading
-SPEED_KNOTS, TIME_KNOTS, HISTORY_KNOTS = 8, 10, 6
+SPEED_KNOTS, TIME_KNOTS, HISTORY_KNOTS = 8, 20, 6
 LONGEST_MEMORY = 2.0  # s after a contact
 
 

@@ -56,7 +56,8 @@ def glide_columns(problem: GlideProblem, values: Mapping[str, float], free: Sequ
         names += families[-1].columns
         blocks.append(block)
     jacobian = np.concatenate(blocks, axis=1)
-    grams = gram.make_grams(names, exact.r, jacobian, exact.cluster, problem.clusters)
+    glide = np.repeat(np.arange(problem.data.glides), 2 * np.diff(problem.data.first))
+    grams = gram.make_grams(names, exact.r, jacobian, glide, problem.data.glides)
     return Columns(grams, [*listed, *patches], families)
 
 

@@ -14,7 +14,7 @@ from sim2real.diagnose.glide.data import GlideData
 from sim2real.diagnose.glide.families import Motion
 from sim2real.diagnose.glide.laws import glide_columns
 from sim2real.diagnose.glide.trace import trace
-from sim2real.diagnose.problem import Columns, Residuals
+from sim2real.diagnose.problem import Columns, Residuals, Units
 
 ROUNDS = 3
 STEP = np.array([1e-6, 1e-6, 1e-5, 1e-5])  # of a start: m, m/s
@@ -33,8 +33,8 @@ class GlideProblem:
         self._common = dict(values)
         self._starts = _first_guess(data)
         self._pucks = np.zeros(1, PUCK)
-        frames = np.bincount(data.cluster, np.diff(data.first), data.clusters)
-        self.freedom = 2.0 * frames - 4.0 * np.bincount(data.cluster, minlength=data.clusters)
+        self.units = Units(data.cluster, 2.0 * np.diff(data.first) - 4.0)
+        self.freedom = np.bincount(data.cluster, self.units.freedom, data.clusters)
         self.noise_m = float(np.sqrt(np.mean(data.std**2)))
 
     def columns(self, values: Mapping[str, float], free: Sequence[str] = ()) -> Columns:

@@ -44,7 +44,8 @@ def mallet_columns(problem: MalletProblem, values: Mapping[str, float], free: Se
             families.append(Law(label, tuple(f"{label} {k}" for k in range(block.shape[1])), depends))
             names += families[-1].columns
             blocks.append(block)
-    grams = gram.make_grams(names, exact.r, np.concatenate(blocks, axis=1), exact.cluster, problem.clusters)
+    unit = np.repeat(np.arange(len(problem.data)), 3)
+    grams = gram.make_grams(names, exact.r, np.concatenate(blocks, axis=1), unit, len(problem.data))
     return Columns(grams, laws, families)
 
 

@@ -18,7 +18,7 @@ from puckpilot_env.physics.rebound import strike
 from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.mallet.data import Blows
 from sim2real.diagnose.mallet.laws import mallet_columns
-from sim2real.diagnose.problem import Columns, Residuals
+from sim2real.diagnose.problem import Columns, Residuals, Units
 
 FLIGHT = 0.1  # s; an error of a velocity is told as that of the place so much later
 STEP = 1e-5  # m/s
@@ -48,6 +48,7 @@ class MalletProblem:
         """`clusters`: how many launches the recordings have; `common`: sizes of the table."""
         self.data, self.clusters, self._common = data, clusters, dict(common)
         self._pucks = np.zeros(1, PUCK)
+        self.units = Units(data.cluster, np.full(len(data), 3.0))
         self.freedom = 3.0 * np.bincount(data.cluster, minlength=clusters)
         self._whiten = self._whitening()
         spread = data.spread.sum(axis=1)

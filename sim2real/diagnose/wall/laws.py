@@ -49,7 +49,8 @@ def wall_columns(problem: WallProblem, values: Mapping[str, float], free: Sequen
             names += law.columns
             blocks.append(block)
             families.append(law)
-    grams = gram.make_grams(names, exact.r, np.concatenate(blocks, axis=1), exact.cluster, problem.clusters)
+    unit = np.repeat(np.arange(len(problem.data)), 2)
+    grams = gram.make_grams(names, exact.r, np.concatenate(blocks, axis=1), unit, len(problem.data))
     return Columns(grams, [*laws, *spins], families)
 
 

@@ -13,7 +13,7 @@ from puckpilot_env.physics.advance import PUCK
 from puckpilot_env.physics.effects import EFFECTS
 from puckpilot_env.physics.rebound import rebound
 from sim2real.diagnose.engine.choose import Law
-from sim2real.diagnose.problem import Columns, Residuals
+from sim2real.diagnose.problem import Columns, Residuals, Units
 from sim2real.diagnose.wall.data import Bounces
 from sim2real.diagnose.wall.laws import wall_columns
 
@@ -47,6 +47,7 @@ class WallProblem:
         """`clusters`: how many launches the recording has; `common`: sizes of the table."""
         self.data, self.clusters, self._common = data, clusters, dict(common)
         self._pucks = np.zeros(1, PUCK)
+        self.units = Units(data.cluster, np.full(len(data), 2.0))
         self.freedom = 2.0 * np.bincount(data.cluster, minlength=clusters)
         self._whiten = self._whitening(self._record({}))
         spread = data.spread.sum(axis=1)
