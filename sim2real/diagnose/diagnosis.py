@@ -11,6 +11,7 @@ from sim2real.diagnose.account import account
 from sim2real.diagnose.contacts import geometry, mallet_tracks
 from sim2real.diagnose.encoders import read_encoders
 from sim2real.diagnose.engine.explain import explain
+from sim2real.diagnose.engine.fit import given
 from sim2real.diagnose.finding import Account, Finding, Proof
 from sim2real.diagnose.glide.data import GlideData, glide_data, join
 from sim2real.diagnose.glide.problem import GlideProblem
@@ -113,10 +114,10 @@ def _puck(data: Cut, values: dict[str, float], progress: Progress):
     law = dict(values)
     found, told = _explain(glides, law, proof)
     yield told
-    if found is not None:
-        law |= found.law.values
+    braking = given(law) if found is None else found.law
+    law |= braking.values
     progress("bounces", 0.6)
-    impacts = [find_impacts(pieces, glides, law, k) for k, pieces in enumerate(data.pieces)]
+    impacts = [find_impacts(pieces, glides, braking, k) for k, pieces in enumerate(data.pieces)]
     yield _walls([hit for some in impacts for hit in some], glides, data, law, proof)
     progress("blows", 0.75)
     struck = _blows(data.recordings, impacts)

@@ -54,8 +54,8 @@ class Problem(Protocol):
     """A regime's data.
 
     `clusters`: how many launches there are, by which intervals and proofs are resampled; `freedom` (clusters,): how
-    many of each one's residuals are left free by its nuisances; `units`: its parts; `noise_m`: the sensor's noise [m], rms over the residuals. `base`: the
-    baseline's parameters that it can tell; `regime` as in the format.
+    many of each one's residuals are left free by its nuisances; `units`: its parts; `noise_m`: the sensor's noise [m],
+    rms over the residuals. `base`: the baseline's parameters that it can tell; `regime` as in the format.
     """
 
     regime: str

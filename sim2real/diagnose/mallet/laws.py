@@ -33,13 +33,13 @@ def mallet_columns(problem: MalletProblem, values: Mapping[str, float], free: Se
     for mu in FRICTIONS if values.get("mallet_mu", 0.0) == 0.0 else ():
         law = Law("mallet_friction", (f"mallet_mu@{mu}", f"mallet_mu slope@{mu}"), start={"mallet_mu": mu})
         at, above = (problem.predicted({**values, "mallet_mu": m}) for m in (mu, 1.2 * mu))
-        blocks.append(-problem.whitened(np.stack([at - now, above - at], axis=2)))
+        blocks.append(problem.allowing(values, -problem.whitened(np.stack([at - now, above - at], axis=2))))
         names += law.columns
         laws.append(law)
     families = []
     for name, (depends, shape) in FAMILIES.items():
         for component, axis in (("restitution", 0), ("tangential ratio", 1)):
-            block = problem.blurred(values, -problem.whitened(_impulses(problem.data, shape(problem.data), axis)))
+            block = problem.allowing(values, -problem.whitened(_impulses(problem.data, shape(problem.data), axis)))
             label = f"mallet's {component} by {name}"
             families.append(Law(label, tuple(f"{label} {k}" for k in range(block.shape[1])), depends))
             names += families[-1].columns

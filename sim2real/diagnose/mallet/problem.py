@@ -50,7 +50,10 @@ class MalletProblem:
         self._pucks = np.zeros(1, PUCK)
         self.units = Units(data.cluster, np.full(len(data), 3.0))
         self.freedom = 3.0 * np.bincount(data.cluster, minlength=clusters)
-        self._whiten = self._whitening()
+        self._whiten, by_before = self._whitening()
+        drift = -by_before @ data.drift[:, 0]
+        drift[:, :2] += data.drift[:, 1]
+        self._common_noise = np.linalg.svd(self.whitened(drift), full_matrices=False)[:2]
         spread = data.spread.sum(axis=1)
         self.noise_m = FLIGHT * float(np.sqrt(np.trace(spread, axis1=1, axis2=2).mean() / 2)) if len(data) else 0.0
 
@@ -66,22 +69,23 @@ class MalletProblem:
             columns[:, :, k] = (self.predicted({**values, name: at + step}) - now) / step
         seen = np.concatenate([self.data.split(self.data.after), self.data.step[:, None]], axis=1)
         r, jacobian = self.whitened(seen - now), -self.whitened(columns)
-        r, jacobian = self.blurred(values, r[:, None])[:, 0], self.blurred(values, jacobian)
+        both = self.allowing(values, np.concatenate([r[:, None], jacobian], axis=1))
         cluster = np.repeat(self.data.cluster, 3)
         here = np.isin(cluster, clusters)
-        return Residuals(r[here], jacobian[here], cluster[here])
+        return Residuals(both[here, 0], both[here, 1:], cluster[here])
 
     def predicted(self, values: Mapping[str, float]) -> np.ndarray:
         """Velocity after along the normal and the tangent, and the mallet's step along the normal: (n, 3) [m/s]."""
         return self._predicted(self._record(values), self.data.before, self.data.driven)
 
-    def blurred(self, values: Mapping[str, float], rows: np.ndarray) -> np.ndarray:
-        """Residuals or columns (3n, k) with more noise along the tangent where the spin is unknown: up to what friction
-        can do."""
+    def allowing(self, values: Mapping[str, float], rows: np.ndarray) -> np.ndarray:
+        """Residuals or columns (3n, k) with further noise: the glides' law, common to all blows, and along the tangent
+        where the spin is unknown, up to what friction can do."""
         d = self.data
+        vector, size = self._common_noise
+        rows = rows - vector @ ((1.0 - 1.0 / np.sqrt(1.0 + size**2))[:, None] * (vector.T @ rows))
         e = values.get("mallet_restitution", BY_NAME["mallet_restitution"].default)
         reach = values.get("mallet_mu", 0.0) * (1.0 + e) * d.closing
-        rows = rows.copy()
         rows[1::3] /= np.where(d.lost, np.hypot(1.0, reach * self._whiten[:, 1, 1]), 1.0)[:, None]
         return rows
 
@@ -111,8 +115,9 @@ class MalletProblem:
         change = self.data.split(after - before)[:, :1]
         return np.concatenate([self.data.split(after), -float(record["mallet_give"]) * change], axis=1)
 
-    def _whitening(self) -> np.ndarray:
-        """Inverse roots (n, 3, 3) of the covariance of what is seen less what the baseline foretells of it."""
+    def _whitening(self) -> tuple[np.ndarray, np.ndarray]:
+        """Inverse roots (n, 3, 3) of the covariance of what is seen less what the baseline foretells of it; and how the
+        foretold changes with the velocity before (n, 3, 2)."""
         d, record = self.data, self._record({})
         axes = np.stack([d.normal, np.stack([-d.normal[:, 1], d.normal[:, 0]], axis=1)], axis=1)
         now = self._predicted(record, d.before, d.driven)
@@ -127,4 +132,4 @@ class MalletProblem:
         size = np.linalg.norm(d.after - d.before, axis=1)
         covariance[:, :2, :2] += np.eye(2) * ((d.turn * size) ** 2)[:, None, None]
         value, vector = np.linalg.eigh(covariance)
-        return vector @ (vector.transpose(0, 2, 1) / np.sqrt(np.maximum(value, 1e-12))[:, :, None])
+        return vector @ (vector.transpose(0, 2, 1) / np.sqrt(np.maximum(value, 1e-12))[:, :, None]), by_before

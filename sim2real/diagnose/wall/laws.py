@@ -36,13 +36,13 @@ def wall_columns(problem: WallProblem, values: Mapping[str, float], free: Sequen
     for mu in FRICTIONS if values.get("wall_mu", 0.0) == 0.0 else ():
         law = Law("wall_friction_spin", (f"wall_mu@{mu}", f"wall_mu slope@{mu}"), start={"wall_mu": mu})
         at, above = (problem.predicted({**values, "wall_mu": m}) for m in (mu, 1.2 * mu))
-        blocks.append(-problem.whitened(np.stack([at - now, above - at], axis=2)))
+        blocks.append(problem.allowing(values, now, -problem.whitened(np.stack([at - now, above - at], axis=2))))
         names += law.columns
         spins.append(law)
     for name, (depends, shape) in FAMILIES.items():
         for component, axis in (("restitution", 0), ("tangential ratio", 1)):
             block = -problem.whitened(_impulses(problem.data, shape(problem.data), axis))
-            block = problem.allowing_for_spin(values, now, block)
+            block = problem.allowing(values, now, block)
             law = Law(
                 f"{component} by {name}", tuple(f"{component} {name} {k}" for k in range(block.shape[1])), depends
             )

@@ -49,7 +49,9 @@ class WallProblem:
         self._pucks = np.zeros(1, PUCK)
         self.units = Units(data.cluster, np.full(len(data), 2.0))
         self.freedom = 2.0 * np.bincount(data.cluster, minlength=clusters)
-        self._whiten = self._whitening(self._record({}))
+        self._whiten, by_before = self._whitening(self._record({}))
+        drift = data.drift[:, 1] - by_before @ data.drift[:, 0]
+        self._common_noise = np.linalg.svd(self.whitened(drift), full_matrices=False)[:2]
         spread = data.spread.sum(axis=1)
         self.noise_m = FLIGHT * float(np.sqrt(np.trace(spread, axis1=1, axis2=2).mean() / 2)) if len(data) else 0.0
 
@@ -63,7 +65,7 @@ class WallProblem:
             step = 1e-5 * (row.high - row.low) * (1.0 if at + 1e-5 * (row.high - row.low) < row.high else -1.0)
             columns[:, :, k] = (self.predicted({**values, name: at + step}) - now) / step
         r, jacobian = self.whitened(self.data.split(self.data.after) - now), -self.whitened(columns)
-        both = self.allowing_for_spin(values, now, np.concatenate([r[:, None], jacobian], axis=1))
+        both = self.allowing(values, now, np.concatenate([r[:, None], jacobian], axis=1))
         cluster = np.repeat(self.data.cluster, 2)
         here = np.isin(cluster, clusters)
         return Residuals(both[here, 0], both[here, 1:], cluster[here])
@@ -72,11 +74,17 @@ class WallProblem:
         """Velocity after (n, 2) [m/s] along the normal and the tangent, under a law."""
         return self.data.split(self._after(self._record(values), self.data.before))
 
-    def allowing_for_spin(self, values: Mapping[str, float], now: np.ndarray, rows: np.ndarray) -> np.ndarray:
-        """Residuals or columns (2n, k) with the spin at each chain's start as a further noise, where there is friction.
+    def allowing(self, values: Mapping[str, float], now: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        """Residuals or columns (2n, k) with further noise: the glides' law, common to all bounces, and the spin.
 
         now: what the law foretells, as `predicted` gives it.
         """
+        vector, size = self._common_noise
+        shrunk = (1.0 - 1.0 / np.sqrt(1.0 + size**2))[:, None] * (vector.T @ rows)
+        return self._allowing_for_spin(values, now, rows - vector @ shrunk)
+
+    def _allowing_for_spin(self, values: Mapping[str, float], now: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        """The same with the spin at each chain's start, where there is friction."""
         if values.get("wall_mu", 0.0) <= 0.0 or not len(self.data):
             return rows
         d, record = self.data, self._record(values)
@@ -125,8 +133,9 @@ class WallProblem:
         _rebounds(record, d.kind, d.normal, d.t, d.chain, before, spin, self._pucks, after)
         return after
 
-    def _whitening(self, record: np.void) -> np.ndarray:
-        """Inverse roots (n, 2, 2) of the covariance of velocity after less foretold, at the law `record`."""
+    def _whitening(self, record: np.void) -> tuple[np.ndarray, np.ndarray]:
+        """Inverse roots (n, 2, 2) of the covariance of velocity after less foretold, at the law `record`; and how the
+        foretold changes with the velocity before (n, 2, 2)."""
         d = self.data
         axes = np.stack([d.normal, np.stack([-d.normal[:, 1], d.normal[:, 0]], axis=1)], axis=1)
         now = self._after(record, d.before)
@@ -137,4 +146,4 @@ class WallProblem:
         size = np.linalg.norm(d.before, axis=1) + np.linalg.norm(d.after, axis=1)
         covariance += np.eye(2) * ((d.turn * size) ** 2)[:, None, None]
         value, vector = np.linalg.eigh(covariance)
-        return vector @ (vector.transpose(0, 2, 1) / np.sqrt(np.maximum(value, 1e-12))[:, :, None])
+        return vector @ (vector.transpose(0, 2, 1) / np.sqrt(np.maximum(value, 1e-12))[:, :, None]), by
