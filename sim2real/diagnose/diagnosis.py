@@ -10,11 +10,11 @@ import numpy as np
 from sim2real.diagnose.account import account
 from sim2real.diagnose.contacts import geometry, mallet_tracks
 from sim2real.diagnose.encoders import read_encoders
-from sim2real.diagnose.engine.explain import explain
+from sim2real.diagnose.engine.explain import Explained, explain
 from sim2real.diagnose.engine.fit import given
 from sim2real.diagnose.finding import Account, Finding, Proof
 from sim2real.diagnose.glide.data import GlideData, glide_data, join
-from sim2real.diagnose.glide.problem import GlideProblem
+from sim2real.diagnose.glide.problem import GlideProblem, States
 from sim2real.diagnose.impacts import Impact, find_impacts
 from sim2real.diagnose.mallet.data import Blows, blows
 from sim2real.diagnose.mallet.data import join as join_blows
@@ -114,10 +114,10 @@ def _puck(data: Cut, values: dict[str, float], progress: Progress):
     law = dict(values)
     found, told = _explain(glides, law, proof)
     yield told
-    braking = given(law) if found is None else found.law
-    law |= braking.values
+    states = glides.states(given(law)) if found is None else _states(glides, found)
+    law |= {} if found is None else found.law.values
     progress("bounces", 0.6)
-    impacts = [find_impacts(pieces, glides, braking, k) for k, pieces in enumerate(data.pieces)]
+    impacts = [find_impacts(pieces, glides, states, k) for k, pieces in enumerate(data.pieces)]
     yield _walls([hit for some in impacts for hit in some], glides, data, law, proof)
     progress("blows", 0.75)
     struck = _blows(data.recordings, impacts)
@@ -128,6 +128,12 @@ def _puck(data: Cut, values: dict[str, float], progress: Progress):
 def _glides(recording: Recording, pieces: Pieces) -> GlideData:
     t = np.zeros(0) if recording.frames is None else recording.frames.t
     return glide_data(pieces, geometry(recording), mallet_tracks(recording, t))
+
+
+def _states(glides: GlideProblem, found: Explained) -> States:
+    if found.unlisted is None:
+        return glides.states(found.law)
+    return glides.states(found.law, found.unlisted.name, found.theta[-len(found.unlisted.columns) :])
 
 
 def _blows(recordings: Sequence[Recording], impacts: Sequence[list[Impact]]) -> Blows | None:

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim2real.diagnose.engine.fit import Fit
-from sim2real.diagnose.glide.problem import GlideProblem
+from sim2real.diagnose.glide.problem import GlideProblem, States
 from sim2real.diagnose.hits import Hit
 from sim2real.diagnose.pieces import Pieces
 
@@ -47,16 +46,15 @@ class Impact:
     glide: int
 
 
-def find_impacts(pieces: Pieces, problem: GlideProblem, law: Fit, recording: int = 0) -> list[Impact]:
+def find_impacts(pieces: Pieces, problem: GlideProblem, states: States, recording: int = 0) -> list[Impact]:
     """The hits of `pieces` that a fitted glide leads to and another one from, in order of time.
 
-    `pieces` are those of the problem's recording of that number.
+    `pieces` are those of the problem's recording of that number, `states` the ends of all its glides.
     """
     data = problem.data
     here = np.flatnonzero(data.recording == recording)
     if not len(here):
         return []
-    states = problem.states(law)
     motion, spread, drift = states.motion[here], states.spread[here], states.drift[here]
     begin, finish = data.t[data.first[here]], data.t[data.first[here + 1] - 1]
     found: list[Impact] = []

@@ -18,6 +18,7 @@ FOLDS = 10
 LEAST_FIT = 30.0  # drop of the loss (and 2 more a parameter) that chance does not make
 LEAST_FORETOLD = 12.0  # drop of the held-out loss
 RESAMPLED, UNSURE = 400, 0.02  # draws of launches, and the share of them in which a law may be of no use
+UNKNOWN = 4.0  # sum of squares a column, below which half of the launches does not tell a sign
 LEAST_SHARE = 0.05  # of what all laws together explain
 AMBIGUOUS = 9.0  # held-out losses nearer than this do not tell two laws apart
 SPREADS = (0.03, 0.3, 3.0)  # tried for the coefficients of a family
@@ -135,40 +136,44 @@ class Chooser:
         return enough and float(np.quantile(self._resampled @ gain.foretold, UNSURE)) > 0.0
 
     def same_in_both_halves(self, model: Model, law: Law) -> bool:
-        """Whether the odd and the even launches ask for the law with the same sign."""
+        """Whether the odd and the even launches ask for the law with the same sign, as far as either knows."""
         columns, ridge = model.plus(law, 1.0).columns(self.grams)
         at = np.isin(columns, self.grams.columns(law.columns))
-        halves = []
+        halves, known = [], []
         for k in (0, 1):
             some = self._launch % 2 == k
             halves.append(gram.solve_softly(self.grams, columns, self.use[some], self._freedom[some], ridge)[at])
+            seen = self.grams.g[np.ix_(self.use[some], columns[at], columns[at])].sum(axis=0)
+            known.append(float(halves[k] @ seen @ halves[k]))
         weight = self.grams.g[np.ix_(self.use, columns[at], columns[at])].sum(axis=0)
-        return float(halves[0] @ weight @ halves[1]) > 0.0
+        return min(known) < UNKNOWN * len(law.columns) or float(halves[0] @ weight @ halves[1]) > 0.0
 
-    def add(self, model: Model, laws: Sequence[Law], most: int) -> tuple[Model, list[list[Gain]]]:
-        """Add the best law that passes, again and again; also returns each round's gains, best first."""
-        rounds = []
+    def add(self, model: Model, laws: Sequence[Law], most: int) -> tuple[Model, list[Gain]]:
+        """Add the law that foretells best, again and again, whether it is sure or not: `prune` decides on all together.
+        Also returns the gains of each law alone, best first."""
+        first: list[Gain] = []
         while len(model.laws) < most:
             taken = {law.name for law in model.laws}
-            gains = [self.gain(model, law) for law in laws if law.name not in taken]
-            gains.sort(key=lambda gain: -gain.total)
-            passing = [g for g in gains if self.passes(g) and self.same_in_both_halves(model, g.law)]
-            if not passing:
-                rounds.append(gains)
+            gains = sorted((self.gain(model, law) for law in laws if law.name not in taken), key=lambda one: -one.total)
+            first = first or gains
+            if not gains or gains[0].total < LEAST_FORETOLD:
                 break
-            rounds.append(gains)
-            model = model.plus(passing[0].law, passing[0].spread)
-        return model, rounds
+            model = model.plus(gains[0].law, gains[0].spread)
+        return model, first
 
     def prune(self, model: Model) -> Model:
-        """Take out laws that the others make needless: little is lost on held-out clusters without them."""
+        """Take out laws that the others make needless, or that are not sure beside them, the weakest first."""
         explained = float((self.foretold(Model(model.base)) - self.foretold(model)).sum())
-        while len(model.laws) > 1:
-            loss = {
-                law.name: float((self.foretold(model.minus(law)) - self.foretold(model)).sum()) for law in model.laws
-            }
-            weakest = min((law for law in model.laws), key=lambda law: loss[law.name])
-            if loss[weakest.name] > max(LEAST_FORETOLD, LEAST_SHARE * explained):
+        while model.laws:
+            gains = [self.gain(model.minus(law), law) for law in model.laws]
+            worth = LEAST_SHARE * explained if len(gains) > 1 else 0.0
+            failing = [one for one in gains if one.total < worth or not self.sure(model, one)]
+            if not failing:
                 break
-            model = model.minus(weakest)
+            model = model.minus(min(failing, key=lambda one: one.total).law)
         return model
+
+    def sure(self, model: Model, gain: Gain) -> bool:
+        """Whether a law of the model passes, with the same sign in both halves if it is a listed one."""
+        rest = model.minus(gain.law)
+        return self.passes(gain) and (bool(gain.law.family) or self.same_in_both_halves(rest, gain.law))

@@ -48,14 +48,14 @@ def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray) -> 
     baseline = fit(problem, shipped, problem.base, use)
     screen = problem.columns(baseline.values)
     chooser = Chooser(screen.grams, problem.units, use, _dispersion(problem, screen, use))
-    model, rounds = chooser.add(Model(problem.base), screen.listed, MOST_LISTED)
+    model, gains = chooser.add(Model(problem.base), screen.listed, MOST_LISTED)
     model = chooser.prune(model)
     law = _refit(problem, baseline, model.laws, use)
     columns = screen if law is baseline else problem.columns(law.values, law.free)
     refitted = Chooser(columns.grams, problem.units, use, chooser.dispersion)
     model = _with_remainder(chooser, model, _remainder(chooser, model, refitted, law, columns), screen)
-    if not model.laws and _far_off(problem, baseline, use):
-        model = _likeliest(chooser, model, screen)
+    if not any(one.family for one in model.laws) and _far_off(problem, law, use):
+        model = _likeliest(chooser, Model(problem.base), screen)
     listed = tuple(law for law in model.laws if not law.family)
     unlisted = next((law for law in model.laws if law.family), None)
     law = _refit(problem, baseline, listed, use)
@@ -69,7 +69,7 @@ def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray) -> 
     return Explained(
         baseline, law, _as_shipped(problem, shipped, baseline, use, chooser.dispersion), chooser.dispersion, listed,
         unlisted, theta, spread, columns, {one.name: _chance(chooser, model, one, screen) for one in model.laws},
-        also, rivals, tuple(rounds[0]) if rounds else (),
+        also, rivals, tuple(gains),
     )  # fmt: skip
 
 

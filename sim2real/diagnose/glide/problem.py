@@ -13,9 +13,9 @@ from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.engine.fit import Fit
 from sim2real.diagnose.glide.data import GlideData
-from sim2real.diagnose.glide.families import Motion
+from sim2real.diagnose.glide.families import FAMILIES, Motion
 from sim2real.diagnose.glide.laws import glide_columns
-from sim2real.diagnose.glide.trace import trace
+from sim2real.diagnose.glide.trace import bend, trace
 from sim2real.diagnose.problem import Columns, Residuals, Units
 
 ROUNDS = 3
@@ -102,8 +102,17 @@ class GlideProblem:
         """The path (n, 4) under a law with the starts fitted, and its derivatives (n, 2, 4) by the starts."""
         return self._fit_starts(self._record(values))
 
-    def states(self, law: Fit) -> States:
-        """Each glide's motion at its first and last frame under a fitted law."""
+    def bent(self, path: np.ndarray, values: Mapping[str, float], force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Displacements and their rates (n, 2, k) that small accelerations `force` (n, 2, k) make along a path."""
+        moved, moving = np.empty_like(force), np.empty_like(force)
+        data = self.data
+        bend(
+            data.first, data.t, path, values["friction"], values["drag"], np.ascontiguousarray(force), moved, moving
+        )  # fmt: skip
+        return moved, moving
+
+    def states(self, law: Fit, smooth: str = "", theta: np.ndarray | None = None) -> States:
+        """Each glide's motion at its first and last frame under a fitted law, with the family `smooth` on top."""
         data, record = self.data, self._record(law.values)
         path, by_start = self._fit_starts(record)
         velocity_by_start = np.empty_like(by_start)
@@ -114,13 +123,18 @@ class GlideProblem:
             self._trace(record, moved, other)
             velocity_by_start[:, :, k] = (other[:, 2:] - path[:, 2:]) / STEP[k]
         whole = np.concatenate([by_start, velocity_by_start], axis=1)
+        if theta is not None:
+            force = FAMILIES[smooth][1](self.motion(path)) @ theta
+            change = np.concatenate(self.bent(path, law.values, force[:, :, None]), axis=1)[:, :, 0]
+            starts = _steps(data, path + change, by_start)
+            path = path + change + np.einsum("nai,ni->na", whole, data.of_frame(starts))
         ends = [data.first[:-1], data.first[1:] - 1]
         inverse = np.linalg.inv(_normal(data, by_start)) * self._unrest(path)[:, None, None]
         return States(
             np.stack([np.concatenate([path[at], _slope(data.t, path[:, 2:], at, step)], axis=1)
                       for at, step in zip(ends, (1, -1), strict=True)], axis=1),
             np.stack([whole[at] @ inverse @ whole[at].transpose(0, 2, 1) for at in ends], axis=1),
-            self._drift(law, path, ends),
+            self._drift(law, ends),
         )  # fmt: skip
 
     def _unrest(self, path: np.ndarray) -> np.ndarray:
@@ -129,8 +143,9 @@ class GlideProblem:
         left, freedom = np.add.reduceat(square.sum(axis=1), self.data.first[:-1]), self.units.freedom
         return np.where(left > freedom + 3.0 * np.sqrt(2.0 * freedom), left / np.maximum(freedom, 1.0), 1.0)
 
-    def _drift(self, law: Fit, path: np.ndarray, ends: Sequence[np.ndarray]) -> np.ndarray:
+    def _drift(self, law: Fit, ends: Sequence[np.ndarray]) -> np.ndarray:
         """By how much (g, 2, 4, k) the ends move with each of the law's `directions`."""
+        path, _ = self._fit_starts(self._record(law.values))
         kept, drift = self._starts.copy(), np.zeros((self.data.glides, 2, 4, len(law.free)))
         for k, change in enumerate(law.directions.T):
             shifted = {name: law.values[name] + step for name, step in zip(law.free, change, strict=True)}

@@ -29,7 +29,9 @@ def explained(folder, law: Law, seed: int):
     braking = fit(glides, {"friction": 0.125, "drag": 0.125}, glides.base, np.arange(glides.clusters))
     encoders = read_encoders(recording)
     assert encoders is not None
-    problem = MalletProblem(blows(find_impacts(pieces, glides, braking), encoders, g), glides.clusters, sizes)
+    problem = MalletProblem(
+        blows(find_impacts(pieces, glides, glides.states(braking)), encoders, g), glides.clusters, sizes
+    )
     return explain(problem, {"mallet_restitution": 0.7}, np.flatnonzero(problem.freedom > 0))
 
 
