@@ -16,6 +16,7 @@ from puckpilot_env.physics.advance import PUCK
 from puckpilot_env.physics.effects import EFFECTS
 from puckpilot_env.physics.rebound import strike
 from sim2real.diagnose.engine.choose import Law
+from sim2real.diagnose.engine.noise import allowing_for
 from sim2real.diagnose.mallet.data import Blows
 from sim2real.diagnose.mallet.laws import mallet_columns
 from sim2real.diagnose.problem import Columns, Residuals, Units
@@ -53,7 +54,7 @@ class MalletProblem:
         self._whiten, by_before = self._whitening()
         drift = -by_before @ data.drift[:, 0]
         drift[:, :2] += data.drift[:, 1]
-        self._common_noise = np.linalg.svd(self.whitened(drift), full_matrices=False)[:2]
+        self._drift = self.whitened(drift)
         spread = data.spread.sum(axis=1)
         self.noise_m = FLIGHT * float(np.sqrt(np.trace(spread, axis1=1, axis2=2).mean() / 2)) if len(data) else 0.0
 
@@ -82,12 +83,12 @@ class MalletProblem:
         """Residuals or columns (3n, k) with further noise: the glides' law, common to all blows, and along the tangent
         where the spin is unknown, up to what friction can do."""
         d = self.data
-        vector, size = self._common_noise
-        rows = rows - vector @ ((1.0 - 1.0 / np.sqrt(1.0 + size**2))[:, None] * (vector.T @ rows))
         e = values.get("mallet_restitution", BY_NAME["mallet_restitution"].default)
         reach = values.get("mallet_mu", 0.0) * (1.0 + e) * d.closing
-        rows[1::3] /= np.where(d.lost, np.hypot(1.0, reach * self._whiten[:, 1, 1]), 1.0)[:, None]
-        return rows
+        blur = np.ones((len(d), 3, 1))
+        blur[:, 1, 0] = np.where(d.lost, np.hypot(1.0, reach * self._whiten[:, 1, 1]), 1.0)
+        blur = blur.reshape(-1, 1)
+        return allowing_for(self._drift / blur, rows / blur)
 
     def whitened(self, velocities: np.ndarray) -> np.ndarray:
         """Velocities (n, 3, …) in units of their noise, as rows (3n, …)."""

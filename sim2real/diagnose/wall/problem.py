@@ -13,6 +13,7 @@ from puckpilot_env.physics.advance import PUCK
 from puckpilot_env.physics.effects import EFFECTS
 from puckpilot_env.physics.rebound import rebound
 from sim2real.diagnose.engine.choose import Law
+from sim2real.diagnose.engine.noise import allowing_for
 from sim2real.diagnose.problem import Columns, Residuals, Units
 from sim2real.diagnose.wall.data import Bounces
 from sim2real.diagnose.wall.laws import wall_columns
@@ -51,7 +52,7 @@ class WallProblem:
         self.freedom = 2.0 * np.bincount(data.cluster, minlength=clusters)
         self._whiten, by_before = self._whitening(self._record({}))
         drift = data.drift[:, 1] - by_before @ data.drift[:, 0]
-        self._common_noise = np.linalg.svd(self.whitened(drift), full_matrices=False)[:2]
+        self._drift = self.whitened(drift)
         spread = data.spread.sum(axis=1)
         self.noise_m = FLIGHT * float(np.sqrt(np.trace(spread, axis1=1, axis2=2).mean() / 2)) if len(data) else 0.0
 
@@ -79,9 +80,8 @@ class WallProblem:
 
         now: what the law foretells, as `predicted` gives it.
         """
-        vector, size = self._common_noise
-        shrunk = (1.0 - 1.0 / np.sqrt(1.0 + size**2))[:, None] * (vector.T @ rows)
-        return self._allowing_for_spin(values, now, rows - vector @ shrunk)
+        rows, drift = (self._allowing_for_spin(values, now, each) for each in (rows, self._drift))
+        return allowing_for(drift, rows)
 
     def _allowing_for_spin(self, values: Mapping[str, float], now: np.ndarray, rows: np.ndarray) -> np.ndarray:
         """The same with the spin at each chain's start, where there is friction."""
@@ -95,9 +95,8 @@ class WallProblem:
         for chain in np.unique(d.chain):
             here = np.repeat(d.chain == chain, 2)
             s = by_spin[here] * prior[d.chain == chain][0]
-            size = float(s @ s)
-            if size > 1e-12:
-                rows[here] -= np.outer(s, s @ rows[here]) * ((1.0 - 1.0 / np.sqrt(1.0 + size)) / size)
+            if s @ s > 1e-12:
+                rows[here] = allowing_for(s[:, None], rows[here])
         return rows
 
     def _blur(self, values: Mapping[str, float]) -> np.ndarray:
