@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -72,6 +72,11 @@ class Model:
         kept = [(one, spread) for one, spread in zip(self.laws, self.spreads, strict=True) if one is not law]
         return Model(self.base, tuple(one for one, _ in kept), tuple(spread for _, spread in kept))
 
+    @property
+    def key(self) -> tuple[Any, ...]:
+        """What tells it from others."""
+        return (self.base, tuple(law.columns for law in self.laws), self.spreads)
+
     def columns(self, grams: Grams) -> tuple[np.ndarray, np.ndarray]:
         """Indices of all columns, and the ridge of each (0 for parameters that have no prior)."""
         names, ridge = list(self.base), [0.0] * len(self.base)
@@ -94,6 +99,7 @@ class Chooser:
         self._launch = np.unique(units.cluster[self.use], return_inverse=True)[1]
         self._folds = np.arange(len(self.use)) % min(FOLDS, len(self.use))
         draws = np.random.default_rng(0).integers(self._launches, size=(RESAMPLED, self._launches))
+        self._known: dict[tuple[Any, ...], Any] = {}
         self._resampled = np.stack([np.bincount(row, minlength=self._launches) for row in draws])
 
     @property
@@ -102,13 +108,25 @@ class Chooser:
 
     def fitted(self, model: Model) -> float:
         """Loss that a model leaves when fitted to all units."""
+        return self._once("fitted", model, self._fitted)
+
+    def foretold(self, model: Model) -> np.ndarray:
+        """Loss of each launch, its units foretold by the model fitted to those of the other folds."""
+        return self._once("foretold", model, self._foretold)
+
+    def _once(self, what: str, model: Model, work: Callable[[Model], Any]) -> Any:
+        key = (what, *model.key)
+        if key not in self._known:
+            self._known[key] = work(model)
+        return self._known[key]
+
+    def _fitted(self, model: Model) -> float:
         columns, ridge = model.columns(self.grams)
         theta = gram.solve_softly(self.grams, columns, self.use, self._freedom, ridge)
         left = gram.losses(self.grams, columns, theta, self.use)
         return float(gram.soft(left, self._freedom).sum()) / self.dispersion
 
-    def foretold(self, model: Model) -> np.ndarray:
-        """Loss of each launch, its units foretold by the model fitted to those of the other folds."""
+    def _foretold(self, model: Model) -> np.ndarray:
         columns, ridge = model.columns(self.grams)
         left = np.zeros(len(self.use))
         for fold in range(self._folds.max() + 1):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -18,9 +18,11 @@ MOST_LISTED = 4
 FEWEST_CLUSTERS = 4
 CLEAR = 1e-4  # chance at which the simulator's own numbers would be refused though they are right
 REMAINDER = 0.1  # share of what the listed laws explain that a remainder must exceed to be worth a law
-FAR_OFF = 3.0  # mean square residual, in units of the noise, of a typical launch of which something is not explained
+FAR_OFF = 2.0  # mean square residual beyond 1 of a typical launch, in units of the noise, that nothing explains
+NEAR, HALF_WAY = 0.3, 0.3  # the same beside listed laws, and as a share of what the baseline leaves
 STRAY = 6.0  # times the usual sum of squares: a launch in which something else happened
 MOST_STRAY = 0.1
+FEW_ROUNDS = 4  # of a fit, to see which start leads farthest
 
 
 @dataclass(frozen=True)
@@ -50,18 +52,18 @@ def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray) -> 
     chooser = Chooser(screen.grams, problem.units, use, _dispersion(problem, screen, use))
     model, gains = chooser.add(Model(problem.base), screen.listed, MOST_LISTED)
     model = chooser.prune(model)
-    law = _refit(problem, baseline, model.laws, use)
+    law = _refit(problem, baseline, model.laws, screen, use)
     columns = screen if law is baseline else problem.columns(law.values, law.free)
     refitted = Chooser(columns.grams, problem.units, use, chooser.dispersion)
     model = _with_remainder(chooser, model, _remainder(chooser, model, refitted, law, columns), screen)
-    if not any(one.family for one in model.laws) and _far_off(problem, law, use):
+    if not any(one.family for one in model.laws) and _far_off(problem, baseline, law, use):
         model = _likeliest(chooser, Model(problem.base), screen)
     listed = tuple(law for law in model.laws if not law.family)
     unlisted = next((law for law in model.laws if law.family), None)
-    law = _refit(problem, baseline, listed, use)
+    law = _refit(problem, baseline, listed, screen, use)
     calm = _calm(problem, law, use, unlisted)
     if len(calm) < len(use):
-        law = _refit(problem, baseline, listed, calm)
+        law = _refit(problem, baseline, listed, screen, calm)
     theta, spread, columns = _smooth(problem, law, unlisted, model, columns, use)
     also, rivals = {}, {}
     for one in model.laws:
@@ -117,9 +119,11 @@ def _explained(chooser: Chooser, model: Model) -> float:
     return float((chooser.foretold(Model(model.base)) - chooser.foretold(model)).sum())
 
 
-def _far_off(problem: Problem, law: Fit, use: np.ndarray) -> bool:
-    """Whether a law leaves far more than noise of most launches, so that something must be missing."""
-    return bool(np.median(_left(problem, law, use)) > FAR_OFF)
+def _far_off(problem: Problem, baseline: Fit, law: Fit, use: np.ndarray) -> bool:
+    """Whether a law leaves far more than noise of most launches, or much of what the baseline does: then something
+    else must be missing."""
+    before, after = (float(np.median(_left(problem, one, use))) - 1.0 for one in (baseline, law))
+    return after > FAR_OFF or (law is not baseline and after > NEAR and after > HALF_WAY * before)
 
 
 def _left(problem: Problem, law: Fit, use: np.ndarray) -> np.ndarray:
@@ -128,15 +132,18 @@ def _left(problem: Problem, law: Fit, use: np.ndarray) -> np.ndarray:
     return np.bincount(found.cluster, found.r**2, problem.clusters)[use] / np.maximum(problem.freedom[use], 1.0)
 
 
-def _refit(problem: Problem, baseline: Fit, listed: tuple[Law, ...], use: np.ndarray) -> Fit:
-    """The nonlinear fit of the baseline and the listed laws together."""
-    if not listed:
-        return baseline
-    values, free = dict(baseline.values), list(problem.base)
+def _refit(problem: Problem, baseline: Fit, listed: Sequence[Law], screen: Columns, use: np.ndarray) -> Fit:
+    """The nonlinear fit of the baseline and the listed laws together, from each place at which one was looked for."""
+    best = baseline
     for law in listed:
-        values.update(law.start)
-        free += [name for name in problem.rows(law) if name not in free]
-    return fit(problem, values, free, use)
+        free = tuple(dict.fromkeys((*best.free, *problem.rows(law))))
+        values = {**best.values, **law.start}
+        if law.start:
+            starts = [one.start for one in screen.listed if one.name == law.name]
+            tries = [fit(problem, {**values, **start}, free, use, FEW_ROUNDS) for start in starts]
+            values = min(tries, key=lambda one: one.loss).values
+        best = fit(problem, values, free, use)
+    return best
 
 
 def _calm(problem: Problem, law: Fit, use: np.ndarray, unlisted: Law | None) -> np.ndarray:

@@ -51,7 +51,9 @@ def given(values: Mapping[str, float]) -> Fit:
     return Fit(dict(values), (), np.zeros((0, 0)), 0.0, 0, 0, ())
 
 
-def fit(problem: Problem, values: Mapping[str, float], free: Sequence[str], clusters: np.ndarray) -> Fit:
+def fit(
+    problem: Problem, values: Mapping[str, float], free: Sequence[str], clusters: np.ndarray, rounds: int = ROUNDS
+) -> Fit:
     """Fit the parameters `free` to the residuals of `clusters`, starting from `values`; the others stay."""
     free = tuple(free)
     now = dict(values)
@@ -61,7 +63,7 @@ def fit(problem: Problem, values: Mapping[str, float], free: Sequence[str], clus
     columns, everything = np.arange(len(free)), np.arange(problem.clusters)
     loss, damping, grams = np.inf, 1e-6, None
     best = at
-    for _ in range(ROUNDS):
+    for _ in range(rounds):
         now.update(zip(free, map(float, at), strict=True))
         found = problem.residuals(now, free, clusters)
         fresh = float(found.r @ found.r)

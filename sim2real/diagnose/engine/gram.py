@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 TINY = 1e-10
-MOST_REWEIGHTED = 8
+MOST_REWEIGHTED, SAME_WEIGHT = 8, 0.03
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ def solve_softly(
         theta = solve_normal(np.tensordot(weight, g, 1) + penalty, -(weight @ b))
         left = grams.s[clusters] + 2.0 * b @ theta + np.einsum("i,cij,j->c", theta, g, theta)
         fresh = np.minimum(soft_from(freedom) / np.maximum(left, 1e-9), 1.0)
-        if np.allclose(fresh, weight, rtol=0.02, atol=1e-9):
+        if np.all(np.abs(fresh - weight) < SAME_WEIGHT * weight):
             break
         weight = fresh
     return theta
