@@ -39,7 +39,7 @@ def _left(problem: Problem, found: Explained, proof: np.ndarray) -> float:
     if found.unlisted is None:
         return float(np.sum(problem.residuals(found.law.values, (), proof).r ** 2))
     index, _ = Model(found.law.free, (found.unlisted,), (1.0,)).columns(found.columns.grams)
-    return float(gram.losses(found.columns.grams, index, found.theta, proof).sum())
+    return float(gram.losses(found.columns.grams, index, found.theta, problem.units.of(proof)).sum())
 
 
 def _rms(problem: Problem, squares: float, proof: np.ndarray) -> float:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.stats import chi2
 
 from sim2real.diagnose.engine import gram
-from sim2real.diagnose.engine.choose import AMBIGUOUS, Chooser, Gain, Law, Model
+from sim2real.diagnose.engine.choose import AMBIGUOUS, LEAST_FORETOLD, LEAST_SHARE, Chooser, Gain, Law, Model
 from sim2real.diagnose.engine.fit import Fit, fit
 from sim2real.diagnose.finding import Rival
 from sim2real.diagnose.problem import Columns, Problem
@@ -18,8 +18,11 @@ MOST_LISTED = 4
 FEWEST_CLUSTERS = 4
 CLEAR = 1e-4  # chance at which the simulator's own numbers would be refused though they are right
 REMAINDER = 0.1  # share of what the listed laws explain that a remainder must exceed to be worth a law
+FAR_OFF = 2.0  # mean square residual beyond 1 of a typical launch, in units of the noise, that nothing explains
+NEAR, HALF_WAY = 0.3, 0.3  # the same beside listed laws, and as a share of what the baseline leaves
 STRAY = 6.0  # times the usual sum of squares: a launch in which something else happened
 MOST_STRAY = 0.1
+FEW_ROUNDS = 4  # of a fit, to see which start leads farthest
 
 
 @dataclass(frozen=True)
@@ -46,82 +49,121 @@ def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray) -> 
     """Explain the clusters `use` of a problem, starting from the simulator's own numbers `shipped`."""
     baseline = fit(problem, shipped, problem.base, use)
     screen = problem.columns(baseline.values)
-    base = Model(problem.base)
-    chooser = Chooser(screen.grams, use, _dispersion(problem, screen, use))
-    model, rounds = chooser.add(base, screen.listed, MOST_LISTED)
+    chooser = Chooser(screen.grams, problem.units, use, _dispersion(problem, screen, use))
+    model, gains = chooser.add(Model(problem.base), screen.listed, MOST_LISTED)
     model = chooser.prune(model)
-    family = _remainder(chooser, model, screen.families)
-    if family is not None:
-        model = chooser.prune(model.plus(family.law, family.spread))
+    law = _refit(problem, baseline, model.laws, screen, use)
+    columns = screen if law is baseline else problem.columns(law.values, law.free)
+    refitted = Chooser(columns.grams, problem.units, use, chooser.dispersion)
+    model = _with_remainder(chooser, model, _remainder(chooser, model, refitted, law, columns), screen)
+    if not any(one.family for one in model.laws) and _far_off(problem, baseline, law, use):
+        model = _likeliest(chooser, Model(problem.base), screen)
     listed = tuple(law for law in model.laws if not law.family)
     unlisted = next((law for law in model.laws if law.family), None)
-    law = _refit(problem, baseline, listed, use)
+    law = _refit(problem, baseline, listed, screen, use)
     calm = _calm(problem, law, use, unlisted)
     if len(calm) < len(use):
-        law = _refit(problem, baseline, listed, calm)
-    theta, spread, columns = _smooth(problem, law, unlisted, model, screen, use)
+        law = _refit(problem, baseline, listed, screen, calm)
+    theta, spread, columns = _smooth(problem, law, unlisted, model, columns, use)
     also, rivals = {}, {}
     for one in model.laws:
         also[one.name], rivals[one.name] = _compare(chooser, model, one, [*screen.listed, *screen.families])
     return Explained(
         baseline, law, _as_shipped(problem, shipped, baseline, use, chooser.dispersion), chooser.dispersion, listed,
         unlisted, theta, spread, columns, {one.name: _chance(chooser, model, one, screen) for one in model.laws},
-        also, rivals, tuple(rounds[0]) if rounds else (),
+        also, rivals, tuple(gains),
     )  # fmt: skip
 
 
 def _dispersion(problem: Problem, screen: Columns, use: np.ndarray) -> float:
-    """Noise beyond the sensor's, in variance: what even the richest law leaves. At least 1."""
+    """Noise beyond the sensor's, in variance: what even the richest law leaves of a typical launch. At least 1."""
     every = Model(problem.base)
     for law in (*screen.listed, *screen.families):
         every = every.plus(law, 1.0)
     columns, ridge = every.columns(screen.grams)
-    theta = gram.solve(screen.grams, columns, use, ridge + 1e-6)
-    left = gram.losses(screen.grams, columns, theta, use)
-    freedom = problem.freedom[use]
-    typical = np.median(left / np.maximum(freedom, 1.0))
-    return float(max(typical, 1.0))
+    units = problem.units.of(use)
+    theta = gram.solve(screen.grams, columns, units, ridge + 1e-6)
+    left = np.bincount(problem.units.cluster[units], gram.losses(screen.grams, columns, theta, units), problem.clusters)
+    return float(max(np.median(left[use] / np.maximum(problem.freedom[use], 1.0)), 1.0))
 
 
-def _remainder(chooser: Chooser, model: Model, families) -> Gain | None:
-    """The family that explains most of what the listed laws leave, if that is more than chance and worth a law."""
-    gains = sorted((chooser.gain(model, law) for law in families), key=lambda gain: -gain.total)
-    explained = float((chooser.foretold(Model(model.base)) - chooser.foretold(model)).sum())
+def _remainder(chooser: Chooser, model: Model, refitted: Chooser, law: Fit, columns: Columns) -> Gain | None:
+    """The family that explains most of what the listed laws leave once they are refitted (`law`, with its `columns`),
+    if that is more than chance and worth a law."""
+    gains = sorted((refitted.gain(Model(law.free), one) for one in columns.families), key=lambda gain: -gain.total)
+    explained = _explained(chooser, model)
     for gain in gains:
-        if chooser.passes(gain) and gain.total > REMAINDER * explained:
+        if refitted.passes(gain) and gain.total > REMAINDER * explained:
             return gain
     return None
 
 
-def _refit(problem: Problem, baseline: Fit, listed: tuple[Law, ...], use: np.ndarray) -> Fit:
-    """The nonlinear fit of the baseline and the listed laws together."""
-    if not listed:
-        return baseline
-    values, free = dict(baseline.values), list(problem.base)
+def _with_remainder(chooser: Chooser, model: Model, rest: Gain | None, screen: Columns) -> Model:
+    """The model with the family `rest` on top; or a family alone, where that does as well: then listed laws only stood
+    in for parts of it."""
+    if rest is None:
+        return model
+    both = chooser.prune(model.plus(rest.law, rest.spread))
+    alone = _likeliest(chooser, Model(model.base), screen)
+    worse = _explained(chooser, both) - _explained(chooser, alone)
+    return alone if worse < max(LEAST_FORETOLD, LEAST_SHARE * _explained(chooser, both)) else both
+
+
+def _likeliest(chooser: Chooser, base: Model, screen: Columns) -> Model:
+    """The baseline and the family that alone foretells best."""
+    best = max((chooser.gain(base, law) for law in screen.families), key=lambda gain: gain.total)
+    return base.plus(best.law, best.spread)
+
+
+def _explained(chooser: Chooser, model: Model) -> float:
+    return float((chooser.foretold(Model(model.base)) - chooser.foretold(model)).sum())
+
+
+def _far_off(problem: Problem, baseline: Fit, law: Fit, use: np.ndarray) -> bool:
+    """Whether a law leaves far more than noise of most launches, or much of what the baseline does: then something
+    else must be missing."""
+    before, after = (float(np.median(_left(problem, one, use))) - 1.0 for one in (baseline, law))
+    return after > FAR_OFF or (law is not baseline and after > NEAR and after > HALF_WAY * before)
+
+
+def _left(problem: Problem, law: Fit, use: np.ndarray) -> np.ndarray:
+    """What a law leaves of each cluster in `use`: its mean square residual in units of the noise."""
+    found = problem.residuals(law.values, (), use)
+    return np.bincount(found.cluster, found.r**2, problem.clusters)[use] / np.maximum(problem.freedom[use], 1.0)
+
+
+def _refit(problem: Problem, baseline: Fit, listed: Sequence[Law], screen: Columns, use: np.ndarray) -> Fit:
+    """The nonlinear fit of the baseline and the listed laws together, from each place at which one was looked for."""
+    best = baseline
     for law in listed:
-        values.update(law.start)
-        free += [name for name in problem.rows(law) if name not in free]
-    return fit(problem, values, free, use)
+        free = tuple(dict.fromkeys((*best.free, *problem.rows(law))))
+        values = {**best.values, **law.start}
+        if law.start:
+            starts = [one.start for one in screen.listed if one.name == law.name]
+            tries = [fit(problem, {**values, **start}, free, use, FEW_ROUNDS) for start in starts]
+            values = min(tries, key=lambda one: one.loss).values
+        best = fit(problem, values, free, use)
+    return best
 
 
 def _calm(problem: Problem, law: Fit, use: np.ndarray, unlisted: Law | None) -> np.ndarray:
     """The clusters that the final law explains; a few that it does not saw something of their own, and are left out."""
-    found = problem.residuals(law.values, (), use)
-    loss = np.bincount(found.cluster, found.r**2, problem.clusters)[use] / np.maximum(problem.freedom[use], 1.0)
+    loss = _left(problem, law, use)
     stray = loss > STRAY * max(float(np.median(loss)), 1.0)
     few = 0 < stray.sum() <= MOST_STRAY * len(use) and unlisted is None
     return use[~stray] if few else use
 
 
-def _smooth(problem: Problem, law: Fit, unlisted: Law | None, model: Model, screen: Columns, use: np.ndarray):
+def _smooth(problem: Problem, law: Fit, unlisted: Law | None, model: Model, columns: Columns, use: np.ndarray):
     """Coefficients of the family on top of the final fit, their covariance, and the columns that they belong to."""
-    columns = screen if unlisted is None else problem.columns(law.values)
     if unlisted is None:
         return np.zeros(0), np.zeros((0, 0)), columns
+    columns = problem.columns(law.values, law.free)
     spread = model.spreads[model.laws.index(unlisted)]
     index, ridge = Model(law.free, (unlisted,), (spread,)).columns(columns.grams)
-    theta = gram.solve(columns.grams, index, use, ridge)
-    return theta, gram.covariance(columns.grams, index, theta, use), columns
+    units = problem.units.of(use)
+    theta = gram.solve_softly(columns.grams, index, units, problem.units.freedom[units], ridge)
+    return theta, gram.covariance(columns.grams, index, theta, units), columns
 
 
 def _as_shipped(problem: Problem, shipped: Mapping[str, float], baseline: Fit, use, dispersion: float) -> bool:

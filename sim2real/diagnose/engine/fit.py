@@ -32,6 +32,12 @@ class Fit:
     clusters: int
     bound: tuple[str, ...]
 
+    @property
+    def directions(self) -> np.ndarray:
+        """Changes (free, free) of the free parameters, columns independent and each of one standard deviation."""
+        value, vector = np.linalg.eigh(self.covariance) if self.free else (np.zeros(0), np.zeros((0, 0)))
+        return vector * np.sqrt(np.maximum(value, 0.0))
+
     def estimate(self, name: str) -> Estimate:
         """A free parameter with its 95 % interval."""
         k = self.free.index(name)
@@ -40,7 +46,14 @@ class Fit:
         return Estimate(value, value - half, value + half, BY_NAME[name].unit)
 
 
-def fit(problem: Problem, values: Mapping[str, float], free: Sequence[str], clusters: np.ndarray) -> Fit:
+def given(values: Mapping[str, float]) -> Fit:
+    """A law that is known, not fitted."""
+    return Fit(dict(values), (), np.zeros((0, 0)), 0.0, 0, 0, ())
+
+
+def fit(
+    problem: Problem, values: Mapping[str, float], free: Sequence[str], clusters: np.ndarray, rounds: int = ROUNDS
+) -> Fit:
     """Fit the parameters `free` to the residuals of `clusters`, starting from `values`; the others stay."""
     free = tuple(free)
     now = dict(values)
@@ -50,7 +63,7 @@ def fit(problem: Problem, values: Mapping[str, float], free: Sequence[str], clus
     columns, everything = np.arange(len(free)), np.arange(problem.clusters)
     loss, damping, grams = np.inf, 1e-6, None
     best = at
-    for _ in range(ROUNDS):
+    for _ in range(rounds):
         now.update(zip(free, map(float, at), strict=True))
         found = problem.residuals(now, free, clusters)
         fresh = float(found.r @ found.r)

@@ -12,8 +12,9 @@ import numpy as np
 
 UNIT = 0.1  # m/s^2, what a coefficient of 1 stands for
 WAVES_X, WAVES_Y = 6, 4  # of cosines over the table
+RIPPLES = (14, 8)  # of cosines along one axis alone
 HARMONICS = 4  # of the heading
-SPEED_KNOTS, TIME_KNOTS, HISTORY_KNOTS = 8, 10, 6
+SPEED_KNOTS, TIME_KNOTS, HISTORY_KNOTS = 8, 20, 6
 LONGEST_MEMORY = 2.0  # s after a contact
 
 
@@ -45,6 +46,12 @@ def cosines(motion: Motion) -> np.ndarray:
     x = np.stack([np.cos(np.pi * i * u) for i in range(WAVES_X)])
     y = np.stack([np.cos(np.pi * j * w) for j in range(WAVES_Y)])
     return (x[:, None] * y[None]).reshape(-1, len(u)).T
+
+
+def ripples(motion: Motion, axis: int) -> np.ndarray:
+    """Smooth functions (n, RIPPLES) of the place along one axis of the table."""
+    u = motion.place[:, axis] / motion.size[axis]
+    return np.stack([np.cos(np.pi * i * u) for i in range(RIPPLES[axis])], axis=1)
 
 
 def hats(x: np.ndarray, knots: np.ndarray) -> np.ndarray:
@@ -88,6 +95,10 @@ Family = Callable[[Motion], np.ndarray]
 FAMILIES: dict[str, tuple[str, Family]] = {
     "push by position": ("position", lambda m: _times(cosines(m), *_axes(m))),
     "brake by position": ("position", lambda m: _times(cosines(m), -m.along)),
+    "push by place along the table": ("position", lambda m: _times(ripples(m, 0), *_axes(m))),
+    "push by place across the table": ("position", lambda m: _times(ripples(m, 1), *_axes(m))),
+    "brake by place along the table": ("position", lambda m: _times(ripples(m, 0), -m.along)),
+    "brake by place across the table": ("position", lambda m: _times(ripples(m, 1), -m.along)),
     "brake by speed": ("speed", lambda m: _times(_speeds(m), -m.along)),
     "side force by speed": ("speed", lambda m: _times(_speeds(m), m.across)),
     "force by heading": ("heading", lambda m: _times(harmonics(m), -m.along, m.across)),
