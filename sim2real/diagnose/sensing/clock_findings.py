@@ -1,0 +1,137 @@
+"""Whether the camera's clock is late or drifts: four clocks are fitted, and the simplest that will do is chosen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from sim2real.diagnose.finding import Estimate, Finding, Proof, Rival
+from sim2real.diagnose.sensing.clock import EXACT, TOUCHED, Clock, Fit, Meetings, fit, search
+
+MODELS = {"none": (False, False), "camera_delay": (True, False), "clock_drift": (False, True), "both": (True, True)}
+FORMULAS = {
+    "camera_delay": "a frame stamped t shows the encoders' time t - delay_s",
+    "clock_drift": "the camera's clock runs (1 + ppm 1e-6) times as fast as the encoders'",
+}
+SURE = 1e-5
+REJECTED = 1e-3
+LATE_AT_LEAST = 0.0005  # s: less is no more than the jitter of stamps
+BETTER = 0.9
+FOLDS = 5
+WORST = 12.0
+
+
+@dataclass(frozen=True)
+class ClockAccount:
+    """The clock that the blows show (EXACT where nothing is missing), its findings, and their proof.
+
+    `told`: whether there were blows enough to see a delay of LATE_AT_LEAST or more of any size that matters.
+    """
+
+    clock: Clock
+    findings: tuple[Finding, ...]
+    proof: Proof | None
+    told: bool
+
+
+def clock_account(tables: list[Meetings]) -> ClockAccount:
+    """What the blows of all recordings (`tables`) say of the camera's clock."""
+    tables = [each for each in tables if len(each.t) >= 2]
+    nothing = ClockAccount(EXACT, (), None, False)
+    if not tables:
+        return nothing
+    start = search(tables)
+    fits = {name: fit(tables, start, free) for name, free in MODELS.items()}
+    if fits["both"] is None:
+        fits["both"] = fits["camera_delay"]
+    full = fits["both"]
+    if full is None or full.freedom < 3:
+        return nothing
+    chance = {name: _chance(each, full, 2 - sum(MODELS[name])) for name, each in fits.items()}
+    span = max(float(np.ptp(each.t)) for each in tables)
+    name = _choose(chance, full, span)
+    told = float(np.sqrt(full.clock.covariance[0, 0])) < 10 * LATE_AT_LEAST
+    if name == "none":
+        return ClockAccount(EXACT, (), None, told)
+    best = fits[name]
+    assert best is not None
+    before, after, proof = _prove(tables, start, name, full)
+    if proof.after_m > BETTER * proof.before_m:
+        return ClockAccount(EXACT, (), None, told)
+    named = ("camera_delay", "clock_drift") if name == "both" else (name,)
+    findings = tuple(_finding(each, named, best, fits, chance, full, before, after) for each in named)
+    return ClockAccount(best.clock, findings, proof, True)
+
+
+def _choose(chance: dict[str, float], full: Fit, span: float) -> str:
+    """The simplest clock that is not rejected in favour of the full one; none unless an exact one surely is."""
+    matters = abs(full.clock.delay) > LATE_AT_LEAST or abs(full.clock.rate) * span > LATE_AT_LEAST
+    if chance["none"] > SURE or not matters:
+        return "none"
+    single = max(("camera_delay", "clock_drift"), key=lambda name: chance[name])
+    return single if chance[single] > REJECTED else "both"
+
+
+def _chance(reduced: Fit | None, full: Fit, fewer: int) -> float:
+    """p-value of the reduced clock against the full one: the F test on the squares that either leaves."""
+    if fewer == 0:
+        return 1.0
+    if reduced is None:
+        return 0.0
+    left, most = _squares(full, full), _squares(reduced, full)
+    return float(stats.f.sf(max(most - left, 0.0) / fewer / max(left / full.freedom, 1.0), fewer, full.freedom))
+
+
+def _squares(each: Fit, full: Fit) -> float:
+    """Sum of squares of the blows that met the mallet by the full fit, in units of their errors, none over WORST."""
+    z = np.nan_to_num(each.residual, nan=TOUCHED)[full.met] / (full.std[full.met] * full.spread)
+    return float((np.clip(z, -WORST, WORST) ** 2).sum())
+
+
+def _prove(tables, start, name: str, full: Fit) -> tuple[float, float, Proof]:
+    """Residuals of blows in launches that no fit saw: rms in units of their errors before and after, and in metres."""
+    launches = np.unique(full.launch)
+    before = np.concatenate([each.gaps(np.array(0.0), np.array(0.0))[0] for each in tables])
+    before, after = np.where(full.met, before, np.nan), np.full(len(before), np.nan)
+    for fold in range(FOLDS):
+        skip = launches[fold::FOLDS]
+        here = np.isin(full.launch, skip) & full.met
+        each = fit(tables, start, MODELS[name], skip)
+        if each is not None:
+            after[here] = each.residual[here]
+    both = np.isfinite(before) & np.isfinite(after)
+
+    def rms(r: np.ndarray) -> float:
+        return float(np.sqrt(np.mean(r[both] ** 2)))
+
+    pieces = len(np.unique(full.launch[both]))
+    return rms(before / full.std), rms(after / full.std), Proof(rms(before), rms(after), rms(full.std), pieces)
+
+
+def _finding(name: str, named, best: Fit, fits, chance, full: Fit, before: float, after: float) -> Finding:
+    index = 0 if name == "camera_delay" else 1
+    value = (best.clock.delay, best.clock.rate * 1e6)[index]
+    error = float(np.sqrt(best.clock.covariance[index, index])) * (1.0, 1e6)[index]
+    reach = float(stats.t.ppf(0.975, best.freedom)) * error
+    unit, label = (("s", "delay_s"), ("1e-6", "ppm"))[index]
+    without = _chance(fits[("camera_delay", "clock_drift")[1 - index]], full, 1) if len(named) == 2 else chance["none"]
+    other = ("camera_delay", "clock_drift")[1 - index]
+    rival = Rival(
+        other, -float(np.log(max(chance[other], 1e-300))), f"alone it is rejected with p = {chance[other]:.1g}"
+    )
+    unlike = len(named) == 2 or chance[other] < REJECTED
+    return Finding(
+        regime="sensing",
+        mechanism=name,
+        also_possible=() if unlike else (other,),
+        depends_on=("time",) if index else (),
+        formula=FORMULAS[name],
+        parameters={label: Estimate(value, value - reach, value + reach, unit)},
+        p_value=max(without, 1e-300),
+        before=before,
+        after=after,
+        values={"camera_latency": value} if index == 0 else {},
+        rivals=(rival,) if unlike and len(named) == 1 else (),
+    )

@@ -1,0 +1,138 @@
+"""Whether the map from image to table is stretched or sheared: by the lines on which the puck turns round at the walls.
+
+A stretch moves the far lines outwards and leaves the near ones; a wrong radius of the puck moves all inwards alike; a
+shear slants the short walls. From glides alone a stretch is a change of drag and friction, so only the lines are asked.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from sim2real.diagnose.contacts import Geometry, nominal_lines, wall_axis
+from sim2real.diagnose.finding import Estimate, Finding, Proof
+from sim2real.diagnose.sensing.lines import Line, lines
+from sim2real.diagnose.strikes import Strike
+
+NAMES = ("scale_x", "scale_y", "shear")
+RADIUS, OFFSET, TURN = 0.001, 0.0005, 0.002  # m, m, rad: what a good calibration may be off by
+CUSHION = (0.0003, 0.0005)  # m and rad: how straight and true a wall is
+SURE = 1e-5
+TOLD = 1e-3  # of one of the three, once another is sure
+AT_LEAST = 0.001
+WRONG_SIZE = 0.022
+KNOWN = 0.003  # an error of a scale above which the lines do not tell it
+BETTER = 0.9
+FOLDS = 5
+
+
+@dataclass(frozen=True)
+class ScaleAccount:
+    """`values` (3,) of NAMES, 0 where nothing is missing; or why the lines cannot be believed, in `undetermined`."""
+
+    values: np.ndarray
+    findings: tuple[Finding, ...]
+    proof: Proof | None
+    undetermined: str = ""
+
+
+def scale_account(found: list[Strike], g: Geometry) -> ScaleAccount:
+    """What the strikes at the walls say of the camera's map."""
+    values, covariance = _solve(lines(found, g), g)
+    std = np.sqrt(np.diag(covariance))
+    wrong = _wrong_size(values, std, g)
+    if wrong:
+        return ScaleAccount(np.zeros(3), (), None, wrong)
+    sure = 2 * stats.norm.sf(np.abs(values) / std)
+    missing = (sure < SURE) & (np.abs(values) > AT_LEAST) & (std < KNOWN)
+    if not missing.any():
+        return ScaleAccount(np.zeros(3), (), None)
+    told = (sure < TOLD) & (std < KNOWN)
+    kept = np.where(told, values, 0.0)
+    before, after, proof = _prove(found, g)
+    if proof.after_m > BETTER * proof.before_m:
+        return ScaleAccount(np.zeros(3), (), None)
+    reach = 1.96 * std
+    estimates = {
+        name: Estimate(float(values[k]), float(values[k] - reach[k]), float(values[k] + reach[k]), "1")
+        for k, name in enumerate(NAMES)
+        if told[k]
+    }
+    finding = Finding(
+        regime="sensing",
+        mechanism="scale_error",
+        also_possible=(),
+        depends_on=("position",),
+        formula="seen x = (1 + scale_x) x + shear y, seen y = (1 + scale_y) y",
+        parameters=estimates,
+        p_value=max(float(sure[missing].min()), 1e-300),
+        before=before,
+        after=after,
+    )
+    return ScaleAccount(kept, (finding,), proof)
+
+
+def _wrong_size(values: np.ndarray, std: np.ndarray, g: Geometry) -> str:
+    for axis, (name, size) in enumerate((("length", g.length), ("width", g.width))):
+        if abs(values[axis]) > WRONG_SIZE + 2 * std[axis] or (abs(values[axis]) > WRONG_SIZE and std[axis] < KNOWN):
+            seen = (1 + values[axis]) * size
+            return (
+                f"the stated {name} of {size:.3f} m is {abs(values[axis]):.1%} off the {seen:.3f} m seen: "
+                "measure the table and state its size, or calibrate the camera"
+            )
+    return ""
+
+
+def _design(walls: dict[str, Line], g: Geometry) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The lines' displacements from nominal (2n,), the Jacobian (2n, 7) by NAMES, radius, offsets and turn, and their
+    covariance (2n, 2n)."""
+    nominal = nominal_lines(g)
+    seen, rows = [], []
+    covariance = np.zeros((2 * len(walls), 2 * len(walls)))
+    for k, (wall, line) in enumerate(walls.items()):
+        axis, inward = wall_axis(wall)
+        place, slant = np.zeros(7), np.zeros(7)
+        place[axis], place[3], place[4 + axis] = nominal[wall], inward, 1.0
+        slant[6] = (1.0, -1.0)[axis]
+        if axis == 0:
+            place[2], slant[2] = g.width / 2, 1.0
+        rows += [place, slant]
+        seen += [line.values[0] - nominal[wall], line.values[1]]
+        covariance[2 * k : 2 * k + 2, 2 * k : 2 * k + 2] = line.covariance + np.diag(np.square(CUSHION))
+    return np.array(seen), np.array(rows).reshape(-1, 7), covariance
+
+
+def _solve(walls: dict[str, Line], g: Geometry) -> tuple[np.ndarray, np.ndarray]:
+    """Estimates (3,) of NAMES and their covariance (3, 3), with a good calibration's own errors as a prior."""
+    seen, jacobian, covariance = _design(walls, g)
+    weight = np.linalg.inv(covariance)
+    prior = np.diag([1.0, 1.0, 1.0, RADIUS**-2, OFFSET**-2, OFFSET**-2, TURN**-2])  # a scale: 0 give or take 100 %
+    inverse = np.linalg.inv(jacobian.T @ weight @ jacobian + prior)
+    return (inverse @ (jacobian.T @ (weight @ seen)))[:3], inverse[:3, :3]
+
+
+def _prove(found: list[Strike], g: Geometry) -> tuple[float, float, Proof]:
+    """Distances of touches from their lines in launches that no fit saw: rms in errors before, after; in metres."""
+    launches = sorted({s.launch for s in found})
+    whole = lines(found, g)
+    rest: list[tuple[float, float, float]] = []
+    for fold in range(FOLDS):
+        skip = set(launches[fold::FOLDS])
+        values, _ = _solve(lines(found, g, skip), g)
+        for wall, line in whole.items():
+            here = np.isin(line.launch, list(skip))
+            expected = np.full(int(here.sum()), nominal_lines(g)[wall])
+            axis, _ = wall_axis(wall)
+            moved = expected * (1 + values[axis])
+            if axis == 0:
+                moved = moved + values[2] * (g.width / 2 + line.along[here])
+            rest += zip(line.place[here] - expected, line.place[here] - moved, line.std[here], strict=True)
+    before, after, std = np.array(rest).T
+
+    def rms(r: np.ndarray) -> float:
+        return float(np.sqrt(np.mean(r**2)))
+
+    proof = Proof(rms(before), rms(after), rms(std), len(launches))
+    return rms(before / std), rms(after / std), proof

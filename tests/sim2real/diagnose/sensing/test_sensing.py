@@ -1,0 +1,94 @@
+"""Late stamps, a drifting clock, a stretched map and held frames, put into recordings of an independent table."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sim2real.diagnose.pieces import cut
+from sim2real.diagnose.sensing.account import sense
+from sim2real.diagnose.sensing.clock import Clock
+from sim2real.diagnose.sensing.correct import corrected
+from sim2real.recording import Recording, Stream, read_recording
+from tests.reality import Law
+from tests.reality.camera import Camera
+from tests.reality.record import make_recording
+
+
+def recorded(folder, law: Law, scenario: str, seed: int, seconds: float, camera: Camera | None = None) -> Recording:
+    make_recording(folder, law, scenario, seed, seconds, camera)
+    return read_recording(folder)
+
+
+def said(recording: Recording):
+    """The account of the sensing, and its numbers by label."""
+    told = sense([recording], [cut(recording)]).account
+    return told, {label: one for finding in told.findings for label, one in finding.parameters.items()}
+
+
+@pytest.fixture(scope="module")
+def rally(tmp_path_factory) -> Recording:
+    return recorded(tmp_path_factory.mktemp("rally"), Law(), "rally", 1, 45.0)
+
+
+def restamped(recording: Recording, stamps) -> Recording:
+    assert recording.frames is not None
+    return replace(recording, frames=Stream({**recording.frames.columns, "t": stamps(recording.frames.t)}))
+
+
+def test_an_exact_camera_has_no_finding(rally):
+    told, _ = said(rally)
+    assert told.findings == () and told.undetermined == "" and told.shipped
+
+
+@pytest.mark.parametrize("delay", [0.009, 0.03])
+def test_a_delay_is_measured(rally, delay):
+    told, numbers = said(restamped(rally, lambda t: t + delay))
+    assert [one.mechanism for one in told.findings] == ["camera_delay"]
+    assert numbers["delay_s"].value == pytest.approx(delay, abs=0.0005)
+    assert numbers["delay_s"].low < delay < numbers["delay_s"].high
+    assert told.proof is not None and told.proof.after_m < 0.2 * told.proof.before_m
+
+
+def test_a_drift_is_no_delay(rally):
+    told, numbers = said(restamped(rally, lambda t: t * (1 + 2e-4)))
+    assert [one.mechanism for one in told.findings] == ["clock_drift"]
+    assert numbers["ppm"].value == pytest.approx(200.0, rel=0.1)
+
+
+def test_without_a_mallet_the_clock_is_not_judged(tmp_path):
+    told, _ = said(recorded(tmp_path, Law(camera_delay=0.03), "launches", 3, 15.0))
+    assert told.findings == ()
+
+
+def test_a_stretched_map_is_measured_and_a_wrong_size_refused(tmp_path):
+    clean = recorded(tmp_path, Law(), "launches", 5, 45.0)
+    assert clean.frames is not None
+    x, y = clean.frames["puck_x"], clean.frames["puck_y"]
+
+    def mapped(scale_x: float, scale_y: float, shear: float) -> Recording:
+        seen = {"puck_x": (1 + scale_x) * x + shear * y, "puck_y": (1 + scale_y) * y}
+        return replace(clean, frames=Stream({**clean.frames.columns, **seen}))  # type: ignore[union-attr]
+
+    told, numbers = said(mapped(0.006, -0.008, 0.005))
+    assert [one.mechanism for one in told.findings] == ["scale_error"]
+    for label, truth in (("scale_x", 0.006), ("scale_y", -0.008), ("shear", 0.005)):
+        assert numbers[label].low < truth < numbers[label].high
+        assert numbers[label].value == pytest.approx(truth, abs=0.001)
+    wrong, _ = said(mapped(0.03, 0.03, 0.0))
+    assert wrong.findings == () and "stated length" in wrong.undetermined
+
+
+def test_held_frames_are_counted(tmp_path):
+    recording = recorded(tmp_path, Law(), "launches", 6, 30.0, Camera(held=0.03, dropped=0.02))
+    told, numbers = said(recording)
+    assert [one.mechanism for one in told.findings] == ["held_frames"]
+    assert numbers["fraction"].low < 0.03 < numbers["fraction"].high
+
+
+def test_what_was_found_can_be_undone(rally):
+    assert rally.frames is not None
+    spoilt = restamped(rally, lambda t: (t + 0.02) * (1 + 1e-4))
+    mended = corrected(spoilt, np.zeros(3), Clock(0.02, 1e-4, np.zeros((2, 2))))
+    assert mended.frames is not None
+    np.testing.assert_allclose(mended.frames.t, rally.frames.t, atol=1e-9)
