@@ -8,14 +8,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim2real.diagnose.account import account
+from sim2real.diagnose.agreement import Part, check_agreement, check_sizes, parts_of
 from sim2real.diagnose.contacts import geometry, mallet_tracks
 from sim2real.diagnose.engine.explain import explain
 from sim2real.diagnose.finding import Account, Finding, Proof
 from sim2real.diagnose.glide.data import GlideData, glide_data, join
 from sim2real.diagnose.glide.problem import GlideProblem
-from sim2real.diagnose.impacts import Impact, find_impacts
+from sim2real.diagnose.impacts import find_impacts
 from sim2real.diagnose.pieces import Pieces, cut
 from sim2real.diagnose.problem import Problem
+from sim2real.diagnose.sanity import UndeterminedError, check_together, check_usable, notes
+from sim2real.diagnose.sensing.account import sense
 from sim2real.diagnose.wall.data import bounces
 from sim2real.diagnose.wall.problem import WallProblem
 from sim2real.nominal import parameters
@@ -31,10 +34,15 @@ Progress = Callable[[str, float], None]
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """All accounts, by regime. `reason`: why nothing can be said, "" if something can."""
+    """All accounts, by regime. `reason`: why nothing can be said, "" if something can; `remedy`: what to do then.
+
+    `notes`: what should be known of the recordings, a sentence each.
+    """
 
     accounts: tuple[Account, ...]
     reason: str = ""
+    remedy: str = ""
+    notes: tuple[str, ...] = ()
 
     @property
     def findings(self) -> list[Finding]:
@@ -46,7 +54,7 @@ class Diagnosis:
         """agrees, parameters_only, missing_physics or undetermined."""
         if self.findings:
             return "missing_physics"
-        told = [each for each in self.accounts if not each.undetermined]
+        told = [each for each in self.accounts if not each.undetermined and each.proof is not None]
         if self.reason or not told:
             return "undetermined"
         return "agrees" if all(each.shipped for each in told) else "parameters_only"
@@ -54,7 +62,8 @@ class Diagnosis:
     @property
     def next_recording(self) -> str:
         """What to record next, in one sentence; "" where nothing is open."""
-        return next((each.next_recording for each in self.accounts if each.next_recording), "")
+        open_ones = (each.next_recording for each in self.accounts if each.next_recording)
+        return self.remedy or next(open_ones, "")
 
     @property
     def proof(self) -> Proof | None:
@@ -83,13 +92,33 @@ class Cut:
 def diagnose(
     recordings: Sequence[Recording], heldout: Sequence[Recording], shipped: Mapping[str, float], progress: Progress
 ) -> Diagnosis:
-    """Explain `recordings`, and prove it on `heldout` or, where there are none, on launches kept apart."""
-    progress("cutting", 0.0)
+    """Explain `recordings`, and prove it on `heldout` or, where there are none, on launches kept apart.
+
+    ValueError, in one line, for recordings that state different tables.
+    """
     every = [*recordings, *heldout]
-    data = Cut(every, [cut(one) for one in every], len(heldout))
-    values = parameters(recordings[0], shipped)
-    accounts = list(_puck(data, values, progress))
-    return Diagnosis(tuple(accounts), "" if accounts else TOO_LITTLE)
+    check_together(every)
+    try:
+        accounts = _accounts(every, len(heldout), shipped, progress)
+    except UndeterminedError as why:
+        return Diagnosis((), why.reason, why.remedy, notes(every))
+    return Diagnosis(tuple(accounts), notes=notes(every))
+
+
+def _accounts(
+    every: Sequence[Recording], heldout: int, shipped: Mapping[str, float], progress: Progress
+) -> list[Account]:
+    """What each regime says; `heldout`: how many of the last recordings serve the proof alone."""
+    check_usable(every)
+    progress("cutting", 0.0)
+    pieces = [cut(one) for one in every]
+    check_sizes(every, pieces)
+    sensed = sense(every, pieces)
+    if sensed.account.undetermined:
+        raise UndeterminedError(sensed.account.undetermined, sensed.account.next_recording)
+    data = Cut(sensed.recordings, sensed.pieces, heldout)
+    values = parameters(every[0], shipped)
+    return [sensed.account, *_puck(data, values, progress)]
 
 
 def _puck(data: Cut, values: dict[str, float], progress: Progress):
@@ -98,15 +127,17 @@ def _puck(data: Cut, values: dict[str, float], progress: Progress):
     parts = [_glides(one, pieces) for one, pieces in zip(data.recordings, data.pieces, strict=True)]
     glides = GlideProblem(join(parts), values)
     proof = _kept_apart(glides, parts, data.heldout)
+    tables = parts_of(glides.data, [one.name for one in data.recordings])
     law = dict(values)
     for regime in (glides,):
-        found, told = _explain(regime, law, proof)
+        found, told = _explain(regime, law, proof, tables)
         yield told
         if found is not None:
             law |= found.law.values
     progress("bounces", 0.6)
     impacts = [hit for k, pieces in enumerate(data.pieces) for hit in find_impacts(pieces, glides, law, k)]
-    yield _walls(impacts, glides, data, law, proof)
+    walls = WallProblem(bounces(impacts, geometry(data.recordings[0])), glides.clusters, law)
+    yield _explain(walls, law, proof, tables)[1]
 
 
 def _glides(recording: Recording, pieces: Pieces) -> GlideData:
@@ -114,18 +145,14 @@ def _glides(recording: Recording, pieces: Pieces) -> GlideData:
     return glide_data(pieces, geometry(recording), mallet_tracks(recording, t))
 
 
-def _walls(impacts: list[Impact], glides: GlideProblem, data: Cut, law: dict[str, float], proof: np.ndarray) -> Account:
-    walls = WallProblem(bounces(impacts, geometry(data.recordings[0])), glides.clusters, law)
-    return _explain(walls, law, proof)[1]
-
-
-def _explain(problem: Problem, law: Mapping[str, float], proof: np.ndarray):
+def _explain(problem: Problem, law: Mapping[str, float], proof: np.ndarray, tables: Sequence[Part]):
     """The engine's findings of a problem (None where there is too little data), and its account."""
     live = np.flatnonzero(problem.freedom > 0)
     use, apart = np.setdiff1d(live, proof), np.intersect1d(live, proof)
     if len(use) + len(apart) < FEWEST_LAUNCHES or not len(apart) or problem.freedom[use].sum() < FEWEST_RESIDUALS:
         return None, Account(problem.regime, (), {}, False, None, TOO_LITTLE)
     shipped = {name: law[name] for name in problem.base}
+    check_agreement(problem, shipped, tables)
     found = explain(problem, shipped, use)
     return found, account(problem, found, apart)
 

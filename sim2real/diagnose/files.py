@@ -29,6 +29,8 @@ def as_dict(diagnosis: Diagnosis) -> dict[str, Any]:
     }
     if diagnosis.reason:
         words["reason"] = diagnosis.reason
+    if diagnosis.notes:
+        words["notes"] = list(diagnosis.notes)
     return words
 
 
