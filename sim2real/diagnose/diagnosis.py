@@ -133,7 +133,7 @@ def _puck(data: Cut, values: dict[str, float], progress: Progress):
         found, told = _explain(regime, law, proof, tables)
         yield told
         if found is not None:
-            law |= found.law.values
+            law |= found.values
     progress("bounces", 0.6)
     impacts = [hit for k, pieces in enumerate(data.pieces) for hit in find_impacts(pieces, glides, law, k)]
     walls = WallProblem(bounces(impacts, geometry(data.recordings[0])), glides.clusters, law)

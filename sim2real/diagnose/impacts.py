@@ -12,6 +12,7 @@ from sim2real.diagnose.hits import Hit
 from sim2real.diagnose.pieces import Pieces
 
 FARTHEST = 0.12  # s from a glide's last frame to the hit
+UNSURE = 0.3  # of what a smooth force does to the motion, one standard deviation
 CORNER_APART = 0.02  # s; hits nearer to each other have no glide between them
 
 
@@ -54,7 +55,7 @@ def find_impacts(
     here = np.flatnonzero(data.recording == recording)
     if not len(here):
         return []
-    starts, ends, spread = (states[here] for states in problem.states(values))
+    starts, ends, spread = (states[here] for states in _states(problem, values))
     begin, finish = data.t[data.first[here]], data.t[data.first[here + 1] - 1]
     found: list[Impact] = []
     for k, hit in enumerate(pieces.hits):
@@ -79,6 +80,17 @@ def find_impacts(
             chain, lost = len(found), _touched_before(pieces, hit)
         found.append(Impact(hit, cluster, left, right, chain, lost, since, after))
     return found
+
+
+def _states(problem: GlideProblem, values: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """`GlideProblem.states`, less sure where a smooth force acts, which is never known exactly."""
+    starts, ends, spread = problem.states(values)
+    if values.get("unlisted_kind", 0.0):
+        without = problem.states({**values, "unlisted_kind": 0.0})
+        for side, (one, other) in enumerate(zip((starts, ends), without[:2], strict=True)):
+            doubt = UNSURE * (one - other)[:, :4]
+            spread[:, side] += doubt[:, :, None] ** 2 * np.eye(4)
+    return starts, ends, spread
 
 
 def _touched_before(pieces: Pieces, hit: Hit) -> bool:

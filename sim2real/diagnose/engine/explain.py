@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.stats import chi2
 
+from puckpilot_env.parameters import BY_NAME
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.choose import AMBIGUOUS, Chooser, Gain, Law, Model
 from sim2real.diagnose.engine.fit import Fit, fit
@@ -40,6 +41,36 @@ class Explained:
     also: Mapping[str, tuple[str, ...]]
     rivals: Mapping[str, tuple[Rival, ...]]
     gains: tuple[Gain, ...] = field(default=())
+
+    @property
+    def beside(self) -> tuple[str, ...]:
+        """The law's parameters that were fitted beside the smooth one; those of a nonlinear law were not."""
+        return _columns_of(self.law, self.columns)
+
+    @property
+    def final(self) -> Fit:
+        """The fit of the baseline and the listed laws beside the smooth one, where there is one."""
+        if self.unlisted is None:
+            return self.law
+        values, covariance = dict(self.law.values), self.law.covariance.copy()
+        for k, name in enumerate(self.beside):
+            row = BY_NAME[name]
+            values[name] = float(np.clip(values[name] + self.theta[k], row.low, row.high))
+        index = [self.law.free.index(name) for name in self.beside]
+        covariance[np.ix_(index, index)] = self.theta_covariance[: len(index), : len(index)]
+        return replace(self.law, values=values, covariance=covariance)
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Everything found as the simulator's parameters, by name; without a smooth law that it has no place for."""
+        return {**self.final.values, **self.switched()}
+
+    def switched(self) -> Mapping[str, float]:
+        """The simulator's parameters that switch the smooth law on; empty where it has no place for it."""
+        if self.unlisted is None:
+            return {}
+        law = next(one for one in self.columns.families if one.name == self.unlisted.name)
+        return law.switch(self.theta[len(self.beside) :])
 
 
 def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray) -> Explained:
@@ -119,9 +150,13 @@ def _smooth(problem: Problem, law: Fit, unlisted: Law | None, model: Model, scre
     if unlisted is None:
         return np.zeros(0), np.zeros((0, 0)), columns
     spread = model.spreads[model.laws.index(unlisted)]
-    index, ridge = Model(law.free, (unlisted,), (spread,)).columns(columns.grams)
+    index, ridge = Model(_columns_of(law, columns), (unlisted,), (spread,)).columns(columns.grams)
     theta = gram.solve(columns.grams, index, use, ridge)
     return theta, gram.covariance(columns.grams, index, theta, use), columns
+
+
+def _columns_of(law: Fit, columns: Columns) -> tuple[str, ...]:
+    return tuple(name for name in law.free if name in columns.grams.names)
 
 
 def _as_shipped(problem: Problem, shipped: Mapping[str, float], baseline: Fit, use, dispersion: float) -> bool:

@@ -14,8 +14,7 @@ from tests.reality.law import Law
 from tests.reality.record import make_recording
 
 CAMERA = Camera(noise=0.0006, rate=150.0)
-PATCH = {"patch_x": 1.0, "patch_y": 0.5, "patch_radius": 0.2, "patch_friction": 0.15}
-VORTEX = {"vortex": 0.06, "vortex_x": 1.0, "vortex_y": 0.5, "vortex_size": 0.3}
+VORTEX = Law(vortex=0.06, vortex_x=1.0, vortex_y=0.5, vortex_size=0.3)
 LAWS = {
     "plain": Law(),
     "tilted": Law(tilt_x=0.02),
@@ -23,8 +22,9 @@ LAWS = {
     "tilted back": Law(tilt_x=-0.02),
     "slick": Law(friction=0.09, wall_restitution=0.8),
     "lively": Law(wall_restitution=0.8),
-    "patched": Law(**PATCH),
-    "whirling": Law(**VORTEX),
+    "patched": Law(patch_x=1.0, patch_y=0.5, patch_radius=0.2, patch_friction=0.15),
+    "whirling": VORTEX,
+    "whirling again": VORTEX,
     "large": Law(length=2.06, width=1.03),
 }
 
@@ -47,8 +47,8 @@ def recorded(tmp_path_factory):
 
 
 def _diagnosis(recordings, heldout=()):
-    every = [[read_recording(folder) for folder in folders] for folders in (recordings, heldout)]
-    return diagnose(*every, {}, lambda stage, share: None)
+    here, apart = ([read_recording(folder) for folder in folders] for folders in (recordings, heldout))
+    return diagnose(here, apart, {}, lambda stage, share: None)
 
 
 @pytest.mark.parametrize(
@@ -76,9 +76,10 @@ def test_a_held_out_recording_of_another_table_names_nothing(recorded):
     assert "disagree as two tables do" in found.reason
 
 
-def test_two_recordings_of_one_table_agree(recorded):
-    found = _diagnosis([recorded("tilted"), recorded("tilted again")])
-    assert [one.mechanism for one in found.findings] == ["table_tilt"]
+@pytest.mark.parametrize("name, mechanism", [("tilted", "table_tilt"), ("whirling", "unlisted")])
+def test_two_recordings_of_one_table_agree(recorded, name, mechanism):
+    found = _diagnosis([recorded(name), recorded(f"{name} again")])
+    assert [one.mechanism for one in found.findings] == [mechanism]
 
 
 def test_stated_sizes_of_two_tables_are_refused_in_one_line(recorded, tmp_path, capsys):
