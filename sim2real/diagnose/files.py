@@ -56,7 +56,10 @@ def _estimate(one: Estimate) -> dict[str, Any]:
 
 
 def effects_toml(diagnosis: Diagnosis) -> str:
-    """The refitted baseline and all that was found, as the simulator takes it: each number within its range."""
+    """The refitted baseline and all that was found, as the simulator takes it: each number within its range.
+
+    A finding that it has no place for is named in a comment, as a clock that drifts: its players have one clock.
+    """
     values = {name: one.value for each in diagnosis.accounts for name, one in each.baseline.items()}
     for one in diagnosis.findings:
         values |= one.values
@@ -66,7 +69,12 @@ def effects_toml(diagnosis: Diagnosis) -> str:
     for name, effect in EFFECTS.items():
         numbers = [f"{key} = {near[row.name]!r}" for key, row in effect.rows.items() if row.name in near]
         lines += ["", f"[effects.{name}]", *numbers] if numbers else []
+    lines += [f"# not in the simulator: {_name(one)}" for one in diagnosis.findings if not one.values]
     return "\n".join(lines) + "\n"
+
+
+def _name(one: Finding) -> str:
+    return f"{one.mechanism} of the {one.regime}, which depends on {' and '.join(one.depends_on) or 'nothing'}"
 
 
 def write(diagnosis: Diagnosis, folder: Path) -> list[Path]:
