@@ -38,8 +38,8 @@ def _left(problem: Problem, found: Explained, proof: np.ndarray) -> float:
     """Sum of squares that the final law leaves of the clusters `proof`."""
     if found.unlisted is None:
         return float(np.sum(problem.residuals(found.law.values, (), proof).r ** 2))
-    index, _ = Model(found.beside, (found.unlisted,), (1.0,)).columns(found.columns.grams)
-    return float(gram.losses(found.columns.grams, index, found.theta, proof).sum())
+    index, _ = Model(found.law.free, (found.unlisted,), (1.0,)).columns(found.columns.grams)
+    return float(gram.losses(found.columns.grams, index, found.theta, problem.units.of(proof)).sum())
 
 
 def _rms(problem: Problem, squares: float, proof: np.ndarray) -> float:

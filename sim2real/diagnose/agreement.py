@@ -113,7 +113,8 @@ def _loss_under(problem: Problem, found: Explained, clusters: np.ndarray) -> flo
     columns, theta = grams.columns(names), np.zeros(len(names))
     base = len(problem.base)
     theta[base:] = found.theta[-len(found.unlisted.columns) :]
-    g = grams.g[np.ix_(clusters, columns, columns)].sum(axis=0)
-    b = grams.b[np.ix_(clusters, columns)].sum(axis=0)
+    units = problem.units.of(clusters)
+    g = grams.g[np.ix_(units, columns, columns)].sum(axis=0)
+    b = grams.b[np.ix_(units, columns)].sum(axis=0)
     theta[:base] = gram.solve_normal(g[:base, :base], -(b[:base] + g[:base, base:] @ theta[base:]))
-    return float(gram.losses(grams, columns, theta, clusters).sum())
+    return float(gram.losses(grams, columns, theta, units).sum())

@@ -10,11 +10,16 @@ import numpy as np
 from sim2real.diagnose.account import account
 from sim2real.diagnose.agreement import Part, check_agreement, check_sizes, parts_of
 from sim2real.diagnose.contacts import geometry, mallet_tracks
-from sim2real.diagnose.engine.explain import explain
+from sim2real.diagnose.encoders import read_encoders
+from sim2real.diagnose.engine.explain import Explained, explain
+from sim2real.diagnose.engine.fit import given
 from sim2real.diagnose.finding import Account, Finding, Proof
 from sim2real.diagnose.glide.data import GlideData, glide_data, join
-from sim2real.diagnose.glide.problem import GlideProblem
-from sim2real.diagnose.impacts import find_impacts
+from sim2real.diagnose.glide.problem import GlideProblem, States
+from sim2real.diagnose.impacts import Impact, find_impacts
+from sim2real.diagnose.mallet.data import Blows, blows
+from sim2real.diagnose.mallet.data import join as join_blows
+from sim2real.diagnose.mallet.problem import MalletProblem
 from sim2real.diagnose.pieces import Pieces, cut
 from sim2real.diagnose.problem import Problem
 from sim2real.diagnose.sanity import UndeterminedError, check_together, check_usable, notes
@@ -54,7 +59,7 @@ class Diagnosis:
         """agrees, parameters_only, missing_physics or undetermined."""
         if self.findings:
             return "missing_physics"
-        told = [each for each in self.accounts if not each.undetermined and each.proof is not None]
+        told = [each for each in self.accounts if each.regime != "sensing" and not each.undetermined]
         if self.reason or not told:
             return "undetermined"
         return "agrees" if all(each.shipped for each in told) else "parameters_only"
@@ -99,50 +104,71 @@ def diagnose(
     every = [*recordings, *heldout]
     check_together(every)
     try:
-        accounts = _accounts(every, len(heldout), shipped, progress)
+        accounts = _accounts(recordings, heldout, shipped, progress)
     except UndeterminedError as why:
         return Diagnosis((), why.reason, why.remedy, notes(every))
     return Diagnosis(tuple(accounts), notes=notes(every))
 
 
 def _accounts(
-    every: Sequence[Recording], heldout: int, shipped: Mapping[str, float], progress: Progress
+    recordings: Sequence[Recording], heldout: Sequence[Recording], shipped: Mapping[str, float], progress: Progress
 ) -> list[Account]:
-    """What each regime says; `heldout`: how many of the last recordings serve the proof alone."""
-    check_usable(every)
+    """What each regime says."""
+    check_usable([*recordings, *heldout])
     progress("cutting", 0.0)
-    pieces = [cut(one) for one in every]
-    check_sizes(every, pieces)
-    sensed = sense(every, pieces)
+    pieces = [cut(one) for one in recordings]
+    check_sizes([*recordings, *heldout], [*pieces, *(cut(one) for one in heldout)])
+    progress("sensing", 0.1)
+    sensed = sense(recordings, pieces)
     if sensed.account.undetermined:
         raise UndeterminedError(sensed.account.undetermined, sensed.account.next_recording)
-    data = Cut(sensed.recordings, sensed.pieces, heldout)
-    values = parameters(every[0], shipped)
+    apart = [sensed.exact(one) for one in heldout]
+    data = Cut([*sensed.recordings, *apart], [*sensed.pieces, *(cut(one) for one in apart)], len(heldout))
+    values = parameters(recordings[0], shipped)
     return [sensed.account, *_puck(data, values, progress)]
 
 
 def _puck(data: Cut, values: dict[str, float], progress: Progress):
-    """Accounts of the puck's regimes, in the order in which one leans on the other."""
+    """Accounts of the puck's regimes, in the order in which one leans on the other: hits are told by the glides."""
     progress("glides", 0.2)
     parts = [_glides(one, pieces) for one, pieces in zip(data.recordings, data.pieces, strict=True)]
+    if not sum(part.glides for part in parts):
+        yield Account("glide", (), {}, False, None, TOO_LITTLE)
+        return
     glides = GlideProblem(join(parts), values)
     proof = _kept_apart(glides, parts, data.heldout)
     tables = parts_of(glides.data, [one.name for one in data.recordings])
     law = dict(values)
-    for regime in (glides,):
-        found, told = _explain(regime, law, proof, tables)
-        yield told
-        if found is not None:
-            law |= found.values
+    found, told = _explain(glides, law, proof, tables)
+    yield told
+    states = glides.states(given(law)) if found is None else _states(glides, found)
+    law |= {} if found is None else found.law.values
     progress("bounces", 0.6)
-    impacts = [hit for k, pieces in enumerate(data.pieces) for hit in find_impacts(pieces, glides, law, k)]
-    walls = WallProblem(bounces(impacts, geometry(data.recordings[0])), glides.clusters, law)
-    yield _explain(walls, law, proof, tables)[1]
+    impacts = [find_impacts(pieces, glides, states, k) for k, pieces in enumerate(data.pieces)]
+    hits = bounces([hit for some in impacts for hit in some], geometry(data.recordings[0]))
+    yield _explain(WallProblem(hits, glides.clusters, law), law, proof, tables)[1]
+    progress("blows", 0.75)
+    struck = _blows(data.recordings, impacts)
+    if struck is not None:
+        yield _explain(MalletProblem(struck, glides.clusters, law), law, proof, tables)[1]
 
 
 def _glides(recording: Recording, pieces: Pieces) -> GlideData:
     t = np.zeros(0) if recording.frames is None else recording.frames.t
     return glide_data(pieces, geometry(recording), mallet_tracks(recording, t))
+
+
+def _states(glides: GlideProblem, found: Explained) -> States:
+    if found.unlisted is None:
+        return glides.states(found.law)
+    return glides.states(found.law, found.unlisted.name, found.theta[-len(found.unlisted.columns) :])
+
+
+def _blows(recordings: Sequence[Recording], impacts: Sequence[list[Impact]]) -> Blows | None:
+    """The blows of the robot's mallet in all recordings that know where it was; None where there are none."""
+    read = [(read_encoders(one), geometry(one), some) for one, some in zip(recordings, impacts, strict=True)]
+    parts = [blows(some, encoders, g) for encoders, g, some in read if encoders is not None]
+    return join_blows(parts) if any(len(part) for part in parts) else None
 
 
 def _explain(problem: Problem, law: Mapping[str, float], proof: np.ndarray, tables: Sequence[Part]):

@@ -2,27 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from sim2real.diagnose.glide.problem import GlideProblem
+from sim2real.diagnose.glide.problem import GlideProblem, States
 from sim2real.diagnose.hits import Hit
 from sim2real.diagnose.pieces import Pieces
 
 FARTHEST = 0.12  # s from a glide's last frame to the hit
-UNSURE = 0.3  # of what a smooth force does to the motion, one standard deviation
 CORNER_APART = 0.02  # s; hits nearer to each other have no glide between them
 
 
 @dataclass(frozen=True)
 class Side:
-    """Motion at the time of a hit: place (2,) [m], velocity (2,) [m/s], and the covariance (4, 4) of both."""
+    """Motion at the time of a hit: place (2,) [m], velocity (2,) [m/s], and the covariance (4, 4) of both.
+
+    `drift` (4, k): changes of both by each independent standard deviation of the fitted law, common to all hits.
+    """
 
     place: np.ndarray
     velocity: np.ndarray
     covariance: np.ndarray
+    drift: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -44,18 +46,16 @@ class Impact:
     glide: int
 
 
-def find_impacts(
-    pieces: Pieces, problem: GlideProblem, values: Mapping[str, float], recording: int = 0
-) -> list[Impact]:
+def find_impacts(pieces: Pieces, problem: GlideProblem, states: States, recording: int = 0) -> list[Impact]:
     """The hits of `pieces` that a fitted glide leads to and another one from, in order of time.
 
-    `pieces` are those of the problem's recording of that number.
+    `pieces` are those of the problem's recording of that number, `states` the ends of all its glides.
     """
     data = problem.data
     here = np.flatnonzero(data.recording == recording)
     if not len(here):
         return []
-    starts, ends, spread = (states[here] for states in _states(problem, values))
+    motion, spread, drift = states.motion[here], states.spread[here], states.drift[here]
     begin, finish = data.t[data.first[here]], data.t[data.first[here + 1] - 1]
     found: list[Impact] = []
     for k, hit in enumerate(pieces.hits):
@@ -69,28 +69,17 @@ def find_impacts(
             or _others(pieces, k, finish[before], begin[after])
         ):
             continue
-        left = _carry(ends[before], spread[before][1], hit.t - finish[before])
-        right = _carry(starts[after], spread[after][0], hit.t - begin[after])
+        left = _carry(motion[before, 1], spread[before, 1], drift[before, 1], hit.t - finish[before])
+        right = _carry(motion[after, 0], spread[after, 0], drift[after, 0], hit.t - begin[after])
         cluster = int(data.cluster[here[after]])
         last = found[-1] if found and found[-1].glide == before else None
         since = hit.t - last.hit.t if last else np.nan
         if last and last.hit.kind != "post":  # a post's normal is uncertain, and so is the spin that it gives
             chain, lost = last.chain, last.lost
         else:
-            chain, lost = len(found), _touched_before(pieces, hit)
+            chain, lost = int(here[after]), _touched_before(pieces, hit)
         found.append(Impact(hit, cluster, left, right, chain, lost, since, after))
     return found
-
-
-def _states(problem: GlideProblem, values: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """`GlideProblem.states`, less sure where a smooth force acts, which is never known exactly."""
-    starts, ends, spread = problem.states(values)
-    if values.get("unlisted_kind", 0.0):
-        without = problem.states({**values, "unlisted_kind": 0.0})
-        for side, (one, other) in enumerate(zip((starts, ends), without[:2], strict=True)):
-            doubt = UNSURE * (one - other)[:, :4]
-            spread[:, side] += doubt[:, :, None] ** 2 * np.eye(4)
-    return starts, ends, spread
 
 
 def _touched_before(pieces: Pieces, hit: Hit) -> bool:
@@ -105,7 +94,7 @@ def _others(pieces: Pieces, k: int, start: float, stop: float) -> bool:
     return any(start - 0.005 < other.t < stop + 0.005 for other in near)
 
 
-def _carry(state: np.ndarray, covariance: np.ndarray, duration: float) -> Side:
+def _carry(state: np.ndarray, covariance: np.ndarray, drift: np.ndarray, duration: float) -> Side:
     """A state (6,): place, velocity, acceleration, `duration` later (or before, if it is negative)."""
     place, velocity, acceleration = state[:2], state[2:4], state[4:]
     moved = np.eye(4)
@@ -114,4 +103,5 @@ def _carry(state: np.ndarray, covariance: np.ndarray, duration: float) -> Side:
         place + velocity * duration + 0.5 * acceleration * duration**2,
         velocity + acceleration * duration,
         moved @ covariance @ moved.T,
+        moved @ drift,
     )

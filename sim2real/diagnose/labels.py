@@ -13,7 +13,7 @@ def labelled(mechanism: str, fit: Fit) -> Mapping[str, Estimate]:
     """The parameters of a mechanism that a fit freed, by the labels of its effect; some in the words of the format."""
     if mechanism in SPECIAL:
         return SPECIAL[mechanism](fit)
-    return {label: fit.estimate(row.name) for label, row in EFFECTS[mechanism].rows.items() if row.name in fit.free}
+    return _freed(mechanism, fit)
 
 
 def _shifted(one: Estimate, by: float) -> Estimate:
@@ -25,8 +25,12 @@ def _scaled(one: Estimate, by: float) -> Estimate:
     return Estimate(one.value * by, low, high, one.unit)
 
 
-def _falling(base: str, slope: str) -> Callable[[Fit], dict[str, Estimate]]:
-    return lambda fit: {"e0": fit.estimate(base), "slope": fit.estimate(slope)}
+def _falling(mechanism: str, base: str) -> Callable[[Fit], dict[str, Estimate]]:
+    return lambda fit: {"e0": fit.estimate(base), **_freed(mechanism, fit)}
+
+
+def _freed(mechanism: str, fit: Fit) -> dict[str, Estimate]:
+    return {label: fit.estimate(row.name) for label, row in EFFECTS[mechanism].rows.items() if row.name in fit.free}
 
 
 def _tangential(fit: Fit) -> dict[str, Estimate]:
@@ -46,12 +50,12 @@ def _posts(fit: Fit) -> dict[str, Estimate]:
 def _headings(fit: Fit) -> dict[str, Estimate]:
     one = fit.estimate("friction_anisotropy")
     value, low, high = ((1.0 + r) / (1.0 - r) for r in (one.value, one.low, one.high))
-    return {"ratio": Estimate(value, low, high, "1")}
+    return {**_freed("friction_anisotropy", fit), "ratio": Estimate(value, low, high, "1")}
 
 
 SPECIAL: dict[str, Callable[[Fit], Mapping[str, Estimate]]] = {
-    "speed_dependent_restitution": _falling("wall_restitution", "restitution_slope"),
-    "mallet_speed_restitution": _falling("mallet_restitution", "mallet_restitution_slope"),
+    "speed_dependent_restitution": _falling("speed_dependent_restitution", "wall_restitution"),
+    "mallet_speed_restitution": _falling("mallet_speed_restitution", "mallet_restitution"),
     "tangential_restitution": _tangential,
     "wall_to_wall_restitution": _odd_wall,
     "corner_restitution": _posts,

@@ -26,8 +26,21 @@ class Residuals:
 
 
 @dataclass(frozen=True)
+class Units:
+    """The smallest parts of a regime that can be foretold on their own, such as glides or bounces: the `cluster` (u,)
+    of each, and how many of its residuals are left free by its nuisances, `freedom` (u,)."""
+
+    cluster: np.ndarray
+    freedom: np.ndarray
+
+    def of(self, clusters: np.ndarray) -> np.ndarray:
+        """Indices of the units in these clusters that have residuals to compare."""
+        return np.flatnonzero(np.isin(self.cluster, clusters) & (self.freedom > 0.0))
+
+
+@dataclass(frozen=True)
 class Columns:
-    """Everything that a regime may lack, as columns of its residuals at one law.
+    """Everything that a regime may lack, as columns of its residuals at one law, summed by unit.
 
     `listed`: mechanisms; `families`: smooth laws of any shape, by what they depend on (`Law.family`).
     """
@@ -40,15 +53,16 @@ class Columns:
 class Problem(Protocol):
     """A regime's data.
 
-    `clusters`: how many launches (units of resampling) there are; `freedom` (clusters,): how many of each one's
-    residuals are left free by its nuisances; `noise_m`: the sensor's noise [m], rms over the residuals. `base`: the
-    baseline's parameters that it can tell; `regime` as in the format.
+    `clusters`: how many launches there are, by which intervals and proofs are resampled; `freedom` (clusters,): how
+    many of each one's residuals are left free by its nuisances; `units`: its parts; `noise_m`: the sensor's noise [m],
+    rms over the residuals. `base`: the baseline's parameters that it can tell; `regime` as in the format.
     """
 
     regime: str
     base: tuple[str, ...]
     clusters: int
     freedom: np.ndarray
+    units: Units
     noise_m: float
 
     def residuals(self, values: Mapping[str, float], free: Sequence[str], clusters: np.ndarray) -> Residuals:
@@ -57,8 +71,9 @@ class Problem(Protocol):
         """
         ...
 
-    def columns(self, values: Mapping[str, float]) -> Columns:
-        """The columns of all clusters at a law: the base's, the listed effects' and the families'."""
+    def columns(self, values: Mapping[str, float], free: Sequence[str] = ()) -> Columns:
+        """The columns of all clusters at a law: the base's, those of other parameters `free`, the listed effects' and
+        the families'."""
         ...
 
     def rows(self, law: Law) -> tuple[str, ...]:

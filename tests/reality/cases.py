@@ -127,12 +127,11 @@ def _other_parameters(rng: Rng, law: Law) -> Law:
 
 
 def _camera(rng: Rng) -> Camera:
-    """A camera with its small faults; what repeats a position does so for 2 % of the frames at most."""
+    """A camera with its small faults. None repeats a position: that would be a mechanism."""
     return Camera(
         rate=float(round(rng.uniform(100.0, 150.0))),
         noise=_about(rng, 0.0003, 0.001, 5),
         jitter=float(rng.uniform(0.0, 0.0005)),
-        held=float(rng.uniform(0.0, 0.02)) if rng.uniform() < 0.3 else 0.0,
         dropped=float(rng.uniform(0.0, 0.03)),
         wild=float(rng.uniform(0.0, 0.005)),
         wild_by=float(rng.uniform(0.02, 0.08)),

@@ -4,17 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.gram import Grams
 
+if TYPE_CHECKING:
+    from sim2real.diagnose.problem import Units
+
 FOLDS = 10
-LEAST_FIT = 30.0  # drop of the sum of squares (and 2 more a parameter) that chance does not make
-LEAST_FORETOLD = 12.0  # drop of the held-out sum of squares
+LEAST_FIT = 30.0  # drop of the loss (and 2 more a parameter) that chance does not make
+LEAST_FORETOLD = 12.0  # drop of the held-out loss
+RESAMPLED, UNSURE = 400, 0.02  # draws of launches, and the share of them in which a law may be of no use
+UNKNOWN = 4.0  # sum of squares a column, below which half of the launches does not tell a sign
 LEAST_SHARE = 0.05  # of what all laws together explain
-AMBIGUOUS = 9.0  # held-out sums of squares nearer than this do not tell two laws apart
+AMBIGUOUS = 9.0  # held-out losses nearer than this do not tell two laws apart
 SPREADS = (0.03, 0.3, 3.0)  # tried for the coefficients of a family
 
 
@@ -41,7 +47,7 @@ class Law:
 
 @dataclass(frozen=True)
 class Gain:
-    """What a law adds to others: drop of the sum of squares when fitted, and of each cluster's when foretold."""
+    """What a law adds to others: drop of the soft loss when fitted, and of each launch's when foretold."""
 
     law: Law
     fitted: float
@@ -54,7 +60,7 @@ class Gain:
 
     @property
     def without_best(self) -> float:
-        """The total without the cluster that gains most: no single launch may carry a discovery."""
+        """The total without the launch that gains most: no single one may carry a discovery."""
         return self.total - float(self.foretold.max())
 
 
@@ -84,27 +90,39 @@ class Model:
 
 
 class Chooser:
-    """Compares models on the clusters `use` of `grams`; `dispersion` >= 1 is noise beyond the sensor's, in variance."""
+    """Compares models on the units of the clusters `use`; `dispersion` >= 1 is noise beyond the sensor's, in variance.
 
-    def __init__(self, grams: Grams, use: np.ndarray, dispersion: float = 1.0) -> None:
-        self.grams, self.use, self.dispersion = grams, use, dispersion
-        self._folds = np.arange(len(use)) % min(FOLDS, len(use))
+    Losses are soft (`gram.soft`): a few parts of the data that no law explains outweigh the rest in no comparison.
+    """
+
+    def __init__(self, grams: Grams, units: Units, use: np.ndarray, dispersion: float = 1.0) -> None:
+        self.grams, self.use, self.dispersion = grams, units.of(use), dispersion
+        self._freedom = units.freedom[self.use] * dispersion
+        self._launch = np.unique(units.cluster[self.use], return_inverse=True)[1]
+        self._folds = np.arange(len(self.use)) % min(FOLDS, len(self.use))
+        draws = np.random.default_rng(0).integers(self._launches, size=(RESAMPLED, self._launches))
+        self._resampled = np.stack([np.bincount(row, minlength=self._launches) for row in draws])
+
+    @property
+    def _launches(self) -> int:
+        return int(self._launch.max()) + 1
 
     def fitted(self, model: Model) -> float:
-        """Sum of squares that a model leaves when fitted to all clusters."""
+        """Loss that a model leaves when fitted to all units."""
         columns, ridge = model.columns(self.grams)
-        theta = gram.solve(self.grams, columns, self.use, ridge)
-        return float(gram.losses(self.grams, columns, theta, self.use).sum()) / self.dispersion
+        theta = gram.solve_softly(self.grams, columns, self.use, self._freedom, ridge)
+        left = gram.losses(self.grams, columns, theta, self.use)
+        return float(gram.soft(left, self._freedom).sum()) / self.dispersion
 
     def foretold(self, model: Model) -> np.ndarray:
-        """Sum of squares of each cluster under the model fitted to the clusters of the other folds."""
+        """Loss of each launch, its units foretold by the model fitted to those of the other folds."""
         columns, ridge = model.columns(self.grams)
-        loss = np.zeros(len(self.use))
+        left = np.zeros(len(self.use))
         for fold in range(self._folds.max() + 1):
             out = self._folds == fold
-            theta = gram.solve(self.grams, columns, self.use[~out], ridge)
-            loss[out] = gram.losses(self.grams, columns, theta, self.use[out])
-        return loss / self.dispersion
+            theta = gram.solve_softly(self.grams, columns, self.use[~out], self._freedom[~out], ridge)
+            left[out] = gram.losses(self.grams, columns, theta, self.use[out])
+        return np.bincount(self._launch, gram.soft(left, self._freedom)) / self.dispersion
 
     def gain(self, model: Model, law: Law) -> Gain:
         """What `law` adds to `model`; a family with the best of SPREADS."""
@@ -119,43 +137,50 @@ class Chooser:
         return best
 
     def passes(self, gain: Gain) -> bool:
-        """Whether a gain is more than chance, in the fit and on held-out clusters, and not one launch's doing."""
+        """Whether a gain is more than chance, in the fit and on held-out units, and not the doing of few launches."""
         k = len(gain.law.columns)
-        enough = gain.fitted > LEAST_FIT + 2.0 * k and gain.total > LEAST_FORETOLD
-        return enough and gain.without_best > 0.0 and bool((gain.foretold > 0.0).mean() > 0.5 or gain.law.family)
+        enough = gain.fitted > LEAST_FIT + 2.0 * k and gain.total > LEAST_FORETOLD and gain.without_best > 0.0
+        return enough and float(np.quantile(self._resampled @ gain.foretold, UNSURE)) > 0.0
 
     def same_in_both_halves(self, model: Model, law: Law) -> bool:
-        """Whether the odd and the even clusters ask for the law with the same sign."""
+        """Whether the odd and the even launches ask for the law with the same sign, as far as either knows."""
         columns, ridge = model.plus(law, 1.0).columns(self.grams)
         at = np.isin(columns, self.grams.columns(law.columns))
-        halves = [gram.solve(self.grams, columns, self.use[k::2], ridge)[at] for k in (0, 1)]
+        halves, known = [], []
+        for k in (0, 1):
+            some = self._launch % 2 == k
+            halves.append(gram.solve_softly(self.grams, columns, self.use[some], self._freedom[some], ridge)[at])
+            seen = self.grams.g[np.ix_(self.use[some], columns[at], columns[at])].sum(axis=0)
+            known.append(float(halves[k] @ seen @ halves[k]))
         weight = self.grams.g[np.ix_(self.use, columns[at], columns[at])].sum(axis=0)
-        return float(halves[0] @ weight @ halves[1]) > 0.0
+        return min(known) < UNKNOWN * len(law.columns) or float(halves[0] @ weight @ halves[1]) > 0.0
 
-    def add(self, model: Model, laws: Sequence[Law], most: int) -> tuple[Model, list[list[Gain]]]:
-        """Add the best law that passes, again and again; also returns each round's gains, best first."""
-        rounds = []
+    def add(self, model: Model, laws: Sequence[Law], most: int) -> tuple[Model, list[Gain]]:
+        """Add the law that foretells best, again and again, whether it is sure or not: `prune` decides on all together.
+        Also returns the gains of each law alone, best first."""
+        first: list[Gain] = []
         while len(model.laws) < most:
             taken = {law.name for law in model.laws}
-            gains = [self.gain(model, law) for law in laws if law.name not in taken]
-            gains.sort(key=lambda gain: -gain.total)
-            passing = [g for g in gains if self.passes(g) and self.same_in_both_halves(model, g.law)]
-            if not passing:
-                rounds.append(gains)
+            gains = sorted((self.gain(model, law) for law in laws if law.name not in taken), key=lambda one: -one.total)
+            first = first or gains
+            if not gains or gains[0].total < LEAST_FORETOLD:
                 break
-            rounds.append(gains)
-            model = model.plus(passing[0].law, passing[0].spread)
-        return model, rounds
+            model = model.plus(gains[0].law, gains[0].spread)
+        return model, first
 
     def prune(self, model: Model) -> Model:
-        """Take out laws that the others make needless: little is lost on held-out clusters without them."""
+        """Take out laws that the others make needless, or that are not sure beside them, the weakest first."""
         explained = float((self.foretold(Model(model.base)) - self.foretold(model)).sum())
-        while len(model.laws) > 1:
-            loss = {
-                law.name: float((self.foretold(model.minus(law)) - self.foretold(model)).sum()) for law in model.laws
-            }
-            weakest = min((law for law in model.laws), key=lambda law: loss[law.name])
-            if loss[weakest.name] > max(LEAST_FORETOLD, LEAST_SHARE * explained):
+        while model.laws:
+            gains = [self.gain(model.minus(law), law) for law in model.laws]
+            worth = LEAST_SHARE * explained if len(gains) > 1 else 0.0
+            failing = [one for one in gains if one.total < worth or not self.sure(model, one)]
+            if not failing:
                 break
-            model = model.minus(weakest)
+            model = model.minus(min(failing, key=lambda one: one.total).law)
         return model
+
+    def sure(self, model: Model, gain: Gain) -> bool:
+        """Whether a law of the model passes, with the same sign in both halves if it is a listed one."""
+        rest = model.minus(gain.law)
+        return self.passes(gain) and (bool(gain.law.family) or self.same_in_both_halves(rest, gain.law))

@@ -10,7 +10,7 @@ from scipy.stats import chi2
 
 from puckpilot_env.parameters import BY_NAME
 from sim2real.diagnose.engine import gram
-from sim2real.diagnose.engine.choose import AMBIGUOUS, Chooser, Gain, Law, Model
+from sim2real.diagnose.engine.choose import AMBIGUOUS, LEAST_FORETOLD, LEAST_SHARE, Chooser, Gain, Law, Model
 from sim2real.diagnose.engine.fit import Fit, fit
 from sim2real.diagnose.finding import Rival
 from sim2real.diagnose.problem import Columns, Problem
@@ -19,6 +19,7 @@ MOST_LISTED = 4
 FEWEST_CLUSTERS = 4
 CLEAR = 1e-4  # chance at which the simulator's own numbers would be refused though they are right
 REMAINDER = 0.1  # share of what the listed laws explain that a remainder must exceed to be worth a law
+FAR_OFF = 3.0  # mean square residual, in units of the noise, of a typical launch of which something is not explained
 STRAY = 6.0  # times the usual sum of squares: a launch in which something else happened
 MOST_STRAY = 0.1
 
@@ -43,85 +44,108 @@ class Explained:
     gains: tuple[Gain, ...] = field(default=())
 
     @property
-    def beside(self) -> tuple[str, ...]:
-        """The law's parameters that were fitted beside the smooth one; those of a nonlinear law were not."""
-        return _columns_of(self.law, self.columns)
-
-    @property
     def final(self) -> Fit:
         """The fit of the baseline and the listed laws beside the smooth one, where there is one."""
         if self.unlisted is None:
             return self.law
-        values, covariance = dict(self.law.values), self.law.covariance.copy()
-        for k, name in enumerate(self.beside):
+        values = dict(self.law.values)
+        for k, name in enumerate(self.law.free):
             row = BY_NAME[name]
             values[name] = float(np.clip(values[name] + self.theta[k], row.low, row.high))
-        index = [self.law.free.index(name) for name in self.beside]
-        covariance[np.ix_(index, index)] = self.theta_covariance[: len(index), : len(index)]
-        return replace(self.law, values=values, covariance=covariance)
-
-    @property
-    def values(self) -> dict[str, float]:
-        """Everything found as the simulator's parameters, by name; without a smooth law that it has no place for."""
-        return {**self.final.values, **self.switched()}
+        n = len(self.law.free)
+        return replace(self.law, values=values, covariance=self.theta_covariance[:n, :n])
 
     def switched(self) -> Mapping[str, float]:
         """The simulator's parameters that switch the smooth law on; empty where it has no place for it."""
         if self.unlisted is None:
             return {}
         law = next(one for one in self.columns.families if one.name == self.unlisted.name)
-        return law.switch(self.theta[len(self.beside) :])
+        return law.switch(self.theta[len(self.law.free) :])
 
 
 def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray) -> Explained:
     """Explain the clusters `use` of a problem, starting from the simulator's own numbers `shipped`."""
     baseline = fit(problem, shipped, problem.base, use)
     screen = problem.columns(baseline.values)
-    base = Model(problem.base)
-    chooser = Chooser(screen.grams, use, _dispersion(problem, screen, use))
-    model, rounds = chooser.add(base, screen.listed, MOST_LISTED)
+    chooser = Chooser(screen.grams, problem.units, use, _dispersion(problem, screen, use))
+    model, gains = chooser.add(Model(problem.base), screen.listed, MOST_LISTED)
     model = chooser.prune(model)
-    family = _remainder(chooser, model, screen.families)
-    if family is not None:
-        model = chooser.prune(model.plus(family.law, family.spread))
+    law = _refit(problem, baseline, model.laws, use)
+    columns = screen if law is baseline else problem.columns(law.values, law.free)
+    refitted = Chooser(columns.grams, problem.units, use, chooser.dispersion)
+    model = _with_remainder(chooser, model, _remainder(chooser, model, refitted, law, columns), screen)
+    if not any(one.family for one in model.laws) and _far_off(problem, law, use):
+        model = _likeliest(chooser, Model(problem.base), screen)
     listed = tuple(law for law in model.laws if not law.family)
     unlisted = next((law for law in model.laws if law.family), None)
     law = _refit(problem, baseline, listed, use)
     calm = _calm(problem, law, use, unlisted)
     if len(calm) < len(use):
         law = _refit(problem, baseline, listed, calm)
-    theta, spread, columns = _smooth(problem, law, unlisted, model, screen, use)
+    theta, spread, columns = _smooth(problem, law, unlisted, model, columns, use)
     also, rivals = {}, {}
     for one in model.laws:
         also[one.name], rivals[one.name] = _compare(chooser, model, one, [*screen.listed, *screen.families])
     return Explained(
         baseline, law, _as_shipped(problem, shipped, baseline, use, chooser.dispersion), chooser.dispersion, listed,
         unlisted, theta, spread, columns, {one.name: _chance(chooser, model, one, screen) for one in model.laws},
-        also, rivals, tuple(rounds[0]) if rounds else (),
+        also, rivals, tuple(gains),
     )  # fmt: skip
 
 
 def _dispersion(problem: Problem, screen: Columns, use: np.ndarray) -> float:
-    """Noise beyond the sensor's, in variance: what even the richest law leaves. At least 1."""
+    """Noise beyond the sensor's, in variance: what even the richest law leaves of a typical launch. At least 1."""
     every = Model(problem.base)
     for law in (*screen.listed, *screen.families):
         every = every.plus(law, 1.0)
     columns, ridge = every.columns(screen.grams)
-    theta = gram.solve(screen.grams, columns, use, ridge + 1e-6)
-    left = gram.losses(screen.grams, columns, theta, use)
-    freedom = problem.freedom[use]
-    typical = np.median(left / np.maximum(freedom, 1.0))
-    return float(max(typical, 1.0))
+    units = problem.units.of(use)
+    theta = gram.solve(screen.grams, columns, units, ridge + 1e-6)
+    left = np.bincount(problem.units.cluster[units], gram.losses(screen.grams, columns, theta, units), problem.clusters)
+    return float(max(np.median(left[use] / np.maximum(problem.freedom[use], 1.0)), 1.0))
 
 
-def _remainder(chooser: Chooser, model: Model, families) -> Gain | None:
-    """The family that explains most of what the listed laws leave, if that is more than chance and worth a law."""
-    gains = sorted((chooser.gain(model, law) for law in families), key=lambda gain: -gain.total)
-    explained = float((chooser.foretold(Model(model.base)) - chooser.foretold(model)).sum())
+def _remainder(chooser: Chooser, model: Model, refitted: Chooser, law: Fit, columns: Columns) -> Gain | None:
+    """The family that explains most of what the listed laws leave once they are refitted (`law`, with its `columns`),
+    if that is more than chance and worth a law."""
+    gains = sorted((refitted.gain(Model(law.free), one) for one in columns.families), key=lambda gain: -gain.total)
+    explained = _explained(chooser, model)
     for gain in gains:
-        if chooser.passes(gain) and gain.total > REMAINDER * explained:
+        if refitted.passes(gain) and gain.total > REMAINDER * explained:
             return gain
     return None
+
+
+def _with_remainder(chooser: Chooser, model: Model, rest: Gain | None, screen: Columns) -> Model:
+    """The model with the family `rest` on top; or a family alone, where that does as well: then listed laws only stood
+    in for parts of it."""
+    if rest is None:
+        return model
+    both = chooser.prune(model.plus(rest.law, rest.spread))
+    alone = _likeliest(chooser, Model(model.base), screen)
+    worse = _explained(chooser, both) - _explained(chooser, alone)
+    return alone if worse < max(LEAST_FORETOLD, LEAST_SHARE * _explained(chooser, both)) else both
+
+
+def _likeliest(chooser: Chooser, base: Model, screen: Columns) -> Model:
+    """The baseline and the family that alone foretells best."""
+    best = max((chooser.gain(base, law) for law in screen.families), key=lambda gain: gain.total)
+    return base.plus(best.law, best.spread)
+
+
+def _explained(chooser: Chooser, model: Model) -> float:
+    return float((chooser.foretold(Model(model.base)) - chooser.foretold(model)).sum())
+
+
+def _far_off(problem: Problem, law: Fit, use: np.ndarray) -> bool:
+    """Whether a law leaves far more than noise of most launches, so that something must be missing."""
+    return bool(np.median(_left(problem, law, use)) > FAR_OFF)
+
+
+def _left(problem: Problem, law: Fit, use: np.ndarray) -> np.ndarray:
+    """What a law leaves of each cluster in `use`: its mean square residual in units of the noise."""
+    found = problem.residuals(law.values, (), use)
+    return np.bincount(found.cluster, found.r**2, problem.clusters)[use] / np.maximum(problem.freedom[use], 1.0)
 
 
 def _refit(problem: Problem, baseline: Fit, listed: tuple[Law, ...], use: np.ndarray) -> Fit:
@@ -137,26 +161,22 @@ def _refit(problem: Problem, baseline: Fit, listed: tuple[Law, ...], use: np.nda
 
 def _calm(problem: Problem, law: Fit, use: np.ndarray, unlisted: Law | None) -> np.ndarray:
     """The clusters that the final law explains; a few that it does not saw something of their own, and are left out."""
-    found = problem.residuals(law.values, (), use)
-    loss = np.bincount(found.cluster, found.r**2, problem.clusters)[use] / np.maximum(problem.freedom[use], 1.0)
+    loss = _left(problem, law, use)
     stray = loss > STRAY * max(float(np.median(loss)), 1.0)
     few = 0 < stray.sum() <= MOST_STRAY * len(use) and unlisted is None
     return use[~stray] if few else use
 
 
-def _smooth(problem: Problem, law: Fit, unlisted: Law | None, model: Model, screen: Columns, use: np.ndarray):
+def _smooth(problem: Problem, law: Fit, unlisted: Law | None, model: Model, columns: Columns, use: np.ndarray):
     """Coefficients of the family on top of the final fit, their covariance, and the columns that they belong to."""
-    columns = screen if unlisted is None else problem.columns(law.values)
     if unlisted is None:
         return np.zeros(0), np.zeros((0, 0)), columns
+    columns = problem.columns(law.values, law.free)
     spread = model.spreads[model.laws.index(unlisted)]
-    index, ridge = Model(_columns_of(law, columns), (unlisted,), (spread,)).columns(columns.grams)
-    theta = gram.solve(columns.grams, index, use, ridge)
-    return theta, gram.covariance(columns.grams, index, theta, use), columns
-
-
-def _columns_of(law: Fit, columns: Columns) -> tuple[str, ...]:
-    return tuple(name for name in law.free if name in columns.grams.names)
+    index, ridge = Model(law.free, (unlisted,), (spread,)).columns(columns.grams)
+    units = problem.units.of(use)
+    theta = gram.solve_softly(columns.grams, index, units, problem.units.freedom[units], ridge)
+    return theta, gram.covariance(columns.grams, index, theta, units), columns
 
 
 def _as_shipped(problem: Problem, shipped: Mapping[str, float], baseline: Fit, use, dispersion: float) -> bool:

@@ -32,12 +32,23 @@ class Fit:
     clusters: int
     bound: tuple[str, ...]
 
+    @property
+    def directions(self) -> np.ndarray:
+        """Changes (free, free) of the free parameters, columns independent and each of one standard deviation."""
+        value, vector = np.linalg.eigh(self.covariance) if self.free else (np.zeros(0), np.zeros((0, 0)))
+        return vector * np.sqrt(np.maximum(value, 0.0))
+
     def estimate(self, name: str) -> Estimate:
         """A free parameter with its 95 % interval."""
         k = self.free.index(name)
         half = float(np.sqrt(self.covariance[k, k]) * student.ppf(0.975, max(self.clusters - 1, 2)))
         value = float(self.values[name])
         return Estimate(value, value - half, value + half, BY_NAME[name].unit)
+
+
+def given(values: Mapping[str, float]) -> Fit:
+    """A law that is known, not fitted."""
+    return Fit(dict(values), (), np.zeros((0, 0)), 0.0, 0, 0, ())
 
 
 def fit(problem: Problem, values: Mapping[str, float], free: Sequence[str], clusters: np.ndarray) -> Fit:

@@ -1,7 +1,8 @@
-"""Residuals and their derivatives, summed up a launch: any set of columns can then be fitted to any launches at once.
+"""Residuals and their derivatives, summed up a part of the data: any columns can then be fitted to any parts at once.
 
-Residuals are `r + J theta` in units of the sensor's noise. With `G = J'J`, `b = J'r` and `s = r'r` for each launch,
-fits, held-out losses and resampling of launches are sums of small matrices, whatever the recording's length.
+Residuals are `r + J theta` in units of the sensor's noise. With `G = J'J`, `b = J'r` and `s = r'r` for each part, fits
+and held-out losses are sums of small matrices, whatever the recording's length. Parts are called clusters here: whole
+launches, or the units within them.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 TINY = 1e-10
+MOST_REWEIGHTED = 8
 
 
 @dataclass(frozen=True)
@@ -54,6 +56,34 @@ def solve(grams: Grams, columns: np.ndarray, clusters: np.ndarray, ridge: np.nda
     g = grams.g[np.ix_(clusters, columns, columns)].sum(axis=0)
     b = grams.b[np.ix_(clusters, columns)].sum(axis=0)
     return solve_normal(g + np.diag(np.broadcast_to(ridge, len(columns)).astype(float)), -b)
+
+
+def solve_softly(
+    grams: Grams, columns: np.ndarray, clusters: np.ndarray, freedom: np.ndarray, ridge: np.ndarray | float = 0.0
+) -> np.ndarray:
+    """Like `solve`, for the sum of `soft` losses: by weighted least squares, again and again."""
+    g, b = grams.g[np.ix_(clusters, columns, columns)], grams.b[np.ix_(clusters, columns)]
+    penalty = np.diag(np.broadcast_to(ridge, len(columns)).astype(float))
+    weight, theta = np.ones(len(clusters)), np.zeros(len(columns))
+    for _ in range(MOST_REWEIGHTED):
+        theta = solve_normal(np.tensordot(weight, g, 1) + penalty, -(weight @ b))
+        left = grams.s[clusters] + 2.0 * b @ theta + np.einsum("i,cij,j->c", theta, g, theta)
+        fresh = np.minimum(soft_from(freedom) / np.maximum(left, 1e-9), 1.0)
+        if np.allclose(fresh, weight, rtol=0.02, atol=1e-9):
+            break
+        weight = fresh
+    return theta
+
+
+def soft_from(freedom: np.ndarray) -> np.ndarray:
+    """The sums of squares (c,) of parts with so much `freedom` (c,) that noise alone hardly ever reaches."""
+    return freedom + 6.0 * np.sqrt(2.0 * freedom) + 4.0
+
+
+def soft(loss: np.ndarray, freedom: np.ndarray) -> np.ndarray:
+    """Losses (c,) that grow with the logarithm beyond what noise can do, so that no part outweighs the others."""
+    start = soft_from(freedom)
+    return np.where(loss > start, start * (1.0 + np.log(np.maximum(loss, start) / start)), loss)
 
 
 def solve_normal(g: np.ndarray, b: np.ndarray) -> np.ndarray:

@@ -10,10 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from puckpilot_env.physics.effects.unlisted_force import HARMONICS, WAVES_X, WAVES_Y
+from puckpilot_env.physics.effects.unlisted_force import HARMONICS, TIME_KNOTS, WAVES_X, WAVES_Y
 
 UNIT = 0.1  # m/s^2, what a coefficient of 1 stands for
-SPEED_KNOTS, TIME_KNOTS, HISTORY_KNOTS = 8, 10, 6
+RIPPLES = (14, 8)  # of cosines along one axis alone
+SPEED_KNOTS, HISTORY_KNOTS = 8, 6
 LONGEST_MEMORY = 2.0  # s after a contact
 
 
@@ -45,6 +46,12 @@ def cosines(motion: Motion) -> np.ndarray:
     x = np.stack([np.cos(np.pi * i * u) for i in range(WAVES_X)])
     y = np.stack([np.cos(np.pi * j * w) for j in range(WAVES_Y)])
     return (x[:, None] * y[None]).reshape(-1, len(u)).T
+
+
+def ripples(motion: Motion, axis: int) -> np.ndarray:
+    """Smooth functions (n, RIPPLES) of the place along one axis of the table."""
+    u = motion.place[:, axis] / motion.size[axis]
+    return np.stack([np.cos(np.pi * i * u) for i in range(RIPPLES[axis])], axis=1)
 
 
 def hats(x: np.ndarray, knots: np.ndarray) -> np.ndarray:
@@ -96,6 +103,10 @@ Family = Callable[[Motion], np.ndarray]
 FAMILIES: dict[str, tuple[str, Family]] = {
     "push by position": ("position", lambda m: _times(cosines(m), *_axes(m))),
     "brake by position": ("position", lambda m: _times(cosines(m), -m.along)),
+    "push by place along the table": ("position", lambda m: _times(ripples(m, 0), *_axes(m))),
+    "push by place across the table": ("position", lambda m: _times(ripples(m, 1), *_axes(m))),
+    "brake by place along the table": ("position", lambda m: _times(ripples(m, 0), -m.along)),
+    "brake by place across the table": ("position", lambda m: _times(ripples(m, 1), -m.along)),
     "brake by speed": ("speed", lambda m: _times(_speeds(m), -m.along)),
     "side force by speed": ("speed", lambda m: _times(_speeds(m), m.across)),
     "force by heading": ("heading", lambda m: _times(harmonics(m), -m.along, m.across)),

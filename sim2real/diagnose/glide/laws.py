@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -13,7 +13,6 @@ from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.glide.families import FAMILIES, UNIT, Motion
 from sim2real.diagnose.glide.switched import switched_on
-from sim2real.diagnose.glide.trace import bend
 from sim2real.diagnose.problem import Columns
 
 if TYPE_CHECKING:
@@ -22,6 +21,7 @@ if TYPE_CHECKING:
 PATCH_RADII = (0.05, 0.1, 0.15, 0.2, 0.3)  # m, at which a patch is looked for
 PATCHES_KEPT = 3
 CHUNK = 120
+FINER, MOVES = 2, (-1, 0, 1)  # rounds of looking nearby, and steps there
 SPINNING = "spin_side_force"
 
 
@@ -36,19 +36,16 @@ def listed_laws() -> list[Law]:
     return found
 
 
-def glide_columns(problem: GlideProblem, values: Mapping[str, float]) -> Columns:
+def glide_columns(problem: GlideProblem, values: Mapping[str, float], free: Sequence[str]) -> Columns:
     """Every column of a glide problem at one law."""
     path, by_start = problem.linearised(values)
     motion = problem.motion(path)
 
     def columns(force: np.ndarray) -> np.ndarray:
-        moved = np.empty_like(force)
-        data = problem.data
-        bend(data.first, data.t, path, values["friction"], values["drag"], np.ascontiguousarray(force), moved)
-        return problem.profiled(path, by_start, moved)[1]
+        return problem.profiled(path, by_start, problem.bent(path, values, force)[0])[1]
 
     listed = listed_laws()
-    free = (*problem.base, *(name for law in listed for name in law.columns))
+    free = tuple(dict.fromkeys((*problem.base, *(name for law in listed for name in law.columns), *free)))
     exact = problem.residuals(values, free, np.arange(problem.clusters))
     patches, patch_columns = _patches(motion, columns, exact.r, exact.jacobian[:, : len(problem.base)])
     blocks, names, families = [exact.jacobian, patch_columns], [*free, *(law.columns[0] for law in patches)], []
@@ -59,28 +56,39 @@ def glide_columns(problem: GlideProblem, values: Mapping[str, float]) -> Columns
         names += families[-1].columns
         blocks.append(block)
     jacobian = np.concatenate(blocks, axis=1)
-    grams = gram.make_grams(names, exact.r, jacobian, exact.cluster, problem.clusters)
+    glide = np.repeat(np.arange(problem.data.glides), 2 * np.diff(problem.data.first))
+    grams = gram.make_grams(names, exact.r, jacobian, glide, problem.data.glides)
     return Columns(grams, [*listed, *patches], families)
 
 
 def _patches(motion: Motion, columns, r: np.ndarray, base: np.ndarray) -> tuple[list[Law], np.ndarray]:
     """The discs of other friction that explain most of the residuals, one at a time; with their columns."""
-    grid = _discs(motion.size)
     frame = np.linalg.qr(base)[0]
     rest = r - frame @ (frame.T @ r)
-    score, kept = np.zeros(len(grid)), {}
-    for first in range(0, len(grid), CHUNK):
-        some = grid[first : first + CHUNK]
-        block = columns(_inside(motion, some))
+
+    def gains(discs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        block = columns(_inside(motion, discs))
         alone = block - frame @ (frame.T @ block)
         size = np.einsum("ik,ik->k", alone, alone)
-        gain = np.where(size > 1e-9, (alone.T @ rest) ** 2 / np.maximum(size, 1e-9), 0.0)
-        score[first : first + len(some)] = gain
-        for k in np.argsort(-gain)[:PATCHES_KEPT]:
-            kept[first + int(k)] = block[:, k] / UNIT
-    best = sorted(kept, key=lambda k: -score[k])[:PATCHES_KEPT]
-    laws = [_patch(f"patch_extra@{k}", grid[k]) for k in best]
-    return laws, np.stack([kept[k] for k in best], axis=1)
+        return np.where(size > 1e-9, (alone.T @ rest) ** 2 / np.maximum(size, 1e-9), 0.0), block / UNIT
+
+    grid = _discs(motion.size)
+    score = np.concatenate([gains(grid[k : k + CHUNK])[0] for k in range(0, len(grid), CHUNK)])
+    best = grid[np.argsort(-score)[:PATCHES_KEPT]]
+    for finer in range(1, FINER + 1):
+        for k, disc in enumerate(best):
+            near = _near(disc, 0.5**finer)
+            best[k] = near[np.argmax(gains(near)[0])]
+    laws = [_patch(f"patch_extra@{k}", disc) for k, disc in enumerate(best)]
+    return laws, gains(best)[1]
+
+
+def _near(disc: np.ndarray, share: float) -> np.ndarray:
+    """Discs (k, 3) about one, that itself included, by steps of a share of what those on the grid have."""
+    x, y, radius = disc
+    step = share * max(0.7 * radius, 0.06)
+    some = [(x + i * step, y + j * step, radius * (1.0 + 0.4 * share * k)) for i in MOVES for j in MOVES for k in MOVES]
+    return np.array(some)
 
 
 def _patch(column: str, disc: np.ndarray) -> Law:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -10,14 +11,26 @@ from puckpilot_env.parameters import BY_NAME, make_records
 from puckpilot_env.physics.advance import PUCK
 from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.engine.choose import Law
+from sim2real.diagnose.engine.fit import Fit
 from sim2real.diagnose.glide.data import GlideData
-from sim2real.diagnose.glide.families import Motion
+from sim2real.diagnose.glide.families import FAMILIES, Motion
 from sim2real.diagnose.glide.laws import glide_columns
-from sim2real.diagnose.glide.trace import trace
-from sim2real.diagnose.problem import Columns, Residuals
+from sim2real.diagnose.glide.trace import bend, trace
+from sim2real.diagnose.problem import Columns, Residuals, Units
 
 ROUNDS = 3
 STEP = np.array([1e-6, 1e-6, 1e-5, 1e-5])  # of a start: m, m/s
+
+
+@dataclass(frozen=True)
+class States:
+    """The ends of glides, first and last frame. `motion` (g, 2, 6): place, velocity, acceleration; `spread`
+    (g, 2, 4, 4): covariance of place and velocity by the sensor's noise; `drift` (g, 2, 4, k): changes of them by each
+    independent standard deviation of the law, common to all glides."""
+
+    motion: np.ndarray
+    spread: np.ndarray
+    drift: np.ndarray
 
 
 class GlideProblem:
@@ -33,13 +46,13 @@ class GlideProblem:
         self._common = dict(values)
         self._starts = _first_guess(data)
         self._pucks = np.zeros(1, PUCK)
-        frames = np.bincount(data.cluster, np.diff(data.first), data.clusters)
-        self.freedom = 2.0 * frames - 4.0 * np.bincount(data.cluster, minlength=data.clusters)
+        self.units = Units(data.cluster, 2.0 * np.diff(data.first) - 4.0)
+        self.freedom = np.bincount(data.cluster, self.units.freedom, data.clusters)
         self.noise_m = float(np.sqrt(np.mean(data.std**2)))
 
-    def columns(self, values: Mapping[str, float]) -> Columns:
+    def columns(self, values: Mapping[str, float], free: Sequence[str] = ()) -> Columns:
         """See `Problem.columns`."""
-        return glide_columns(self, values)
+        return glide_columns(self, values, free)
 
     def rows(self, law: Law) -> tuple[str, ...]:
         """See `Problem.rows`."""
@@ -89,10 +102,18 @@ class GlideProblem:
         """The path (n, 4) under a law with the starts fitted, and its derivatives (n, 2, 4) by the starts."""
         return self._fit_starts(self._record(values))
 
-    def states(self, values: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Each glide's motion at its first and last frame under a law: starts, ends (g, 6): place, velocity and
-        acceleration; and the covariance (g, 2, 4, 4) of place and velocity at both."""
-        data, record = self.data, self._record(values)
+    def bent(self, path: np.ndarray, values: Mapping[str, float], force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Displacements and their rates (n, 2, k) that small accelerations `force` (n, 2, k) make along a path."""
+        moved, moving = np.empty_like(force), np.empty_like(force)
+        data = self.data
+        bend(
+            data.first, data.t, path, values["friction"], values["drag"], np.ascontiguousarray(force), moved, moving
+        )  # fmt: skip
+        return moved, moving
+
+    def states(self, law: Fit, smooth: str = "", theta: np.ndarray | None = None) -> States:
+        """Each glide's motion at its first and last frame under a fitted law, with the family `smooth` on top."""
+        data, record = self.data, self._record(law.values)
         path, by_start = self._fit_starts(record)
         velocity_by_start = np.empty_like(by_start)
         other = np.empty_like(path)
@@ -102,14 +123,36 @@ class GlideProblem:
             self._trace(record, moved, other)
             velocity_by_start[:, :, k] = (other[:, 2:] - path[:, 2:]) / STEP[k]
         whole = np.concatenate([by_start, velocity_by_start], axis=1)
-        first, last = data.first[:-1], data.first[1:] - 1
-        inverse = np.linalg.inv(_normal(data, by_start))
-        spread = np.stack([whole[at] @ inverse @ whole[at].transpose(0, 2, 1) for at in (first, last)], axis=1)
-        ends = [
-            np.concatenate([path[at], _slope(data.t, path[:, 2:], at, step)], axis=1)
-            for at, step in ((first, 1), (last, -1))
-        ]
-        return ends[0], ends[1], spread
+        if theta is not None:
+            force = FAMILIES[smooth][1](self.motion(path)) @ theta
+            change = np.concatenate(self.bent(path, law.values, force[:, :, None]), axis=1)[:, :, 0]
+            starts = _steps(data, path + change, by_start)
+            path = path + change + np.einsum("nai,ni->na", whole, data.of_frame(starts))
+        ends = [data.first[:-1], data.first[1:] - 1]
+        inverse = np.linalg.inv(_normal(data, by_start)) * self._unrest(path)[:, None, None]
+        return States(
+            np.stack([np.concatenate([path[at], _slope(data.t, path[:, 2:], at, step)], axis=1)
+                      for at, step in zip(ends, (1, -1), strict=True)], axis=1),
+            np.stack([whole[at] @ inverse @ whole[at].transpose(0, 2, 1) for at in ends], axis=1),
+            self._drift(law, ends),
+        )  # fmt: skip
+
+    def _unrest(self, path: np.ndarray) -> np.ndarray:
+        """How much more (g,) than the sensor's noise a glide scatters about its path, in variance; at least 1."""
+        square = ((self.data.place - path[:, :2]) / self.data.std) ** 2
+        left, freedom = np.add.reduceat(square.sum(axis=1), self.data.first[:-1]), self.units.freedom
+        return np.where(left > freedom + 3.0 * np.sqrt(2.0 * freedom), left / np.maximum(freedom, 1.0), 1.0)
+
+    def _drift(self, law: Fit, ends: Sequence[np.ndarray]) -> np.ndarray:
+        """By how much (g, 2, 4, k) the ends move with each of the law's `directions`."""
+        path, _ = self._fit_starts(self._record(law.values))
+        kept, drift = self._starts.copy(), np.zeros((self.data.glides, 2, 4, len(law.free)))
+        for k, change in enumerate(law.directions.T):
+            shifted = {name: law.values[name] + step for name, step in zip(law.free, change, strict=True)}
+            other, _ = self._fit_starts(self._record({**law.values, **shifted}))
+            drift[:, :, :, k] = np.stack([other[at] - path[at] for at in ends], axis=1)
+            self._starts = kept.copy()
+        return drift
 
     def _record(self, values: Mapping[str, float]) -> np.void:
         records = make_records(1)

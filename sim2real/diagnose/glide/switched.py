@@ -7,8 +7,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from puckpilot_env.physics.effects import unlisted_force
-from puckpilot_env.physics.effects.unlisted_force import KNOTS
-from sim2real.diagnose.glide.families import UNIT, Motion, speed_knots, time_knots
+from sim2real.diagnose.glide.families import RIPPLES, UNIT, Motion, speed_knots, time_knots
 
 ROWS = [row.name for row in unlisted_force.EFFECT.rows.values()]
 
@@ -17,28 +16,40 @@ def _as_they_are(motion: Motion, theta: np.ndarray) -> np.ndarray:
     return UNIT * theta
 
 
-def _padded(values: np.ndarray) -> np.ndarray:
-    """KNOTS values, the last one repeated."""
-    return np.concatenate([values, np.repeat(values[-1], KNOTS - len(values))])
+def _ripples(axis: int) -> Callable[[Motion, np.ndarray], np.ndarray]:
+    """For each direction as many numbers as the simulator has, the last ones 0."""
 
-
-def _over(knots: Callable[[Motion], np.ndarray]) -> Callable[[Motion, np.ndarray], np.ndarray]:
     def numbers(motion: Motion, theta: np.ndarray) -> np.ndarray:
-        at = knots(motion)
-        return np.concatenate([_padded(at), *(_padded(UNIT * values) for values in theta.reshape(-1, len(at)))])
+        each = UNIT * theta.reshape(-1, RIPPLES[axis])
+        return np.pad(each, ((0, 0), (0, unlisted_force.RIPPLES - RIPPLES[axis]))).ravel()
 
     return numbers
+
+
+def _by_speed(motion: Motion, theta: np.ndarray) -> np.ndarray:
+    """Knots and values, the last ones repeated."""
+    knots = speed_knots(motion)
+    more = (0, unlisted_force.SPEED_KNOTS - len(knots))
+    return np.concatenate([np.pad(knots, more, "edge"), np.pad(UNIT * theta, more, "edge")])
+
+
+def _by_time(motion: Motion, theta: np.ndarray) -> np.ndarray:
+    return np.concatenate([time_knots(motion)[[0, -1]], UNIT * theta])
 
 
 # family: kind of the simulator's force, and its numbers from the family's coefficients
 SWITCHES: Mapping[str, tuple[int, Callable[[Motion, np.ndarray], np.ndarray]]] = {
     "push by position": (unlisted_force.PUSH_BY_PLACE, _as_they_are),
     "brake by position": (unlisted_force.BRAKE_BY_PLACE, _as_they_are),
-    "brake by speed": (unlisted_force.BRAKE_BY_SPEED, _over(speed_knots)),
-    "side force by speed": (unlisted_force.SIDE_BY_SPEED, _over(speed_knots)),
+    "push by place along the table": (unlisted_force.PUSH_BY_X, _ripples(0)),
+    "push by place across the table": (unlisted_force.PUSH_BY_Y, _ripples(1)),
+    "brake by place along the table": (unlisted_force.BRAKE_BY_X, _ripples(0)),
+    "brake by place across the table": (unlisted_force.BRAKE_BY_Y, _ripples(1)),
+    "brake by speed": (unlisted_force.BRAKE_BY_SPEED, _by_speed),
+    "side force by speed": (unlisted_force.SIDE_BY_SPEED, _by_speed),
     "force by heading": (unlisted_force.BY_HEADING, _as_they_are),
-    "push by time": (unlisted_force.PUSH_BY_TIME, _over(time_knots)),
-    "brake by time": (unlisted_force.BRAKE_BY_TIME, _over(time_knots)),
+    "push by time": (unlisted_force.PUSH_BY_TIME, _by_time),
+    "brake by time": (unlisted_force.BRAKE_BY_TIME, _by_time),
 }
 
 

@@ -27,8 +27,9 @@ def trace(p, first, t, starts, pucks, path):
 
 
 @array_kernel
-def bend(first, t, path, friction, drag, force, moved):
-    """Displacements moved (n, 2, k) [m] that small accelerations force (n, 2, k) [m/s^2] make along `path` (n, 4).
+def bend(first, t, path, friction, drag, force, moved, moving):
+    """Displacements moved (n, 2, k) [m], and their rates moving (n, 2, k) [m/s], that small accelerations force
+    (n, 2, k) [m/s^2] make along `path` (n, 4).
 
     The linearised motion about the path, d'' = (da/dv) d' + force with the baseline's da/dv, from rest at the glide's
     first frame, by the trapezium rule between frames.
@@ -39,6 +40,7 @@ def bend(first, t, path, friction, drag, force, moved):
         dvx[:] = 0.0
         dvy[:] = 0.0
         moved[first[g]] = 0.0
+        moving[first[g]] = 0.0
         for i in range(first[g], first[g + 1] - 1):
             h = t[i + 1] - t[i]
             vx, vy = 0.5 * (path[i, VX] + path[i + 1, VX]), 0.5 * (path[i, VY] + path[i + 1, VY])
@@ -57,3 +59,4 @@ def bend(first, t, path, friction, drag, force, moved):
                 moved[i + 1, 1, j] = moved[i, 1, j] + h * (dvy[j] + 0.5 * h * ay)
                 dvx[j] += h * ax
                 dvy[j] += h * ay
+                moving[i + 1, 0, j], moving[i + 1, 1, j] = dvx[j], dvy[j]

@@ -22,6 +22,7 @@ class Blows:
     `after`, the mallet's `driven` just before (n, 2) [m, m/s], and the `step` (n,) of that along the normal.
 
     Covariances in axes along the normal and the tangent: `spread` (n, 2, 2, 2) of the velocity before and after;
+    `drift` (n, 2, 2, k): changes of the former by each independent standard deviation of the law of the glides;
     `swing` (n, 3, 3) of `driven` and `step`. `turn` (n,): std of the normal's angle; `cluster` (n,).
     `chain` (n,): blows of one number carry the puck's spin on, which is unknown where `lost` (n,).
     """
@@ -34,6 +35,7 @@ class Blows:
     driven: np.ndarray
     step: np.ndarray
     spread: np.ndarray
+    drift: np.ndarray
     swing: np.ndarray
     turn: np.ndarray
     cluster: np.ndarray
@@ -62,9 +64,10 @@ def blows(impacts: Sequence[Impact], encoders: Encoders, g: Geometry) -> Blows:
         for impact in impacts
         if (row := _row(impact, encoders, g)) is not None
     ]
-    fields = list(zip(*rows, strict=True)) if rows else [[]] * 13
-    shapes = [(2,), (), (2,), (2,), (2,), (2,), (), (2, 2, 2), (3, 3), (), (), (), ()]
-    kinds = [float] * 10 + [int, int, bool]
+    fields = list(zip(*rows, strict=True)) if rows else [[]] * 14
+    known = impacts[0].before.drift.shape[1] if impacts else 0
+    shapes = [(2,), (), (2,), (2,), (2,), (2,), (), (2, 2, 2), (2, 2, known), (3, 3), (), (), (), ()]
+    kinds = [float] * 11 + [int, int, bool]
     arrays = [np.array(f, k).reshape(len(rows), *s) for f, k, s in zip(fields, kinds, shapes, strict=True)]
     return Blows(*arrays)
 
@@ -109,6 +112,7 @@ def _row(impact: Impact, encoders: Encoders, g: Geometry):
         driven,
         step @ normal,
         spread,
+        np.stack([axes @ side.drift[2:] for side in (before, after)]),
         swing,
         std / touch,
     )

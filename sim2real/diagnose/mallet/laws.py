@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,29 +22,30 @@ UNIT = 0.1  # of a restitution, what a coefficient of 1 stands for
 KNOTS = 4
 
 
-def mallet_columns(problem: MalletProblem, values: Mapping[str, float]) -> Columns:
+def mallet_columns(problem: MalletProblem, values: Mapping[str, float], free: Sequence[str]) -> Columns:
     """Every column of a mallet problem at one law."""
     smooth = [name for name, effect in EFFECTS.items() if effect.regime == "mallet" and name != "mallet_friction"]
     laws = [Law(name, tuple(row.name for row in EFFECTS[name].rows.values())) for name in smooth]
-    free = (*problem.base, *(name for law in laws for name in law.columns))
+    free = tuple(dict.fromkeys((*problem.base, *(name for law in laws for name in law.columns), *free)))
     exact = problem.residuals(values, free, np.arange(problem.clusters))
     names, blocks = list(free), [exact.jacobian]
     now = problem.predicted(values)
     for mu in FRICTIONS if values.get("mallet_mu", 0.0) == 0.0 else ():
         law = Law("mallet_friction", (f"mallet_mu@{mu}", f"mallet_mu slope@{mu}"), start={"mallet_mu": mu})
         at, above = (problem.predicted({**values, "mallet_mu": m}) for m in (mu, 1.2 * mu))
-        blocks.append(-problem.whitened(np.stack([at - now, above - at], axis=2)))
+        blocks.append(problem.allowing(values, -problem.whitened(np.stack([at - now, above - at], axis=2))))
         names += law.columns
         laws.append(law)
     families = []
     for name, (depends, shape) in FAMILIES.items():
         for component, axis in (("restitution", 0), ("tangential ratio", 1)):
-            block = -problem.whitened(_impulses(problem.data, shape(problem.data), axis))
+            block = problem.allowing(values, -problem.whitened(_impulses(problem.data, shape(problem.data), axis)))
             label = f"mallet's {component} by {name}"
             families.append(Law(label, tuple(f"{label} {k}" for k in range(block.shape[1])), depends))
             names += families[-1].columns
             blocks.append(block)
-    grams = gram.make_grams(names, exact.r, np.concatenate(blocks, axis=1), exact.cluster, problem.clusters)
+    unit = np.repeat(np.arange(len(problem.data)), 3)
+    grams = gram.make_grams(names, exact.r, np.concatenate(blocks, axis=1), unit, len(problem.data))
     return Columns(grams, laws, families)
 
 

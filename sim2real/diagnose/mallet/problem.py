@@ -16,9 +16,10 @@ from puckpilot_env.physics.advance import PUCK
 from puckpilot_env.physics.effects import EFFECTS
 from puckpilot_env.physics.rebound import strike
 from sim2real.diagnose.engine.choose import Law
+from sim2real.diagnose.engine.noise import allowing_for
 from sim2real.diagnose.mallet.data import Blows
 from sim2real.diagnose.mallet.laws import mallet_columns
-from sim2real.diagnose.problem import Columns, Residuals
+from sim2real.diagnose.problem import Columns, Residuals, Units
 
 FLIGHT = 0.1  # s; an error of a velocity is told as that of the place so much later
 STEP = 1e-5  # m/s
@@ -48,8 +49,12 @@ class MalletProblem:
         """`clusters`: how many launches the recordings have; `common`: sizes of the table."""
         self.data, self.clusters, self._common = data, clusters, dict(common)
         self._pucks = np.zeros(1, PUCK)
+        self.units = Units(data.cluster, np.full(len(data), 3.0))
         self.freedom = 3.0 * np.bincount(data.cluster, minlength=clusters)
-        self._whiten = self._whitening()
+        self._whiten, by_before = self._whitening()
+        drift = -by_before @ data.drift[:, 0]
+        drift[:, :2] += data.drift[:, 1]
+        self._drift = self.whitened(drift)
         spread = data.spread.sum(axis=1)
         self.noise_m = FLIGHT * float(np.sqrt(np.trace(spread, axis1=1, axis2=2).mean() / 2)) if len(data) else 0.0
 
@@ -65,22 +70,25 @@ class MalletProblem:
             columns[:, :, k] = (self.predicted({**values, name: at + step}) - now) / step
         seen = np.concatenate([self.data.split(self.data.after), self.data.step[:, None]], axis=1)
         r, jacobian = self.whitened(seen - now), -self.whitened(columns)
-        blur = self._blur(values)
-        r[1::3], jacobian[1::3] = r[1::3] / blur, jacobian[1::3] / blur[:, None]
+        both = self.allowing(values, np.concatenate([r[:, None], jacobian], axis=1))
         cluster = np.repeat(self.data.cluster, 3)
         here = np.isin(cluster, clusters)
-        return Residuals(r[here], jacobian[here], cluster[here])
+        return Residuals(both[here, 0], both[here, 1:], cluster[here])
 
     def predicted(self, values: Mapping[str, float]) -> np.ndarray:
         """Velocity after along the normal and the tangent, and the mallet's step along the normal: (n, 3) [m/s]."""
         return self._predicted(self._record(values), self.data.before, self.data.driven)
 
-    def _blur(self, values: Mapping[str, float]) -> np.ndarray:
-        """By how much (n,) the tangential noise grows where the spin is unknown: up to what friction can do."""
+    def allowing(self, values: Mapping[str, float], rows: np.ndarray) -> np.ndarray:
+        """Residuals or columns (3n, k) with further noise: the glides' law, common to all blows, and along the tangent
+        where the spin is unknown, up to what friction can do."""
         d = self.data
         e = values.get("mallet_restitution", BY_NAME["mallet_restitution"].default)
         reach = values.get("mallet_mu", 0.0) * (1.0 + e) * d.closing
-        return np.where(d.lost, np.hypot(1.0, reach * self._whiten[:, 1, 1]), 1.0)
+        blur = np.ones((len(d), 3, 1))
+        blur[:, 1, 0] = np.where(d.lost, np.hypot(1.0, reach * self._whiten[:, 1, 1]), 1.0)
+        blur = blur.reshape(-1, 1)
+        return allowing_for(self._drift / blur, rows / blur)
 
     def whitened(self, velocities: np.ndarray) -> np.ndarray:
         """Velocities (n, 3, …) in units of their noise, as rows (3n, …)."""
@@ -88,9 +96,9 @@ class MalletProblem:
         flat = velocities.reshape(len(self.data), 3, -1)
         return np.einsum("nij,njk->nik", self._whiten, flat).reshape(3 * len(self.data), *shape[2:])
 
-    def columns(self, values: Mapping[str, float]) -> Columns:
+    def columns(self, values: Mapping[str, float], free: Sequence[str] = ()) -> Columns:
         """See `Problem.columns`."""
-        return mallet_columns(self, values)
+        return mallet_columns(self, values, free)
 
     def rows(self, law: Law) -> tuple[str, ...]:
         """See `Problem.rows`."""
@@ -108,8 +116,9 @@ class MalletProblem:
         change = self.data.split(after - before)[:, :1]
         return np.concatenate([self.data.split(after), -float(record["mallet_give"]) * change], axis=1)
 
-    def _whitening(self) -> np.ndarray:
-        """Inverse roots (n, 3, 3) of the covariance of what is seen less what the baseline foretells of it."""
+    def _whitening(self) -> tuple[np.ndarray, np.ndarray]:
+        """Inverse roots (n, 3, 3) of the covariance of what is seen less what the baseline foretells of it; and how the
+        foretold changes with the velocity before (n, 3, 2)."""
         d, record = self.data, self._record({})
         axes = np.stack([d.normal, np.stack([-d.normal[:, 1], d.normal[:, 0]], axis=1)], axis=1)
         now = self._predicted(record, d.before, d.driven)
@@ -124,4 +133,4 @@ class MalletProblem:
         size = np.linalg.norm(d.after - d.before, axis=1)
         covariance[:, :2, :2] += np.eye(2) * ((d.turn * size) ** 2)[:, None, None]
         value, vector = np.linalg.eigh(covariance)
-        return vector @ (vector.transpose(0, 2, 1) / np.sqrt(np.maximum(value, 1e-12))[:, :, None])
+        return vector @ (vector.transpose(0, 2, 1) / np.sqrt(np.maximum(value, 1e-12))[:, :, None]), by_before

@@ -11,7 +11,7 @@ from sim2real.diagnose.contacts import geometry
 from sim2real.diagnose.encoders import read_encoders
 from sim2real.diagnose.finding import Account
 from sim2real.diagnose.pieces import Pieces, cut
-from sim2real.diagnose.sensing.clock import EXACT, meetings
+from sim2real.diagnose.sensing.clock import EXACT, Clock, meetings
 from sim2real.diagnose.sensing.clock_findings import ClockAccount, clock_account
 from sim2real.diagnose.sensing.correct import corrected
 from sim2real.diagnose.sensing.held import held_finding, repeats
@@ -24,11 +24,20 @@ LAUNCHES = 100_000  # more than a recording has
 
 @dataclass(frozen=True)
 class Sensed:
-    """The account of the sensing, and the recordings and their pieces as an exact camera would have given them."""
+    """The account of the sensing, and the recordings and their pieces as an exact camera would have given them.
+
+    `scale`, `clock`: what was undone.
+    """
 
     account: Account
     recordings: tuple[Recording, ...]
     pieces: tuple[Pieces, ...]
+    scale: np.ndarray
+    clock: Clock
+
+    def exact(self, recording: Recording) -> Recording:
+        """Another recording of the same camera as an exact one would have given it."""
+        return corrected(recording, self.scale, self.clock)
 
 
 def sense(recordings: Sequence[Recording], pieces: Sequence[Pieces]) -> Sensed:
@@ -50,7 +59,7 @@ def sense(recordings: Sequence[Recording], pieces: Sequence[Pieces]) -> Sensed:
     account = Account(
         "sensing", tuple(findings), {}, not findings, proof, scale.undetermined, _next(recordings, clock, scale)
     )
-    return Sensed(account, tuple(recordings), tuple(pieces))
+    return Sensed(account, tuple(recordings), tuple(pieces), scale.values, clock.clock)
 
 
 def _joined(found: list[list[Strike]]) -> list[Strike]:

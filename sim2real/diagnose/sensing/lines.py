@@ -71,6 +71,7 @@ def _straight(along: np.ndarray, place: np.ndarray, std: np.ndarray) -> tuple[np
     """Place and slant (2,) of the line and their covariance (2, 2), with t-distributed errors."""
     basis = np.stack([np.ones_like(along), along], axis=1)
     values = np.array([np.median(place), 0.0])
+    z, inverse = np.zeros_like(place), np.zeros((2, 2))
     for _ in range(20):
         z = (place - basis @ values) / std
         weight = (TAIL + 1) / (TAIL + z**2) / std**2

@@ -21,6 +21,7 @@ class Bounces:
     """`n` bounces. `kind` (n,) as in `bounce`; `normal` (n, 2); `t` (n,) [s]; `place`, `before`, `after` (n, 2) [SI].
 
     `spread` (n, 2, 2, 2): covariance of the velocity before and after, in axes along the normal and the tangent;
+    `drift` (n, 2, 2, k): its changes, likewise, by each independent standard deviation of the law of the glides;
     `turn` (n,): std of the normal's angle; `chain` (n,): bounces of one number carry the spin on, which is unknown at
     the chain's start where `lost` (n,); `since` (n,) [s] after the contact before; `cluster` (n,).
     """
@@ -32,6 +33,7 @@ class Bounces:
     before: np.ndarray
     after: np.ndarray
     spread: np.ndarray
+    drift: np.ndarray
     turn: np.ndarray
     chain: np.ndarray
     lost: np.ndarray
@@ -55,9 +57,10 @@ class Bounces:
 def bounces(impacts: list[Impact], g: Geometry) -> Bounces:
     """The clear bounces off walls and posts among `impacts`, in order of time."""
     rows = [row for impact in impacts if (row := _row(impact, g)) is not None]
-    fields = list(zip(*rows, strict=True)) if rows else [[]] * 12
-    shapes = [(), (2,), (), (2,), (2,), (2,), (2, 2, 2), (), (), (), (), ()]
-    kinds = [int, float, float, float, float, float, float, float, int, bool, float, int]
+    fields = list(zip(*rows, strict=True)) if rows else [[]] * 13
+    known = impacts[0].before.drift.shape[1] if impacts else 0
+    shapes = [(), (2,), (), (2,), (2,), (2,), (2, 2, 2), (2, 2, known), (), (), (), (), ()]
+    kinds = [int, float, float, float, float, float, float, float, float, int, bool, float, int]
     arrays = [
         np.array(field, kind).reshape(len(rows), *shape)
         for field, kind, shape in zip(fields, kinds, shapes, strict=True)
@@ -85,8 +88,9 @@ def _row(impact: Impact, g: Geometry):
         return None
     axes = np.array([normal, [-normal[1], normal[0]]])
     spread = np.stack([axes @ side.covariance[2:, 2:] @ axes.T for side in (before, after)])
+    drift = np.stack([axes @ side.drift[2:] for side in (before, after)])
     return (
-        kind, normal, hit.t, place, before.velocity, after.velocity, spread, turn, impact.chain, impact.lost,
+        kind, normal, hit.t, place, before.velocity, after.velocity, spread, drift, turn, impact.chain, impact.lost,
         impact.since, impact.cluster,
     )  # fmt: skip
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,13 +21,14 @@ FRICTIONS = (0.04, 0.07, 0.1, 0.15, 0.2, 0.3, 0.5)  # at which friction with spi
 UNIT = 0.1  # of a restitution, what a coefficient of 1 stands for
 KNOTS = 5
 WAVES = 4
+ONE_ROW_EACH = ("wall_to_wall_restitution", "speed_dependent_restitution")
 MEMORY = 2.0  # s after a contact
 
 
-def wall_columns(problem: WallProblem, values: Mapping[str, float]) -> Columns:
+def wall_columns(problem: WallProblem, values: Mapping[str, float], free: Sequence[str]) -> Columns:
     """Every column of a wall problem at one law."""
     laws = _smooth_in_the_effect()
-    free = (*problem.base, *(name for law in laws for name in law.columns))
+    free = tuple(dict.fromkeys((*problem.base, *(name for law in laws for name in law.columns), *free)))
     exact = problem.residuals(values, free, np.arange(problem.clusters))
     names, blocks = list(free), [exact.jacobian]
     now = problem.predicted(values)
@@ -35,30 +36,33 @@ def wall_columns(problem: WallProblem, values: Mapping[str, float]) -> Columns:
     for mu in FRICTIONS if values.get("wall_mu", 0.0) == 0.0 else ():
         law = Law("wall_friction_spin", (f"wall_mu@{mu}", f"wall_mu slope@{mu}"), start={"wall_mu": mu})
         at, above = (problem.predicted({**values, "wall_mu": m}) for m in (mu, 1.2 * mu))
-        blocks.append(-problem.whitened(np.stack([at - now, above - at], axis=2)))
+        blocks.append(problem.allowing(values, now, -problem.whitened(np.stack([at - now, above - at], axis=2))))
         names += law.columns
         spins.append(law)
     for name, (depends, shape) in FAMILIES.items():
         for component, axis in (("restitution", 0), ("tangential ratio", 1)):
             block = -problem.whitened(_impulses(problem.data, shape(problem.data), axis))
+            block = problem.allowing(values, now, block)
             law = Law(
                 f"{component} by {name}", tuple(f"{component} {name} {k}" for k in range(block.shape[1])), depends
             )
             names += law.columns
             blocks.append(block)
             families.append(law)
-    grams = gram.make_grams(names, exact.r, np.concatenate(blocks, axis=1), exact.cluster, problem.clusters)
+    unit = np.repeat(np.arange(len(problem.data)), 2)
+    grams = gram.make_grams(names, exact.r, np.concatenate(blocks, axis=1), unit, len(problem.data))
     return Columns(grams, [*laws, *spins], families)
 
 
 def _smooth_in_the_effect() -> list[Law]:
-    """Listed effects whose columns are derivatives at the baseline; each wall's own restitution is one."""
+    """Listed effects whose columns are derivatives at the baseline; each wall's own restitution is one, and so is each
+    form of the fall with speed."""
     found = []
     for name, effect in EFFECTS.items():
         if effect.regime not in ("wall", "corner") or name == "wall_friction_spin":
             continue
         rows = [row.name for row in effect.rows.values()]
-        if name == "wall_to_wall_restitution":
+        if name in ONE_ROW_EACH:
             found += [Law(name, (row,)) for row in rows]
         else:
             found.append(Law(name, tuple(rows)))

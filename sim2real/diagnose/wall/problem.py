@@ -13,7 +13,8 @@ from puckpilot_env.physics.advance import PUCK
 from puckpilot_env.physics.effects import EFFECTS
 from puckpilot_env.physics.rebound import rebound
 from sim2real.diagnose.engine.choose import Law
-from sim2real.diagnose.problem import Columns, Residuals
+from sim2real.diagnose.engine.noise import allowing_for
+from sim2real.diagnose.problem import Columns, Residuals, Units
 from sim2real.diagnose.wall.data import Bounces
 from sim2real.diagnose.wall.laws import wall_columns
 
@@ -47,8 +48,11 @@ class WallProblem:
         """`clusters`: how many launches the recording has; `common`: sizes of the table."""
         self.data, self.clusters, self._common = data, clusters, dict(common)
         self._pucks = np.zeros(1, PUCK)
+        self.units = Units(data.cluster, np.full(len(data), 2.0))
         self.freedom = 2.0 * np.bincount(data.cluster, minlength=clusters)
-        self._whiten = self._whitening(self._record({}))
+        self._whiten, by_before = self._whitening(self._record({}))
+        drift = data.drift[:, 1] - by_before @ data.drift[:, 0]
+        self._drift = self.whitened(drift)
         spread = data.spread.sum(axis=1)
         self.noise_m = FLIGHT * float(np.sqrt(np.trace(spread, axis1=1, axis2=2).mean() / 2)) if len(data) else 0.0
 
@@ -62,31 +66,38 @@ class WallProblem:
             step = 1e-5 * (row.high - row.low) * (1.0 if at + 1e-5 * (row.high - row.low) < row.high else -1.0)
             columns[:, :, k] = (self.predicted({**values, name: at + step}) - now) / step
         r, jacobian = self.whitened(self.data.split(self.data.after) - now), -self.whitened(columns)
-        r, jacobian = self._allow_for_spin(values, now, r, jacobian)
+        both = self.allowing(values, now, np.concatenate([r[:, None], jacobian], axis=1))
         cluster = np.repeat(self.data.cluster, 2)
         here = np.isin(cluster, clusters)
-        return Residuals(r[here], jacobian[here], cluster[here])
+        return Residuals(both[here, 0], both[here, 1:], cluster[here])
 
     def predicted(self, values: Mapping[str, float]) -> np.ndarray:
         """Velocity after (n, 2) [m/s] along the normal and the tangent, under a law."""
         return self.data.split(self._after(self._record(values), self.data.before))
 
-    def _allow_for_spin(self, values: Mapping[str, float], now, r, jacobian) -> tuple[np.ndarray, np.ndarray]:
-        """Residuals and columns with the spin at each chain's start as a further noise, where there is friction."""
+    def allowing(self, values: Mapping[str, float], now: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        """Residuals or columns (2n, k) with further noise: the glides' law, common to all bounces, and the spin.
+
+        now: what the law foretells, as `predicted` gives it.
+        """
+        rows, drift = (self._allowing_for_spin(values, now, each) for each in (rows, self._drift))
+        return allowing_for(drift, rows)
+
+    def _allowing_for_spin(self, values: Mapping[str, float], now: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        """The same with the spin at each chain's start, where there is friction."""
         if values.get("wall_mu", 0.0) <= 0.0 or not len(self.data):
-            return r, jacobian
+            return rows
         d, record = self.data, self._record(values)
         by_spin = self.whitened((d.split(self._after(record, d.before, SPIN_STEP)) - now) / SPIN_STEP)
         prior = np.where(d.lost, UNKNOWN_SPIN, LAUNCH_SPIN)
-        both = np.concatenate([r[:, None], jacobian], axis=1)
-        both[1::2] /= self._blur(values)[:, None]
+        rows = rows.copy()
+        rows[1::2] /= self._blur(values)[:, None]
         for chain in np.unique(d.chain):
-            rows = np.repeat(d.chain == chain, 2)
-            s = by_spin[rows] * prior[d.chain == chain][0]
-            size = float(s @ s)
-            if size > 1e-12:
-                both[rows] -= np.outer(s, s @ both[rows]) * ((1.0 - 1.0 / np.sqrt(1.0 + size)) / size)
-        return both[:, 0], both[:, 1:]
+            here = np.repeat(d.chain == chain, 2)
+            s = by_spin[here] * prior[d.chain == chain][0]
+            if s @ s > 1e-12:
+                rows[here] = allowing_for(s[:, None], rows[here])
+        return rows
 
     def _blur(self, values: Mapping[str, float]) -> np.ndarray:
         """By how much (n,) the tangential noise grows where spin or normal is not known: up to what friction can do."""
@@ -101,9 +112,9 @@ class WallProblem:
         flat = velocities.reshape(len(self.data), 2, -1)
         return np.einsum("nij,njk->nik", self._whiten, flat).reshape(2 * len(self.data), *shape[2:])
 
-    def columns(self, values: Mapping[str, float]) -> Columns:
+    def columns(self, values: Mapping[str, float], free: Sequence[str] = ()) -> Columns:
         """See `Problem.columns`."""
-        return wall_columns(self, values)
+        return wall_columns(self, values, free)
 
     def rows(self, law: Law) -> tuple[str, ...]:
         """See `Problem.rows`."""
@@ -121,8 +132,9 @@ class WallProblem:
         _rebounds(record, d.kind, d.normal, d.t, d.chain, before, spin, self._pucks, after)
         return after
 
-    def _whitening(self, record: np.void) -> np.ndarray:
-        """Inverse roots (n, 2, 2) of the covariance of velocity after less foretold, at the law `record`."""
+    def _whitening(self, record: np.void) -> tuple[np.ndarray, np.ndarray]:
+        """Inverse roots (n, 2, 2) of the covariance of velocity after less foretold, at the law `record`; and how the
+        foretold changes with the velocity before (n, 2, 2)."""
         d = self.data
         axes = np.stack([d.normal, np.stack([-d.normal[:, 1], d.normal[:, 0]], axis=1)], axis=1)
         now = self._after(record, d.before)
@@ -133,4 +145,4 @@ class WallProblem:
         size = np.linalg.norm(d.before, axis=1) + np.linalg.norm(d.after, axis=1)
         covariance += np.eye(2) * ((d.turn * size) ** 2)[:, None, None]
         value, vector = np.linalg.eigh(covariance)
-        return vector @ (vector.transpose(0, 2, 1) / np.sqrt(np.maximum(value, 1e-12))[:, :, None])
+        return vector @ (vector.transpose(0, 2, 1) / np.sqrt(np.maximum(value, 1e-12))[:, :, None]), by

@@ -20,6 +20,10 @@ GLIDE: dict[str, Pair] = {
     ),
     "air_drift": ({"air_drift": 0.05}, Law(friction_drift=0.05)),
     "friction_anisotropy": ({"friction_anisotropy": 0.5}, Law(friction_anisotropy=0.5)),
+    "friction of two components": (  # 0.125 (1 + 0.28) = 0.16 along x and 0.125 (1 - 0.28) = 0.09 along y
+        {"friction_anisotropy": 0.28, "friction_turning": 0.28},
+        Law(friction=0.12, friction_ratio=16 / 9),
+    ),
     "side_force": ({"side_force": 0.8}, Law(side_force=0.8)),
     "side_force with spin": ({"spin_side_force": 0.02}, Law(spin_side_force=0.02)),
     "several": (
@@ -32,6 +36,7 @@ CONTACTS: dict[str, Pair] = {
     "table_warp": ({"warp_xx": 0.5, "warp_yy": 0.8}, Law(warp_xx=0.5, warp_yy=0.8)),
     "side_force": ({"side_force": 0.8}, Law(side_force=0.8)),
     "speed_dependent_restitution": ({"restitution_slope": 0.05}, Law(restitution_slope=0.05)),
+    "speed_dependent_restitution by a power": ({"restitution_power": 0.15}, Law(restitution_power=0.15)),
     "tangential_restitution": ({"tangential_ratio": 9 / 7}, Law(tangential_restitution=0.9)),
     "tangential_restitution, and the normal one falls": (
         {"tangential_ratio": 9 / 7, "restitution_slope": 0.05},

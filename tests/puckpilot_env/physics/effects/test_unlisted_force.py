@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from puckpilot_env.physics.effects import unlisted_force
-from puckpilot_env.physics.effects.unlisted_force import KNOTS, acceleration
+from puckpilot_env.physics.effects.unlisted_force import SPEED_KNOTS, TIME_KNOTS, acceleration
 from puckpilot_env.physics.slide import slide
 from tests.puckpilot_env.physics.effects.test_slide import FRICTION, draw_start, new_puck
 from tests.puckpilot_env.physics.table_driver import record
@@ -23,11 +23,11 @@ def numbers(kind: int, *values: float) -> dict[str, float]:
 
 def knots(at: list[float], *values: list[float]) -> list[float]:
     """Ten knots and ten values for each of `values`: the last are repeated."""
-    return [number for each in (at, *values) for number in [*each, *[each[-1]] * (KNOTS - len(each))]]
+    return [number for each in (at, *values) for number in [*each, *[each[-1]] * (SPEED_KNOTS - len(each))]]
 
 
 def straight(f, low: float, high: float) -> tuple[list[float], list[float]]:
-    at = np.linspace(low, high, KNOTS)
+    at = np.linspace(low, high, SPEED_KNOTS)
     return at.tolist(), f(at).tolist()
 
 
@@ -39,7 +39,13 @@ EXACT = {
         Law(nap=0.4, nap_heading=1.0),
     ),
     "tilt_drift": (
-        numbers(unlisted_force.PUSH_BY_TIME, *knots([0.0, 50.0], [-0.1, 0.1], [0.05, -0.05])),
+        numbers(
+            unlisted_force.PUSH_BY_TIME,
+            0.0,
+            50.0,
+            *np.linspace(-0.1, 0.1, TIME_KNOTS),
+            *np.linspace(0.05, -0.05, TIME_KNOTS),
+        ),
         Law(tilt_drift_x=0.004, tilt_drift_y=-0.002, tilt_drift_from=25.0),
     ),
     "tilt": (numbers(unlisted_force.PUSH_BY_PLACE, 0.1, *[0.0] * 23, -0.05), Law(tilt_x=0.1, tilt_y=-0.05)),
@@ -48,7 +54,9 @@ NEAR = {
     "breathing": (
         numbers(
             unlisted_force.BRAKE_BY_TIME,
-            *knots(*straight(lambda t: 0.4 * FRICTION * np.sin(2 * np.pi * t / 60), 0, 21)),
+            0.0,
+            21.0,
+            *(0.4 * FRICTION * np.sin(2 * np.pi * np.linspace(0.0, 21.0, TIME_KNOTS) / 60)),
         ),
         Law(breathing=0.4, breathing_period=60.0),
     ),

@@ -26,10 +26,12 @@ def explained(folder, law: Law, seed: int):
     assert recording.frames is not None
     sizes = {"length": g.length, "width": g.width, "puck_radius": g.puck_radius}
     glides = GlideProblem(glide_data(pieces, g, mallet_tracks(recording, recording.frames.t)), sizes)
-    braking = fit(glides, {"friction": 0.125, "drag": 0.125}, glides.base, np.arange(glides.clusters)).values
+    braking = fit(glides, {"friction": 0.125, "drag": 0.125}, glides.base, np.arange(glides.clusters))
     encoders = read_encoders(recording)
     assert encoders is not None
-    problem = MalletProblem(blows(find_impacts(pieces, glides, braking), encoders, g), glides.clusters, sizes)
+    problem = MalletProblem(
+        blows(find_impacts(pieces, glides, glides.states(braking)), encoders, g), glides.clusters, sizes
+    )
     return explain(problem, {"mallet_restitution": 0.7}, np.flatnonzero(problem.freedom > 0))
 
 
