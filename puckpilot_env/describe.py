@@ -125,6 +125,7 @@ def describe(variant: Variant) -> dict[str, Any]:
                 "name": name,
                 "regime": effect.regime,
                 "law": effect.law,
+                "listed": effect.listed,
                 "numbers": [{"short": short, **vars(row)} for short, row in effect.rows.items()],
             }
             for name, effect in EFFECTS.items()

@@ -30,6 +30,7 @@ class Effect:
     `regime`: glide, wall, corner, mallet, gantry or sensing. `law`: the formula, in words that a report can print.
     `rows`: the parameters, keyed by the short names that a diagnosis gives them. `depends_on`: what the force or the
     impulse depends on (position, speed, heading, time, history, command). `excited_by`: the recording that shows it.
+    `listed`: whether it is one mechanism with a name, and not a table of numbers that may hold any.
     """
 
     regime: str
@@ -38,3 +39,4 @@ class Effect:
     depends_on: tuple[str, ...]
     excited_by: str
     source: str
+    listed: bool = True

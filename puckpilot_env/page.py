@@ -218,7 +218,11 @@ def _effects(facts: dict[str, Any]) -> str:
         parameter = "" if n["name"] == n["short"] else f" (`{n['name']}`)"
         return f"`{n['short']}`{parameter} [{n['unit']}] {n['low']:g} to {n['high']:g}"
 
-    rows = [(f"`{e['name']}`", e["regime"], e["law"], ", ".join(map(number, e["numbers"]))) for e in facts["effects"]]
+    def numbers(e: dict[str, Any]) -> str:
+        found = [number(n) for n in e["numbers"]]
+        return ", ".join(found if e["listed"] else [*found[:2], "…", found[-1]])  # a table is too long to print
+
+    rows = [(f"`{e['name']}`", e["regime"], e["law"], numbers(e)) for e in facts["effects"]]
     return (
         "## Effects\n\nPhysics that the baseline leaves out; all are off. Option `effects={effect: {number: value}}`, "
         "or a file's name.\nA number is a parameter too, by the name in brackets.\n\n"

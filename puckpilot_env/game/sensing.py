@@ -16,6 +16,7 @@ import numpy as np
 from puckpilot_env import random_stream
 from puckpilot_env.game import mirror
 from puckpilot_env.kernel import inlined_kernel, kernel
+from puckpilot_env.physics import compose
 from puckpilot_env.physics.mallet import place_at, place_now
 from puckpilot_env.state import ERROR_TERMS
 
@@ -99,13 +100,28 @@ def wanted_frames(table, p, sensing, period):
 
 @kernel
 def draw_camera_error(table, p):
-    """Draw the camera's smooth error: a quadratic surface a component, `camera_error` [m] rms over the table."""
+    """Draw the camera's smooth error: a quadratic surface a component, `camera_error` [m] rms over the table.
+
+    The error of its map, which the effects say, is the same in every episode and added to it.
+    """
     camera = table.camera
     scale = p.camera_error / math.sqrt(2.0 * ERROR_TERMS)
     for term in range(ERROR_TERMS):
         x, y = random_stream.normal_pair(table.stream)
         turned = mirror.TURNED_ERROR[term] if table.puck.turned == 1 else 1.0
         camera.error_x[term], camera.error_y[term] = turned * scale * x, turned * scale * y
+    xx, xy, yx, yy = compose.camera_map(p)
+    flat = mirror.TURNED_ERROR[0] if table.puck.turned == 1 else 1.0
+    add_map(camera.error_x, xx * p.length, xy * p.width, flat)
+    add_map(camera.error_y, yx * p.length, yy * p.width, flat)
+
+
+@kernel
+def add_map(error, along_x, along_y, turned):
+    """Add to the coefficients of a component an error that grows to `along_x` and `along_y` [m] at the far sides."""
+    error[0] += turned * 0.5 * (along_x + along_y)
+    error[1] += along_x / (2.0 * _ROOT_3)
+    error[2] += along_y / (2.0 * _ROOT_3)
 
 
 @inlined_kernel

@@ -12,6 +12,7 @@ An effect's file has the hooks of its regime, every one a kernel; those that it 
 | mallet | `mallet_restitution(p, closing, e)` | restitution from that so far |
 | mallet | `mallet_impulse(p, impulse)` | normal impulse [m/s] from that so far |
 | mallet | `mallet_tangent(p, impulse, along, spin, after)` | (tangential speed, spin), relative to the mallet |
+| sensing | `camera_map(p)` | (xx, xy, yx, yy): how far off x and y are seen for each metre of x and of y |
 
 `t` [s] is the time of the episode, (x, y) [m] a place, spin [rad/s] counter-clockwise, `closing` [m/s] > 0 the normal
 speed before; the tangent is the normal turned counter-clockwise. Impulses are per unit mass of the puck.
@@ -101,6 +102,15 @@ def _mallet_tangent(first: Hook, second: Hook) -> Hook:
     return both
 
 
+def _camera_map(first: Hook, second: Hook) -> Hook:
+    @inner
+    def both(p):
+        a, b = first(p), second(p)
+        return a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]
+
+    return both
+
+
 is_forced = reduce(_either, _hooks("is_on"))
 acceleration = reduce(_sum, _hooks("acceleration"))
 friction = reduce(_friction, _hooks("friction"))
@@ -109,3 +119,4 @@ tangent = reduce(_tangent, _hooks("tangent"))
 mallet_restitution = reduce(_mallet_restitution, _hooks("mallet_restitution"))
 mallet_impulse = reduce(_mallet_impulse, _hooks("mallet_impulse"))
 mallet_tangent = reduce(_mallet_tangent, _hooks("mallet_tangent"))
+camera_map = reduce(_camera_map, _hooks("camera_map"))

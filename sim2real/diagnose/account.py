@@ -23,7 +23,7 @@ def account(problem: Problem, found: Explained, proof: np.ndarray) -> Account:
     findings = [_listed(problem, found, law, before, after) for law in found.listed]
     if found.unlisted is not None:
         findings.append(_unlisted(problem, found, found.unlisted, before, after))
-    fitted = found.law if found.listed else found.baseline
+    fitted = found.final
     return Account(
         problem.regime,
         tuple(sorted(findings, key=lambda one: one.p_value)),
@@ -48,7 +48,7 @@ def _rms(problem: Problem, squares: float, proof: np.ndarray) -> float:
 
 def _listed(problem: Problem, found: Explained, law: Law, before: float, after: float) -> Finding:
     effect = EFFECTS[law.name]
-    fitted = found.law
+    fitted = found.final
     rows = [name for name in problem.rows(law) if name in fitted.free]
     return Finding(
         effect.regime, law.name, tuple(found.also.get(law.name, ())), effect.depends_on, effect.law,
@@ -60,7 +60,7 @@ def _listed(problem: Problem, found: Explained, law: Law, before: float, after: 
 def _unlisted(problem: Problem, found: Explained, law: Law, before: float, after: float) -> Finding:
     return Finding(
         problem.regime, "unlisted", tuple(found.also.get(law.name, ())), (law.family,), law.name,
-        _sizes(found, law), found.chance[law.name], before, after, {}, {}, found.rivals.get(law.name, ()),
+        _sizes(found, law), found.chance[law.name], before, after, {}, found.switched(), found.rivals.get(law.name, ()),
     )  # fmt: skip
 
 

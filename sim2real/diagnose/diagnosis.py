@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim2real.diagnose.account import account
+from sim2real.diagnose.agreement import Part, check_agreement, check_sizes, parts_of
 from sim2real.diagnose.contacts import geometry, mallet_tracks
 from sim2real.diagnose.encoders import read_encoders
 from sim2real.diagnose.engine.explain import Explained, explain
@@ -21,6 +22,7 @@ from sim2real.diagnose.mallet.data import join as join_blows
 from sim2real.diagnose.mallet.problem import MalletProblem
 from sim2real.diagnose.pieces import Pieces, cut
 from sim2real.diagnose.problem import Problem
+from sim2real.diagnose.sanity import UndeterminedError, check_together, check_usable, notes
 from sim2real.diagnose.sensing.account import sense
 from sim2real.diagnose.wall.data import bounces
 from sim2real.diagnose.wall.problem import WallProblem
@@ -37,10 +39,15 @@ Progress = Callable[[str, float], None]
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """All accounts, by regime. `reason`: why nothing can be said, "" if something can."""
+    """All accounts, by regime. `reason`: why nothing can be said, "" if something can; `remedy`: what to do then.
+
+    `notes`: what should be known of the recordings, a sentence each.
+    """
 
     accounts: tuple[Account, ...]
     reason: str = ""
+    remedy: str = ""
+    notes: tuple[str, ...] = ()
 
     @property
     def findings(self) -> list[Finding]:
@@ -60,7 +67,8 @@ class Diagnosis:
     @property
     def next_recording(self) -> str:
         """What to record next, in one sentence; "" where nothing is open."""
-        return next((each.next_recording for each in self.accounts if each.next_recording), "")
+        open_ones = (each.next_recording for each in self.accounts if each.next_recording)
+        return self.remedy or next(open_ones, "")
 
     @property
     def proof(self) -> Proof | None:
@@ -89,17 +97,35 @@ class Cut:
 def diagnose(
     recordings: Sequence[Recording], heldout: Sequence[Recording], shipped: Mapping[str, float], progress: Progress
 ) -> Diagnosis:
-    """Explain `recordings`, and prove it on `heldout` or, where there are none, on launches kept apart."""
+    """Explain `recordings`, and prove it on `heldout` or, where there are none, on launches kept apart.
+
+    ValueError, in one line, for recordings that state different tables.
+    """
+    every = [*recordings, *heldout]
+    check_together(every)
+    try:
+        accounts = _accounts(recordings, heldout, shipped, progress)
+    except UndeterminedError as why:
+        return Diagnosis((), why.reason, why.remedy, notes(every))
+    return Diagnosis(tuple(accounts), notes=notes(every))
+
+
+def _accounts(
+    recordings: Sequence[Recording], heldout: Sequence[Recording], shipped: Mapping[str, float], progress: Progress
+) -> list[Account]:
+    """What each regime says."""
+    check_usable([*recordings, *heldout])
     progress("cutting", 0.0)
     pieces = [cut(one) for one in recordings]
+    check_sizes([*recordings, *heldout], [*pieces, *(cut(one) for one in heldout)])
     progress("sensing", 0.1)
     sensed = sense(recordings, pieces)
     if sensed.account.undetermined:
-        return Diagnosis((sensed.account,), sensed.account.undetermined)
+        raise UndeterminedError(sensed.account.undetermined, sensed.account.next_recording)
     apart = [sensed.exact(one) for one in heldout]
     data = Cut([*sensed.recordings, *apart], [*sensed.pieces, *(cut(one) for one in apart)], len(heldout))
     values = parameters(recordings[0], shipped)
-    return Diagnosis((sensed.account, *_puck(data, values, progress)))
+    return [sensed.account, *_puck(data, values, progress)]
 
 
 def _puck(data: Cut, values: dict[str, float], progress: Progress):
@@ -111,18 +137,20 @@ def _puck(data: Cut, values: dict[str, float], progress: Progress):
         return
     glides = GlideProblem(join(parts), values)
     proof = _kept_apart(glides, parts, data.heldout)
+    tables = parts_of(glides.data, [one.name for one in data.recordings])
     law = dict(values)
-    found, told = _explain(glides, law, proof)
+    found, told = _explain(glides, law, proof, tables)
     yield told
     states = glides.states(given(law)) if found is None else _states(glides, found)
     law |= {} if found is None else found.law.values
     progress("bounces", 0.6)
     impacts = [find_impacts(pieces, glides, states, k) for k, pieces in enumerate(data.pieces)]
-    yield _walls([hit for some in impacts for hit in some], glides, data, law, proof)
+    hits = bounces([hit for some in impacts for hit in some], geometry(data.recordings[0]))
+    yield _explain(WallProblem(hits, glides.clusters, law), law, proof, tables)[1]
     progress("blows", 0.75)
     struck = _blows(data.recordings, impacts)
     if struck is not None:
-        yield _explain(MalletProblem(struck, glides.clusters, law), law, proof)[1]
+        yield _explain(MalletProblem(struck, glides.clusters, law), law, proof, tables)[1]
 
 
 def _glides(recording: Recording, pieces: Pieces) -> GlideData:
@@ -143,18 +171,14 @@ def _blows(recordings: Sequence[Recording], impacts: Sequence[list[Impact]]) -> 
     return join_blows(parts) if any(len(part) for part in parts) else None
 
 
-def _walls(impacts: list[Impact], glides: GlideProblem, data: Cut, law: dict[str, float], proof: np.ndarray) -> Account:
-    walls = WallProblem(bounces(impacts, geometry(data.recordings[0])), glides.clusters, law)
-    return _explain(walls, law, proof)[1]
-
-
-def _explain(problem: Problem, law: Mapping[str, float], proof: np.ndarray):
+def _explain(problem: Problem, law: Mapping[str, float], proof: np.ndarray, tables: Sequence[Part]):
     """The engine's findings of a problem (None where there is too little data), and its account."""
     live = np.flatnonzero(problem.freedom > 0)
     use, apart = np.setdiff1d(live, proof), np.intersect1d(live, proof)
     if len(use) + len(apart) < FEWEST_LAUNCHES or not len(apart) or problem.freedom[use].sum() < FEWEST_RESIDUALS:
         return None, Account(problem.regime, (), {}, False, None, TOO_LITTLE)
     shipped = {name: law[name] for name in problem.base}
+    check_agreement(problem, shipped, tables)
     found = explain(problem, shipped, use)
     return found, account(problem, found, apart)
 

@@ -7,6 +7,9 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from puckpilot_env.parameters import BY_NAME, EFFECT_ROWS, TABLE
 from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.diagnosis import Diagnosis
 from sim2real.diagnose.finding import Estimate, Finding
@@ -29,6 +32,8 @@ def as_dict(diagnosis: Diagnosis) -> dict[str, Any]:
     }
     if diagnosis.reason:
         words["reason"] = diagnosis.reason
+    if diagnosis.notes:
+        words["notes"] = list(diagnosis.notes)
     return words
 
 
@@ -51,16 +56,25 @@ def _estimate(one: Estimate) -> dict[str, Any]:
 
 
 def effects_toml(diagnosis: Diagnosis) -> str:
-    """The refitted baseline and the effects found, as the simulator takes them."""
-    lines = [f'format = "{EFFECTS_FORMAT}"', "", "[parameters]"]
-    for each in diagnosis.accounts:
-        lines += [f"{name} = {one.value!r}" for name, one in each.baseline.items()]
+    """The refitted baseline and all that was found, as the simulator takes it: each number within its range.
+
+    A finding that it has no place for is named in a comment, as a clock that drifts: its players have one clock.
+    """
+    values = {name: one.value for each in diagnosis.accounts for name, one in each.baseline.items()}
     for one in diagnosis.findings:
-        if one.mechanism in EFFECTS:
-            label = {row.name: key for key, row in EFFECTS[one.mechanism].rows.items()}
-            lines += ["", f"[effects.{one.mechanism}]"]
-            lines += [f"{label[name]} = {float(value)!r}" for name, value in one.values.items() if name in label]
+        values |= one.values
+    near = {name: float(np.clip(value, BY_NAME[name].low, BY_NAME[name].high)) for name, value in values.items()}
+    plain = [row.name for row in TABLE if row.name in near and row not in EFFECT_ROWS]
+    lines = [f'format = "{EFFECTS_FORMAT}"', "", "[parameters]", *(f"{name} = {near[name]!r}" for name in plain)]
+    for name, effect in EFFECTS.items():
+        numbers = [f"{key} = {near[row.name]!r}" for key, row in effect.rows.items() if row.name in near]
+        lines += ["", f"[effects.{name}]", *numbers] if numbers else []
+    lines += [f"# not in the simulator: {_name(one)}" for one in diagnosis.findings if not one.values]
     return "\n".join(lines) + "\n"
+
+
+def _name(one: Finding) -> str:
+    return f"{one.mechanism} of the {one.regime}, which depends on {' and '.join(one.depends_on) or 'nothing'}"
 
 
 def write(diagnosis: Diagnosis, folder: Path) -> list[Path]:

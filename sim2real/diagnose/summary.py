@@ -47,6 +47,7 @@ def summary(diagnosis: Diagnosis, written: Sequence[Path]) -> list[str]:
         )
     if diagnosis.next_recording:
         lines.append(f"  next: {diagnosis.next_recording}")
+    lines += [f"  note: {note}" for note in diagnosis.notes]
     return [*lines[: MOST_LINES - 1], "wrote " + ", ".join(map(str, written))]
 
 

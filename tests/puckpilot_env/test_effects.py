@@ -13,9 +13,10 @@ import pytest
 from baselines import Seat
 from puckpilot_env import Tables, find_variant, parameters
 from puckpilot_env.motion import puck_motion
-from puckpilot_env.physics.effects import EFFECTS
+from puckpilot_env.physics.effects import EFFECTS, MODULES
 from puckpilot_env.randomization import Draw
 from puckpilot_env.trace import trace
+from tests.reality.mechanisms import MECHANISMS
 
 TILT = {"table_tilt": {"tilt_x": 0.1, "tilt_y": -0.05}}
 SOME = {
@@ -27,6 +28,15 @@ SOME = {
     "corner_restitution": {"extra": -0.3},
     "mallet_friction": {"mu": 0.1},
     "mallet_speed_restitution": {"slope": 0.03},
+}
+
+
+HOOKS = {
+    "glide": ("is_on", "acceleration", "friction"),
+    "wall": ("restitution", "tangent"),
+    "corner": ("restitution",),
+    "mallet": ("mallet_restitution", "mallet_impulse", "mallet_tangent"),
+    "sensing": ("camera_map",),
 }
 
 
@@ -42,6 +52,19 @@ def test_rows_are_off_by_default_and_their_names_are_no_one_else_s() -> None:
         assert effect.rows and effect.depends_on and effect.law and effect.excited_by and effect.source
         for row in effect.rows.values():
             assert parameters.make_records(1)[row.name][0] == row.default
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_every_file_holds_what_the_recipe_asks_for(name: str) -> None:
+    """Named as the reference names mechanisms; with kernels by the names of its regime's hooks."""
+    module, effect = MODULES[name], EFFECTS[name]
+    assert effect.listed == (name in MECHANISMS)
+    assert not effect.listed or effect.regime == MECHANISMS[name].regime
+    assert module.__doc__ and all(row.source and row.meaning and row.unit for row in effect.rows.values())
+    hooks = {hook for hook in HOOKS[effect.regime] if hasattr(module, hook)}
+    assert hooks - {"is_on"} and ("is_on" in hooks) == (effect.regime == "glide")
+    assert all(getattr(module, hook).__doc__ and hasattr(getattr(module, hook), "py_func") for hook in hooks)
+    assert set(effect.depends_on) <= {"position", "speed", "heading", "time", "history", "command"}
 
 
 @pytest.mark.parametrize("variant", ["match-v0", "match-sensors-v0"])

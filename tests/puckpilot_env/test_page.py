@@ -150,7 +150,8 @@ def test_effects_and_their_numbers_are_all_there(variant: Variant) -> None:
     assert [row[0] for row in rows] == [f"`{name}`" for name in EFFECTS]
     for row, effect in zip(rows, EFFECTS.values(), strict=True):
         assert row[1] == effect.regime and row[2]
-        for short, number in effect.rows.items():
+        shown = list(effect.rows.items())
+        for short, number in shown if effect.listed else [shown[0], shown[1], shown[-1]]:
             assert f"`{short}`" in row[3] and f"`{number.name}`" in row[3] and f"[{number.unit}]" in row[3]
 
 

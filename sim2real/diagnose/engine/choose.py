@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -24,18 +24,25 @@ AMBIGUOUS = 9.0  # held-out losses nearer than this do not tell two laws apart
 SPREADS = (0.03, 0.3, 3.0)  # tried for the coefficients of a family
 
 
+def no_parameters(theta: np.ndarray) -> Mapping[str, float]:
+    """The simulator's parameters for a family that it has no place for."""
+    return {}
+
+
 @dataclass(frozen=True)
 class Law:
     """Columns of a problem's residuals that stand or fall together.
 
     `name`: a mechanism, or a family of smooth forces; `family` is what it depends on, "" for a mechanism. `start`:
-    parameters of a nonlinear law at which its columns were taken.
+    parameters of a nonlinear law at which its columns were taken. `switch`: the simulator's parameters by name for
+    coefficients of a family; none where the simulator has no place for it.
     """
 
     name: str
     columns: tuple[str, ...]
     family: str = ""
     start: dict[str, float] = field(default_factory=dict)
+    switch: Callable[[np.ndarray], Mapping[str, float]] = no_parameters
 
 
 @dataclass(frozen=True)

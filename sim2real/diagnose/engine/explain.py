@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.stats import chi2
 
+from puckpilot_env.parameters import BY_NAME
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.choose import AMBIGUOUS, LEAST_FORETOLD, LEAST_SHARE, Chooser, Gain, Law, Model
 from sim2real.diagnose.engine.fit import Fit, fit
@@ -43,6 +44,25 @@ class Explained:
     also: Mapping[str, tuple[str, ...]]
     rivals: Mapping[str, tuple[Rival, ...]]
     gains: tuple[Gain, ...] = field(default=())
+
+    @property
+    def final(self) -> Fit:
+        """The fit of the baseline and the listed laws beside the smooth one, where there is one."""
+        if self.unlisted is None:
+            return self.law
+        values = dict(self.law.values)
+        for k, name in enumerate(self.law.free):
+            row = BY_NAME[name]
+            values[name] = float(np.clip(values[name] + self.theta[k], row.low, row.high))
+        n = len(self.law.free)
+        return replace(self.law, values=values, covariance=self.theta_covariance[:n, :n])
+
+    def switched(self) -> Mapping[str, float]:
+        """The simulator's parameters that switch the smooth law on; empty where it has no place for it."""
+        if self.unlisted is None:
+            return {}
+        law = next(one for one in self.columns.families if one.name == self.unlisted.name)
+        return law.switch(self.theta[len(self.law.free) :])
 
 
 def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray) -> Explained:

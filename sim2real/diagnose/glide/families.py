@@ -10,11 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from puckpilot_env.physics.effects.unlisted_force import HARMONICS, TIME_KNOTS, WAVES_X, WAVES_Y
+
 UNIT = 0.1  # m/s^2, what a coefficient of 1 stands for
-WAVES_X, WAVES_Y = 6, 4  # of cosines over the table
 RIPPLES = (14, 8)  # of cosines along one axis alone
-HARMONICS = 4  # of the heading
-SPEED_KNOTS, TIME_KNOTS, HISTORY_KNOTS = 8, 20, 6
+SPEED_KNOTS, HISTORY_KNOTS = 8, 6
 LONGEST_MEMORY = 2.0  # s after a contact
 
 
@@ -75,14 +75,22 @@ def _axes(motion: Motion) -> tuple[np.ndarray, np.ndarray]:
     return np.tile([1.0, 0.0], (n, 1)), np.tile([0.0, 1.0], (n, 1))
 
 
+def speed_knots(motion: Motion) -> np.ndarray:
+    """Speeds (k,) [m/s] between which a force by speed is straight."""
+    return np.unique(np.quantile(np.linalg.norm(motion.velocity, axis=1), np.linspace(0.0, 1.0, SPEED_KNOTS)))
+
+
+def time_knots(motion: Motion) -> np.ndarray:
+    """Times (k,) [s] between which a force by time is straight."""
+    return np.linspace(motion.t.min(), motion.t.max(), TIME_KNOTS)
+
+
 def _speeds(motion: Motion) -> np.ndarray:
-    speed = np.linalg.norm(motion.velocity, axis=1)
-    knots = np.unique(np.quantile(speed, np.linspace(0.0, 1.0, SPEED_KNOTS)))
-    return hats(speed, knots)
+    return hats(np.linalg.norm(motion.velocity, axis=1), speed_knots(motion))
 
 
 def _moments(motion: Motion) -> np.ndarray:
-    return hats(motion.t, np.linspace(motion.t.min(), motion.t.max(), TIME_KNOTS))
+    return hats(motion.t, time_knots(motion))
 
 
 def _memory(motion: Motion) -> np.ndarray:

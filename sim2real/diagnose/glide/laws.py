@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,6 +12,7 @@ from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.glide.families import FAMILIES, UNIT, Motion
+from sim2real.diagnose.glide.switched import switched_on
 from sim2real.diagnose.problem import Columns
 
 if TYPE_CHECKING:
@@ -27,7 +29,7 @@ def listed_laws() -> list[Law]:
     """The listed effects of the glide whose columns are derivatives at the baseline."""
     found = []
     for name, effect in EFFECTS.items():
-        if effect.regime != "glide" or name == "friction_patch":
+        if effect.regime != "glide" or not effect.listed or name == "friction_patch":
             continue
         rows = tuple(row.name for row in effect.rows.values() if row.name != SPINNING)
         found.append(Law(name, rows))
@@ -49,7 +51,8 @@ def glide_columns(problem: GlideProblem, values: Mapping[str, float], free: Sequ
     blocks, names, families = [exact.jacobian, patch_columns], [*free, *(law.columns[0] for law in patches)], []
     for name, (depends, shape) in FAMILIES.items():
         block = columns(shape(motion))
-        families.append(Law(name, tuple(f"{name} {k}" for k in range(block.shape[1])), depends))
+        fresh = tuple(f"{name} {k}" for k in range(block.shape[1]))
+        families.append(Law(name, fresh, depends, switch=partial(switched_on, name, motion)))
         names += families[-1].columns
         blocks.append(block)
     jacobian = np.concatenate(blocks, axis=1)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
+from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.contacts import Geometry, nominal_lines, wall_axis
 from sim2real.diagnose.finding import Estimate, Finding, Proof
 from sim2real.diagnose.sensing.lines import Line, lines
@@ -60,16 +61,18 @@ def scale_account(found: list[Strike], g: Geometry) -> ScaleAccount:
         for k, name in enumerate(NAMES)
         if told[k]
     }
+    rows = EFFECTS["scale_error"].rows
     finding = Finding(
         regime="sensing",
         mechanism="scale_error",
         also_possible=(),
         depends_on=("position",),
-        formula="seen x = (1 + scale_x) x + shear y, seen y = (1 + scale_y) y",
+        formula=EFFECTS["scale_error"].law,
         parameters=estimates,
         p_value=max(float(sure[missing].min()), 1e-300),
         before=before,
         after=after,
+        values={rows[name].name: float(values[k]) for k, name in enumerate(NAMES) if told[k]},
     )
     return ScaleAccount(kept, (finding,), proof)
 

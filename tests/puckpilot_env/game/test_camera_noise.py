@@ -11,6 +11,8 @@ from scipy import stats
 from puckpilot_env import Tables, state
 from puckpilot_env.game import sensing
 from tests.puckpilot_env.game.hand import FRICTIONLESS, LENGTH, NO_CAMERA_NOISE, WIDTH, put_puck, seen, staying
+from tests.reality import Law
+from tests.reality.camera import distort
 
 LAGS = (0, 1, 2, 5, 11)
 COUNT = 4000
@@ -159,3 +161,30 @@ def test_held_frames_are_one_frame_older():
         np.testing.assert_allclose(apart, apart.round(), atol=1e-3)
         shares = [np.mean(apart.round() == frames) for frames in (2, 3, 4)]
         np.testing.assert_allclose(shares, [0.16, 0.68, 0.16], atol=0.03)
+
+
+@pytest.mark.parametrize("player", [0, 1])
+def test_a_stretched_and_sheared_map(player):
+    """Both seats share one camera, whose map is about the robot's right-hand corner: the reference's `distort`."""
+    law = Law(camera_scale_x=0.012, camera_scale_y=-0.02, camera_shear=0.008)
+    values = {name: getattr(law, name) for name in ("camera_scale_x", "camera_scale_y", "camera_shear")}
+    tables = watch(0.7, 0.3, seen_by=player, camera_error=0.0, **values)
+    for k in range(2):
+        place = np.array([[0.7, 0.3]]) if k == player else np.array([[LENGTH - 0.7, WIDTH - 0.3]])
+        true = place if k == 0 else np.array([LENGTH, WIDTH]) - place  # as the camera over the table has it
+        shown = distort(law, true)[0]
+        x, y = shown if k == 0 else np.array([LENGTH, WIDTH]) - shown
+        np.testing.assert_allclose(seen(tables, k, "puck_0_x"), x, atol=1e-6)
+        np.testing.assert_allclose(seen(tables, k, "puck_0_y"), y, atol=1e-6)
+
+
+def test_a_map_without_error_leaves_the_smooth_error_as_drawn():
+    plain, given = (
+        Tables("match-sensors-v0", 50, seed=6, values=values)
+        for values in ({}, {"camera_scale_x": 0.0, "camera_scale_y": 0.0, "camera_shear": 0.0})
+    )
+    stretched = Tables("match-sensors-v0", 50, seed=6, values={"camera_scale_x": 0.01})
+    for name in ("error_x", "error_y"):
+        assert np.array_equal(plain.states["camera"][name], given.states["camera"][name])
+    apart = stretched.states["camera"]["error_x"] - plain.states["camera"]["error_x"]
+    assert np.abs(apart[:, 1]).min() > 0.005 and np.abs(apart[:, 2:]).max() < 1e-12

@@ -1,0 +1,120 @@
+"""Whether recordings of one call are of one table: the law that each asks for by itself, tried on the others."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import permutations
+
+import numpy as np
+
+from sim2real.diagnose.contacts import geometry
+from sim2real.diagnose.engine import gram
+from sim2real.diagnose.engine.explain import Explained, explain
+from sim2real.diagnose.engine.fit import Fit, fit
+from sim2real.diagnose.glide.data import GlideData
+from sim2real.diagnose.pieces import Pieces
+from sim2real.diagnose.problem import Problem
+from sim2real.diagnose.sanity import UndeterminedError
+from sim2real.diagnose.sensing.scale import scale_account
+from sim2real.diagnose.strikes import strikes
+from sim2real.recording import Recording
+
+FEWEST_LAUNCHES = 6
+FEWEST_RESIDUALS = 24
+APART = 8.0  # standard deviations between two fits of one number
+RELATIVE = 0.1  # of its size, which one table may change by from one day to the next
+SIZE_APART = 0.01  # of a table's size
+HARM = 30.0  # growth of a sum of squares that noise does not make
+WORSE = 1.1  # times the sum of squares without a law, with it
+
+
+@dataclass(frozen=True)
+class Part:
+    """One recording of several: its `name` and the indices of its launches."""
+
+    name: str
+    clusters: np.ndarray
+
+
+def parts_of(data: GlideData, names: Sequence[str]) -> list[Part]:
+    """The launches of each recording, of these `names`."""
+    return [Part(name, np.unique(data.cluster[data.recording == k])) for k, name in enumerate(names)]
+
+
+def check_sizes(recordings: Sequence[Recording], pieces: Sequence[Pieces]) -> None:
+    """Raise `UndeterminedError` if the puck turns round in other places in one recording than in another."""
+    if len(recordings) < 2:
+        return
+    seen = []
+    for one, part in zip(recordings, pieces, strict=True):
+        scale = scale_account(strikes(one, part), geometry(one))
+        if scale.undetermined:
+            raise UndeterminedError(f"in {one.name}, {scale.undetermined}", "measure the table's length and width")
+        seen.append(scale.values)
+    for one, other in permutations(range(len(recordings)), 2):
+        apart = float(np.abs(seen[one] - seen[other]).max())
+        if apart > SIZE_APART:
+            names = recordings[one].name, recordings[other].name
+            raise _two_tables(*names, f"the places where the puck turns round differ by {apart:.1%}")
+
+
+def check_agreement(problem: Problem, shipped: Mapping[str, float], parts: Sequence[Part]) -> None:
+    """Raise `UndeterminedError` if what recordings ask for, each by itself, cannot be one table.
+
+    `shipped`: the simulator's own numbers, by name. A law that one recording asks for may not harm another, and its
+    numbers may not be others there.
+    """
+    live = np.flatnonzero(problem.freedom > 0)
+    parts = [Part(part.name, np.intersect1d(part.clusters, live)) for part in parts]
+    parts = [part for part in parts if _enough(problem, part.clusters)]
+    if len(parts) < 2:
+        return
+    alone = [explain(problem, shipped, part.clusters) for part in parts]
+    for one, other in permutations(range(len(parts)), 2):
+        law, there = alone[one].law, parts[other].clusters
+        told = _numbers_apart(law, fit(problem, law.values, law.free, there))
+        if told:
+            name, a, b = told
+            why = f"{name} is {a:.3g} in the one and {b:.3g} in the other"
+            raise _two_tables(parts[one].name, parts[other].name, why)
+        harm = _loss_under(problem, alone[one], there), alone[other].baseline.loss
+        if harm[0] > WORSE * harm[1] and harm[0] - harm[1] > HARM * alone[other].dispersion:
+            why = f"what the {problem.regime} of the one asks for makes the other's worse"
+            raise _two_tables(parts[one].name, parts[other].name, why)
+
+
+def _enough(problem: Problem, clusters: np.ndarray) -> bool:
+    return len(clusters) >= FEWEST_LAUNCHES and problem.freedom[clusters].sum() >= FEWEST_RESIDUALS
+
+
+def _two_tables(one: str, other: str, why: str) -> UndeterminedError:
+    return UndeterminedError(f"{one} and {other} disagree as two tables do: {why}", "diagnose each recording by itself")
+
+
+def _numbers_apart(one: Fit, other: Fit) -> tuple[str, float, float] | None:
+    """The number that two fits disagree on most, and its values, if they surely do."""
+    worst, told = APART, None
+    for k, name in enumerate(one.free):
+        a, b = float(one.values[name]), float(other.values[name])
+        spread = float(np.sqrt(one.covariance[k, k] + other.covariance[k, k]))
+        apart = abs(a - b) / max(spread, 1e-12)
+        if apart > worst and abs(a - b) > RELATIVE * max(abs(a), abs(b)):
+            worst, told = apart, (name, a, b)
+    return told
+
+
+def _loss_under(problem: Problem, found: Explained, clusters: np.ndarray) -> float:
+    """Sum of squares of `clusters` under the effects found elsewhere, with the baseline's numbers refitted."""
+    if found.unlisted is None:
+        return fit(problem, found.law.values, problem.base, clusters).loss
+    grams = found.columns.grams
+    names = (*problem.base, *found.unlisted.columns)
+    columns, theta = grams.columns(names), np.zeros(len(names))
+    base = len(problem.base)
+    theta[base:] = found.theta[-len(found.unlisted.columns) :]
+    units = problem.units.of(clusters)
+    g = grams.g[np.ix_(units, columns, columns)].sum(axis=0)
+    b = grams.b[np.ix_(units, columns)].sum(axis=0)
+    theta[:base] = gram.solve_normal(g[:base, :base], -(b[:base] + g[:base, base:] @ theta[base:]))
+    return float(gram.losses(grams, columns, theta, units).sum())

@@ -1,0 +1,71 @@
+"""What a diagnosis found, as a file that the simulator takes: parameters, effects, and what it has no place for."""
+
+import dataclasses
+
+import pytest
+
+from puckpilot_env import Tables
+from puckpilot_env.effects_file import effect_values
+from sim2real.diagnose.diagnosis import Diagnosis, diagnose
+from sim2real.diagnose.files import effects_toml
+from sim2real.diagnose.finding import Account, Estimate, Finding
+from sim2real.recording import read_recording
+from tests.reality.camera import Camera
+from tests.reality.law import Law
+from tests.reality.record import make_recording
+
+PLAIN = Finding("sensing", "held_frames", (), (), "", {}, 1e-9, 2.0, 1.0, values={"held_frames": 0.1})
+
+
+def _taken(tmp_path, *findings: Finding, **baseline: float) -> dict[str, float]:
+    """The simulator's parameters by name from the file of a diagnosis that found so."""
+    numbers = {name: Estimate(value, value, value, "1") for name, value in baseline.items()}
+    file = tmp_path / "effects.toml"
+    file.write_text(effects_toml(Diagnosis((Account("sensing", findings, numbers, False, None),))))
+    return effect_values(file)
+
+
+def test_the_camera_s_faults_are_the_simulator_s(tmp_path):
+    late = dataclasses.replace(PLAIN, mechanism="camera_delay", values={"camera_latency": 0.018})
+    bent = dataclasses.replace(PLAIN, mechanism="scale_error", values={"camera_scale_x": 0.01, "camera_shear": -0.004})
+    found = _taken(tmp_path, PLAIN, late, bent, friction=0.09)
+    assert found == {
+        "held_frames": 0.1,
+        "camera_latency": 0.018,
+        "camera_scale_x": 0.01,
+        "camera_shear": -0.004,
+        "friction": 0.09,
+    }
+    assert Tables("match-sensors-v0", 1, effects=tmp_path / "effects.toml").params["camera_shear"][0] == -0.004
+
+
+def test_numbers_beyond_what_the_simulator_takes_are_its_nearest(tmp_path):
+    early = dataclasses.replace(PLAIN, mechanism="camera_delay", values={"camera_latency": -0.004})
+    assert _taken(tmp_path, early) == {"camera_latency": 0.0}
+
+
+def test_two_findings_of_one_effect_make_one_table(tmp_path):
+    walls = [
+        dataclasses.replace(
+            PLAIN, regime="wall", mechanism="wall_to_wall_restitution", values={f"restitution_{wall}": e}
+        )
+        for wall, e in (("x0", 0.05), ("y1", -0.03))
+    ]
+    assert _taken(tmp_path, *walls) == {"restitution_x0": 0.05, "restitution_y1": -0.03}
+
+
+def test_what_has_no_place_in_the_simulator_is_named(tmp_path):
+    drift = dataclasses.replace(PLAIN, mechanism="clock_drift", depends_on=("time",), values={})
+    assert _taken(tmp_path, drift) == {}
+    assert "# not in the simulator: clock_drift of the sensing" in (tmp_path / "effects.toml").read_text()
+
+
+def test_a_stretched_map_found_in_a_recording(tmp_path):
+    law = Law(camera_scale_x=0.012, camera_scale_y=-0.008)
+    make_recording(tmp_path / "table", law, "launches", 4, 40.0, camera=Camera(noise=0.0006, rate=150.0), dt=2e-5)
+    found = diagnose([read_recording(tmp_path / "table")], [], {}, lambda stage, share: None)
+    assert [one.mechanism for one in found.findings] == ["scale_error"]
+    (tmp_path / "effects.toml").write_text(effects_toml(found))
+    values = effect_values(tmp_path / "effects.toml")
+    assert values["camera_scale_x"] == pytest.approx(0.012, abs=0.001)
+    assert values["camera_scale_y"] == pytest.approx(-0.008, abs=0.001)
