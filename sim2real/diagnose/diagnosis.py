@@ -10,12 +10,14 @@ import numpy as np
 from sim2real.diagnose.account import account
 from sim2real.diagnose.contacts import geometry, mallet_tracks
 from sim2real.diagnose.engine.explain import explain
-from sim2real.diagnose.finding import Account, Finding, Proof
+from sim2real.diagnose.finding import Account, Finding, Proof, Sight
 from sim2real.diagnose.glide.data import GlideData, glide_data, join
 from sim2real.diagnose.glide.problem import GlideProblem
+from sim2real.diagnose.illustrate import illustrated
 from sim2real.diagnose.impacts import Impact, find_impacts
 from sim2real.diagnose.pieces import Pieces, cut
 from sim2real.diagnose.problem import Problem
+from sim2real.diagnose.sight import sight
 from sim2real.diagnose.wall.data import bounces
 from sim2real.diagnose.wall.problem import WallProblem
 from sim2real.nominal import parameters
@@ -31,10 +33,12 @@ Progress = Callable[[str, float], None]
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """All accounts, by regime. `reason`: why nothing can be said, "" if something can."""
+    """All accounts, by regime. `reason`: why nothing can be said, "" if something can. `sights`: the sensor of each
+    recording, those held out last."""
 
     accounts: tuple[Account, ...]
     reason: str = ""
+    sights: tuple[Sight, ...] = ()
 
     @property
     def findings(self) -> list[Finding]:
@@ -89,7 +93,8 @@ def diagnose(
     data = Cut(every, [cut(one) for one in every], len(heldout))
     values = parameters(recordings[0], shipped)
     accounts = list(_puck(data, values, progress))
-    return Diagnosis(tuple(accounts), "" if accounts else TOO_LITTLE)
+    sights = tuple(sight(one, pieces) for one, pieces in zip(data.recordings, data.pieces, strict=True))
+    return Diagnosis(tuple(accounts), "" if accounts else TOO_LITTLE, sights)
 
 
 def _puck(data: Cut, values: dict[str, float], progress: Progress):
@@ -127,7 +132,7 @@ def _explain(problem: Problem, law: Mapping[str, float], proof: np.ndarray):
         return None, Account(problem.regime, (), {}, False, None, TOO_LITTLE)
     shipped = {name: law[name] for name in problem.base}
     found = explain(problem, shipped, use)
-    return found, account(problem, found, apart)
+    return found, illustrated(problem, found, account(problem, found, apart), use)
 
 
 def _kept_apart(glides: GlideProblem, parts: Sequence[GlideData], heldout: int) -> np.ndarray:

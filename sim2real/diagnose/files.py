@@ -1,4 +1,4 @@
-"""A diagnosis as files: diagnosis.json in the format puckpilot-diagnosis/1, and effects.toml for the simulator."""
+"""A diagnosis as files: diagnosis.json (puckpilot-diagnosis/1), report.html, and effects.toml for the simulator."""
 
 from __future__ import annotations
 
@@ -65,9 +65,12 @@ def effects_toml(diagnosis: Diagnosis) -> str:
 
 def write(diagnosis: Diagnosis, folder: Path) -> list[Path]:
     """Write all files into `folder`, each whole or not at all; returns their places."""
+    from sim2real.diagnose.report.page import page
+
     folder.mkdir(parents=True, exist_ok=True)
     texts = {
         "diagnosis.json": json.dumps(as_dict(diagnosis), indent=1, allow_nan=False) + "\n",
+        "report.html": page(diagnosis),
         "effects.toml": effects_toml(diagnosis),
     }
     return [_write_whole(folder / name, text) for name, text in texts.items()]

@@ -41,6 +41,12 @@ class Explained:
     rivals: Mapping[str, tuple[Rival, ...]]
     gains: tuple[Gain, ...] = field(default=())
 
+    @property
+    def values(self) -> dict[str, float]:
+        """The parameters under the final law: those of `law`, moved by what the unlisted law leaves for them."""
+        moved = zip(self.law.free, self.theta, strict=False)
+        return {**self.law.values, **{name: float(self.law.values[name] + by) for name, by in moved}}
+
 
 def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray) -> Explained:
     """Explain the clusters `use` of a problem, starting from the simulator's own numbers `shipped`."""
