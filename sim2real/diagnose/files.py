@@ -9,7 +9,7 @@ from typing import Any
 
 from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.diagnosis import Diagnosis
-from sim2real.diagnose.finding import Estimate, Finding
+from sim2real.diagnose.finding import Curve, Estimate, Finding
 
 FORMAT = "puckpilot-diagnosis/1"
 EFFECTS_FORMAT = "puckpilot-effects/1"
@@ -33,7 +33,7 @@ def as_dict(diagnosis: Diagnosis) -> dict[str, Any]:
 
 
 def _finding(one: Finding) -> dict[str, Any]:
-    return {
+    words = {
         "regime": one.regime,
         "where": dict(one.where),
         "mechanism": one.mechanism,
@@ -44,6 +44,13 @@ def _finding(one: Finding) -> dict[str, Any]:
         "p_value": one.p_value,
         "heldout": {"before": one.before, "after": one.after, "unit": "rms in units of the sensor's noise"},
     }
+    return words if one.curve is None else {**words, "curve": _curve(one.curve)}
+
+
+def _curve(one: Curve) -> dict[str, Any]:
+    """The law as a curve with its 95 % band."""
+    words = {"x_label": one.x_label, "y_label": one.y_label, **({"ticks": list(one.ticks)} if one.ticks else {})}
+    return {**words, **{name: getattr(one, name).tolist() for name in ("x", "y", "low", "high")}}
 
 
 def _estimate(one: Estimate) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""An account with what its report shows: where recording and simulator part, and each finding as a curve."""
+"""An account with what its report shows: where recording and simulator part, findings as curves and in formulas."""
 
 from __future__ import annotations
 
@@ -7,37 +7,44 @@ from dataclasses import replace
 import numpy as np
 
 from sim2real.diagnose.engine.explain import Explained
-from sim2real.diagnose.finding import Account, Curve, Finding, Parting
+from sim2real.diagnose.finding import Account, Finding, Parting
 from sim2real.diagnose.glide import picture as glides
 from sim2real.diagnose.glide.problem import GlideProblem
+from sim2real.diagnose.glide.readable import readable as glide_formula
 from sim2real.diagnose.problem import Problem
 from sim2real.diagnose.wall import picture as bounces
 from sim2real.diagnose.wall.problem import WallProblem
+from sim2real.diagnose.wall.readable import readable as wall_formula
 
 
 def illustrated(problem: Problem, found: Explained, account: Account, use: np.ndarray) -> Account:
     """The account with its parting, and its findings with curves; `use`: the clusters that were fitted."""
-    findings = tuple(replace(one, curve=_curve(problem, found, one)) for one in account.findings)
-    return replace(account, findings=findings, parting=_parting(problem, found))
-
-
-def _parting(problem: Problem, found: Explained) -> Parting:
     match problem:
         case GlideProblem():
-            return glides.parting(problem, found)
+            parting = glides.parting(problem, found)
+            findings = [_glide_finding(problem, found, one, use) for one in account.findings]
         case WallProblem():
-            return bounces.parting(problem, found)
-    return _by_launch(problem, found)
+            parting = bounces.parting(problem, found)
+            findings = [_wall_finding(problem, found, one, use) for one in account.findings]
+        case _:
+            parting, findings = _by_launch(problem, found), account.findings
+    return replace(account, findings=tuple(findings), parting=parting)
 
 
-def _curve(problem: Problem, found: Explained, one: Finding) -> Curve | None:
-    picture = glides if isinstance(problem, GlideProblem) else bounces if isinstance(problem, WallProblem) else None
-    if picture is None:
-        return None
-    if one.mechanism == "unlisted":
-        assert found.unlisted is not None
-        return picture.smooth_curve(problem, found, found.unlisted)
-    return picture.listed_curve(problem, found, one.mechanism)
+def _glide_finding(problem: GlideProblem, found: Explained, one: Finding, use: np.ndarray) -> Finding:
+    if found.unlisted is None or one.mechanism != "unlisted":
+        return replace(one, curve=glides.listed_curve(problem, found, one.mechanism))
+    formula, looks = glide_formula(problem, found, found.unlisted, use)
+    curve = glides.smooth_curve(problem, found, found.unlisted, formula, looks)
+    return replace(one, curve=curve, formula=formula.words, parameters=formula.parameters)
+
+
+def _wall_finding(problem: WallProblem, found: Explained, one: Finding, use: np.ndarray) -> Finding:
+    if found.unlisted is None or one.mechanism != "unlisted":
+        return replace(one, curve=bounces.listed_curve(problem, found, one.mechanism))
+    formula, view = wall_formula(problem, found, found.unlisted, use)
+    curve = bounces.smooth_curve(problem, found, found.unlisted, formula, view)
+    return replace(one, curve=curve, formula=formula.words, parameters=formula.parameters)
 
 
 def _by_launch(problem: Problem, found: Explained) -> Parting:
@@ -45,7 +52,7 @@ def _by_launch(problem: Problem, found: Explained) -> Parting:
     every = np.arange(problem.clusters)
     live = np.flatnonzero(problem.freedom > 0)
     sizes = []
-    for values in (found.baseline.values, found.values):
+    for values in (found.baseline.values, found.final.values):
         left = problem.residuals(values, (), every)
         squares = np.bincount(left.cluster, left.r**2, problem.clusters)[live]
         sizes.append(np.sqrt(squares / problem.freedom[live])[:, None])

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.stats import chi2
 
+from puckpilot_env.parameters import BY_NAME
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.choose import AMBIGUOUS, Chooser, Gain, Law, Model
 from sim2real.diagnose.engine.fit import Fit, fit
@@ -42,10 +43,16 @@ class Explained:
     gains: tuple[Gain, ...] = field(default=())
 
     @property
-    def values(self) -> dict[str, float]:
-        """The parameters under the final law: those of `law`, moved by what the unlisted law leaves for them."""
-        moved = zip(self.law.free, self.theta, strict=False)
-        return {**self.law.values, **{name: float(self.law.values[name] + by) for name, by in moved}}
+    def final(self) -> Fit:
+        """The fit of the baseline and the listed laws beside the smooth one, where there is one."""
+        if self.unlisted is None:
+            return self.law
+        n = len(self.law.free)
+        moved = {
+            name: float(np.clip(self.law.values[name] + step, BY_NAME[name].low, BY_NAME[name].high))
+            for name, step in zip(self.law.free, self.theta[:n], strict=True)
+        }
+        return replace(self.law, values={**self.law.values, **moved}, covariance=self.theta_covariance[:n, :n])
 
 
 def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray) -> Explained:

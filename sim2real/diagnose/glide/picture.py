@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from puckpilot_env.parameters import BY_NAME
 from puckpilot_env.physics.effects import EFFECTS
-from sim2real.diagnose.binned import Binned, binned, half_band
+from sim2real.diagnose.binned import Binned, binned, half_band, over
 from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.engine.explain import Explained
 from sim2real.diagnose.finding import Curve, Parting
+from sim2real.diagnose.formula import Formula
 from sim2real.diagnose.glide.families import FAMILIES, Motion
 from sim2real.diagnose.glide.problem import GlideProblem
-from sim2real.diagnose.glide.views import COORDINATES, View, listed_view, smooth_views
+from sim2real.diagnose.glide.views import COORDINATES, View, listed_view
 from sim2real.diagnose.glide.windows import missing, motion, windows
 
 SHORT_SPAN = 0.3  # s of a window, where what happens soon after a contact matters
@@ -24,27 +27,29 @@ def parting(problem: GlideProblem, found: Explained) -> Parting:
     some = windows(problem.data)
     seen = motion(problem, some, found.baseline.values)
     before = missing(problem, some, found.baseline.values)
-    after = missing(problem, some, found.values, _smooth_force(problem, found))
-    both = [np.stack([(seen.along * a).sum(axis=1), (seen.across * a).sum(axis=1)], axis=1) for a in (before, after)]
+    after = missing(problem, some, found.final.values, _smooth_force(problem, found))
+    first, last = (
+        np.stack([(seen.along * a).sum(axis=1), (seen.across * a).sum(axis=1)], axis=1) for a in (before, after)
+    )
     std = np.stack([np.hypot(*(axes * some.std).T) for axes in (seen.along, seen.across)], axis=1)
     return Parting(
-        "acceleration", "m/s²", ("along the motion", "to its left"), *both, std,
+        "acceleration", "m/s²", ("along the motion", "to its left"), first, last, std,
         {label: column(seen) for label, column in COORDINATES.values()},
         seen.place, seen.along, (float(seen.size[0]), float(seen.size[1])),
     )  # fmt: skip
 
 
 def listed_curve(problem: GlideProblem, found: Explained, mechanism: str) -> Curve:
-    """What a listed mechanism adds, by the coordinate that shows it best; the data freed of all else that was fitted."""
-    values = dict(found.values)
+    """What a listed mechanism adds, by what shows it best; the data freed of all else that was fitted."""
+    values = dict(found.final.values)
     rows = {row.name for row in EFFECTS[mechanism].rows.values()}
     without = {**values, **{name: BY_NAME[name].default for name in rows}}
-    free = [name for name in found.law.free if name in rows]
+    free = [name for name in found.final.free if name in rows]
     some = windows(problem.data)
     seen, look = motion(problem, some, values), listed_view(mechanism, values)
     rest, left = missing(problem, some, without), missing(problem, some, values)
-    index = [found.law.free.index(name) for name in free]
-    spread = found.law.covariance[np.ix_(index, index)]
+    index = [found.final.free.index(name) for name in free]
+    spread = found.final.covariance[np.ix_(index, index)]
     slopes = []
     for name, size in zip(free, np.sqrt(np.diag(spread)), strict=True):
         more = missing(problem, some, {**values, name: _aside(name, values[name], size)})
@@ -55,28 +60,29 @@ def listed_curve(problem: GlideProblem, found: Explained, mechanism: str) -> Cur
     return _curve(look, law, half_band(law, std, columns, spread), binned(x, look.of(seen, rest), std))
 
 
-def smooth_curve(problem: GlideProblem, found: Explained, law: Law) -> Curve:
-    """An unlisted law by what it depends on, from the side from which it is largest."""
-    frames = problem.motion(problem.linearised(found.values)[0])
+def smooth_curve(problem: GlideProblem, found: Explained, law: Law, formula: Formula, looks: list[View]) -> Curve:
+    """An unlisted law and its readable formula, from that side of `looks` from which the law is largest."""
+    frames = problem.motion(problem.linearised(found.final.values)[0])
     block = FAMILIES[law.name][1](frames)
     theta, spread = _own(found, law)
-    force = block @ theta
-    looks = smooth_views(law.name, law.family)
+    force, even = block @ theta, np.ones(len(frames.t))
     look = max(looks, key=lambda one: _size(one, frames, force))
     some = windows(problem.data, SHORT_SPAN if law.family == "history" else None)
-    seen = motion(problem, some, found.values)
+    seen = motion(problem, some, found.final.values)
     std = np.hypot(*(look.direction(seen) * some.std).T)
-    points = binned(look.coordinate(seen), look.of(seen, missing(problem, some, found.values)), std)
-    shape = binned(look.coordinate(frames), look.of(frames, force), np.ones(len(frames.t)), LAW_BINS)
+    points = binned(look.coordinate(seen), look.of(seen, missing(problem, some, found.final.values)), std)
+    x = look.coordinate(frames)
+    shape = binned(x, look.of(frames, force), even, LAW_BINS)
     columns = np.einsum("na,nak->nk", look.direction(frames), block)
-    return _curve(look, shape, half_band(shape, np.ones(len(frames.t)), columns, spread), points)
+    said = over(shape.members, x, look.of(frames, formula.form.field(formula.values)), even)
+    return replace(_curve(look, shape, half_band(shape, even, columns, spread), points), formula=said.y)
 
 
 def _smooth_force(problem: GlideProblem, found: Explained) -> np.ndarray | None:
     """The force (n, 2) of the unlisted law at each frame; None where there is none."""
     if found.unlisted is None:
         return None
-    frames = problem.motion(problem.linearised(found.values)[0])
+    frames = problem.motion(problem.linearised(found.final.values)[0])
     return FAMILIES[found.unlisted.name][1](frames) @ _own(found, found.unlisted)[0]
 
 

@@ -46,6 +46,20 @@ def fixed(x: float, y: float) -> Column:
     return lambda motion: np.tile([x, y], (len(motion.t), 1))
 
 
+def around(x: float, y: float, turning: bool, braking: bool) -> View:
+    """What happens about a point: along the motion if it brakes, else round the point or away from it."""
+
+    def outward(motion: Motion) -> np.ndarray:
+        away = motion.place - (x, y)
+        away = away / np.maximum(np.linalg.norm(away, axis=1, keepdims=True), 1e-9)
+        return np.stack([-away[:, 1], away[:, 0]], axis=1) if turning else away
+
+    component, direction = ("round it, to the left", outward) if turning else ("away from it", outward)
+    if braking:
+        component, direction = DIRECTIONS["along"]
+    return View(f"distance from ({x:.3g}, {y:.3g}) m [m]", distance(x, y), component, direction)
+
+
 COORDINATES: dict[str, tuple[str, Column]] = {
     "x": ("x [m]", lambda motion: motion.place[:, 0]),
     "y": ("y [m]", lambda motion: motion.place[:, 1]),
@@ -83,12 +97,3 @@ def listed_view(mechanism: str, values: Mapping[str, float]) -> View:
         axis = "x" if abs(values["warp_xx"]) > abs(values["warp_yy"]) else "y"
         return view(axis, axis)
     return view(*LISTED[mechanism])
-
-
-def smooth_views(family: str, depends: str) -> list[View]:
-    """The views from which a family of smooth forces may be looked at."""
-    directions = {"push": ("x", "y"), "brake": ("along",), "side": ("across",)}.get(
-        family.split()[0], ("along", "across")
-    )
-    coordinates = ("x", "y") if depends == "position" else (depends,)
-    return [view(coordinate, direction) for coordinate in coordinates for direction in directions]

@@ -41,7 +41,7 @@ def windows(data: GlideData, span: float | None = None) -> Windows:
     """All glides in windows of about `span` [s], SPAN by default; a shorter glide is one."""
     first, weights = [], []
     for a, b in zip(data.first[:-1], data.first[1:], strict=True):
-        lasts = data.t[b - 1] - data.t[a]
+        lasts = float(data.t[b - 1] - data.t[a])
         parts = int(np.clip(round(lasts / (span or SPAN)), 1, max((b - a) // FEWEST_FRAMES, 1)))
         for rows in np.array_split(np.arange(a, b), parts):
             first.append(int(rows[0]))
@@ -70,7 +70,8 @@ def missing(
 def motion(problem: GlideProblem, some: Windows, values: Mapping[str, float]) -> Motion:
     """The mean motion in each window under a law."""
     frames = problem.motion(problem.linearised(values)[0])
-    return Motion(*(some.mean(each) for each in (frames.t, frames.place, frames.velocity, frames.since)), frames.size)
+    t, place, velocity, since = (some.mean(each) for each in (frames.t, frames.place, frames.velocity, frames.since))
+    return Motion(t, place, velocity, since, frames.size)
 
 
 def _second_derivative(t: np.ndarray, std: np.ndarray) -> np.ndarray:

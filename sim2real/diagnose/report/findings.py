@@ -50,7 +50,8 @@ def _ambiguous(one: Finding) -> str:
     names = " or ".join(text(name) for name in one.also_possible)
     how = EFFECTS[one.mechanism].excited_by if one.mechanism in EFFECTS else ""
     told = f" {text(one.mechanism)} shows in {text(how)}." if how else ""
-    return f'<p class="open also"><strong>Also possible:</strong> {names}. This recording cannot tell them apart.{told}</p>'
+    said = f"{names}. This recording cannot tell them apart.{told}"
+    return f'<p class="open also"><strong>Also possible:</strong> {said}</p>'
 
 
 def _curve(one: Finding) -> str:
@@ -61,7 +62,10 @@ def _curve(one: Finding) -> str:
         f"{one.mechanism}: {curve.y_label} against {curve.x_label}; the law goes from {number(min(curve.y))} to "
         f"{number(max(curve.y))}"
     )
-    caption = "The law with its 95 % band, and what the recording shows once all else that was fitted is taken off (±2 standard errors)."
+    caption = (
+        "The law with its 95 % band, and what the recording shows once all else that was fitted is taken off "
+        "(±2 standard errors)."
+    )
     return words.picture(curve_picture(curve, alt), caption, "curve")
 
 

@@ -29,6 +29,8 @@ svg.bars { max-width: 36rem; }
 .before { color: var(--before); font-weight: 600; } .after { color: var(--after); font-weight: 600; }
 details { margin: 0.4rem 0; } summary { cursor: pointer; }
 .panels svg { max-width: 26rem; }
-@media print { .panels { grid-template-columns: 1fr 1fr; } body { font-size: 11pt; max-width: none; padding: 0; } h2, h3, caption { break-after: avoid; }
+@media print { .panels { grid-template-columns: 1fr 1fr; }
+  body { font-size: 11pt; max-width: none; padding: 0; }
+  h2, h3, caption { break-after: avoid; }
   tr { break-inside: avoid; } * { print-color-adjust: exact; -webkit-print-color-adjust: exact; } }
 """

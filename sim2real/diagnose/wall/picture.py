@@ -13,6 +13,7 @@ from sim2real.diagnose.binned import binned, half_band, over
 from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.engine.explain import Explained
 from sim2real.diagnose.finding import Curve, Parting
+from sim2real.diagnose.formula import Formula
 from sim2real.diagnose.wall.data import KINDS, Bounces
 from sim2real.diagnose.wall.laws import FAMILIES, UNIT
 from sim2real.diagnose.wall.problem import WallProblem
@@ -36,11 +37,11 @@ class View:
 def parting(problem: WallProblem, found: Explained) -> Parting:
     """Velocities after each bounce that the refitted baseline and the final law do not foretell."""
     d, std = problem.data, _std(problem)
-    before, after = (_misses(problem, values) * std for values in (found.baseline.values, found.values))
+    before, after = (_misses(problem, values) * std for values in (found.baseline.values, found.final.values))
     if found.unlisted is not None:
-        component, weights = _smooth(d, found.unlisted)
-        after[:, component] -= _speeds(d)[:, component] * (weights @ found.theta[-weights.shape[1] :])
-    by = {label: column for label, column in _coordinates(d).values()}
+        component, weights = acted_on(found.unlisted), _smooth(d, found.unlisted)
+        after[:, component] -= speeds(d)[:, component] * (weights @ found.theta[-weights.shape[1] :])
+    by = {label: column for label, column in coordinates(d).values()}
     return Parting(
         "velocity after the bounce", "m/s", ("along the wall's normal", "along the wall"), before, after, std, by,
         d.place, d.normal, problem.size,
@@ -53,21 +54,13 @@ def listed_curve(problem: WallProblem, found: Explained, mechanism: str) -> Curv
     return _curve(problem, found, view, np.zeros((len(problem.data), 0)))
 
 
-def smooth_curve(problem: WallProblem, found: Explained, law: Law) -> Curve:
-    """The same for an unlisted law, by what it depends on; of the walls, the one that shows it most."""
-    component, weights = _smooth(problem.data, law)
-    label, coordinate = _coordinates(problem.data)[law.family]
-    views = [View(label, coordinate, component)]
-    if law.family == "position":
-        here = [np.where(problem.data.kind == kind, coordinate, np.nan) for kind in KINDS.values()]
-        views = [View(f"place along the wall {name} [m]", c, component) for name, c in zip(KINDS, here, strict=True)]
-    change = weights @ found.theta[-weights.shape[1] :]
-    best = max(views, key=lambda one: float(np.sum(change[np.isfinite(one.coordinate)] ** 2)))
-    return _curve(problem, found, best, weights)
+def smooth_curve(problem: WallProblem, found: Explained, law: Law, formula: Formula, view: View) -> Curve:
+    """The same for an unlisted law, beside its readable formula."""
+    return _curve(problem, found, view, _smooth(problem.data, law), formula)
 
 
 def _listed_view(d: Bounces, mechanism: str) -> View:
-    along = _coordinates(d)
+    along = coordinates(d)
     if mechanism == "wall_to_wall_restitution":
         order = [*KINDS.values(), bounce.POST]
         return View("wall", np.array([order.index(kind) for kind in d.kind], float), NORMAL, PLACES)
@@ -80,7 +73,7 @@ def _listed_view(d: Bounces, mechanism: str) -> View:
     return View(*along["speed"], NORMAL)
 
 
-def _coordinates(d: Bounces) -> dict[str, tuple[str, np.ndarray]]:
+def coordinates(d: Bounces) -> dict[str, tuple[str, np.ndarray]]:
     """What a bounce may depend on, with labels; the place is the one along its wall."""
     ends = np.isin(d.kind, (KINDS["x0"], KINDS["x1"]))
     normal, along = d.split(d.before).T
@@ -93,13 +86,17 @@ def _coordinates(d: Bounces) -> dict[str, tuple[str, np.ndarray]]:
     }
 
 
-def _smooth(d: Bounces, law: Law) -> tuple[int, np.ndarray]:
-    """The component that a smooth law acts on, and the shares (n, k) that its coefficients add to what is kept."""
-    component, name = law.name.split(" by ", 1)
-    return (NORMAL if component == "restitution" else TANGENT), UNIT * FAMILIES[name][1](d)
+def acted_on(law: Law) -> int:
+    """The component that a smooth law acts on."""
+    return NORMAL if law.name.startswith("restitution") else TANGENT
 
 
-def _speeds(d: Bounces) -> np.ndarray:
+def _smooth(d: Bounces, law: Law) -> np.ndarray:
+    """The shares (n, k) that the coefficients of a smooth law add to what is kept."""
+    return UNIT * FAMILIES[law.name.split(" by ", 1)[1]][1](d)
+
+
+def speeds(d: Bounces) -> np.ndarray:
     """Speeds (n, 2) before, towards the wall and along it [m/s]."""
     return np.stack([d.closing, d.split(d.before)[:, 1]], axis=1)
 
@@ -116,16 +113,18 @@ def _misses(problem: WallProblem, values: Mapping[str, float]) -> np.ndarray:
     return problem.residuals(values, (), np.arange(problem.clusters)).r.reshape(-1, 2)
 
 
-def _curve(problem: WallProblem, found: Explained, view: View, weights: np.ndarray) -> Curve:
+def _curve(
+    problem: WallProblem, found: Explained, view: View, weights: np.ndarray, formula: Formula | None = None
+) -> Curve:
     """A view of the final law and the data, with the `weights` (n, k) of an unlisted law's coefficients."""
     d, at = problem.data, view.component
-    speeds = _speeds(d)[:, at]
-    use = np.isfinite(view.coordinate) & (np.abs(speeds) > SLOWEST)
-    if found.values.get("wall_mu", 0.0) > 0.0:
+    going = speeds(d)[:, at]
+    use = np.isfinite(view.coordinate) & (np.abs(going) > SLOWEST)
+    if found.final.values.get("wall_mu", 0.0) > 0.0:
         use &= ~d.lost  # of a puck whose spin is unknown
-    safe = np.where(use, speeds, np.nan)
+    safe = np.where(use, going, np.nan)
     plain, steps = _kept(problem, found, at, safe)
-    theta, spread = (found.theta, found.theta_covariance) if len(found.theta) else (None, found.law.covariance)
+    theta, spread = (found.theta, found.theta_covariance) if len(found.theta) else (None, found.final.covariance)
     columns = np.concatenate([steps, weights], axis=1)
     law = plain if theta is None else plain + weights @ theta[steps.shape[1] :]
     seen, std = d.split(d.after)[:, at] / safe, _std(problem)[:, at] / np.abs(safe)
@@ -135,20 +134,24 @@ def _curve(problem: WallProblem, found: Explained, view: View, weights: np.ndarr
         points = over(np.array([x == k for k in range(len(view.ticks)) if (x == k).any()]), x, seen[rows], std[rows])
     shape = over(points.members, x, law[rows], std[rows])
     half = half_band(shape, std[rows], columns[rows], spread)
+    said = None
+    if formula is not None:
+        with_it = plain + formula.form.field(formula.values)[:, at] / safe
+        said = over(points.members, x, with_it[rows], std[rows]).y
     return Curve(
         view.label, KEPT[at], shape.x, shape.y, shape.y - half, shape.y + half, points.x, points.y, points.error,
-        view.ticks,
+        view.ticks, said,
     )  # fmt: skip
 
 
 def _kept(problem: WallProblem, found: Explained, at: int, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The share (n,) of a component that the final law keeps, and its slopes (n, f) by what was fitted freely."""
-    values = found.values
+    values = found.final.values
     plain = problem.predicted(values)[:, at] / speeds
     slopes = []
-    for k, name in enumerate(found.law.free):
+    for k, name in enumerate(found.final.free):
         row = BY_NAME[name]
-        step = max(0.1 * float(np.sqrt(found.law.covariance[k, k])), 1e-6)
+        step = max(0.1 * float(np.sqrt(found.final.covariance[k, k])), 1e-6)
         step = step if values[name] + step < row.high else -step
         slopes.append((problem.predicted({**values, name: values[name] + step})[:, at] / speeds - plain) / step)
     return plain, np.stack(slopes, axis=1)

@@ -1,0 +1,155 @@
+"""A readable formula for what no listed mechanism explains: the form that the recording itself likes best.
+
+Every form is fitted to what the final law leaves of the recording, the baseline's parameters along with it, and the one
+of the least BIC is taken. The smooth law found before it says how much there is to explain.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import minimize
+from scipy.stats import t as student
+
+from sim2real.diagnose.engine import gram
+from sim2real.diagnose.finding import Estimate
+from sim2real.diagnose.forms import Form, Named
+
+CHUNK = 60  # columns that are asked for at once
+REFINED = 5  # forms whose shape is fitted finely
+STEPS = 60  # of the search for a shape
+
+
+@dataclass(frozen=True)
+class Rest:
+    """What a law leaves of a recording: residuals `r` (m,) in units of the noise, their columns `base` (m, b) by what
+    was fitted, the `cluster` (m,) of each; `respond` takes laws (n, c, k) to the columns (m, k) that they would add to
+    what is foretold. `use`: the clusters to fit.
+    """
+
+    r: np.ndarray
+    base: np.ndarray
+    cluster: np.ndarray
+    use: np.ndarray
+    respond: Callable[[np.ndarray], np.ndarray]
+
+
+@dataclass(frozen=True)
+class Formula:
+    """A law in one line. `values` and their intervals by name; `covariance` in the order of `values`; `gained`: drop of
+    the sum of squares."""
+
+    form: Form
+    words: str
+    values: Mapping[str, float]
+    parameters: Mapping[str, Estimate]
+    covariance: np.ndarray
+    gained: float
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A form at its best shape: `cost` is its BIC less that of no law."""
+
+    form: Form
+    shape: np.ndarray
+    amplitude: np.ndarray
+    gained: float
+    cost: float
+
+
+class Search:
+    """Fits forms to what is left."""
+
+    def __init__(self, rest: Rest) -> None:
+        self.rest = rest
+        self._rows = np.isin(rest.cluster, rest.use)
+        self._frame = np.linalg.qr(rest.base[self._rows])[0]
+        self._r = self._freed(rest.r[self._rows][:, None])[:, 0]
+
+    def coarse(self, form: Form) -> Fitted:
+        """The best of the form's grid."""
+        per = form.basis(form.grid[0]).shape[2]
+        many = max(CHUNK // per, 1)
+        best: Fitted | None = None
+        for first in range(0, len(form.grid), many):
+            some = form.grid[first : first + many]
+            columns = self._columns(np.concatenate([form.basis(shape) for shape in some], axis=2))
+            for k, shape in enumerate(some):
+                found = self._fitted(form, shape, columns[:, k * per : (k + 1) * per])
+                best = found if best is None or found.gained > best.gained else best
+        assert best is not None
+        return best
+
+    def fine(self, found: Fitted) -> Fitted:
+        """The same form, its shape fitted."""
+        if not len(found.shape):
+            return found
+        form, scale = found.form, np.abs(found.shape) + 1e-6
+
+        def loss(shape: np.ndarray) -> float:
+            return -self._fitted(form, shape * scale, self._columns(form.basis(shape * scale))).gained
+
+        start = found.shape / scale
+        simplex = np.vstack([start, *(start + 0.06 * row for row in np.eye(len(start)))])
+        options = {"maxfev": STEPS, "xatol": 1e-3, "fatol": 0.1, "initial_simplex": simplex}
+        at = minimize(loss, start, method="Nelder-Mead", options=options).x * scale
+        better = self._fitted(form, at, self._columns(form.basis(at)))
+        return better if better.gained > found.gained else found
+
+    def formula(self, found: Fitted) -> Formula:
+        """A fitted form with its numbers and their intervals."""
+        named = found.form.named(found.shape, found.amplitude)
+        values = {name: value for name, (value, _) in named.items()}
+        spread = self._covariance(found.form, named)
+        near = student.ppf(0.975, max(len(self.rest.use) - 1, 2)) * np.sqrt(np.diag(spread))
+        estimates = {
+            name: Estimate(value, value - float(half), value + float(half), unit)
+            for (name, (value, unit)), half in zip(named.items(), near, strict=True)
+        }
+        return Formula(found.form, found.form.words(values), values, estimates, spread, found.gained)
+
+    def _covariance(self, form: Form, named: Named) -> np.ndarray:
+        """Covariance of the named parameters, from the noise or from the scatter between clusters."""
+        rest, values = self.rest, {name: value for name, (value, _) in named.items()}
+        here, slopes = form.field(values), []
+        for name, value in values.items():
+            step = 1e-4 * (abs(value) + 1e-2)
+            slopes.append((form.field({**values, name: value + step}) - here) / step)
+        both = rest.respond(np.stack([here, *slopes], axis=2))
+        jacobian = np.concatenate([-both[:, 1:], rest.base], axis=1)[self._rows]
+        left = (rest.r - both[:, 0])[self._rows]
+        theta = -np.linalg.lstsq(jacobian, left, rcond=None)[0]
+        clusters = np.unique(rest.cluster[self._rows], return_inverse=True)[1]
+        count, k = int(clusters.max()) + 1, jacobian.shape[1]
+        names = [str(i) for i in range(k)]
+        grams = gram.make_grams(names, left, jacobian, clusters, count)
+        return gram.covariance(grams, np.arange(k), theta, np.arange(count))[: len(values), : len(values)]
+
+    def _columns(self, laws: np.ndarray) -> np.ndarray:
+        return self._freed(self.rest.respond(laws)[self._rows])
+
+    def _freed(self, columns: np.ndarray) -> np.ndarray:
+        """Columns less what the baseline's parameters could explain of them."""
+        return columns - self._frame @ (self._frame.T @ columns)
+
+    def _fitted(self, form: Form, shape: np.ndarray, columns: np.ndarray) -> Fitted:
+        right = columns.T @ self._r
+        amplitude = gram.solve_normal(columns.T @ columns, right)
+        gained = float(right @ amplitude)
+        numbers = len(shape) + columns.shape[1]
+        return Fitted(form, shape, amplitude, gained, numbers * float(np.log(len(self._r))) - gained)
+
+
+def find_formula(rest: Rest, forms: Sequence[Form], joined: Callable[[Form, np.ndarray], Sequence[Form]]) -> Formula:
+    """The form that explains best what is left. `joined`: further forms to try from one that fits, at its shape."""
+    search = Search(rest)
+    found = [search.coarse(form) for form in forms]
+    found += [search.coarse(more) for one in _best(found) for more in joined(one.form, one.shape)]
+    return search.formula(min((search.fine(one) for one in _best(found)), key=lambda one: one.cost))
+
+
+def _best(found: Sequence[Fitted]) -> list[Fitted]:
+    return sorted(found, key=lambda one: one.cost)[:REFINED]
