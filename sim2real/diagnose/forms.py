@@ -8,7 +8,7 @@ from itertools import product
 
 import numpy as np
 
-WAVES = np.concatenate([np.linspace(0.5, 8.0, 22), np.linspace(8.5, 16.0, 12)])  # of a sine over the data's range
+WAVES = np.concatenate([np.linspace(0.75, 8.0, 22), np.linspace(8.5, 16.0, 12)])  # of a sine over the data's range
 Named = dict[str, tuple[float, str]]  # name: value and unit
 
 

@@ -1,7 +1,8 @@
 """A readable formula for what no listed mechanism explains: the form that the recording itself likes best.
 
-Every form is fitted to what the final law leaves of the recording, the baseline's parameters along with it, and the one
-of the least BIC is taken. The smooth law found before it says how much there is to explain.
+Every form is fitted to what the final law leaves of the recording, the baseline's parameters along with it. The least
+BIC says which shapes are worth a fine fit; the simplest of those that explain nearly all that any does is taken, since
+no law explains a strong effect to the last digit.
 """
 
 from __future__ import annotations
@@ -19,6 +20,9 @@ from sim2real.diagnose.forms import Form, Named
 
 CHUNK = 60  # columns that are asked for at once
 REFINED = 5  # forms whose shape is fitted finely
+NEARLY = 0.98  # of the best form's gain, at which a simpler one is as good
+OWN = 0.03  # of a law's size that must be other than what the baseline can do
+BEYOND = 0.1  # of its range, by which a shape may leave the grid
 STEPS = 60  # of the search for a shape
 
 
@@ -51,13 +55,17 @@ class Formula:
 
 @dataclass(frozen=True)
 class Fitted:
-    """A form at its best shape: `cost` is its BIC less that of no law."""
+    """A form at its best shape: `cost` is its BIC less that of no law, `numbers` how many it has."""
 
     form: Form
     shape: np.ndarray
     amplitude: np.ndarray
     gained: float
     cost: float
+
+    @property
+    def numbers(self) -> int:
+        return len(self.shape) + len(self.amplitude)
 
 
 class Search:
@@ -89,7 +97,12 @@ class Search:
             return found
         form, scale = found.form, np.abs(found.shape) + 1e-6
 
+        low, high = found.form.grid.min(axis=0), found.form.grid.max(axis=0)
+        slack = BEYOND * (high - low)
+
         def loss(shape: np.ndarray) -> float:
+            if (shape * scale < low - slack).any() or (shape * scale > high + slack).any():
+                return 0.0
             return -self._fitted(form, shape * scale, self._columns(form.basis(shape * scale))).gained
 
         start = found.shape / scale
@@ -129,7 +142,11 @@ class Search:
         return gram.covariance(grams, np.arange(k), theta, np.arange(count))[: len(values), : len(values)]
 
     def _columns(self, laws: np.ndarray) -> np.ndarray:
-        return self._freed(self.rest.respond(laws)[self._rows])
+        """Columns of laws, nothing where the baseline's parameters stand for all that they do."""
+        whole = self.rest.respond(laws)[self._rows]
+        own = self._freed(whole)
+        own[:, np.linalg.norm(own, axis=0) < OWN * np.linalg.norm(whole, axis=0)] = 0.0
+        return own
 
     def _freed(self, columns: np.ndarray) -> np.ndarray:
         """Columns less what the baseline's parameters could explain of them."""
@@ -144,12 +161,15 @@ class Search:
 
 
 def find_formula(rest: Rest, forms: Sequence[Form], joined: Callable[[Form, np.ndarray], Sequence[Form]]) -> Formula:
-    """The form that explains best what is left. `joined`: further forms to try from one that fits, at its shape."""
+    """The form that explains best what is left: of those that explain NEARLY as much as any, the one of fewest numbers.
+
+    `joined`: further forms to try from a fitted one, at its shape.
+    """
     search = Search(rest)
     found = [search.coarse(form) for form in forms]
-    found += [search.coarse(more) for one in _best(found) for more in joined(one.form, one.shape)]
-    return search.formula(min((search.fine(one) for one in _best(found)), key=lambda one: one.cost))
-
-
-def _best(found: Sequence[Fitted]) -> list[Fitted]:
-    return sorted(found, key=lambda one: one.cost)[:REFINED]
+    found += [search.coarse(more) for one in found for more in joined(one.form, one.shape)]
+    shaped = sorted((one for one in found if len(one.shape)), key=lambda one: one.cost)
+    found += [search.fine(one) for one in shaped[:REFINED]]
+    most = max(one.gained for one in found)
+    best = min((one for one in found if one.gained >= NEARLY * most), key=lambda one: (one.numbers, one.cost))
+    return search.formula(search.fine(best))

@@ -43,7 +43,7 @@ def _wall_finding(problem: WallProblem, found: Explained, one: Finding, use: np.
     if found.unlisted is None or one.mechanism != "unlisted":
         return replace(one, curve=bounces.listed_curve(problem, found, one.mechanism))
     formula, view = wall_formula(problem, found, found.unlisted, use)
-    curve = bounces.smooth_curve(problem, found, found.unlisted, formula, view)
+    curve = bounces.smooth_curve(problem, found, formula, view)
     return replace(one, curve=curve, formula=formula.words, parameters=formula.parameters)
 
 

@@ -47,12 +47,13 @@ def listed_curve(problem: GlideProblem, found: Explained, mechanism: str) -> Cur
     free = [name for name in found.final.free if name in rows]
     some = windows(problem.data)
     seen, look = motion(problem, some, values), listed_view(mechanism, values)
-    rest, left = missing(problem, some, without), missing(problem, some, values)
+    smooth = _smooth_force(problem, found)
+    rest, left = (missing(problem, some, each, smooth) for each in (without, values))
     index = [found.final.free.index(name) for name in free]
     spread = found.final.covariance[np.ix_(index, index)]
     slopes = []
     for name, size in zip(free, np.sqrt(np.diag(spread)), strict=True):
-        more = missing(problem, some, {**values, name: _aside(name, values[name], size)})
+        more = missing(problem, some, {**values, name: _aside(name, values[name], size)}, smooth)
         slopes.append(look.of(seen, left - more) / (_aside(name, values[name], size) - values[name]))
     columns = np.stack(slopes, axis=1) if slopes else np.zeros((len(left), 0))
     x, std = look.coordinate(seen), np.hypot(*(look.direction(seen) * some.std).T)

@@ -63,8 +63,8 @@ def _curve(one: Finding) -> str:
         f"{number(max(curve.y))}"
     )
     caption = (
-        "The law with its 95 % band, and what the recording shows once all else that was fitted is taken off "
-        "(±2 standard errors)."
+        "The law with its 95 % band, and what the recording shows once all else that was fitted is taken off: means "
+        "of whole stretches of motion, ±2 standard errors."
     )
     return words.picture(curve_picture(curve, alt), caption, "curve")
 

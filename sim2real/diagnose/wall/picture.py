@@ -51,12 +51,12 @@ def parting(problem: WallProblem, found: Explained) -> Parting:
 def listed_curve(problem: WallProblem, found: Explained, mechanism: str) -> Curve:
     """What is kept of the speed under the final law and in the data, by the coordinate that shows the mechanism."""
     view = _listed_view(problem.data, mechanism)
-    return _curve(problem, found, view, np.zeros((len(problem.data), 0)))
+    return _curve(problem, found, view)
 
 
-def smooth_curve(problem: WallProblem, found: Explained, law: Law, formula: Formula, view: View) -> Curve:
+def smooth_curve(problem: WallProblem, found: Explained, formula: Formula, view: View) -> Curve:
     """The same for an unlisted law, beside its readable formula."""
-    return _curve(problem, found, view, _smooth(problem.data, law), formula)
+    return _curve(problem, found, view, formula)
 
 
 def _listed_view(d: Bounces, mechanism: str) -> View:
@@ -113,20 +113,15 @@ def _misses(problem: WallProblem, values: Mapping[str, float]) -> np.ndarray:
     return problem.residuals(values, (), np.arange(problem.clusters)).r.reshape(-1, 2)
 
 
-def _curve(
-    problem: WallProblem, found: Explained, view: View, weights: np.ndarray, formula: Formula | None = None
-) -> Curve:
-    """A view of the final law and the data, with the `weights` (n, k) of an unlisted law's coefficients."""
+def _curve(problem: WallProblem, found: Explained, view: View, formula: Formula | None = None) -> Curve:
+    """A view of the final law, smooth part and all, and of the data."""
     d, at = problem.data, view.component
     going = speeds(d)[:, at]
     use = np.isfinite(view.coordinate) & (np.abs(going) > SLOWEST)
     if found.final.values.get("wall_mu", 0.0) > 0.0:
         use &= ~d.lost  # of a puck whose spin is unknown
     safe = np.where(use, going, np.nan)
-    plain, steps = _kept(problem, found, at, safe)
-    theta, spread = (found.theta, found.theta_covariance) if len(found.theta) else (None, found.final.covariance)
-    columns = np.concatenate([steps, weights], axis=1)
-    law = plain if theta is None else plain + weights @ theta[steps.shape[1] :]
+    law, columns, spread = _kept(problem, found, at, safe)
     seen, std = d.split(d.after)[:, at] / safe, _std(problem)[:, at] / np.abs(safe)
     x, rows = view.coordinate[use], np.flatnonzero(use)
     points = binned(x, seen[rows], std[rows])
@@ -136,7 +131,8 @@ def _curve(
     half = half_band(shape, std[rows], columns[rows], spread)
     said = None
     if formula is not None:
-        with_it = plain + formula.form.field(formula.values)[:, at] / safe
+        plain = problem.predicted(found.final.values)[:, at]
+        with_it = (plain + formula.form.field(formula.values)[:, at]) / safe
         said = over(points.members, x, with_it[rows], std[rows]).y
     return Curve(
         view.label, KEPT[at], shape.x, shape.y, shape.y - half, shape.y + half, points.x, points.y, points.error,
@@ -144,14 +140,19 @@ def _curve(
     )  # fmt: skip
 
 
-def _kept(problem: WallProblem, found: Explained, at: int, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The share (n,) of a component that the final law keeps, and its slopes (n, f) by what was fitted freely."""
-    values = found.final.values
+def _kept(problem: WallProblem, found: Explained, at: int, speeds: np.ndarray):
+    """The share (n,) of a component that the final law keeps, its slopes (n, f) by what was fitted, the covariance of
+    that."""
+    values, spread = found.final.values, found.final.covariance
     plain = problem.predicted(values)[:, at] / speeds
     slopes = []
     for k, name in enumerate(found.final.free):
-        row = BY_NAME[name]
-        step = max(0.1 * float(np.sqrt(found.final.covariance[k, k])), 1e-6)
-        step = step if values[name] + step < row.high else -step
+        step = max(0.1 * float(np.sqrt(spread[k, k])), 1e-6)
+        step = step if values[name] + step < BY_NAME[name].high else -step
         slopes.append((problem.predicted({**values, name: values[name] + step})[:, at] / speeds - plain) / step)
-    return plain, np.stack(slopes, axis=1)
+    columns = np.stack(slopes, axis=1)
+    if found.unlisted is None:
+        return plain, columns, spread
+    weights = _smooth(problem.data, found.unlisted) * float(at == acted_on(found.unlisted))
+    smooth = weights @ found.theta[-weights.shape[1] :]
+    return plain + smooth, np.concatenate([columns, weights], axis=1), found.theta_covariance

@@ -16,7 +16,8 @@ VOID = {"meta", "br", "img", "link", "input", "hr"}
 SIGHT = Sight("monday <script>alert(1)</script>", 61.5, 7380, 0.00061, 0.0002, 0.012, 0.004, 0.001, 12, 80, 66, 3,
               ("frames.csv: 2 positions <b>far</b> outside",))  # fmt: skip
 RANGES = ((-180, 180), (-0.02, 0.02), (-0.03, 0.01), (-0.01, 0.03), (-170, 170), (-0.02, 0.02), (0.001, 0.001))
-CURVE = Curve("heading [°]", "acceleration [m/s²]", *(np.linspace(low, high, 9) for low, high in RANGES))
+X, Y, LOW, HIGH, DATA_X, DATA_Y, ERROR = (np.linspace(low, high, 9) for low, high in RANGES)
+CURVE = Curve("heading [°]", "acceleration [m/s²]", X, Y, LOW, HIGH, DATA_X, DATA_Y, ERROR)
 TILT = Finding(
     "glide", "table_tilt", (), ("heading",), "a = (tilt_x, tilt_y)",
     {"tilt_x": Estimate(0.020018, 0.019931, 0.020105, "m/s^2")}, 1e-30, 5.2917, 0.99243,
