@@ -42,14 +42,14 @@ class Rest:
 
 @dataclass(frozen=True)
 class Formula:
-    """A law in one line. `values` and their intervals by name; `covariance` in the order of `values`; `gained`: drop of
-    the sum of squares."""
+    """A law in one line, with its `values` and their intervals by name. `moved` (b,): by how much what was fitted
+    before moves beside it; `gained`: drop of the sum of squares."""
 
     form: Form
     words: str
     values: Mapping[str, float]
     parameters: Mapping[str, Estimate]
-    covariance: np.ndarray
+    moved: np.ndarray
     gained: float
 
 
@@ -116,16 +116,17 @@ class Search:
         """A fitted form with its numbers and their intervals."""
         named = found.form.named(found.shape, found.amplitude)
         values = {name: value for name, (value, _) in named.items()}
-        spread = self._covariance(found.form, named)
+        spread, moved = self._spread(found.form, named)
         near = student.ppf(0.975, max(len(self.rest.use) - 1, 2)) * np.sqrt(np.diag(spread))
         estimates = {
             name: Estimate(value, value - float(half), value + float(half), unit)
             for (name, (value, unit)), half in zip(named.items(), near, strict=True)
         }
-        return Formula(found.form, found.form.words(values), values, estimates, spread, found.gained)
+        return Formula(found.form, found.form.words(values), values, estimates, moved, found.gained)
 
-    def _covariance(self, form: Form, named: Named) -> np.ndarray:
-        """Covariance of the named parameters, from the noise or from the scatter between clusters."""
+    def _spread(self, form: Form, named: Named) -> tuple[np.ndarray, np.ndarray]:
+        """Covariance of the named parameters, from the noise or from the scatter between clusters; and how much the
+        baseline's move."""
         rest, values = self.rest, {name: value for name, (value, _) in named.items()}
         here, slopes = form.field(values), []
         for name, value in values.items():
@@ -139,7 +140,8 @@ class Search:
         count, k = int(clusters.max()) + 1, jacobian.shape[1]
         names = [str(i) for i in range(k)]
         grams = gram.make_grams(names, left, jacobian, clusters, count)
-        return gram.covariance(grams, np.arange(k), theta, np.arange(count))[: len(values), : len(values)]
+        spread = gram.covariance(grams, np.arange(k), theta, np.arange(count))
+        return spread[: len(values), : len(values)], theta[len(values) :]
 
     def _columns(self, laws: np.ndarray) -> np.ndarray:
         """Columns of laws, nothing where the baseline's parameters stand for all that they do."""

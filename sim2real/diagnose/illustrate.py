@@ -6,8 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from puckpilot_env.parameters import BY_NAME
 from sim2real.diagnose.engine.explain import Explained
 from sim2real.diagnose.finding import Account, Finding, Parting
+from sim2real.diagnose.formula import Formula
 from sim2real.diagnose.glide import picture as glides
 from sim2real.diagnose.glide.problem import GlideProblem
 from sim2real.diagnose.glide.readable import readable as glide_formula
@@ -36,7 +38,7 @@ def _glide_finding(problem: GlideProblem, found: Explained, one: Finding, use: n
         return replace(one, curve=glides.listed_curve(problem, found, one.mechanism))
     formula, looks = glide_formula(problem, found, found.unlisted, use)
     curve = glides.smooth_curve(problem, found, found.unlisted, formula, looks)
-    return replace(one, curve=curve, formula=formula.words, parameters=formula.parameters)
+    return replace(one, curve=curve, formula=_said(found, formula), parameters=formula.parameters)
 
 
 def _wall_finding(problem: WallProblem, found: Explained, one: Finding, use: np.ndarray) -> Finding:
@@ -44,7 +46,14 @@ def _wall_finding(problem: WallProblem, found: Explained, one: Finding, use: np.
         return replace(one, curve=bounces.listed_curve(problem, found, one.mechanism))
     formula, view = wall_formula(problem, found, found.unlisted, use)
     curve = bounces.smooth_curve(problem, found, formula, view)
-    return replace(one, curve=curve, formula=formula.words, parameters=formula.parameters)
+    return replace(one, curve=curve, formula=_said(found, formula), parameters=formula.parameters)
+
+
+def _said(found: Explained, formula: Formula) -> str:
+    """A formula with the numbers that the rest of the law has beside it."""
+    fitted = zip(found.final.free, formula.moved, strict=True)
+    beside = [f"{name} {found.final.values[name] + by:.4g} {BY_NAME[name].unit}" for name, by in fitted]
+    return f"{formula.words}; with {', '.join(beside)}".replace(" 1,", ",").removesuffix(" 1")
 
 
 def _by_launch(problem: Problem, found: Explained) -> Parting:

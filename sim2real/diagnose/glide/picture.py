@@ -75,8 +75,16 @@ def smooth_curve(problem: GlideProblem, found: Explained, law: Law, formula: For
     x = look.coordinate(frames)
     shape = binned(x, look.of(frames, force), even, LAW_BINS)
     columns = np.einsum("na,nak->nk", look.direction(frames), block)
-    said = over(shape.members, x, look.of(frames, formula.form.field(formula.values)), even)
+    whole = formula.form.field(formula.values) + _beside(found, formula, frames)
+    said = over(shape.members, x, look.of(frames, whole), even)
     return replace(_curve(look, shape, half_band(shape, even, columns, spread), points), formula=said.y)
+
+
+def _beside(found: Explained, formula: Formula, frames: Motion) -> np.ndarray:
+    """The force (n, 2) by which the baseline's braking changes beside a formula."""
+    moved = dict(zip(found.final.free, formula.moved, strict=True))
+    more = moved["friction"] + moved["drag"] * (frames.velocity**2).sum(axis=1)
+    return -more[:, None] * frames.along
 
 
 def _smooth_force(problem: GlideProblem, found: Explained) -> np.ndarray | None:

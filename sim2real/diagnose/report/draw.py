@@ -12,6 +12,7 @@ from sim2real.diagnose.report.words import number
 SURE = 2.0  # standard errors that an error bar shows, and from which an arrow is coloured
 CELLS = 10  # of the map, along the table
 FEWEST = 3  # pieces of a cell
+SAME = 0.02  # of the noise, by which before and after may differ and be one
 
 
 def curve_picture(curve: Curve, told: str) -> str:
@@ -47,9 +48,14 @@ def along(parting: Parting, label: str, component: int) -> dict[str, Binned]:
     """A component of a parting in bins along a coordinate: before and after, or one where nothing was found."""
     x, std = parting.by[label], parting.std[:, component]
     after = binned(x, parting.after[:, component], std)
-    if np.array_equal(parting.before, parting.after):
+    if unchanged(parting):
         return {"refitted": after}
     return {"before": binned(x, parting.before[:, component], std), "after": after}
+
+
+def unchanged(parting: Parting) -> bool:
+    """Whether nothing was found, so that before and after are one."""
+    return bool(np.all(np.abs(parting.after - parting.before) < SAME * parting.std))
 
 
 def _parting_chart(parting: Parting, label: str, component: int) -> str:
@@ -72,7 +78,7 @@ def _parting_chart(parting: Parting, label: str, component: int) -> str:
 def map_pictures(parting: Parting) -> dict[str, tuple[str, float]]:
     """Mean missing vectors by place on the table, before and after, to one scale: picture and longest vector."""
     both = {"before": parting.before, "after": parting.after}
-    if np.array_equal(parting.before, parting.after):
+    if unchanged(parting):
         both = {"refitted": parting.after}
     found = {name: arrows(parting, values) for name, values in both.items()}
     sizes = {name: float(np.hypot(*some[1].T).max(initial=0.0)) for name, some in found.items()}

@@ -7,7 +7,7 @@ import numpy as np
 from sim2real.diagnose.finding import Account, Parting
 from sim2real.diagnose.report import words
 from sim2real.diagnose.report.bars import proof_bars
-from sim2real.diagnose.report.draw import map_pictures, parting_pictures
+from sim2real.diagnose.report.draw import map_pictures, parting_pictures, unchanged
 from sim2real.diagnose.report.words import number, text
 
 FEWEST = 8  # pieces that a picture needs
@@ -39,10 +39,15 @@ def _says(one: Account) -> str:
 
 def _parting(one: Parting) -> str:
     body = "<h3>Where recording and simulator part</h3>"
+    laws = (
+        "under the baseline's law, refitted"
+        if unchanged(one)
+        else '<span class="before">before</span> (the baseline\'s law, refitted) and <span class="after">after</span> '
+        "(the law found)"
+    )
     body += words.paragraph(
-        f"What the law does not foretell: {text(one.what)} [{text(one.unit)}], seen less foretold, "
-        f'<span class="before">before</span> (the baseline\'s law, refitted) and <span class="after">after</span> '
-        f"(the law found). Means of {len(one.before)} pieces, ±2 standard errors; what is explained lies on zero."
+        f"What the law does not foretell: {text(one.what)} [{text(one.unit)}], seen less foretold, {laws}. "
+        f"Means of {len(one.before)} pieces, ±2 standard errors; what is explained lies on zero."
     )
     if one.place is not None and one.size is not None:
         maps = [

@@ -131,7 +131,9 @@ def _curve(problem: WallProblem, found: Explained, view: View, formula: Formula 
     half = half_band(shape, std[rows], columns[rows], spread)
     said = None
     if formula is not None:
-        plain = problem.predicted(found.final.values)[:, at]
+        moved = zip(found.final.free, formula.moved, strict=True)
+        beside = {name: found.final.values[name] + float(by) for name, by in moved}
+        plain = problem.predicted({**found.final.values, **beside})[:, at]
         with_it = (plain + formula.form.field(formula.values)[:, at]) / safe
         said = over(points.members, x, with_it[rows], std[rows]).y
     return Curve(
