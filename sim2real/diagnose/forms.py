@@ -145,13 +145,16 @@ def harmonic(order: int, unit: str) -> Profile:
             "toward": (float(np.degrees(np.arctan2(a[1], a[0])) / order), "deg"),
         }
 
-    times = f"{order} " if order > 1 else ""
     return Profile(
         f"harmonic {order}", np.zeros((1, 0)),
         lambda u, n: np.stack([f(order * np.radians(u)) for f in (np.cos, np.sin)], axis=1), named,
         lambda u, p: p["size"] * np.cos(order * np.radians(u - p["toward"])),
-        lambda name, p: f"{p['size']:.4g} cos({times}{_less(name, p['toward'], ' deg')})",
+        lambda name, p: f"{p['size']:.4g} cos{_times(order, _less(name, p['toward'], ' deg'))}",
     )  # fmt: skip
+
+
+def _times(order: int, bracket: str) -> str:
+    return f"({order} {bracket})" if order > 1 else bracket
 
 
 def form(profile: Profile, axis: Axis, directions: Sequence[Direction], unit: str) -> Form:
@@ -206,5 +209,6 @@ def _label(name: str, one: Direction, directions: Sequence[Direction]) -> str:
 def _sentence(profile: Profile, axis: Axis, one: Direction, own: Mapping[str, float], unit: str, several: bool) -> str:
     symbol = f"{one.law}_{one.symbol}" if several else one.law
     law = profile.words(axis.name, own)
-    whole = f"({own['offset']:.4g} + {law})" if "offset" in own else law
+    signed = f"- {law[1:]}" if law.startswith("-") else f"+ {law}"
+    whole = f"({own['offset']:.4g} {signed})" if "offset" in own else law
     return " ".join(part for part in (symbol, "=", whole, "" if unit == "1" else unit, one.words) if part)

@@ -56,6 +56,18 @@ def test_a_law_of_one_coordinate_is_read_off(law, name, numbers):
         assert f"{abs(one.value):.4g}" in found.words or key == "width"  # a stripe's half width is said
 
 
+@pytest.mark.parametrize(
+    "law, name",
+    [
+        (lambda u: 0.3 * u - 0.015 * u**2, "linear"),  # a bend too small to be worth three numbers
+        (lambda u: 0.2 * np.exp(-0.5 * ((u - 2.0) / 0.6) ** 2), "bump"),  # a line would explain three quarters
+    ],
+)
+def test_the_simplest_that_explains_nearly_all_is_said(law, name):
+    u = np.random.default_rng(7).uniform(0.0, 2.5, PIECES)
+    assert _formula(u, law(u), _profiles).form.name.split()[0] == name
+
+
 def test_the_words_are_a_formula():
     u = np.linspace(0.0, 2.0, PIECES)
     found = _formula(u, -0.12 * np.exp(-u / 0.21), _profiles)
@@ -68,6 +80,7 @@ def test_an_offset_is_fitted_where_nothing_else_stands_for_it():
     found = _formula(u, 0.05 + 0.002 * u, _profiles, offset=True)
     assert found.values["slope"] == pytest.approx(0.002, rel=0.05)
     assert found.values["offset"] == pytest.approx(0.05, abs=0.005)
+    assert found.words == f"a = ({found.values['offset']:.4g} + {found.values['slope']:.4g} u) m/s^2 along it"
 
 
 def test_an_angle_gets_harmonics():
