@@ -109,7 +109,7 @@ class Chart:
             px = self.at(value, self.low[1])[0]
             found.append(f'<path d="M{px:.1f} {TOP}V{bottom}" stroke="{GRID}"/>')
             found.append(f'<text x="{px:.1f}" y="{bottom + 14}" text-anchor="middle">{text(name)}</text>')
-        for value in nice(self.low[1], self.high[1], 4):
+        for value in nice(self.low[1], self.high[1], 5):
             py = self.at(self.low[0], value)[1]
             shade = FAINT if value == 0.0 else GRID
             found.append(f'<path d="M{LEFT} {py:.1f}H{right}" stroke="{shade}"/>')

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from sim2real.diagnose.diagnosis import Diagnosis
 from sim2real.diagnose.finding import Proof, Sight
 from sim2real.diagnose.report import words
@@ -77,16 +79,33 @@ def _next(diagnosis: Diagnosis) -> str:
 
 
 def _sensor(sights: tuple[Sight, ...]) -> str:
-    head = ("recording", "duration [s]", "frames", "noise [mm]", "clock noise [ms]", "dropped", "held", "wrong",
-            "launches", "glides", "hits", "unexplained")  # fmt: skip
-    rows = [
-        [
-            text(one.recording), number(one.seconds), str(one.frames), number(1e3 * one.noise_m),
-            number(1e3 * one.clock_s), *(f"{100 * share:.2f} %" for share in (one.dropped, one.held, one.wild)),
-            str(one.launches), str(one.glides), str(one.hits), str(one.unexplained),
-        ]
-        for one in sights
-    ]  # fmt: skip
+    """A column a recording: two or three are usual, and many rows fit any screen."""
+    rows = [[name, *(of(one) for one in sights)] for name, of in SENSOR.items()]
+    head = ("", *(text(one.recording) for one in sights))
     notes = "".join(f"<li>{text(one.recording)}: {text(note)}</li>" for one in sights for note in one.notes)
-    body = words.table("As told by the recording itself", head, rows, range(1, len(head)))
+    body = words.table("As told by the recordings themselves", head, rows, range(1, len(head))) if sights else ""
     return words.section("sensor", "The sensor", body + (f"<ul>{notes}</ul>" if notes else ""))
+
+
+def _share(of: float) -> str:
+    return f"{100.0 * of:.2f} %"
+
+
+def _seen(one: Sight, shown: str) -> str:
+    """What only a camera that saw something can have."""
+    return shown if one.frames else "–"
+
+
+SENSOR: dict[str, Callable[[Sight], str]] = {
+    "duration [s]": lambda one: number(one.seconds),
+    "frames": lambda one: str(one.frames),
+    "noise of a position [mm]": lambda one: _seen(one, number(1e3 * one.noise_m)),
+    "noise of the clock [ms]": lambda one: _seen(one, number(1e3 * one.clock_s)),
+    "frames without the puck": lambda one: _seen(one, _share(one.dropped)),
+    "frames held": lambda one: _seen(one, _share(one.held)),
+    "frames wrong": lambda one: _seen(one, _share(one.wild)),
+    "launches": lambda one: str(one.launches),
+    "glides": lambda one: str(one.glides),
+    "hits": lambda one: str(one.hits),
+    "unexplained events": lambda one: str(one.unexplained),
+}

@@ -9,7 +9,7 @@ h1 { font-size: 1.5rem; line-height: 1.25; margin: 0.2rem 0 0.6rem; }
 h2 { font-size: 1.25rem; margin: 2rem 0 0.5rem; border-top: 2px solid var(--ink); padding-top: 0.5rem; }
 h3 { font-size: 1.05rem; margin: 1.2rem 0 0.3rem; }
 .verdict { color: var(--soft); margin: 0; text-transform: uppercase; letter-spacing: 0.05em; font-size: 0.85rem; }
-.next { border-left: 4px solid var(--after); padding: 0.1rem 0.8rem; background: #f2f7fb; }
+ul.next { border-left: 4px solid var(--after); padding: 0.1rem 0.8rem 0.1rem 1.8rem; background: #f2f7fb; }
 .open { border-left: 4px solid var(--before); padding: 0.1rem 0.8rem; background: #fdf5ef; }
 code.law { display: block; background: #f5f5f5; padding: 0.5rem 0.8rem; margin: 0.4rem 0; white-space: pre-wrap; }
 .scroll { overflow-x: auto; }

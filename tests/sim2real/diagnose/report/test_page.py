@@ -146,6 +146,13 @@ def test_pictures_and_tables_speak_to_those_who_do_not_see_them():
     assert all(attrs.get("scope") in ("row", "col") for tag, attrs in read.tags if tag == "th")
 
 
+def test_the_sensor_is_told_by_recording():
+    blind = replace(SIGHT, recording="blind", frames=0)
+    read = Reader(page(replace(DIAGNOSES["agrees"], sights=(SIGHT, blind))))
+    assert "noise of a position [mm] 0.61 –" in read.text
+    assert "frames without the puck 1.20 % –" in read.text and "frames 7380 0" in read.text
+
+
 def test_what_is_ambiguous_is_said():
     finding = replace(TILT, also_possible=("table_warp",))
     read = Reader(page(Diagnosis((_glide((finding,), further="record slow glides"),), sights=(SIGHT,))))
