@@ -1,7 +1,8 @@
 """Where a table and the simulator part, which physics is missing, and proof on untouched data that adding it helps.
 
-Give one or more recordings (folders in the format puckpilot-recording/1) of one table. Writes diagnosis.json and
-effects.toml into --out; with `puckpilot match A B --effects OUT/effects.toml` players meet on the mended simulator.
+Give one or more recordings (folders in the format puckpilot-recording/1) of one table. Writes diagnosis.json,
+report.html (one page to look at) and effects.toml into --out; with `puckpilot match A B --effects OUT/effects.toml`
+players meet on the mended simulator.
 """
 
 from __future__ import annotations

@@ -13,9 +13,10 @@ from sim2real.diagnose.contacts import geometry, mallet_tracks
 from sim2real.diagnose.encoders import read_encoders
 from sim2real.diagnose.engine.explain import Explained, explain
 from sim2real.diagnose.engine.fit import given
-from sim2real.diagnose.finding import Account, Finding, Proof
+from sim2real.diagnose.finding import Account, Finding, Proof, Sight
 from sim2real.diagnose.glide.data import GlideData, glide_data, join
 from sim2real.diagnose.glide.problem import GlideProblem, States
+from sim2real.diagnose.illustrate import illustrated
 from sim2real.diagnose.impacts import Impact, find_impacts
 from sim2real.diagnose.mallet.data import Blows, blows
 from sim2real.diagnose.mallet.data import join as join_blows
@@ -24,6 +25,7 @@ from sim2real.diagnose.pieces import Pieces, cut
 from sim2real.diagnose.problem import Problem
 from sim2real.diagnose.sanity import UndeterminedError, check_together, check_usable, notes
 from sim2real.diagnose.sensing.account import sense
+from sim2real.diagnose.sight import sight
 from sim2real.diagnose.wall.data import bounces
 from sim2real.diagnose.wall.problem import WallProblem
 from sim2real.nominal import parameters
@@ -41,13 +43,14 @@ Progress = Callable[[str, float], None]
 class Diagnosis:
     """All accounts, by regime. `reason`: why nothing can be said, "" if something can; `remedy`: what to do then.
 
-    `notes`: what should be known of the recordings, a sentence each.
+    `notes`: what should be known of the recordings, a sentence each; `sights`: the sensor of each, those held out last.
     """
 
     accounts: tuple[Account, ...]
     reason: str = ""
     remedy: str = ""
     notes: tuple[str, ...] = ()
+    sights: tuple[Sight, ...] = ()
 
     @property
     def findings(self) -> list[Finding]:
@@ -104,16 +107,16 @@ def diagnose(
     every = [*recordings, *heldout]
     check_together(every)
     try:
-        accounts = _accounts(recordings, heldout, shipped, progress)
+        accounts, sights = _accounts(recordings, heldout, shipped, progress)
     except UndeterminedError as why:
         return Diagnosis((), why.reason, why.remedy, notes(every))
-    return Diagnosis(tuple(accounts), notes=notes(every))
+    return Diagnosis(accounts, notes=notes(every), sights=sights)
 
 
 def _accounts(
     recordings: Sequence[Recording], heldout: Sequence[Recording], shipped: Mapping[str, float], progress: Progress
-) -> list[Account]:
-    """What each regime says."""
+) -> tuple[tuple[Account, ...], tuple[Sight, ...]]:
+    """What each regime says, and the sensor of each recording."""
     check_usable([*recordings, *heldout])
     progress("cutting", 0.0)
     pieces = [cut(one) for one in recordings]
@@ -125,7 +128,8 @@ def _accounts(
     apart = [sensed.exact(one) for one in heldout]
     data = Cut([*sensed.recordings, *apart], [*sensed.pieces, *(cut(one) for one in apart)], len(heldout))
     values = parameters(recordings[0], shipped)
-    return [sensed.account, *_puck(data, values, progress)]
+    sights = tuple(sight(one, pieces) for one, pieces in zip(data.recordings, data.pieces, strict=True))
+    return (sensed.account, *_puck(data, values, progress)), sights
 
 
 def _puck(data: Cut, values: dict[str, float], progress: Progress):
@@ -142,7 +146,7 @@ def _puck(data: Cut, values: dict[str, float], progress: Progress):
     found, told = _explain(glides, law, proof, tables)
     yield told
     states = glides.states(given(law)) if found is None else _states(glides, found)
-    law |= {} if found is None else found.law.values
+    law |= {} if found is None else found.final.values
     progress("bounces", 0.6)
     impacts = [find_impacts(pieces, glides, states, k) for k, pieces in enumerate(data.pieces)]
     hits = bounces([hit for some in impacts for hit in some], geometry(data.recordings[0]))
@@ -161,7 +165,7 @@ def _glides(recording: Recording, pieces: Pieces) -> GlideData:
 def _states(glides: GlideProblem, found: Explained) -> States:
     if found.unlisted is None:
         return glides.states(found.law)
-    return glides.states(found.law, found.unlisted.name, found.theta[-len(found.unlisted.columns) :])
+    return glides.states(found.final, found.unlisted.name, found.theta[-len(found.unlisted.columns) :])
 
 
 def _blows(recordings: Sequence[Recording], impacts: Sequence[list[Impact]]) -> Blows | None:
@@ -180,7 +184,7 @@ def _explain(problem: Problem, law: Mapping[str, float], proof: np.ndarray, tabl
     shipped = {name: law[name] for name in problem.base}
     check_agreement(problem, shipped, tables)
     found = explain(problem, shipped, use)
-    return found, account(problem, found, apart)
+    return found, illustrated(problem, found, account(problem, found, apart), use)
 
 
 def _kept_apart(glides: GlideProblem, parts: Sequence[GlideData], heldout: int) -> np.ndarray:

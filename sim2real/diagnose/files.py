@@ -1,4 +1,4 @@
-"""A diagnosis as files: diagnosis.json in the format puckpilot-diagnosis/1, and effects.toml for the simulator."""
+"""A diagnosis as files: diagnosis.json (puckpilot-diagnosis/1), report.html, and effects.toml for the simulator."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 from puckpilot_env.parameters import BY_NAME, EFFECT_ROWS, TABLE
 from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.diagnosis import Diagnosis
-from sim2real.diagnose.finding import Estimate, Finding
+from sim2real.diagnose.finding import Curve, Estimate, Finding
 
 FORMAT = "puckpilot-diagnosis/1"
 EFFECTS_FORMAT = "puckpilot-effects/1"
@@ -38,7 +38,7 @@ def as_dict(diagnosis: Diagnosis) -> dict[str, Any]:
 
 
 def _finding(one: Finding) -> dict[str, Any]:
-    return {
+    words = {
         "regime": one.regime,
         "where": dict(one.where),
         "mechanism": one.mechanism,
@@ -49,6 +49,13 @@ def _finding(one: Finding) -> dict[str, Any]:
         "p_value": one.p_value,
         "heldout": {"before": one.before, "after": one.after, "unit": "rms in units of the sensor's noise"},
     }
+    return words if one.curve is None else {**words, "curve": _curve(one.curve)}
+
+
+def _curve(one: Curve) -> dict[str, Any]:
+    """The law as a curve with its 95 % band."""
+    words = {"x_label": one.x_label, "y_label": one.y_label, **({"ticks": list(one.ticks)} if one.ticks else {})}
+    return {**words, **{name: getattr(one, name).tolist() for name in ("x", "y", "low", "high")}}
 
 
 def _estimate(one: Estimate) -> dict[str, Any]:
@@ -79,9 +86,12 @@ def _name(one: Finding) -> str:
 
 def write(diagnosis: Diagnosis, folder: Path) -> list[Path]:
     """Write all files into `folder`, each whole or not at all; returns their places."""
+    from sim2real.diagnose.report.page import page
+
     folder.mkdir(parents=True, exist_ok=True)
     texts = {
         "diagnosis.json": json.dumps(as_dict(diagnosis), indent=1, allow_nan=False) + "\n",
+        "report.html": page(diagnosis),
         "effects.toml": effects_toml(diagnosis),
     }
     return [_write_whole(folder / name, text) for name, text in texts.items()]

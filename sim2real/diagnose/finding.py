@@ -40,7 +40,10 @@ class Rival:
 
 @dataclass(frozen=True)
 class Curve:
-    """A law as a picture: `y` over `x` with a 95 % band, each (n,), and the binned data (m,) with its errors."""
+    """A law as a picture: `y` over `x` with a 95 % band, each (n,), and the binned data (m,) with its standard errors.
+
+    `ticks` are names for x = 0, 1, …, where it counts things. `formula` (n,): a readable formula beside a smooth law.
+    """
 
     x_label: str
     y_label: str
@@ -51,6 +54,49 @@ class Curve:
     data_x: np.ndarray
     data_y: np.ndarray
     data_error: np.ndarray
+    ticks: tuple[str, ...] = ()
+    formula: np.ndarray | None = None
+
+
+@dataclass(frozen=True)
+class Parting:
+    """Where recording and simulator part: what each of `n` pieces has more than a law foretells, seen less foretold.
+
+    `before`, `after` (n, c) in `unit`, under the refitted baseline and under the final law; `std` (n, c): what the
+    sensor's noise makes of them; `components`: their `c` names. `by`: what they may depend on, label with unit to (n,).
+    On a table of `size` (2,) [m], `place` (n, 2) [m] and `axis` (n, 2), the unit vector of the first component, of
+    which the second is to the left; None where the pieces have no place.
+    """
+
+    what: str
+    unit: str
+    components: tuple[str, ...]
+    before: np.ndarray
+    after: np.ndarray
+    std: np.ndarray
+    by: Mapping[str, np.ndarray]
+    place: np.ndarray | None = None
+    axis: np.ndarray | None = None
+    size: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True)
+class Sight:
+    """What the sensor gave in one recording: `noise_m`, `clock_s` as in `sensor.Noise`; shares of all frames."""
+
+    recording: str
+    seconds: float
+    frames: int
+    noise_m: float
+    clock_s: float
+    dropped: float
+    held: float
+    wild: float
+    launches: int
+    glides: int
+    hits: int
+    unexplained: int
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -89,3 +135,4 @@ class Account:
     proof: Proof | None
     undetermined: str = ""
     next_recording: str = ""
+    parting: Parting | None = None

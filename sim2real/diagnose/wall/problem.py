@@ -56,6 +56,11 @@ class WallProblem:
         spread = data.spread.sum(axis=1)
         self.noise_m = FLIGHT * float(np.sqrt(np.trace(spread, axis1=1, axis2=2).mean() / 2)) if len(data) else 0.0
 
+    @property
+    def size(self) -> tuple[float, float]:
+        """Length and width of the table [m]."""
+        return self._common["length"], self._common["width"]
+
     def residuals(self, values: Mapping[str, float], free: Sequence[str], clusters: np.ndarray) -> Residuals:
         """See `Problem.residuals`: normal and tangential velocity after each bounce, seen less foretold."""
         now = self.predicted(values)

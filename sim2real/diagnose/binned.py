@@ -1,0 +1,59 @@
+"""Scattered data as a few means with errors, for the eye."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+FEWEST = 4  # pieces of a bin
+Z = 1.96
+
+
+@dataclass(frozen=True)
+class Binned:
+    """Bins (b,): mean coordinate `x`, weighted mean `y` and its standard error; `members` (b, n) bool."""
+
+    x: np.ndarray
+    y: np.ndarray
+    error: np.ndarray
+    members: np.ndarray
+
+
+def binned(x: np.ndarray, y: np.ndarray, std: np.ndarray, bins: int = 12) -> Binned:
+    """`y` (n,) of noise `std` (n,) in up to `bins` bins of equally many pieces along `x` (n,).
+
+    The error is the larger of what the noise and what the scatter within the bin give. Pieces without `x` (nan) are
+    left out, and bins of fewer than FEWEST pieces are joined; equal `x` are never parted.
+    """
+    known = np.isfinite(x) & np.isfinite(y)
+    count = int(min(bins, known.sum() // FEWEST))
+    if count < 1:
+        return Binned(np.zeros(0), np.zeros(0), np.zeros(0), np.zeros((0, len(x)), bool))
+    edges = np.unique(np.quantile(x[known], np.linspace(0.0, 1.0, count + 1)))
+    which = np.clip(np.searchsorted(edges, x, side="right") - 1, 0, max(len(edges) - 2, 0))
+    members = np.array([known & (which == k) for k in range(max(len(edges) - 1, 1))])
+    members = members[members.sum(axis=1) >= min(FEWEST, int(known.sum()))]
+    return over(members, x, y, std)
+
+
+def over(members: np.ndarray, x: np.ndarray, y: np.ndarray, std: np.ndarray) -> Binned:
+    """The means over given `members` (b, n) bool; see `binned`."""
+    rows = [_mean(x[here], y[here], std[here]) for here in members]
+    place, mean, error = (np.array(column) for column in zip(*rows, strict=True)) if rows else [np.zeros(0)] * 3
+    return Binned(place, mean, error, members)
+
+
+def half_band(bins: Binned, std: np.ndarray, columns: np.ndarray, spread: np.ndarray) -> np.ndarray:
+    """Half widths (b,) of the 95 % band of binned `columns` (n, k) whose coefficients have the covariance `spread`."""
+    weight = bins.members / std**2
+    mean = (weight / weight.sum(axis=1, keepdims=True)) @ columns
+    return Z * np.sqrt(np.maximum(np.einsum("bi,ij,bj->b", mean, spread, mean), 0.0))
+
+
+def _mean(x: np.ndarray, y: np.ndarray, std: np.ndarray) -> tuple[float, float, float]:
+    weight = 1.0 / std**2
+    total = weight.sum()
+    mean = float(weight @ y / total)
+    scatter = float(np.sqrt(weight**2 @ (y - mean) ** 2)) / total
+    return float(weight @ x / total), mean, max(float(total**-0.5), scatter)

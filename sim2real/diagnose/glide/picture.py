@@ -1,0 +1,119 @@
+"""What a report shows of the glides: where the law fails before and after, and each finding as a curve."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from puckpilot_env.parameters import BY_NAME
+from puckpilot_env.physics.effects import EFFECTS
+from sim2real.diagnose.binned import Binned, binned, half_band, over
+from sim2real.diagnose.engine.choose import Law
+from sim2real.diagnose.engine.explain import Explained
+from sim2real.diagnose.finding import Curve, Parting
+from sim2real.diagnose.formula import Formula
+from sim2real.diagnose.glide.families import FAMILIES, Motion
+from sim2real.diagnose.glide.problem import GlideProblem
+from sim2real.diagnose.glide.views import COORDINATES, View, listed_view
+from sim2real.diagnose.glide.windows import missing, motion, windows
+
+SHORT_SPAN = 0.3  # s of a window, where what happens soon after a contact matters
+LAW_BINS = 30
+
+
+def parting(problem: GlideProblem, found: Explained) -> Parting:
+    """Accelerations that the refitted baseline and the final law do not foretell, by window."""
+    some = windows(problem.data)
+    seen = motion(problem, some, found.baseline.values)
+    before = missing(problem, some, found.baseline.values)
+    after = missing(problem, some, found.final.values, _smooth_force(problem, found))
+    first, last = (
+        np.stack([(seen.along * a).sum(axis=1), (seen.across * a).sum(axis=1)], axis=1) for a in (before, after)
+    )
+    std = np.stack([np.hypot(*(axes * some.std).T) for axes in (seen.along, seen.across)], axis=1)
+    return Parting(
+        "acceleration", "m/s²", ("along the motion", "to its left"), first, last, std,
+        {label: column(seen) for label, column in COORDINATES.values()},
+        seen.place, seen.along, (float(seen.size[0]), float(seen.size[1])),
+    )  # fmt: skip
+
+
+def listed_curve(problem: GlideProblem, found: Explained, mechanism: str) -> Curve:
+    """What a listed mechanism adds, by what shows it best; the data freed of all else that was fitted."""
+    values = dict(found.final.values)
+    rows = {row.name for row in EFFECTS[mechanism].rows.values()}
+    without = {**values, **{name: BY_NAME[name].default for name in rows}}
+    free = [name for name in found.final.free if name in rows]
+    some = windows(problem.data)
+    seen, look = motion(problem, some, values), listed_view(mechanism, values)
+    smooth = _smooth_force(problem, found)
+    rest, left = (missing(problem, some, each, smooth) for each in (without, values))
+    index = [found.final.free.index(name) for name in free]
+    spread = found.final.covariance[np.ix_(index, index)]
+    slopes = []
+    for name, size in zip(free, np.sqrt(np.diag(spread)), strict=True):
+        more = missing(problem, some, {**values, name: _aside(name, values[name], size)}, smooth)
+        slopes.append(look.of(seen, left - more) / (_aside(name, values[name], size) - values[name]))
+    columns = np.stack(slopes, axis=1) if slopes else np.zeros((len(left), 0))
+    x, std = look.coordinate(seen), np.hypot(*(look.direction(seen) * some.std).T)
+    law = binned(x, look.of(seen, rest - left), std, LAW_BINS)
+    return _curve(look, law, half_band(law, std, columns, spread), binned(x, look.of(seen, rest), std))
+
+
+def smooth_curve(problem: GlideProblem, found: Explained, law: Law, formula: Formula, looks: list[View]) -> Curve:
+    """An unlisted law and its readable formula, from that side of `looks` from which the law is largest."""
+    frames = problem.motion(problem.linearised(found.final.values)[0])
+    block = FAMILIES[law.name][1](frames)
+    theta, spread = _own(found, law)
+    force, even = block @ theta, np.ones(len(frames.t))
+    look = max(looks, key=lambda one: _size(one, frames, force))
+    some = windows(problem.data, SHORT_SPAN if law.family == "history" else None)
+    seen = motion(problem, some, found.final.values)
+    std = np.hypot(*(look.direction(seen) * some.std).T)
+    points = binned(look.coordinate(seen), look.of(seen, missing(problem, some, found.final.values)), std)
+    x = look.coordinate(frames)
+    shape = binned(x, look.of(frames, force), even, LAW_BINS)
+    columns = np.einsum("na,nak->nk", look.direction(frames), block)
+    whole = formula.form.field(formula.values) + _beside(found, formula, frames)
+    said = over(shape.members, x, look.of(frames, whole), even)
+    return replace(_curve(look, shape, half_band(shape, even, columns, spread), points), formula=said.y)
+
+
+def _beside(found: Explained, formula: Formula, frames: Motion) -> np.ndarray:
+    """The force (n, 2) by which the baseline's braking changes beside a formula."""
+    moved = dict(zip(found.final.free, formula.moved, strict=True))
+    more = moved["friction"] + moved["drag"] * (frames.velocity**2).sum(axis=1)
+    return -more[:, None] * frames.along
+
+
+def _smooth_force(problem: GlideProblem, found: Explained) -> np.ndarray | None:
+    """The force (n, 2) of the unlisted law at each frame; None where there is none."""
+    if found.unlisted is None:
+        return None
+    frames = problem.motion(problem.linearised(found.final.values)[0])
+    return FAMILIES[found.unlisted.name][1](frames) @ _own(found, found.unlisted)[0]
+
+
+def _own(found: Explained, law: Law) -> tuple[np.ndarray, np.ndarray]:
+    """The coefficients of an unlisted law and their covariance."""
+    k = len(law.columns)
+    return found.theta[-k:], found.theta_covariance[-k:, -k:]
+
+
+def _aside(name: str, value: float, size: float) -> float:
+    """A parameter a little beside its value, within its range."""
+    step = max(0.1 * size, 1e-6)
+    return value + step if value + step < BY_NAME[name].high else value - step
+
+
+def _size(look: View, frames: Motion, force: np.ndarray) -> float:
+    shape = binned(look.coordinate(frames), look.of(frames, force), np.ones(len(frames.t)), LAW_BINS)
+    return float(np.mean(shape.y**2)) if len(shape.y) else 0.0
+
+
+def _curve(look: View, law: Binned, half: np.ndarray, points: Binned) -> Curve:
+    return Curve(
+        look.label, f"acceleration {look.component} [m/s²]", law.x, law.y, law.y - half, law.y + half,
+        points.x, points.y, points.error,
+    )  # fmt: skip

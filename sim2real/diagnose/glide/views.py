@@ -1,0 +1,99 @@
+"""Along what a force on a gliding puck is looked at: a coordinate, and the direction in which the force is taken."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim2real.diagnose.glide.families import Motion
+
+Column = Callable[[Motion], np.ndarray]
+
+
+@dataclass(frozen=True)
+class View:
+    """`coordinate` (n,) of a motion and its label with unit, `direction` (n, 2) of unit vectors and its name."""
+
+    label: str
+    coordinate: Column
+    component: str
+    direction: Column
+
+    def of(self, motion: Motion, vectors: np.ndarray) -> np.ndarray:
+        """The component (n,) of vectors (n, 2)."""
+        return np.einsum("na,na->n", self.direction(motion), vectors)
+
+
+def heading(motion: Motion) -> np.ndarray:
+    """Direction of the motion [°], 0 along x."""
+    return np.degrees(np.arctan2(motion.velocity[:, 1], motion.velocity[:, 0]))
+
+
+def speed(motion: Motion) -> np.ndarray:
+    """Speed (n,) [m/s]."""
+    return np.linalg.norm(motion.velocity, axis=1)
+
+
+def distance(x: float, y: float) -> Column:
+    """Distance [m] from a place on the table."""
+    return lambda motion: np.hypot(*(motion.place - (x, y)).T)
+
+
+def fixed(x: float, y: float) -> Column:
+    """One direction everywhere."""
+    return lambda motion: np.tile([x, y], (len(motion.t), 1))
+
+
+def around(x: float, y: float, turning: bool, braking: bool) -> View:
+    """What happens about a point: along the motion if it brakes, else round the point or away from it."""
+
+    def outward(motion: Motion) -> np.ndarray:
+        away = motion.place - (x, y)
+        away = away / np.maximum(np.linalg.norm(away, axis=1, keepdims=True), 1e-9)
+        return np.stack([-away[:, 1], away[:, 0]], axis=1) if turning else away
+
+    component, direction = ("round it, to the left", outward) if turning else ("away from it", outward)
+    if braking:
+        component, direction = DIRECTIONS["along"]
+    return View(f"distance from ({x:.3g}, {y:.3g}) m [m]", distance(x, y), component, direction)
+
+
+COORDINATES: dict[str, tuple[str, Column]] = {
+    "x": ("x [m]", lambda motion: motion.place[:, 0]),
+    "y": ("y [m]", lambda motion: motion.place[:, 1]),
+    "speed": ("speed [m/s]", speed),
+    "heading": ("heading [°]", heading),
+    "time": ("time [s]", lambda motion: motion.t),
+    "history": ("time since the last contact [s]", lambda motion: motion.since),
+}
+DIRECTIONS: dict[str, tuple[str, Column]] = {
+    "along": ("along the motion", lambda motion: motion.along),
+    "across": ("to the left of the motion", lambda motion: motion.across),
+    "x": ("along x", fixed(1.0, 0.0)),
+    "y": ("along y", fixed(0.0, 1.0)),
+}
+LISTED = {  # mechanism: coordinate and direction that show it best
+    "table_tilt": ("heading", "along"),
+    "linear_drag": ("speed", "along"),
+    "air_drift": ("time", "along"),
+    "friction_anisotropy": ("heading", "along"),
+    "side_force": ("speed", "across"),
+}
+
+
+def view(coordinate: str, direction: str) -> View:
+    """A view by its names in COORDINATES and DIRECTIONS."""
+    return View(*COORDINATES[coordinate], *DIRECTIONS[direction])
+
+
+def listed_view(mechanism: str, values: Mapping[str, float]) -> View:
+    """The view of a listed mechanism of the glide with the parameters `values`."""
+    if mechanism == "friction_patch":
+        x, y = float(values["patch_x"]), float(values["patch_y"])
+        return View("distance from the middle of the patch [m]", distance(x, y), *DIRECTIONS["along"])
+    if mechanism == "table_warp":
+        axis = "x" if abs(values["warp_xx"]) > abs(values["warp_yy"]) else "y"
+        return view(axis, axis)
+    return view(*LISTED[mechanism])

@@ -1,0 +1,70 @@
+"""An account with what its report shows: where recording and simulator part, findings as curves and in formulas."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from puckpilot_env.parameters import BY_NAME
+from sim2real.diagnose.engine.explain import Explained
+from sim2real.diagnose.finding import Account, Finding, Parting
+from sim2real.diagnose.formula import Formula
+from sim2real.diagnose.glide import picture as glides
+from sim2real.diagnose.glide.problem import GlideProblem
+from sim2real.diagnose.glide.readable import readable as glide_formula
+from sim2real.diagnose.problem import Problem
+from sim2real.diagnose.wall import picture as bounces
+from sim2real.diagnose.wall.problem import WallProblem
+from sim2real.diagnose.wall.readable import readable as wall_formula
+
+
+def illustrated(problem: Problem, found: Explained, account: Account, use: np.ndarray) -> Account:
+    """The account with its parting, and its findings with curves; `use`: the clusters that were fitted."""
+    match problem:
+        case GlideProblem():
+            parting = glides.parting(problem, found)
+            findings = [_glide_finding(problem, found, one, use) for one in account.findings]
+        case WallProblem():
+            parting = bounces.parting(problem, found)
+            findings = [_wall_finding(problem, found, one, use) for one in account.findings]
+        case _:
+            parting, findings = _by_launch(problem, found), account.findings
+    return replace(account, findings=tuple(findings), parting=parting)
+
+
+def _glide_finding(problem: GlideProblem, found: Explained, one: Finding, use: np.ndarray) -> Finding:
+    if found.unlisted is None or one.mechanism != "unlisted":
+        return replace(one, curve=glides.listed_curve(problem, found, one.mechanism))
+    formula, looks = glide_formula(problem, found, found.unlisted, use)
+    curve = glides.smooth_curve(problem, found, found.unlisted, formula, looks)
+    return replace(one, curve=curve, formula=_said(found, formula), parameters=formula.parameters)
+
+
+def _wall_finding(problem: WallProblem, found: Explained, one: Finding, use: np.ndarray) -> Finding:
+    if found.unlisted is None or one.mechanism != "unlisted":
+        return replace(one, curve=bounces.listed_curve(problem, found, one.mechanism))
+    formula, view = wall_formula(problem, found, found.unlisted, use)
+    curve = bounces.smooth_curve(problem, found, formula, view)
+    return replace(one, curve=curve, formula=_said(found, formula), parameters=formula.parameters)
+
+
+def _said(found: Explained, formula: Formula) -> str:
+    """A formula with the numbers that the rest of the law has beside it."""
+    fitted = zip(found.final.free, formula.moved, strict=True)
+    beside = [f"{name} {found.final.values[name] + by:.4g} {BY_NAME[name].unit}" for name, by in fitted]
+    return f"{formula.words}; with {', '.join(beside)}".replace(" 1,", ",").removesuffix(" 1")
+
+
+def _by_launch(problem: Problem, found: Explained) -> Parting:
+    """The rms residual of each launch, for a regime of which nothing finer is drawn."""
+    every = np.arange(problem.clusters)
+    live = np.flatnonzero(problem.freedom > 0)
+    sizes = []
+    for values in (found.baseline.values, found.final.values):
+        left = problem.residuals(values, (), every)
+        squares = np.bincount(left.cluster, left.r**2, problem.clusters)[live]
+        sizes.append(np.sqrt(squares / problem.freedom[live])[:, None])
+    std = 1.0 / np.sqrt(2.0 * problem.freedom[live])[:, None]
+    by = {"launch, in order of time": live.astype(float)}
+    return Parting("rms residual", "units of the sensor's noise", ("rms",), sizes[0], sizes[1], std, by)

@@ -1,0 +1,1 @@
+"""The diagnosis as one self-contained page: words, tables and pictures, without a network."""

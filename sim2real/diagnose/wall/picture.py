@@ -1,0 +1,160 @@
+"""What a report shows of the bounces: where the law fails before and after, and each finding as a curve."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from puckpilot_env.parameters import BY_NAME
+from puckpilot_env.physics import bounce
+from sim2real.diagnose.binned import binned, half_band, over
+from sim2real.diagnose.engine.choose import Law
+from sim2real.diagnose.engine.explain import Explained
+from sim2real.diagnose.finding import Curve, Parting
+from sim2real.diagnose.formula import Formula
+from sim2real.diagnose.wall.data import KINDS, Bounces
+from sim2real.diagnose.wall.laws import FAMILIES, UNIT
+from sim2real.diagnose.wall.problem import WallProblem
+
+SLOWEST = 0.1  # m/s of a component; the share kept of a slower one is noise
+NORMAL, TANGENT = 0, 1
+KEPT = ("share of the normal speed kept", "share of the tangential speed kept")
+PLACES = (*KINDS, "posts")
+
+
+@dataclass(frozen=True)
+class View:
+    """What is kept of one `component`, along a `coordinate` (n,); nan where a bounce is to be left out."""
+
+    label: str
+    coordinate: np.ndarray
+    component: int
+    ticks: tuple[str, ...] = ()
+
+
+def parting(problem: WallProblem, found: Explained) -> Parting:
+    """Velocities after each bounce that the refitted baseline and the final law do not foretell."""
+    d, std = problem.data, _std(problem)
+    before, after = (_misses(problem, values) * std for values in (found.baseline.values, found.final.values))
+    if found.unlisted is not None:
+        component, weights = acted_on(found.unlisted), _smooth(d, found.unlisted)
+        after[:, component] -= speeds(d)[:, component] * (weights @ found.theta[-weights.shape[1] :])
+    by = {label: column for label, column in coordinates(d).values()}
+    return Parting(
+        "velocity after the bounce", "m/s", ("along the wall's normal", "along the wall"), before, after, std, by,
+        d.place, d.normal, problem.size,
+    )  # fmt: skip
+
+
+def listed_curve(problem: WallProblem, found: Explained, mechanism: str) -> Curve:
+    """What is kept of the speed under the final law and in the data, by the coordinate that shows the mechanism."""
+    view = _listed_view(problem.data, mechanism)
+    return _curve(problem, found, view)
+
+
+def smooth_curve(problem: WallProblem, found: Explained, formula: Formula, view: View) -> Curve:
+    """The same for an unlisted law, beside its readable formula."""
+    return _curve(problem, found, view, formula)
+
+
+def _listed_view(d: Bounces, mechanism: str) -> View:
+    along = coordinates(d)
+    if mechanism == "wall_to_wall_restitution":
+        order = [*KINDS.values(), bounce.POST]
+        return View("wall", np.array([order.index(kind) for kind in d.kind], float), NORMAL, PLACES)
+    if mechanism == "corner_restitution":
+        return View("post or wall", (d.kind == bounce.POST).astype(float), NORMAL, ("walls", "posts"))
+    if mechanism == "tangential_restitution":
+        return View("tangential speed before [m/s]", np.abs(d.split(d.before)[:, 1]), TANGENT)
+    if mechanism == "wall_friction_spin":
+        return View(*along["heading"], TANGENT)
+    return View(*along["speed"], NORMAL)
+
+
+def coordinates(d: Bounces) -> dict[str, tuple[str, np.ndarray]]:
+    """What a bounce may depend on, with labels; the place is the one along its wall."""
+    ends = np.isin(d.kind, (KINDS["x0"], KINDS["x1"]))
+    normal, along = d.split(d.before).T
+    return {
+        "speed": ("normal speed before [m/s]", d.closing),
+        "heading": ("angle from the normal [°]", np.degrees(np.arctan2(np.abs(along), -normal))),
+        "position": ("place along its wall [m]", np.where(ends, d.place[:, 1], d.place[:, 0])),
+        "time": ("time [s]", d.t),
+        "history": ("time since the last contact [s]", d.since),
+    }
+
+
+def acted_on(law: Law) -> int:
+    """The component that a smooth law acts on."""
+    return NORMAL if law.name.startswith("restitution") else TANGENT
+
+
+def _smooth(d: Bounces, law: Law) -> np.ndarray:
+    """The shares (n, k) that the coefficients of a smooth law add to what is kept."""
+    return UNIT * FAMILIES[law.name.split(" by ", 1)[1]][1](d)
+
+
+def speeds(d: Bounces) -> np.ndarray:
+    """Speeds (n, 2) before, towards the wall and along it [m/s]."""
+    return np.stack([d.closing, d.split(d.before)[:, 1]], axis=1)
+
+
+def _std(problem: WallProblem) -> np.ndarray:
+    """Noise (n, 2) [m/s] of the velocity after less the one foretold."""
+    white = problem.whitened(np.tile(np.eye(2), (len(problem.data), 1, 1))).reshape(-1, 2, 2)
+    inverse = np.linalg.inv(white)
+    return np.sqrt(np.einsum("nij,nij->ni", inverse, inverse))
+
+
+def _misses(problem: WallProblem, values: Mapping[str, float]) -> np.ndarray:
+    """Residuals (n, 2) of a law in units of the noise."""
+    return problem.residuals(values, (), np.arange(problem.clusters)).r.reshape(-1, 2)
+
+
+def _curve(problem: WallProblem, found: Explained, view: View, formula: Formula | None = None) -> Curve:
+    """A view of the final law, smooth part and all, and of the data."""
+    d, at = problem.data, view.component
+    going = speeds(d)[:, at]
+    use = np.isfinite(view.coordinate) & (np.abs(going) > SLOWEST)
+    if found.final.values.get("wall_mu", 0.0) > 0.0:
+        use &= ~d.lost  # of a puck whose spin is unknown
+    safe = np.where(use, going, np.nan)
+    law, columns, spread = _kept(problem, found, at, safe)
+    seen, std = d.split(d.after)[:, at] / safe, _std(problem)[:, at] / np.abs(safe)
+    x, rows = view.coordinate[use], np.flatnonzero(use)
+    points = binned(x, seen[rows], std[rows])
+    if view.ticks:
+        points = over(np.array([x == k for k in range(len(view.ticks)) if (x == k).any()]), x, seen[rows], std[rows])
+    shape = over(points.members, x, law[rows], std[rows])
+    half = half_band(shape, std[rows], columns[rows], spread)
+    said = None
+    if formula is not None:
+        moved = zip(found.final.free, formula.moved, strict=True)
+        beside = {name: found.final.values[name] + float(by) for name, by in moved}
+        plain = problem.predicted({**found.final.values, **beside})[:, at]
+        with_it = (plain + formula.form.field(formula.values)[:, at]) / safe
+        said = over(points.members, x, with_it[rows], std[rows]).y
+    return Curve(
+        view.label, KEPT[at], shape.x, shape.y, shape.y - half, shape.y + half, points.x, points.y, points.error,
+        view.ticks, said,
+    )  # fmt: skip
+
+
+def _kept(problem: WallProblem, found: Explained, at: int, speeds: np.ndarray):
+    """The share (n,) of a component that the final law keeps, its slopes (n, f) by what was fitted, the covariance of
+    that."""
+    values, spread = found.final.values, found.final.covariance
+    plain = problem.predicted(values)[:, at] / speeds
+    slopes = []
+    for k, name in enumerate(found.final.free):
+        step = max(0.1 * float(np.sqrt(spread[k, k])), 1e-6)
+        step = step if values[name] + step < BY_NAME[name].high else -step
+        slopes.append((problem.predicted({**values, name: values[name] + step})[:, at] / speeds - plain) / step)
+    columns = np.stack(slopes, axis=1)
+    if found.unlisted is None:
+        return plain, columns, spread
+    weights = _smooth(problem.data, found.unlisted) * float(at == acted_on(found.unlisted))
+    smooth = weights @ found.theta[-weights.shape[1] :]
+    return plain + smooth, np.concatenate([columns, weights], axis=1), found.theta_covariance

@@ -1,0 +1,165 @@
+"""The report as a browser and a reader would have it: whole, safe, self-contained, and true to diagnosis.json."""
+
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+
+from sim2real.diagnose.diagnosis import Diagnosis
+from sim2real.diagnose.files import as_dict, write
+from sim2real.diagnose.finding import Account, Curve, Estimate, Finding, Parting, Proof, Rival, Sight
+from sim2real.diagnose.report.page import page
+
+VOID = {"meta", "br", "img", "link", "input", "hr"}
+SIGHT = Sight("monday <script>alert(1)</script>", 61.5, 7380, 0.00061, 0.0002, 0.012, 0.004, 0.001, 12, 80, 66, 3,
+              ("frames.csv: 2 positions <b>far</b> outside",))  # fmt: skip
+RANGES = ((-180, 180), (-0.02, 0.02), (-0.03, 0.01), (-0.01, 0.03), (-170, 170), (-0.02, 0.02), (0.001, 0.001))
+X, Y, LOW, HIGH, DATA_X, DATA_Y, ERROR = (np.linspace(low, high, 9) for low, high in RANGES)
+CURVE = Curve("heading [°]", "acceleration [m/s²]", X, Y, LOW, HIGH, DATA_X, DATA_Y, ERROR)
+TILT = Finding(
+    "glide", "table_tilt", (), ("heading",), "a = (tilt_x, tilt_y)",
+    {"tilt_x": Estimate(0.020018, 0.019931, 0.020105, "m/s^2")}, 1e-30, 5.2917, 0.99243,
+    rivals=(Rival("push by time", 398.7, "explains 99 % of what the winner does"),), curve=CURVE,
+)  # fmt: skip
+
+
+class Reader(HTMLParser):
+    """Checks that tags close in order, and gathers text, tags and what is referred to."""
+
+    def __init__(self, html: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.words: list[str] = []
+        self.feed(html)
+        self.close()
+        assert not self.open
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.words.append(data)
+
+    @property
+    def text(self) -> str:
+        return " ".join(" ".join(self.words).split())
+
+    @property
+    def sections(self) -> list[str | None]:
+        return [attrs.get("id") for tag, attrs in self.tags if tag == "section"]
+
+
+def _parting(n: int = 60) -> Parting:
+    rng = np.random.default_rng(0)
+    before, after = rng.normal(0.02, 0.01, (n, 2)), rng.normal(0.0, 0.01, (n, 2))
+    axis = np.stack([np.cos(k := rng.uniform(-3, 3, n)), np.sin(k)], axis=1)
+    by = {"speed [m/s]": rng.uniform(0, 2, n), "time [s]": np.full(n, np.nan)}
+    place = rng.uniform((0, 0), (2, 1), (n, 2))
+    std = np.full((n, 2), 0.01)
+    return Parting("acceleration", "m/s²", ("along", "left"), before, after, std, by, place, axis, (2.0, 1.0))
+
+
+def _glide(findings=(), shipped=False, undetermined="", further="", parting=None) -> Account:
+    baseline = {} if undetermined else {"friction": Estimate(0.12511, 0.12498, 0.12524, "m/s^2")}
+    proof = None if undetermined else Proof(0.0032071, 0.00060132, 0.00060594, 10)
+    return Account("glide", findings, baseline, shipped, proof, undetermined, further, parting)
+
+
+DIAGNOSES = {
+    "agrees": Diagnosis((_glide(shipped=True, parting=_parting()),), sights=(SIGHT,)),
+    "parameters_only": Diagnosis((_glide(),), sights=(SIGHT,)),
+    "missing_physics": Diagnosis((_glide((TILT,), parting=_parting()),), sights=(SIGHT, SIGHT)),
+    "undetermined": Diagnosis((_glide(undetermined="too little data", further="record a minute"),), sights=(SIGHT,)),
+}
+
+
+@pytest.mark.parametrize("verdict", DIAGNOSES)
+def test_every_verdict_has_its_page(verdict):
+    diagnosis = DIAGNOSES[verdict]
+    assert diagnosis.verdict == verdict
+    read = Reader(page(diagnosis))
+    assert [s for s in read.sections if s and "finding" not in s] == ["overview", "next", "regime-glide", "sensor"]
+    assert ("finding-1" in read.sections) == (verdict == "missing_physics")
+    assert [tag for tag, _ in read.tags].count("h1") == 1
+    assert verdict.replace("_", " ") in read.text
+
+
+def test_a_diagnosis_of_nothing_says_why():
+    read = Reader(page(Diagnosis((), "the puck never moves")))
+    assert "the puck never moves" in read.text and "What to record next" in read.text
+
+
+@pytest.mark.parametrize("verdict", DIAGNOSES)
+def test_nothing_is_fetched(verdict):
+    html = page(DIAGNOSES[verdict])
+    for tag, attrs in Reader(html).tags:
+        assert tag not in ("script", "link", "iframe", "object", "embed", "base")
+        for name in ("src", "href", "xlink:href", "action", "data"):
+            value = attrs.get(name)
+            assert value is None or value.startswith(("#", "data:"))
+    assert not re.search(r"https?:|url\(|@import|javascript:", html)
+    assert len(html) < 3_000_000
+
+
+def test_names_and_notes_are_text_and_no_markup():
+    hostile = '"><script>alert(1)</script><img src=x onerror=y>'
+    finding = replace(TILT, formula=hostile, mechanism="unlisted", where={hostile: [hostile]}, depends_on=(hostile,))
+    rival = replace(finding, rivals=(Rival(hostile, 1.0, hostile),), also_possible=(hostile,))
+    account = replace(_glide((rival,), further=hostile), undetermined=hostile)
+    html = page(Diagnosis((account,), hostile, (replace(SIGHT, recording=hostile, notes=(hostile,)),)))
+    read = Reader(html)
+    assert not {"script", "img"} & {tag for tag, _ in read.tags}
+    assert hostile in read.text
+
+
+def test_the_numbers_are_those_of_the_diagnosis():
+    diagnosis = DIAGNOSES["missing_physics"]
+    words, text = as_dict(diagnosis), Reader(page(diagnosis)).text
+    shown = [*words["baseline"]["parameters"].values(), *words["findings"][0]["parameters"].values()]
+    for one in shown:
+        for key in ("value", "low", "high"):
+            assert f"{one[key]:.4g}" in text
+    for key in ("before_m", "after_m", "floor_m"):
+        assert f"{1e3 * words['heldout'][key]:.4g} mm" in text
+    assert f"from {words['findings'][0]['heldout']['before']:.4g} to" in text
+    assert "push by time" in text and "explains 99 %" in text
+
+
+def test_pictures_and_tables_speak_to_those_who_do_not_see_them():
+    read = Reader(page(DIAGNOSES["missing_physics"]))
+    pictures = [attrs for tag, attrs in read.tags if tag == "svg" and "x" not in attrs]
+    assert len(pictures) >= 5
+    assert all(attrs.get("role") == "img" and attrs.get("aria-label") for attrs in pictures)
+    tags = [tag for tag, _ in read.tags]
+    assert tags.count("table") == tags.count("caption") == tags.count("thead")
+    assert all(attrs.get("scope") in ("row", "col") for tag, attrs in read.tags if tag == "th")
+
+
+def test_the_sensor_is_told_by_recording():
+    blind = replace(SIGHT, recording="blind", frames=0)
+    read = Reader(page(replace(DIAGNOSES["agrees"], sights=(SIGHT, blind))))
+    assert "noise of a position [mm] 0.61 –" in read.text
+    assert "frames without the puck 1.20 % –" in read.text and "frames 7380 0" in read.text
+
+
+def test_what_is_ambiguous_is_said():
+    finding = replace(TILT, also_possible=("table_warp",))
+    read = Reader(page(Diagnosis((_glide((finding,), further="record slow glides"),), sights=(SIGHT,))))
+    assert "Also possible: table_warp" in read.text and "record slow glides" in read.text
+
+
+def test_the_page_is_written_whole_beside_the_rest(tmp_path):
+    written = write(DIAGNOSES["missing_physics"], tmp_path)
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(path.name for path in written)
+    assert (tmp_path / "report.html").read_text(encoding="utf-8") == page(DIAGNOSES["missing_physics"])
