@@ -11,7 +11,7 @@ import numpy as np
 from sim2real.diagnose.report.words import text
 
 BEFORE, AFTER, INK, FAINT, GRID = "#D55E00", "#0072B2", "#1a1a1a", "#b0b0b0", "#e5e5e5"
-LEFT, RIGHT, TOP, BOTTOM = 58, 10, 10, 36
+LEFT, RIGHT, TOP, BOTTOM = 68, 10, 10, 36
 LETTER = 6.2  # width of one at the font's size
 
 

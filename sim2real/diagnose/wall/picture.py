@@ -43,7 +43,7 @@ def parting(problem: WallProblem, found: Explained) -> Parting:
         after[:, component] -= speeds(d)[:, component] * (weights @ found.theta[-weights.shape[1] :])
     by = {label: column for label, column in coordinates(d).values()}
     return Parting(
-        "velocity after the bounce", "m/s", ("along the wall's normal", "along the wall"), before, after, std, by,
+        "velocity after the bounce", "m/s", ("normal", "along the wall"), before, after, std, by,
         d.place, d.normal, problem.size,
     )  # fmt: skip
 
