@@ -117,7 +117,7 @@ def test_names_and_notes_are_text_and_no_markup():
     finding = replace(TILT, formula=hostile, mechanism="unlisted", where={hostile: [hostile]}, depends_on=(hostile,))
     rival = replace(finding, rivals=(Rival(hostile, 1.0, hostile),), also_possible=(hostile,))
     account = replace(_glide((rival,), further=hostile), undetermined=hostile)
-    html = page(Diagnosis((account,), hostile, (replace(SIGHT, recording=hostile, notes=(hostile,)),)))
+    html = page(Diagnosis((account,), hostile, sights=(replace(SIGHT, recording=hostile, notes=(hostile,)),)))
     read = Reader(html)
     assert not {"script", "img"} & {tag for tag, _ in read.tags}
     assert hostile in read.text
