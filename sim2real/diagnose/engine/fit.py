@@ -14,6 +14,7 @@ from sim2real.diagnose.finding import Estimate
 from sim2real.diagnose.problem import Problem
 
 ROUNDS = 40
+CONVERGED = 1e-3  # drop of the sum of squares, in units of what a residual has left, at which a fit ends
 HALVINGS = 3  # of a step that leads uphill, before it is bent downhill
 
 
@@ -41,7 +42,9 @@ class Fit:
         return Estimate(value, value - half, value + half, BY_NAME[name].unit)
 
 
-def fit(problem: Problem, values: Mapping[str, float], free: Sequence[str], clusters: np.ndarray) -> Fit:
+def fit(
+    problem: Problem, values: Mapping[str, float], free: Sequence[str], clusters: np.ndarray, rounds: int = ROUNDS
+) -> Fit:
     """Fit the parameters `free` to the residuals of `clusters`, starting from `values`; the others stay."""
     free = tuple(free)
     now = dict(values)
@@ -51,7 +54,7 @@ def fit(problem: Problem, values: Mapping[str, float], free: Sequence[str], clus
     columns, everything = np.arange(len(free)), np.arange(problem.clusters)
     loss, damping, grams, halved = np.inf, 1e-6, None, 0
     best = at
-    for _ in range(ROUNDS):
+    for _ in range(rounds):
         now.update(zip(free, map(float, at), strict=True))
         found = problem.residuals(now, free, clusters)
         fresh = float(found.r @ found.r)
@@ -59,7 +62,7 @@ def fit(problem: Problem, values: Mapping[str, float], free: Sequence[str], clus
             grams = gram.make_grams(free, found.r, found.jacobian, found.cluster, problem.clusters)
             gained, loss, best = loss - fresh, fresh, at
             damping, halved = damping * 0.1, 0
-            if gained < 1e-3:
+            if gained < CONVERGED * max(1.0, loss / max(len(found.r), 1)):
                 break
         elif halved < HALVINGS:
             at, halved = 0.5 * (best + at), halved + 1

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics.effects import motor_deadband, voltage_sag
+from puckpilot_env.physics.effects import clock_drift, motor_deadband, voltage_sag
 from sim2real.recording import Stream
 
 WRITTEN_TO = 1e-6  # s, to which the switching times of a plan are usually written
@@ -31,10 +31,10 @@ class Orders:
     tick: float = 0.0
 
     def at_motors(self, p: np.void) -> tuple[np.ndarray, np.ndarray]:
-        """`(t (m,) [s], volts (m, 2) [V])` that reach the motors under the parameters `p`, a record of RECORD."""
+        """`(t (m,) [s of the encoders' clock], volts (m, 2) [V])` at the motors under `p`, a record of RECORD."""
         volts = np.empty_like(self.volts)
         _deliver(p, self.volts, self.load, volts)
-        return self._heeded(self.t + p["command_delay"]), volts
+        return self._heeded(self.t + p["command_delay"]) * clock_drift.pace(p), volts
 
     def loose(self, p: np.void) -> np.ndarray:
         """Indices of the switches so near to a tick that, as written, they may belong to the one before or after."""

@@ -9,12 +9,14 @@ import numpy as np
 from puckpilot_env.parameters import BY_NAME, make_records
 from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.engine.choose import Law
+from sim2real.diagnose.gantry.candidates import Candidate, candidates
 from sim2real.diagnose.gantry.laws import gantry_columns
 from sim2real.diagnose.gantry.run import Run, read_run
 from sim2real.diagnose.gantry.tick import find_tick
 from sim2real.diagnose.problem import Columns, Residuals
 from sim2real.recording import Recording
 
+TWINS = {"b1": "a1", "b2": "a2", "b3": "a3"}
 STEP = 1e-6  # of a parameter's size, for its derivative
 FAR = 1e6
 SMALLEST_SIZE = 1e-3  # of a parameter's range, where it is zero
@@ -38,6 +40,9 @@ class GantryProblem:
         self.noise_m = float(np.sqrt(np.mean(np.concatenate([run.noise for run in runs]) ** 2)))
         self.proof = np.zeros(0, int) if proof is None else proof
         self.seen = np.setdiff1d(np.arange(self.clusters), self.proof)
+        self._candidates: list[Candidate] | None = None
+        sizes = [len(run.windows.rows) for run in runs]
+        self._sign = np.concatenate([np.repeat((-1.0, 1.0), size) for size in sizes])
         self.cluster = np.concatenate([a + run.cluster_of_rows() for a, run in zip(self.first, runs, strict=False)])
 
     def of(self, runs: Sequence[Run]) -> GantryProblem:
@@ -56,19 +61,36 @@ class GantryProblem:
         r = self._path(p)
         jacobian = np.empty((len(r), len(free)))
         for k, name in enumerate(free):
-            step = _step(name, float(p[name]))
-            moved, late = p.copy(), 0.0
-            if name == "command_delay":
-                late = step  # of the changes themselves: ticks would make it a staircase
-            else:
-                moved[name] += step
-            jacobian[:, k] = (self._path(moved, late) - r) / step
+            twin = TWINS.get(name)  # x feels the difference of the two, y their sum
+            jacobian[:, k] = self._sign * jacobian[:, free.index(twin)] if twin in free else self._slope(p, name, r)
         here = np.isin(self.cluster, clusters)
         return Residuals(r[here], jacobian[here], self.cluster[here])
+
+    def _slope(self, p: np.void, name: str, r: np.ndarray) -> np.ndarray:
+        """The residuals' derivative by a parameter; `r` at `p` itself."""
+        step = _step(name, float(p[name]))
+        moved, late = p.copy(), 0.0
+        if name == "command_delay":
+            late = step  # of the changes themselves: ticks would make it a staircase
+        else:
+            moved[name] += step
+        return (self._path(moved, late) - r) / step
 
     def columns(self, values: Mapping[str, float]) -> Columns:
         """See `Problem.columns`."""
         return gantry_columns(self, values)
+
+    def candidates(self, values: Mapping[str, float]) -> list[Candidate]:
+        """The listed effects, fitted on top of the baseline at `values`: once, for the law first asked."""
+        if self._candidates is None:
+            self._candidates = candidates(self, values)
+        return self._candidates
+
+    @property
+    def seen_windows(self) -> np.ndarray:
+        """Indices, through all runs, of the windows in the clusters `seen`."""
+        cluster = np.concatenate([a + run.windows.cluster for a, run in zip(self.first, self.runs, strict=False)])
+        return np.flatnonzero(np.isin(cluster, self.seen))
 
     def rows(self, law: Law) -> tuple[str, ...]:
         """See `Problem.rows`."""

@@ -69,7 +69,7 @@ class Run:
         changes, volts = self.orders.at_motors(p)
         loose = self.orders.loose(p)
         everything = np.ones(len(self.windows.begin), bool)
-        rows, found = self.rows(), []
+        rows, found = self.windows.rows, []
         for axis in range(2):
             out = np.empty((len(self.t), 1 + extra.shape[2]))
             columns = (self.seen[:, axis], 1.0 / self.noise[:, axis])
@@ -79,11 +79,6 @@ class Run:
             )  # fmt: skip
             found.append(out[rows])
         return np.concatenate(found)
-
-    def rows(self) -> np.ndarray:
-        """The samples of all windows, in order."""
-        pairs = zip(self.windows.begin, self.windows.end, strict=True)
-        return np.concatenate([np.arange(a, b) for a, b in pairs])
 
     def cluster_of_rows(self) -> np.ndarray:
         """The cluster of each row of `residuals`."""

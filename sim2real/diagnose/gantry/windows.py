@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -21,6 +22,11 @@ class Windows:
     begin: np.ndarray
     end: np.ndarray
     cluster: np.ndarray
+
+    @cached_property
+    def rows(self) -> np.ndarray:
+        """The samples of all windows, in order."""
+        return np.concatenate([np.arange(a, b) for a, b in zip(self.begin, self.end, strict=True)])
 
     @property
     def clusters(self) -> int:

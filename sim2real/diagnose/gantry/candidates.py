@@ -1,0 +1,123 @@
+"""Listed effects that the mallet's path may ask for, each fitted as it is, with the baseline beside it.
+
+The mallet is followed so finely that no effect is a small change: its column is how the residuals differ between the
+best fit without it and the best fit with it. On top of the best effect every other is tried, while anything is left.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from puckpilot_env.parameters import BY_NAME
+from puckpilot_env.physics.effects import EFFECTS
+from sim2real.diagnose.engine import gram
+from sim2real.diagnose.engine.choose import LEAST_FIT
+from sim2real.diagnose.engine.fit import Fit, fit
+
+if TYPE_CHECKING:
+    from sim2real.diagnose.gantry.problem import GantryProblem
+
+# where fits of an effect start; of several, the best looking by their derivatives are followed up
+STARTS: dict[str, tuple[dict[str, float], ...]] = {
+    "voltage_sag": ({},),
+    "motor_deadband": ({},),
+    "command_delay": tuple({"command_delay": late} for late in (0.002, 0.01, 0.03)),
+    "belt_compliance": tuple({"belt_hz": hz, "belt_zeta": 0.15} for hz in (5.0, 8.0, 12.0, 18.0, 28.0, 45.0)),
+    "backlash": tuple({"backlash_gap": gap} for gap in (2e-4, 7e-4, 2e-3)),
+    "clock_drift": tuple({"encoder_clock": ppm} for ppm in (-1000.0, -300.0, 300.0, 1000.0)),
+}
+RIVALS = {"belt_compliance": "backlash", "backlash": "belt_compliance"}  # either gives between motor and mallet
+FOLLOWED, ROUNDS = 2, 15
+SAMPLES = 2500  # for the fits of each effect; the chosen law is fitted anew to all
+MOST = 3  # effects on top of each other
+LITTLE_LEFT = 1.05  # mean square in units of the noise, at which nothing more is looked for
+MUCH_LEFT = 2.0  # mean square at which the effects found must at least explain the share SHARE of what was left before
+SHARE = 0.9
+SURE = 3.0  # standard deviations that an effect's size is from none
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An effect on top of those `beside` it; `law` is the best fit, `column` (n,) its change of the residuals."""
+
+    name: str
+    beside: tuple[str, ...]
+    law: Fit
+    column: np.ndarray
+
+    @property
+    def label(self) -> str:
+        """A name for the column, unlike any parameter's."""
+        return " beside ".join((f"+ {self.name}", *self.beside))
+
+
+def candidates(problem: GantryProblem, values: Mapping[str, float]) -> list[Candidate]:
+    """The effects that stand at a fit; none where even the best ones leave much of what the baseline at `values` does.
+
+    A law whose fit ends at a bound of its range, or whose size is not surely there, stands for something else.
+    """
+    thin = problem.thinned(SAMPLES)
+    freedom = float(thin.freedom[thin.seen].sum())
+    law = base = fit(thin, values, thin.base, thin.seen)
+    chain: tuple[str, ...] = ()
+    found = []
+    while len(chain) < MOST and law.loss > LITTLE_LEFT * freedom:
+        names = [name for name in STARTS if name not in chain and RIVALS.get(name) not in chain]
+        fits = {name: best_fit(thin, law, name) for name in names}
+        fits = {name: one for name, one in fits.items() if stands(thin, law, one, name)}
+        if not fits:
+            break
+        before = _all(problem, law)
+        found += [Candidate(name, chain, one, _all(problem, one) - before) for name, one in fits.items()]
+        best = min(fits, key=lambda name: fits[name].loss)
+        chain, law = (*chain, best), fits[best]
+    unexplained = law.loss - freedom > (1.0 - SHARE) * (base.loss - freedom)
+    return [] if law.loss > MUCH_LEFT * freedom and unexplained else found
+
+
+def stands(problem: GantryProblem, without: Fit, law: Fit, name: str) -> bool:
+    """Whether an effect's fit `law` is inside its range, surely not at none, and better than chance would make it."""
+    rows = effect_rows(name)
+    if set(law.bound) & set(rows):
+        return False
+    sizes = [abs(law.values[row] - BY_NAME[row].default) > SURE * _std(law, row) for row in rows]
+    spare = 4.0 * len(problem.seen_windows) if name == "belt_compliance" else 0.0  # its ringing starts free
+    noise = max(law.loss / float(problem.freedom[problem.seen].sum()), 1.0)
+    return any(sizes) and (without.loss - law.loss) / noise > LEAST_FIT + 2.0 * len(rows) + spare
+
+
+def best_fit(problem: GantryProblem, law: Fit, name: str) -> Fit:
+    """The best fit of an effect on top of `law`, all whose free parameters stay free."""
+    free = (*law.free, *effect_rows(name))
+    starts = [{**law.values, **start} for start in STARTS[name]]
+    if len(starts) > FOLLOWED:
+        starts.sort(key=lambda start: promise(problem, start, free))
+    fits = [fit(problem, start, free, problem.seen, ROUNDS) for start in starts[:FOLLOWED]]
+    return min(fits, key=lambda one: one.loss)
+
+
+def effect_rows(name: str) -> tuple[str, ...]:
+    """The parameters of an effect."""
+    return tuple(row.name for row in EFFECTS[name].rows.values())
+
+
+def _std(law: Fit, row: str) -> float:
+    k = law.free.index(row)
+    return float(np.sqrt(law.covariance[k, k]))
+
+
+def _all(problem: GantryProblem, law: Fit) -> np.ndarray:
+    return problem.residuals(law.values, (), np.arange(problem.clusters)).r
+
+
+def promise(problem: GantryProblem, start: Mapping[str, float], free: Sequence[str]) -> float:
+    """What a law would leave if it were as its derivatives at `start` say."""
+    found = problem.residuals(start, free, problem.seen)
+    sums = gram.make_grams(free, found.r, found.jacobian, found.cluster, problem.clusters)
+    columns = np.arange(len(free))
+    theta = gram.solve(sums, columns, problem.seen)
+    return float(gram.losses(sums, columns, theta, problem.seen).sum())
