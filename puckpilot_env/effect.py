@@ -30,6 +30,7 @@ class Effect:
     `regime`: glide, wall, corner, mallet, gantry or sensing. `law`: the formula, in words that a report can print.
     `rows`: the parameters, keyed by the short names that a diagnosis gives them. `depends_on`: what the force or the
     impulse depends on (position, speed, heading, time, history, command). `excited_by`: the recording that shows it.
+    `not_simulated`: why no table can be given it, "" if it can; the diagnosis alone knows such an effect.
     """
 
     regime: str
@@ -38,3 +39,4 @@ class Effect:
     depends_on: tuple[str, ...]
     excited_by: str
     source: str
+    not_simulated: str = ""

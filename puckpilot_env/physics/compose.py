@@ -12,6 +12,8 @@ An effect's file has the hooks of its regime, every one a kernel; those that it 
 | mallet | `mallet_restitution(p, closing, e)` | restitution from that so far |
 | mallet | `mallet_impulse(p, impulse)` | normal impulse [m/s] from that so far |
 | mallet | `mallet_tangent(p, impulse, along, spin, after)` | (tangential speed, spin), relative to the mallet |
+| gantry | `loses(p)` | whether less arrives at the motors than a plan asks for; goes with the next |
+| gantry | `delivered(p, volts, load)` | volts at a motor from those so far; `load` = abs(V_x) + abs(V_y) as asked for |
 
 `t` [s] is the time of the episode, (x, y) [m] a place, spin [rad/s] counter-clockwise, `closing` [m/s] > 0 the normal
 speed before; the tangent is the normal turned counter-clockwise. Impulses are per unit mass of the puck.
@@ -101,6 +103,14 @@ def _mallet_tangent(first: Hook, second: Hook) -> Hook:
     return both
 
 
+def _delivered(first: Hook, second: Hook) -> Hook:
+    @inner
+    def both(p, volts, load):
+        return second(p, first(p, volts, load), load)
+
+    return both
+
+
 is_forced = reduce(_either, _hooks("is_on"))
 acceleration = reduce(_sum, _hooks("acceleration"))
 friction = reduce(_friction, _hooks("friction"))
@@ -109,3 +119,5 @@ tangent = reduce(_tangent, _hooks("tangent"))
 mallet_restitution = reduce(_mallet_restitution, _hooks("mallet_restitution"))
 mallet_impulse = reduce(_mallet_impulse, _hooks("mallet_impulse"))
 mallet_tangent = reduce(_mallet_tangent, _hooks("mallet_tangent"))
+loses = reduce(_either, _hooks("loses"))
+delivered = reduce(_delivered, _hooks("delivered"))

@@ -51,12 +51,14 @@ def _estimate(one: Estimate) -> dict[str, Any]:
 
 
 def effects_toml(diagnosis: Diagnosis) -> str:
-    """The refitted baseline and the effects found, as the simulator takes them."""
+    """The refitted baseline and the effects found, as the simulator takes them; what it cannot take, as a comment."""
     lines = [f'format = "{EFFECTS_FORMAT}"', "", "[parameters]"]
     for each in diagnosis.accounts:
         lines += [f"{name} = {one.value!r}" for name, one in each.baseline.items()]
     for one in diagnosis.findings:
-        if one.mechanism in EFFECTS:
+        if one.mechanism in EFFECTS and EFFECTS[one.mechanism].not_simulated:
+            lines += ["", f"# {one.mechanism} is left out: {EFFECTS[one.mechanism].not_simulated}"]
+        elif one.mechanism in EFFECTS:
             label = {row.name: key for key, row in EFFECTS[one.mechanism].rows.items()}
             lines += ["", f"[effects.{one.mechanism}]"]
             lines += [f"{label[name]} = {float(value)!r}" for name, value in one.values.items() if name in label]

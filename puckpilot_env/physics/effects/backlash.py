@@ -14,6 +14,7 @@ EFFECT = Effect(
     depends_on=("history",),
     excited_by="many reversals of each axis",
     source="play operator",
+    not_simulated="a mallet that lags its motors has no plan in closed form",
 )
 
 

@@ -10,10 +10,13 @@ _SOURCE = "crystals of two computers: tens of ppm; a wrong divider: thousands"
 EFFECT = Effect(
     regime="sensing",
     law="t_encoders = t (1 + 1e-6 ppm)",
-    rows={"ppm": Parameter("encoder_clock", "ppm", 0.0, -5000.0, 5000.0, "by which the encoders' clock is fast", _SOURCE)},
+    rows={
+        "ppm": Parameter("encoder_clock", "ppm", 0.0, -5000.0, 5000.0, "by which the encoders' clock is fast", _SOURCE)
+    },
     depends_on=("time",),
     excited_by="a mallet that moves all the time, for minutes, with plans and encoders stamped by their own clocks",
     source="two clocks that were set alike once",
+    not_simulated="the simulator has one clock",
 )
 
 

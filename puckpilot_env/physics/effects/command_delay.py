@@ -13,4 +13,5 @@ EFFECT = Effect(
     depends_on=("command",),
     excited_by="plans that change while the mallet moves, with the encoders' and the plans' clocks in step",
     source="transport delay",
+    not_simulated="its plans begin where the mallet is when they are made",
 )

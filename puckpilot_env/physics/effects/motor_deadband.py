@@ -20,6 +20,12 @@ EFFECT = Effect(
 
 
 @kernel
-def delivered(p, volts):
+def loses(p):
+    """Whether any volts are lost."""
+    return p.motor_deadband != 0.0
+
+
+@kernel
+def delivered(p, volts, load):
     """What is left [V] of `volts`."""
     return math.copysign(max(abs(volts) - p.motor_deadband, 0.0), volts)

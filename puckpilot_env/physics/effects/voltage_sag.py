@@ -18,6 +18,12 @@ EFFECT = Effect(
 
 
 @kernel
+def loses(p):
+    """Whether the supply sags."""
+    return p.voltage_sag != 0.0
+
+
+@kernel
 def delivered(p, volts, load):
     """What arrives [V] of `volts` while both axes together ask for `load` = |V_x| + |V_y| [V]."""
     return volts / (1.0 + p.voltage_sag * load)

@@ -26,18 +26,30 @@ STARTS: dict[str, tuple[dict[str, float], ...]] = {
     "voltage_sag": ({},),
     "motor_deadband": ({},),
     "command_delay": tuple({"command_delay": late} for late in (0.002, 0.01, 0.03)),
-    "belt_compliance": tuple({"belt_hz": hz, "belt_zeta": 0.15} for hz in (5.0, 8.0, 12.0, 18.0, 28.0, 45.0)),
+    "belt_compliance": tuple({"belt_hz": hz, "belt_zeta": 0.15} for hz in (5.0, 8.0, 12.0, 18.0, 28.0, 42.0)),
     "backlash": tuple({"backlash_gap": gap} for gap in (2e-4, 7e-4, 2e-3)),
     "clock_drift": tuple({"encoder_clock": ppm} for ppm in (-1000.0, -300.0, 300.0, 1000.0)),
 }
 RIVALS = {"belt_compliance": "backlash", "backlash": "belt_compliance"}  # either gives between motor and mallet
+PLAIN = ("a2", "a3", "b2", "b3")
 FOLLOWED, ROUNDS = 2, 15
-SAMPLES = 2500  # for the fits of each effect; the chosen law is fitted anew to all
+SAMPLES = 3000  # for the fits of each effect; the chosen law is fitted anew to all
 MOST = 3  # effects on top of each other
-LITTLE_LEFT = 1.05  # mean square in units of the noise, at which nothing more is looked for
+LITTLE_LEFT = 1.1  # mean square in units of the noise, at which nothing more is looked for
 MUCH_LEFT = 2.0  # mean square at which the effects found must at least explain the share SHARE of what was left before
 SHARE = 0.9
 SURE = 3.0  # standard deviations that an effect's size is from none
+
+
+@dataclass(frozen=True)
+class Staged:
+    """A law fitted with the jerk's coefficients at the table's usual ones, `plain`, and then with them free, `law`.
+
+    Free at once, they run off to stand for whatever else is late or soft.
+    """
+
+    plain: Fit
+    law: Fit
 
 
 @dataclass(frozen=True)
@@ -56,27 +68,27 @@ class Candidate:
 
 
 def candidates(problem: GantryProblem, values: Mapping[str, float]) -> list[Candidate]:
-    """The effects that stand at a fit; none where even the best ones leave much of what the baseline at `values` does.
+    """The effects that stand at a fit, started at `values`; none where the best leave much of what the baseline does.
 
     A law whose fit ends at a bound of its range, or whose size is not surely there, stands for something else.
     """
     thin = problem.thinned(SAMPLES)
     freedom = float(thin.freedom[thin.seen].sum())
-    law = base = fit(thin, values, thin.base, thin.seen)
+    now = base = _staged(thin, [values], ())
     chain: tuple[str, ...] = ()
     found = []
-    while len(chain) < MOST and law.loss > LITTLE_LEFT * freedom:
+    while len(chain) < MOST and now.law.loss > LITTLE_LEFT * freedom:
         names = [name for name in STARTS if name not in chain and RIVALS.get(name) not in chain]
-        fits = {name: best_fit(thin, law, name) for name in names}
-        fits = {name: one for name, one in fits.items() if stands(thin, law, one, name)}
+        fits = {name: best_fit(thin, now, name) for name in names}
+        fits = {name: one for name, one in fits.items() if stands(thin, now.law, one.law, name)}
         if not fits:
             break
-        before = _all(problem, law)
-        found += [Candidate(name, chain, one, _all(problem, one) - before) for name, one in fits.items()]
-        best = min(fits, key=lambda name: fits[name].loss)
-        chain, law = (*chain, best), fits[best]
-    unexplained = law.loss - freedom > (1.0 - SHARE) * (base.loss - freedom)
-    return [] if law.loss > MUCH_LEFT * freedom and unexplained else found
+        before = _all(problem, now.law)
+        found += [Candidate(name, chain, one.law, _all(problem, one.law) - before) for name, one in fits.items()]
+        best = min(fits, key=lambda name: fits[name].law.loss)
+        chain, now = (*chain, best), fits[best]
+    unexplained = now.law.loss - freedom > (1.0 - SHARE) * (base.law.loss - freedom)
+    return [] if now.law.loss > MUCH_LEFT * freedom and unexplained else found
 
 
 def stands(problem: GantryProblem, without: Fit, law: Fit, name: str) -> bool:
@@ -90,14 +102,20 @@ def stands(problem: GantryProblem, without: Fit, law: Fit, name: str) -> bool:
     return any(sizes) and (without.loss - law.loss) / noise > LEAST_FIT + 2.0 * len(rows) + spare
 
 
-def best_fit(problem: GantryProblem, law: Fit, name: str) -> Fit:
-    """The best fit of an effect on top of `law`, all whose free parameters stay free."""
-    free = (*law.free, *effect_rows(name))
-    starts = [{**law.values, **start} for start in STARTS[name]]
+def best_fit(problem: GantryProblem, without: Staged, name: str) -> Staged:
+    """The best fit of an effect on top of others, all of whose parameters stay free."""
+    rows = (*(row for row in without.plain.free if row not in problem.base), *effect_rows(name))
+    starts = [{**without.plain.values, **start} for start in STARTS[name]]
     if len(starts) > FOLLOWED:
-        starts.sort(key=lambda start: promise(problem, start, free))
-    fits = [fit(problem, start, free, problem.seen, ROUNDS) for start in starts[:FOLLOWED]]
-    return min(fits, key=lambda one: one.loss)
+        starts.sort(key=lambda start: promise(problem, start, (*PLAIN, *rows)))
+    return _staged(problem, starts[:FOLLOWED], rows)
+
+
+def _staged(problem: GantryProblem, starts: Sequence[Mapping[str, float]], rows: tuple[str, ...]) -> Staged:
+    """The best of the plain fits from `starts`, and from there the fit of everything."""
+    plain = [fit(problem, start, (*PLAIN, *rows), problem.seen, ROUNDS) for start in starts]
+    best = min(plain, key=lambda one: one.loss)
+    return Staged(best, fit(problem, best.values, (*problem.base, *rows), problem.seen, ROUNDS))
 
 
 def effect_rows(name: str) -> tuple[str, ...]:

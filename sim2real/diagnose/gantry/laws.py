@@ -24,7 +24,7 @@ def gantry_columns(problem: GantryProblem, values: Mapping[str, float]) -> Colum
     on = [row for row in rows if values.get(row, BY_NAME[row].default) != BY_NAME[row].default]
     off = [row for row in rows if row not in on]  # where a fit ended with them off, they stay so
     exact = problem.residuals(values, (*problem.base, *on), np.arange(problem.clusters))
-    found = problem.candidates(values)
+    found = problem.candidates()
     laws, shapes = families(problem, problem.record(values))
     names = [*problem.base, *on, *off, *(one.label for one in found), *(name for law in laws for name in law.columns)]
     columns = [exact.jacobian, np.zeros((len(exact.r), len(off))), *(one.column[:, None] for one in found), shapes]

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics.effects import clock_drift, motor_deadband, voltage_sag
+from puckpilot_env.physics import compose
+from puckpilot_env.physics.effects import clock_drift
 from sim2real.recording import Stream
 
 WRITTEN_TO = 1e-6  # s, to which the switching times of a plan are usually written
@@ -52,7 +53,7 @@ def _deliver(p, asked, load, volts):
     """`volts` (m, 2): what arrives of `asked` (m, 2) [V]."""
     for i in range(asked.shape[0]):
         for k in range(2):
-            volts[i, k] = voltage_sag.delivered(p, motor_deadband.delivered(p, asked[i, k]), load[i])
+            volts[i, k] = compose.delivered(p, asked[i, k], load[i])
 
 
 def from_commands(commands: Stream) -> Orders:
@@ -80,4 +81,7 @@ def from_drive(drive: Stream, supply: float) -> Orders:
     known = np.isfinite(left) & np.isfinite(right)
     volts = supply * np.column_stack([left - right, -(left + right)])[known]
     t = drive.t[known]
-    return Orders(t, volts, np.abs(volts).sum(axis=1), np.zeros(len(t), bool), float(t[-1]) if len(t) else 0.0)
+    end = float(t[-1]) if len(t) else 0.0
+    fresh = np.append(True, np.any(np.diff(volts, axis=0) != 0.0, axis=1))[: len(t)]
+    t, volts = t[fresh], volts[fresh]
+    return Orders(t, volts, np.abs(volts).sum(axis=1), np.zeros(len(t), bool), end)

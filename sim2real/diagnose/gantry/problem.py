@@ -80,11 +80,14 @@ class GantryProblem:
         """See `Problem.columns`."""
         return gantry_columns(self, values)
 
-    def candidates(self, values: Mapping[str, float]) -> list[Candidate]:
-        """The listed effects, fitted on top of the baseline at `values`: once, for the law first asked."""
+    def candidates(self) -> list[Candidate]:
+        """The listed effects that may be there, fitted once, from the simulator's own numbers."""
         if self._candidates is None:
-            self._candidates = candidates(self, values)
+            self._candidates = candidates(self, {name: self._shipped(name) for name in self.base})
         return self._candidates
+
+    def _shipped(self, name: str) -> float:
+        return float(self._common.get(name, BY_NAME[name].default))
 
     @property
     def seen_windows(self) -> np.ndarray:

@@ -26,7 +26,7 @@ WORLDS = (  # what the volts may lack, and then what may give between motor and 
 ENOUGH, SAMPLES = 16, 2000  # windows, and samples in them
 EXPLAINED = 0.05  # log of a window's mean square in units of the noise, below which nothing is lacking
 FOLLOWED, ROUNDS = 2, 15  # ticks that look best by the derivatives are fitted
-GAIN, SHARE = 0.5, 0.5  # of that log, and of what there is of it, either of which makes a tick believed
+SHARE = 0.3  # of that log, which a tick must explain to be believed
 
 
 def find_tick(problem: GantryProblem) -> float:
@@ -41,7 +41,7 @@ def find_tick(problem: GantryProblem) -> float:
         likely = sorted(TICKS, key=lambda tick: promise(parts[tick], law, free))[:FOLLOWED]
         found = {tick: _fitted(parts[tick], law)[1] for tick in likely}
         best = min(found, key=lambda tick: found[tick])
-        if left - found[best] > max(EXPLAINED, min(GAIN, SHARE * left)):
+        if left - found[best] > max(EXPLAINED, SHARE * left):
             return best
     return 0.0
 
