@@ -1,7 +1,7 @@
-"""What the motors do with a plan when less arrives than it asks for: the times as planned, with the volts that are left.
+"""What the motors do with a plan when less arrives than it asks for: its times, with the volts that are left.
 
-A plan is safe with its own volts. With fewer the mallet may still run when it was to stand, up to the rail that ends its
-area, which stops the axis dead.
+A plan is safe with its own volts. With fewer the mallet may still run when it was to stand, up to the rail that ends
+its area, which stops the axis dead.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ HALVINGS = 50  # of a time span, to find when an axis meets the rail
 
 @kernel
 def weaken(mallet, p, area, max_voltage):
-    """Give a mallet that was just planned the volts that arrive under `p`; `area`, `max_voltage` as in `plan_mallet`."""
+    """Give a mallet that was just planned the volts that arrive under `p`; the others as in `plan_mallet`."""
     load = abs(mallet.x.volts) + abs(mallet.y.volts)
     limit = 2.0 * (max_voltage - SMALLEST_VOLTAGE)
     _weaken_axis(mallet.x, compose.delivered(p, mallet.x.volts, load), area[0], area[1], limit)

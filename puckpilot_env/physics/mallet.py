@@ -7,7 +7,7 @@ three modes, `p = rest + slow + fast`: `rest` is where the mallet would come to 
     rest' = rest_gain u,   slow' = -slow_rate (slow + slow_gain u),   fast' = -fast_rate (fast - fast_gain u).
 
 A plan is `+u` until `t1`, `-u` until `t2`, then 0 (report eq. 4-5). An axis is one record: its constants, its modes
-when the plan began, the plan, and the modes at t1 and t2 (where the slow one is gone, if the motors get what was planned).
+when the plan began, the plan, and the modes at t1 and t2 (where the slow one is gone, if the motors got the volts).
 """
 
 from __future__ import annotations

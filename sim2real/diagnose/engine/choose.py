@@ -13,7 +13,8 @@ from sim2real.diagnose.engine.gram import Grams
 FOLDS = 10
 LEAST_FIT = 30.0  # drop of the sum of squares (and 2 more a parameter) that chance does not make
 LEAST_FORETOLD = 12.0  # drop of the held-out sum of squares
-LEAST_SHARE = 0.05  # of what all laws together explain
+LEAST_SHARE = 0.05  # of what all laws together explain, or, where they explain far more than the noise,
+NOTICEABLE = 0.05  # of the noise's own sum of squares, that a law must explain to be needed
 AMBIGUOUS = 9.0  # held-out sums of squares nearer than this do not tell two laws apart
 SPREADS = (0.03, 0.3, 3.0)  # tried for the coefficients of a family
 
@@ -143,12 +144,13 @@ class Chooser:
     def prune(self, model: Model) -> Model:
         """Take out laws that the others make needless: little is lost on held-out clusters without them."""
         explained = float((self.foretold(Model(model.base)) - self.foretold(model)).sum())
+        noise = NOTICEABLE * float(self.grams.count[self.use].sum())
         while len(model.laws) > 1:
             loss = {
                 law.name: float((self.foretold(model.minus(law)) - self.foretold(model)).sum()) for law in model.laws
             }
             weakest = min((law for law in model.laws), key=lambda law: loss[law.name])
-            if loss[weakest.name] > max(LEAST_FORETOLD, LEAST_SHARE * explained):
+            if loss[weakest.name] > max(LEAST_FORETOLD, min(LEAST_SHARE * explained, noise)):
                 break
             model = model.minus(weakest)
         return model

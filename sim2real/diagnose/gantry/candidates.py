@@ -33,11 +33,14 @@ STARTS: dict[str, tuple[dict[str, float], ...]] = {
 RIVALS = {"belt_compliance": "backlash", "backlash": "belt_compliance"}  # either gives between motor and mallet
 PLAIN = ("a2", "a3", "b2", "b3")
 FOLLOWED, ROUNDS = 2, 15
+ONCE = 1  # round: no step, only the spread of all that is free
 SAMPLES = 3000  # for the fits of each effect; the chosen law is fitted anew to all
+STEPS = tuple(0.125 * k for k in range(-8, 9))  # ticks, about a delay found by derivatives, at which it is tried
 MOST = 3  # effects on top of each other
 LITTLE_LEFT = 1.1  # mean square in units of the noise, at which nothing more is looked for
 MUCH_LEFT = 2.0  # mean square at which the effects found must at least explain the share SHARE of what was left before
 SHARE = 0.9
+LEAST_SHARE = 0.3  # of what was left before, that the first effect must explain; one on top of others: SHARE
 SURE = 3.0  # standard deviations that an effect's size is from none
 
 
@@ -83,9 +86,12 @@ def candidates(problem: GantryProblem, values: Mapping[str, float]) -> list[Cand
         fits = {name: one for name, one in fits.items() if stands(thin, now.law, one.law, name)}
         if not fits:
             break
+        best = min(fits, key=lambda name: fits[name].law.loss)
+        share = SHARE if chain else LEAST_SHARE
+        if now.law.loss - fits[best].law.loss < share * (now.law.loss - freedom):
+            break
         before = _all(problem, now.law)
         found += [Candidate(name, chain, one.law, _all(problem, one.law) - before) for name, one in fits.items()]
-        best = min(fits, key=lambda name: fits[name].law.loss)
         chain, now = (*chain, best), fits[best]
     unexplained = now.law.loss - freedom > (1.0 - SHARE) * (base.law.loss - freedom)
     return [] if now.law.loss > MUCH_LEFT * freedom and unexplained else found
@@ -115,7 +121,21 @@ def _staged(problem: GantryProblem, starts: Sequence[Mapping[str, float]], rows:
     """The best of the plain fits from `starts`, and from there the fit of everything."""
     plain = [fit(problem, start, (*PLAIN, *rows), problem.seen, ROUNDS) for start in starts]
     best = min(plain, key=lambda one: one.loss)
+    if "command_delay" in rows:
+        best = _delay_in_steps(problem, best)
     return Staged(best, fit(problem, best.values, (*problem.base, *rows), problem.seen, ROUNDS))
+
+
+def _delay_in_steps(problem: GantryProblem, law: Fit) -> Fit:
+    """The fit with a delay looked for about the one found: where motors heed a plan at ticks, it acts in steps."""
+    tick = max(run.orders.tick for run in problem.runs)
+    free = tuple(row for row in law.free if row != "command_delay")
+    late = [max(law.values["command_delay"] + share * tick, 0.0) for share in STEPS]
+    starts = [{**law.values, "command_delay": delay} for delay in late]
+    if not tick:
+        return law
+    best = min(starts, key=lambda start: promise(problem, start, free))
+    return fit(problem, fit(problem, best, free, problem.seen, ROUNDS).values, law.free, problem.seen, ONCE)
 
 
 def effect_rows(name: str) -> tuple[str, ...]:

@@ -26,6 +26,7 @@ def gantry_columns(problem: GantryProblem, values: Mapping[str, float]) -> Colum
     exact = problem.residuals(values, (*problem.base, *on), np.arange(problem.clusters))
     found = problem.candidates()
     laws, shapes = families(problem, problem.record(values))
+    shapes = np.vstack([shapes, np.zeros((len(exact.r) - len(shapes), shapes.shape[1]))])  # nothing to do with guesses
     names = [*problem.base, *on, *off, *(one.label for one in found), *(name for law in laws for name in law.columns)]
     columns = [exact.jacobian, np.zeros((len(exact.r), len(off))), *(one.column[:, None] for one in found), shapes]
     grams = gram.make_grams(names, exact.r, np.concatenate(columns, axis=1), exact.cluster, problem.clusters)

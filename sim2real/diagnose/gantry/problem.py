@@ -16,6 +16,7 @@ from sim2real.diagnose.gantry.tick import find_tick
 from sim2real.diagnose.problem import Columns, Residuals
 from sim2real.recording import Recording
 
+GUESSED, GUESS = ("a1", "b1"), 0.2  # known beforehand to this share of the simulator's own: nearly a delay of the path
 TWINS = {"b1": "a1", "b2": "a2", "b3": "a3"}
 STEP = 1e-6  # of a parameter's size, for its derivative
 FAR = 1e6
@@ -43,7 +44,8 @@ class GantryProblem:
         self._candidates: list[Candidate] | None = None
         sizes = [len(run.windows.rows) for run in runs]
         self._sign = np.concatenate([np.repeat((-1.0, 1.0), size) for size in sizes])
-        self.cluster = np.concatenate([a + run.cluster_of_rows() for a, run in zip(self.first, runs, strict=False)])
+        of_rows = [a + run.cluster_of_rows() for a, run in zip(self.first, runs, strict=False)]
+        self.cluster = np.concatenate([*of_rows, np.repeat(np.arange(self.clusters), len(GUESSED))])
 
     def of(self, runs: Sequence[Run]) -> GantryProblem:
         """The same of other runs, all to be seen."""
@@ -56,13 +58,22 @@ class GantryProblem:
         return GantryProblem(runs, self._common, self.proof)
 
     def residuals(self, values: Mapping[str, float], free: Sequence[str], clusters: np.ndarray) -> Residuals:
-        """See `Problem.residuals`. Far out (FAR) where an axis would not be overdamped."""
+        """See `Problem.residuals`. Far out (FAR) where an axis would not be overdamped.
+
+        The last rows, some of each cluster, hold the parameters GUESSED to what is known of them beforehand: with a
+        late start of the plans, the path alone hardly tells them.
+        """
         p = self.record(values)
         r = self._path(p)
         jacobian = np.empty((len(r), len(free)))
         for k, name in enumerate(free):
             twin = TWINS.get(name)  # x feels the difference of the two, y their sum
             jacobian[:, k] = self._sign * jacobian[:, free.index(twin)] if twin in free else self._slope(p, name, r)
+        weight = np.array([1.0 / (GUESS * abs(self._shipped(name))) for name in GUESSED]) / np.sqrt(self.clusters)
+        off = np.array([p[name] - self._shipped(name) for name in GUESSED])
+        r = np.concatenate([r, np.tile(weight * off, self.clusters)])
+        slopes = weight[:, None] * np.array([[one == name for name in free] for one in GUESSED]).reshape(len(off), -1)
+        jacobian = np.concatenate([jacobian, np.tile(slopes, (self.clusters, 1))])
         here = np.isin(self.cluster, clusters)
         return Residuals(r[here], jacobian[here], self.cluster[here])
 

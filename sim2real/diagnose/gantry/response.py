@@ -124,12 +124,31 @@ def take_out(columns, count, targets):
 
 
 @kernel
+def turning_point(before, here, after):
+    """`(place, when)` of the extreme of the parabola through three samples around a reversal at the middle one.
+
+    `when` < 0: before it. Where there is no reversal: the middle one, 0.
+    """
+    if (here - before) * (after - here) >= 0.0:
+        return here, 0.0
+    bend, slope = before - 2.0 * here + after, 0.5 * (after - before)
+    return here - 0.5 * slope * slope / bend, -slope / bend
+
+
+@kernel
 def shift_by_play(gap, motor, play):
     """Play of a path: `play` (n,) [m] becomes mallet less `motor` (n,); play[0] holds on entry what it was before."""
     mallet = motor[0] + play[0]
     for i in range(len(motor)):
+        extreme, when = motor[i], 0.0
+        if 0 < i < len(motor) - 1:
+            extreme, when = turning_point(motor[i - 1], motor[i], motor[i + 1])
+        if when < 0.0:
+            mallet = backlash.carried(gap, mallet, extreme)
         mallet = backlash.carried(gap, mallet, motor[i])
         play[i] = mallet - motor[i]
+        if when > 0.0:
+            mallet = backlash.carried(gap, mallet, extreme)
 
 
 @array_kernel
