@@ -116,10 +116,15 @@ def checked(name: str, value: float) -> float:
         raise ValueError(
             f"parameter '{name}' is {value!r}; expected a number in [{row.low:g}, {row.high:g}] {row.unit}"
         )
-    if name in NOT_SIMULATED and number != row.default:
-        effect, reason = NOT_SIMULATED[name]
-        raise ValueError(f"no table can be given {effect}: {reason}; leave it out")
     return number
+
+
+def refuse_not_simulated(values: Mapping[str, float]) -> None:
+    """ValueError, in one line, for a value that switches on an effect that no table can be given."""
+    for name, value in values.items():
+        if name in NOT_SIMULATED and value != BY_NAME[name].default:
+            effect, reason = NOT_SIMULATED[name]
+            raise ValueError(f"no table can be given {effect}: {reason}; leave it out")
 
 
 def check_together(record: np.void) -> None:
