@@ -10,18 +10,20 @@ from puckpilot_env.game.sensing import MOST_WANTED
 from puckpilot_env.game.step import begin_table, observe_table, step_table
 from puckpilot_env.kernel import kernel
 from puckpilot_env.physics.advance import EVENT_COLUMNS
+from puckpilot_env.team import hand_in, take
 
-LEAST_RANGE = 64  # tables that a thread takes at once; below it, asking costs too much
+LEAST_RANGE = 16  # tables that a thread takes at once: fewer, and two threads write next to each other too often
 
 
-def ranges(tables: int, threads: int) -> list[tuple[int, int]]:
-    """Ranges `(first, last)` for threads to take in turn: ever smaller ones, so that all end at about the same time."""
+def ranges(tables: int, threads: int) -> np.ndarray:
+    """Int64 `(m, 2)`, from first to last table of ranges for threads to take in turn: ever smaller ones, so that all
+    threads end at about the same time."""
     ranges, first = [], 0
     while first < tables:
         last = min(first + max((tables - first) // (2 * threads), LEAST_RANGE), tables)
         ranges.append((first, last))
         first = last
-    return ranges
+    return np.array(ranges)
 
 
 @kernel
@@ -65,9 +67,9 @@ def _copy_rows(source, target):
             target[k, c] = source[k, c]
 
 
-def scratch() -> tuple[np.ndarray, np.ndarray]:
-    """`log, film` of `step_range`: no events are logged, and every frame of a step has its place."""
-    return np.zeros((0, EVENT_COLUMNS)), np.zeros((MOST_WANTED, 3))
+def scratch(threads: int) -> tuple[np.ndarray, np.ndarray]:
+    """`log, films` of so many threads: no events are logged, and every frame of a step has its place."""
+    return np.zeros((0, EVENT_COLUMNS)), np.zeros((threads, MOST_WANTED, 3))
 
 
 @kernel
@@ -77,7 +79,7 @@ def step_range(
 ):  # fmt: skip
     """Play one step on tables `first` to `last`, and begin a new episode where one ended, if `autoreset`.
 
-    log, film: scratch, see `game.step.step_table`; `scratch` makes them.
+    log, film: scratch, see `game.step.step_table`.
     """
     rule = rules[0]
     for i in range(first, last):
@@ -91,3 +93,20 @@ def step_range(
             _copy_rows(observations[i], finals[i])
             begin_table(table, p, rows[i], drawn, rule, frames[i])
             observe_table(table, p, rule, frames[i], bounds, observations[i])
+
+
+@kernel
+def step_ranges(
+    states, params, rows, drawn, rules, frames, bounds, actions, observations, finals, rewards, terminated, truncated,
+    autoreset, log, films, ranges, counters, member, patience,
+):  # fmt: skip
+    """`step_range` for what one thread of a team takes of the `ranges`; see `team.Team`."""
+    while True:
+        part = take(counters, ranges.shape[0], patience)
+        if part < 0:
+            break
+        step_range(
+            states, params, rows, drawn, rules, frames, bounds, actions, observations, finals, rewards, terminated,
+            truncated, autoreset, log, films[member], ranges[part, 0], ranges[part, 1],
+        )  # fmt: skip
+        hand_in(counters)

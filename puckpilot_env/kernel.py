@@ -27,7 +27,8 @@ def _source_files() -> list[Path]:
     """Every file that defines kernels or what they are compiled against, in this package and those above it."""
     sources = [path for path in sorted(_ROOT.rglob("*.py")) if path.parent.name in ("physics", "effects", "game")]
     sources += [
-        _ROOT / f"{name}.py" for name in ("effect", "kernel", "parameters", "random_stream", "state", "batch", "trace")
+        _ROOT / f"{name}.py"
+        for name in ("effect", "kernel", "parameters", "random_stream", "state", "team", "batch", "trace")
     ]
     players = sorted((_ROOT.parent / "baselines").rglob("*.py"))
     return sources + [path for path in players if path.parent.name != "commands"]

@@ -1,10 +1,10 @@
-"""N tables at once in flat arrays: the only parallel code. Everything else that plays is an adapter over this."""
+"""N tables at once in flat arrays. Everything else that plays is an adapter over this."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from puckpilot_env import batch, parameters, state
 from puckpilot_env.effects_file import Effects, effect_values
 from puckpilot_env.game import mirror, observation, sensing
 from puckpilot_env.kernel import announce_compilation
+from puckpilot_env.team import Team
 from puckpilot_env.variants import Variant, find_variant
 
 ACTION_COLUMNS = (
@@ -98,9 +99,8 @@ class Tables:
         self.rewards = np.zeros((tables, 2), np.float32)
         self.terminated = np.zeros(tables, np.bool_)
         self.truncated = np.zeros(tables, np.bool_)
-        self._ranges = batch.ranges(tables, self.threads)
-        self._pool = ThreadPoolExecutor(self.threads - 1) if self.threads > 1 else None
-        announce_compilation("step_range")
+        self._team = self._make_team() if self.threads > 1 else None
+        announce_compilation("step_range-" if self._team is None else "step_ranges-")
         self.reset(seed)
 
     def _check_draws(self) -> None:
@@ -151,26 +151,26 @@ class Tables:
         bad = batch.first_outside(actions, self.action_bounds)
         if bad >= 0:
             raise ValueError(self._describe_bad_action(actions, bad))
-        if self._pool is None:
-            self._step_range(actions, 0, len(self.states))
-            return
-        left = iter(self._ranges)
-        others = [self._pool.submit(self._step_ranges, actions, left) for _ in range(self.threads - 1)]
-        self._step_ranges(actions, left)
-        for other in others:
-            other.result()
+        if self._team is None:
+            log, films = batch.scratch(1)
+            batch.step_range(*self._arrays(actions), log, films[0], 0, len(self.states))
+        else:
+            self._actions[:] = actions
+            self._team.run()
 
-    def _step_ranges(self, actions: NDArray[np.float32], left: Iterator[tuple[int, int]]) -> None:
-        """Take ranges of tables from what is left, together with other threads, until nothing is."""
-        for first, last in left:
-            self._step_range(actions, first, last)
-
-    def _step_range(self, actions: NDArray[np.float32], first: int, last: int) -> None:
-        batch.step_range(
+    def _arrays(self, actions: NDArray[np.float32]) -> tuple[Any, ...]:
+        """What a step of `batch` works on."""
+        return (
             self.states, self.params, self._rows, self._drawn, self._rules, self._frames, self.observation_bounds,
             actions, self.observations, self.final_observations, self.rewards, self.terminated, self.truncated,
-            self.autoreset, *batch.scratch(), first, last,
+            self.autoreset,
         )  # fmt: skip
+
+    def _make_team(self) -> Team:
+        self._actions = np.zeros((len(self.states), 2, 4), np.float32)
+        ranges = batch.ranges(len(self.states), self.threads)
+        work = partial(batch.step_ranges, *self._arrays(self._actions), *batch.scratch(self.threads), ranges)
+        return Team(self.threads, len(ranges), work)
 
     def _describe_bad_action(self, actions: NDArray[np.float32], flat: int) -> str:
         table, player, column = np.unravel_index(flat, actions.shape)
@@ -211,8 +211,8 @@ class Tables:
 
     def close(self) -> None:
         """End the threads."""
-        if self._pool is not None:
-            self._pool.shutdown()
+        if self._team is not None:
+            self._team.close()
 
 
 def _rows_of(tables: Any) -> Any:
