@@ -129,6 +129,7 @@ def describe(variant: Variant) -> dict[str, Any]:
                 "numbers": [{"short": short, **vars(row)} for short, row in effect.rows.items()],
             }
             for name, effect in EFFECTS.items()
+            if not effect.not_simulated
         ],
         "draws": [vars(draw) for draw in variant.draws],
         "infos_at_reset": dict(INFOS_AT_RESET) if variant.draws else {},

@@ -31,6 +31,7 @@ class Effect:
     `rows`: the parameters, keyed by the short names that a diagnosis gives them. `depends_on`: what the force or the
     impulse depends on (position, speed, heading, time, history, command). `excited_by`: the recording that shows it.
     `listed`: whether it is one mechanism with a name, and not a table of numbers that may hold any.
+    `not_simulated`: why no table can be given it, "" if it can; the diagnosis alone knows such an effect.
     """
 
     regime: str
@@ -40,3 +41,4 @@ class Effect:
     excited_by: str
     source: str
     listed: bool = True
+    not_simulated: str = ""

@@ -20,7 +20,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from puckpilot_env.parameters import checked
+from puckpilot_env.parameters import checked, refuse_not_simulated
 from puckpilot_env.physics.effects import EFFECTS
 
 FORMAT = "puckpilot-effects/1"
@@ -30,7 +30,8 @@ Effects = Mapping[str, Mapping[str, float]] | str | PathLike[str]  # {effect: {s
 def effect_values(effects: Effects | None) -> dict[str, float]:
     """Parameters by the simulator's names [SI units] of a table with these effects; empty for None.
 
-    Raises ValueError, in one line, for a file or a name that cannot be read, or a value out of its range.
+    Raises ValueError, in one line, for a file or a name that cannot be read, a value out of its range, or an effect
+    that no table can be given.
     """
     if effects is None:
         return {}
@@ -51,6 +52,7 @@ def _read(content: dict[str, Any]) -> dict[str, float]:
         raise ValueError(f"format is {content.get('format')!r}; expected {FORMAT!r}")
     _refuse_unknown(content, ("format", "parameters", "effects"), "entry")
     values = {name: _number(name, value) for name, value in _section(content, "parameters").items()}
+    refuse_not_simulated(values)
     return values | _by_name(_section(content, "effects"), "effects")
 
 
@@ -63,6 +65,7 @@ def _by_name(effects: Mapping[str, Any], where: str) -> dict[str, float]:
         given = _section(effects, effect, where)
         _refuse_unknown(given, rows, f"number of {effect}")
         values |= {rows[short].name: _number(rows[short].name, value) for short, value in given.items()}
+    refuse_not_simulated(values)
     return values
 
 

@@ -20,6 +20,9 @@ _CHOICE = "not in the report; a documented choice (errata, last row)"
 _FRAMES = "0 to 7 % in recordings of a real table"
 _E2 = "report, appendix E.2"
 
+NOT_SIMULATED = {
+    row.name: (name, e.not_simulated) for name, e in EFFECTS.items() if e.not_simulated for row in e.rows.values()
+}
 EFFECT_ROWS = tuple(row for effect in EFFECTS.values() for row in effect.rows.values())
 
 TABLE: tuple[Parameter, ...] = (
@@ -114,6 +117,14 @@ def checked(name: str, value: float) -> float:
             f"parameter '{name}' is {value!r}; expected a number in [{row.low:g}, {row.high:g}] {row.unit}"
         )
     return number
+
+
+def refuse_not_simulated(values: Mapping[str, float]) -> None:
+    """ValueError, in one line, for a value that switches on an effect that no table can be given."""
+    for name, value in values.items():
+        if name in NOT_SIMULATED and value != BY_NAME[name].default:
+            effect, reason = NOT_SIMULATED[name]
+            raise ValueError(f"no table can be given {effect}: {reason}; leave it out")
 
 
 def check_together(record: np.void) -> None:

@@ -78,6 +78,7 @@ class Tables:
         if isinstance(variant, str):
             variant = find_variant(variant)
         values = {**effect_values(effects), **(values or {})}
+        parameters.refuse_not_simulated(values)
         variant = _without_draws(_with_timing(variant, period, max_steps), values)
         self.variant = variant
         self.threads = min(int(threads), int(tables))

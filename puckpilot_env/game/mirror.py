@@ -54,7 +54,7 @@ def turn_table(tables: np.ndarray, frames: np.ndarray, length: np.ndarray, width
         mallets = tables["mallets"][axis]
         for name in ("rest", "rest1", "rest2"):
             mallets[name] = extent[:, None] - mallets[name]
-        for name in ("slow", "fast", "slow1", "fast1", "fast2", "volts"):
+        for name in ("slow", "fast", "slow1", "fast1", "slow2", "fast2", "volts"):
             mallets[name] *= -1.0
     for name in ("mallets", "gantry_scale", "streams", "score", "last_score", "defending"):
         tables[name] = tables[name][:, ::-1].copy()

@@ -6,7 +6,7 @@ from puckpilot_env import random_stream
 from puckpilot_env.game import mirror, observation, reward, rules, sensing
 from puckpilot_env.game.start import begin_episode
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics import bounce
+from puckpilot_env.physics import bounce, compose, drive
 from puckpilot_env.physics.advance import advance
 from puckpilot_env.physics.mallet import place_at, place_now, settle
 from puckpilot_env.physics.plan import plan_mallet
@@ -27,7 +27,10 @@ def plan_both(table, p, actions, rewards):
             dx, dy = random_stream.normal_pair(table.streams[k])
             vx *= 1.0 + p.action_noise * dx
             vy *= 1.0 + p.action_noise * dy
-        plan_mallet(mallet, x_f, y_f, vx, vy, mirror.area(k, p), p.max_voltage)
+        area = mirror.area(k, p)
+        plan_mallet(mallet, x_f, y_f, vx, vy, area, p.max_voltage)
+        if compose.loses(p):
+            drive.weaken(mallet, p, area, p.max_voltage)
 
 
 @kernel

@@ -13,6 +13,8 @@ An effect's file has the hooks of its regime, every one a kernel; those that it 
 | mallet | `mallet_impulse(p, impulse)` | normal impulse [m/s] from that so far |
 | mallet | `mallet_tangent(p, impulse, along, spin, after)` | (tangential speed, spin), relative to the mallet |
 | sensing | `camera_map(p)` | (xx, xy, yx, yy): how far off x and y are seen for each metre of x and of y |
+| gantry | `loses(p)` | whether less arrives at the motors than a plan asks for; goes with the next |
+| gantry | `delivered(p, volts, load)` | volts at a motor from those so far; `load` = abs(V_x) + abs(V_y) as asked for |
 
 `t` [s] is the time of the episode, (x, y) [m] a place, spin [rad/s] counter-clockwise, `closing` [m/s] > 0 the normal
 speed before; the tangent is the normal turned counter-clockwise. Impulses are per unit mass of the puck.
@@ -111,6 +113,14 @@ def _camera_map(first: Hook, second: Hook) -> Hook:
     return both
 
 
+def _delivered(first: Hook, second: Hook) -> Hook:
+    @inner
+    def both(p, volts, load):
+        return second(p, first(p, volts, load), load)
+
+    return both
+
+
 is_forced = reduce(_either, _hooks("is_on"))
 acceleration = reduce(_sum, _hooks("acceleration"))
 friction = reduce(_friction, _hooks("friction"))
@@ -120,3 +130,5 @@ mallet_restitution = reduce(_mallet_restitution, _hooks("mallet_restitution"))
 mallet_impulse = reduce(_mallet_impulse, _hooks("mallet_impulse"))
 mallet_tangent = reduce(_mallet_tangent, _hooks("mallet_tangent"))
 camera_map = reduce(_camera_map, _hooks("camera_map"))
+loses = reduce(_either, _hooks("loses"))
+delivered = reduce(_delivered, _hooks("delivered"))

@@ -7,7 +7,7 @@ three modes, `p = rest + slow + fast`: `rest` is where the mallet would come to 
     rest' = rest_gain u,   slow' = -slow_rate (slow + slow_gain u),   fast' = -fast_rate (fast - fast_gain u).
 
 A plan is `+u` until `t1`, `-u` until `t2`, then 0 (report eq. 4-5). An axis is one record: its constants, its modes
-when the plan began, the plan, and the modes at t1 and t2 (where the slow one is gone).
+when the plan began, the plan, and the modes at t1 and t2 (where the slow one is gone, if the motors got the volts).
 """
 
 from __future__ import annotations
@@ -36,6 +36,7 @@ AXIS = np.dtype(
         ("slow1", np.float64),
         ("fast1", np.float64),
         ("rest2", np.float64),  # m, at t2
+        ("slow2", np.float64),  # 0 unless the motors got other volts than the plan's
         ("fast2", np.float64),
     ],
     align=True,
@@ -98,10 +99,12 @@ def axis_at(axis, t):
 def _running_axis_at(axis, t):
     """`axis_at` of a plan that no stall has cut short."""
     if t >= axis.t2:
-        fast = axis.fast2
+        slow, fast = axis.slow2, axis.fast2
+        if slow != 0.0:
+            slow *= math.exp(-axis.slow_rate * (t - axis.t2))
         if fast != 0.0:
             fast *= fade(axis.fast_rate, t - axis.t2)
-        return axis.rest2, 0.0, fast, 0.0
+        return axis.rest2, slow, fast, 0.0
     if t >= axis.t1:
         since, volts = t - axis.t1, -axis.volts
         rest, slow, fast = axis.rest1, axis.slow1, axis.fast1
@@ -190,16 +193,16 @@ def settle(mallet, t):
 
 @kernel
 def _next_axis_switch(axis, t):
+    if t >= axis.halt:
+        return math.inf
     if axis.t1 > t:
-        return axis.t1
-    return axis.t2 if axis.t2 > t else math.inf
+        return min(axis.t1, axis.halt)
+    return min(axis.t2, axis.halt) if axis.t2 > t else axis.halt
 
 
 @kernel
 def next_switch(mallet, t):
-    """The first time after `t` at which a voltage of the mallet changes; infinite if none does."""
-    if t >= mallet.x.halt:
-        return math.inf
+    """The first time after `t` at which a voltage of the mallet changes, or an axis halts; infinite if none does."""
     return min(_next_axis_switch(mallet.x, t), _next_axis_switch(mallet.y, t))
 
 

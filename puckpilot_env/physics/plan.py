@@ -106,7 +106,7 @@ def plan_axis(axis, target, volts):
     axis.rest1 = axis.rest + axis.rest_gain * signed * t1
     axis.slow1 = slow_end + (axis.slow - slow_end) * slow_fade
     axis.fast1 = fast_end + (axis.fast - fast_end) * fade(axis.fast_rate, t1)
-    axis.rest2 = target
+    axis.rest2, axis.slow2 = target, 0.0
     axis.fast2 = -fast_end + (axis.fast1 + fast_end) * fade(axis.fast_rate, t2 - t1)
 
 

@@ -14,6 +14,8 @@ from sim2real.diagnose.encoders import read_encoders
 from sim2real.diagnose.engine.explain import Explained, explain
 from sim2real.diagnose.engine.fit import given
 from sim2real.diagnose.finding import Account, Finding, Proof, Sight
+from sim2real.diagnose.gantry.problem import gantry_problem
+from sim2real.diagnose.gantry.run import UnusableError
 from sim2real.diagnose.glide.data import GlideData, glide_data, join
 from sim2real.diagnose.glide.problem import GlideProblem, States
 from sim2real.diagnose.illustrate import illustrated
@@ -129,7 +131,8 @@ def _accounts(
     data = Cut([*sensed.recordings, *apart], [*sensed.pieces, *(cut(one) for one in apart)], len(heldout))
     values = parameters(recordings[0], shipped)
     sights = tuple(sight(one, pieces) for one, pieces in zip(data.recordings, data.pieces, strict=True))
-    return (sensed.account, *_puck(data, values, progress)), sights
+    gantry = _gantry(data, values, progress)
+    return (sensed.account, *_puck(data, values, progress), *gantry), sights
 
 
 def _puck(data: Cut, values: dict[str, float], progress: Progress):
@@ -160,6 +163,19 @@ def _puck(data: Cut, values: dict[str, float], progress: Progress):
 def _glides(recording: Recording, pieces: Pieces) -> GlideData:
     t = np.zeros(0) if recording.frames is None else recording.frames.t
     return glide_data(pieces, geometry(recording), mallet_tracks(recording, t))
+
+
+def _gantry(data: Cut, values: dict[str, float], progress: Progress) -> list[Account]:
+    """The account of the gantry; none where its path was not recorded."""
+    if all(one.mallet is None for one in data.recordings):
+        return []
+    progress("gantry", 0.2)
+    touched = [np.array([hit.t for hit in part.hits if hit.where == "robot"]) for part in data.pieces]
+    try:
+        problem = gantry_problem(data.recordings, values, touched).proved_on(data.heldout, KEPT_APART)
+    except UnusableError as why:
+        return [Account("gantry", (), {}, False, None, str(why))]
+    return [_explain(problem, values, problem.proof, ())[1]]
 
 
 def _states(glides: GlideProblem, found: Explained) -> States:

@@ -74,14 +74,25 @@ def effects_toml(diagnosis: Diagnosis) -> str:
     plain = [row.name for row in TABLE if row.name in near and row not in EFFECT_ROWS]
     lines = [f'format = "{EFFECTS_FORMAT}"', "", "[parameters]", *(f"{name} = {near[name]!r}" for name in plain)]
     for name, effect in EFFECTS.items():
-        numbers = [f"{key} = {near[row.name]!r}" for key, row in effect.rows.items() if row.name in near]
+        taken = {} if effect.not_simulated else effect.rows
+        numbers = [f"{key} = {near[row.name]!r}" for key, row in taken.items() if row.name in near]
         lines += ["", f"[effects.{name}]", *numbers] if numbers else []
-    lines += [f"# not in the simulator: {_name(one)}" for one in diagnosis.findings if not one.values]
+    lines += [f"# not in the simulator: {_name(one)}" for one in diagnosis.findings if not _simulated(one)]
     return "\n".join(lines) + "\n"
 
 
+def _simulated(one: Finding) -> bool:
+    return bool(one.values) and not _why_not(one)
+
+
+def _why_not(one: Finding) -> str:
+    return EFFECTS[one.mechanism].not_simulated if one.mechanism in EFFECTS else ""
+
+
 def _name(one: Finding) -> str:
-    return f"{one.mechanism} of the {one.regime}, which depends on {' and '.join(one.depends_on) or 'nothing'}"
+    """A finding in words, and why no table can be given it, where that is known."""
+    depends = f"{one.mechanism} of the {one.regime}, which depends on {' and '.join(one.depends_on) or 'nothing'}"
+    return f"{depends}: {_why_not(one)}" if _why_not(one) else depends
 
 
 def write(diagnosis: Diagnosis, folder: Path) -> list[Path]:

@@ -84,3 +84,12 @@ def test_a_mapping_is_as_strict() -> None:
         effect_values({"tilt": {"tilt_x": 0.1}})
     with pytest.raises(ValueError, match=r"^parameter 'tilt_x' is 5; expected a number in \[-0.2, 0.2\] m/s\^2$"):
         effect_values({"table_tilt": {"tilt_x": 5}})
+
+
+@pytest.mark.parametrize(
+    "effect, short, reason", [("backlash", "gap", "closed form"), ("clock_drift", "ppm", "one clock")]
+)
+def test_an_effect_that_no_table_can_have_is_refused_by_name(effect: str, short: str, reason: str) -> None:
+    with pytest.raises(ValueError, match=f"^no table can be given {effect}: .*{reason}.*; leave it out$"):
+        effect_values({effect: {short: 0.01}})
+    assert list(effect_values({effect: {short: 0.0}}).values()) == [0.0]

@@ -19,7 +19,8 @@ LEAST_FIT = 30.0  # drop of the loss (and 2 more a parameter) that chance does n
 LEAST_FORETOLD = 12.0  # drop of the held-out loss
 RESAMPLED, UNSURE = 400, 0.02  # draws of launches, and the share of them in which a law may be of no use
 UNKNOWN = 4.0  # sum of squares a column, below which half of the launches does not tell a sign
-LEAST_SHARE = 0.05  # of what all laws together explain
+LEAST_SHARE = 0.05  # of what all laws together explain, or, where they explain far more than the noise,
+NOTICEABLE = 0.05  # of the noise's own sum of squares, that a law must explain to be needed
 AMBIGUOUS = 9.0  # held-out losses nearer than this do not tell two laws apart
 SPREADS = (0.03, 0.3, 3.0)  # tried for the coefficients of a family
 
@@ -189,9 +190,10 @@ class Chooser:
     def prune(self, model: Model) -> Model:
         """Take out laws that the others make needless, or that are not sure beside them, the weakest first."""
         explained = float((self.foretold(Model(model.base)) - self.foretold(model)).sum())
+        enough = min(LEAST_SHARE * explained, NOTICEABLE * float(self._freedom.sum()) / self.dispersion)
         while model.laws:
             gains = [self.gain(model.minus(law), law) for law in model.laws]
-            worth = LEAST_SHARE * explained if len(gains) > 1 else 0.0
+            worth = enough if len(gains) > 1 else 0.0
             failing = [one for one in gains if one.total < worth or not self.sure(model, one)]
             if not failing:
                 break

@@ -13,7 +13,9 @@ from sim2real.diagnose.engine import gram
 from sim2real.diagnose.finding import Estimate
 from sim2real.diagnose.problem import Problem
 
-ROUNDS = 25
+ROUNDS = 40
+CONVERGED = 1e-3  # drop of the sum of squares, in units of what a residual has left, at which a fit ends
+HALVINGS = 3  # of a step that leads uphill, before it is bent downhill
 
 
 @dataclass(frozen=True)
@@ -61,7 +63,7 @@ def fit(
     high = np.array([BY_NAME[name].high for name in free])
     at = np.clip([now.get(name, BY_NAME[name].default) for name in free], low, high)
     columns, everything = np.arange(len(free)), np.arange(problem.clusters)
-    loss, damping, grams = np.inf, 1e-6, None
+    loss, damping, grams, halved = np.inf, 1e-6, None, 0
     best = at
     for _ in range(rounds):
         now.update(zip(free, map(float, at), strict=True))
@@ -69,11 +71,15 @@ def fit(
         fresh = float(found.r @ found.r)
         if fresh <= loss * (1.0 + 1e-12):
             grams = gram.make_grams(free, found.r, found.jacobian, found.cluster, problem.clusters)
-            gained, loss, best, damping = loss - fresh, fresh, at, damping * 0.1
-            if gained < 1e-3:
+            gained, loss, best = loss - fresh, fresh, at
+            damping, halved = damping * 0.1, 0
+            if gained < CONVERGED * max(1.0, loss / max(len(found.r), 1)):
                 break
+        elif halved < HALVINGS:
+            at, halved = 0.5 * (best + at), halved + 1
+            continue
         else:
-            damping = max(damping, 1e-8) * 30.0
+            damping, halved = max(damping, 1e-8) * 30.0, 0
         assert grams is not None
         step = _step(grams, damping, best, low, high, clusters)
         at = np.clip(best + step, low, high)

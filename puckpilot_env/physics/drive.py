@@ -1,0 +1,90 @@
+"""What the motors do with a plan when less arrives than it asks for: its times, with the volts that are left.
+
+A plan is safe with its own volts. With fewer the mallet may still run when it was to stand, up to the rail that ends
+its area, which stops the axis dead.
+"""
+
+from __future__ import annotations
+
+import math
+
+from puckpilot_env.kernel import kernel
+from puckpilot_env.physics import compose
+from puckpilot_env.physics.mallet import axis_at, fade
+from puckpilot_env.physics.plan import ROUNDING, SMALLEST_VOLTAGE
+
+HALVINGS = 50  # of a time span, to find when an axis meets the rail
+
+
+@kernel
+def weaken(mallet, p, area, max_voltage):
+    """Give a mallet that was just planned the volts that arrive under `p`; the others as in `plan_mallet`."""
+    load = abs(mallet.x.volts) + abs(mallet.y.volts)
+    limit = 2.0 * (max_voltage - SMALLEST_VOLTAGE)
+    _weaken_axis(mallet.x, compose.delivered(p, mallet.x.volts, load), area[0], area[1], limit)
+    _weaken_axis(mallet.y, compose.delivered(p, mallet.y.volts, load), area[2], area[3], limit)
+
+
+@kernel
+def _weaken_axis(axis, volts, low, high, limit):
+    """The modes of a plan whose times stay, under `volts` [V], and where the rail at `low` or `high` [m] ends it."""
+    axis.volts = volts
+    slow_end, fast_end = -axis.slow_gain * volts, axis.fast_gain * volts
+    braking = axis.t2 - axis.t1
+    axis.rest1 = axis.rest + axis.rest_gain * volts * axis.t1
+    axis.slow1 = slow_end + (axis.slow - slow_end) * math.exp(-axis.slow_rate * axis.t1)
+    axis.fast1 = fast_end + (axis.fast - fast_end) * fade(axis.fast_rate, axis.t1)
+    axis.rest2 = axis.rest1 - axis.rest_gain * volts * braking
+    axis.slow2 = -slow_end + (axis.slow1 + slow_end) * math.exp(-axis.slow_rate * braking)
+    axis.fast2 = -fast_end + (axis.fast1 + fast_end) * fade(axis.fast_rate, braking)
+    margin = 2.0 * axis.fast_gain * limit
+    place = axis.rest + axis.slow + axis.fast
+    _stop_at_rail(axis, min(low + margin, place - ROUNDING), max(high - margin, place + ROUNDING))
+
+
+@kernel
+def _stop_at_rail(axis, low, high):
+    """Halt an axis at the first time at which it is outside [low, high] [m].
+
+    Its turning points are where the slow mode passes zero, up to the fast one, for which the rail keeps a margin.
+    """
+    begin = 0.0
+    for part in range(3):
+        end = axis.t1 if part == 0 else axis.t2 if part == 1 else math.inf
+        volts = axis.volts if part == 0 else -axis.volts if part == 1 else 0.0
+        turn = min(_turn(axis, begin, volts), end)
+        for until in (turn, end):
+            if _is_outside(axis, until, low, high):
+                axis.halt = _crossing(axis, begin, until, low, high)
+                return
+            begin = until
+
+
+@kernel
+def _turn(axis, begin, volts):
+    """When an axis under constant `volts` from `begin` [s] on has no slow mode left; infinite if it always has one."""
+    _, slow, _, _ = axis_at(axis, begin)
+    end = -axis.slow_gain * volts
+    if slow * end >= 0.0:
+        return math.inf
+    return begin + math.log(1.0 - slow / end) / axis.slow_rate
+
+
+@kernel
+def _is_outside(axis, t, low, high):
+    rest, slow, fast, _ = axis_at(axis, t)
+    return not low <= rest + slow + fast <= high
+
+
+@kernel
+def _crossing(axis, inside, outside, low, high):
+    """The last time before an axis leaves [low, high] between the times `inside` and `outside` [s]."""
+    if outside == math.inf:
+        outside = inside + 40.0 / axis.slow_rate
+    for _ in range(HALVINGS):
+        middle = 0.5 * (inside + outside)
+        if _is_outside(axis, middle, low, high):
+            outside = middle
+        else:
+            inside = middle
+    return inside

@@ -1,0 +1,37 @@
+"""All that a gantry may lack, as columns of its residuals: the listed effects, and smooth laws of any shape."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from puckpilot_env.parameters import BY_NAME
+from sim2real.diagnose.engine import gram
+from sim2real.diagnose.engine.choose import Law
+from sim2real.diagnose.gantry.candidates import STARTS, effect_rows
+from sim2real.diagnose.gantry.families import families
+from sim2real.diagnose.problem import Columns
+
+if TYPE_CHECKING:
+    from sim2real.diagnose.gantry.problem import GantryProblem
+
+
+def gantry_columns(problem: GantryProblem, values: Mapping[str, float], free: Sequence[str]) -> Columns:
+    """Every column of a gantry problem at one law: its derivatives, the candidates, the families."""
+    rows = [row for name in STARTS for row in effect_rows(name)]
+    on = [row for row in rows if row in free or values.get(row, BY_NAME[row].default) != BY_NAME[row].default]
+    off = [row for row in rows if row not in on]  # where a fit ended with them off, they stay so
+    exact = problem.residuals(values, (*problem.base, *on), np.arange(problem.clusters))
+    found = problem.candidates()
+    laws, shapes = families(problem, problem.record(values))
+    shapes = np.vstack([shapes, np.zeros((len(exact.r) - len(shapes), shapes.shape[1]))])  # nothing to do with guesses
+    names = [*problem.base, *on, *off, *(one.label for one in found), *(name for law in laws for name in law.columns)]
+    columns = [exact.jacobian, np.zeros((len(exact.r), len(off))), *(one.column[:, None] for one in found), shapes]
+    grams = gram.make_grams(names, exact.r, np.concatenate(columns, axis=1), exact.cluster, problem.clusters)
+    listed = [
+        Law(one.name, (one.label,), start={row: one.law.values[row] for row in (*problem.base, *effect_rows(one.name))})
+        for one in found
+    ]
+    return Columns(grams, listed, laws)

@@ -1,0 +1,126 @@
+"""One recording of the gantry: the mallet's path beside its orders, and what the path has more than they explain."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from puckpilot_env.parameters import BY_NAME
+from sim2real.diagnose.gantry.encoder import encoder_noise
+from sim2real.diagnose.gantry.orders import Orders, from_commands, from_drive
+from sim2real.diagnose.gantry.response import axis_residuals
+from sim2real.diagnose.gantry.windows import Windows, cut_windows
+from sim2real.recording import Recording
+
+FEWEST_WINDOWS = 12
+SMALLEST_TRAVEL = 0.01  # m of standard deviation
+ENOUGH_SAMPLES = 10_000  # of the encoders, evenly taken; more would cost time and not tell more
+SMOOTHED = 0.009  # s, over which the path is averaged for its speed
+START_COLUMNS = 3  # of a window and axis, taken out of its residuals
+
+
+class UnusableError(ValueError):
+    """Why a recording says nothing on the gantry, in one sentence."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """`seen` (n, 2) [m] at `t` (n,) [s], with noise of std `noise` (n, 2) [m]; `place`, `speed` (n, 2): smoothed."""
+
+    orders: Orders
+    t: np.ndarray
+    seen: np.ndarray
+    place: np.ndarray
+    speed: np.ndarray
+    noise: np.ndarray
+    windows: Windows
+
+    def with_tick(self, tick: float) -> Run:
+        """The same with motors that heed a change at whole ticks [s] of their control loop."""
+        return replace(self, orders=replace(self.orders, tick=tick))
+
+    def first_windows(self, count: int) -> Run:
+        """The first `count` windows alone, each a cluster."""
+        begin, end = self.windows.begin[:count], self.windows.end[:count]
+        kept = {name: getattr(self, name)[: end[-1]] for name in ("t", "seen", "place", "speed", "noise")}
+        return replace(self, windows=Windows(begin, end, np.arange(len(begin))), **kept)
+
+    def thinned(self, samples: int) -> Run:
+        """The same with every k-th sample, so that about `samples` are left."""
+        k = max(1, len(self.t) // samples)
+        windows = Windows(-(-self.windows.begin // k), -(-self.windows.end // k), self.windows.cluster)
+        return replace(
+            self, windows=windows,
+            **{name: getattr(self, name)[::k].copy() for name in ("t", "seen", "place", "speed", "noise")},
+        )  # fmt: skip
+
+    def freedom(self) -> np.ndarray:
+        """How many residuals of each cluster the starts leave free."""
+        sizes = 2 * (self.windows.end - self.windows.begin - START_COLUMNS)
+        return np.bincount(self.windows.cluster, sizes, self.windows.clusters)
+
+    def residuals(self, p: np.void, late: float = 0.0, extra: np.ndarray | None = None) -> np.ndarray:
+        """Residuals (2 rows, 1 + k) of all windows, x before y, in units of the noise, starts taken out.
+
+        `late` [s]: by which all changes come later. `extra` (n, 2, k) [m]: further columns of the path, treated alike.
+        """
+        extra = np.zeros((len(self.t), 2, 0)) if extra is None else extra
+        changes, volts = self.orders.at_motors(p)
+        loose = self.orders.loose(p)
+        everything = np.ones(len(self.windows.begin), bool)
+        rows, found = self.windows.rows, []
+        for axis in range(2):
+            out = np.empty((len(self.t), 1 + extra.shape[2]))
+            columns = (self.seen[:, axis], 1.0 / self.noise[:, axis])
+            axis_residuals(
+                p, axis, changes + late, volts[:, axis].copy(), loose, self.t, *(c.copy() for c in columns),
+                self.windows.begin, self.windows.end, everything, np.ascontiguousarray(extra[:, axis]), out,
+            )  # fmt: skip
+            found.append(out[rows])
+        return np.concatenate(found)
+
+    def cluster_of_rows(self) -> np.ndarray:
+        """The cluster of each row of `residuals`."""
+        return np.tile(np.repeat(self.windows.cluster, self.windows.end - self.windows.begin), 2)
+
+
+def read_run(recording: Recording, breaks: np.ndarray | None = None) -> Run:
+    """The run in `recording`; `breaks` [s]: times at which something else pushed the mallet. Errors: UnusableError."""
+    if recording.mallet is None:
+        raise UnusableError("the mallet's path was not recorded (mallet.csv)")
+    orders = find_orders(recording)
+    mallet = recording.mallet
+    p = np.column_stack([mallet["mallet_x"], mallet["mallet_y"]])
+    usable = np.isfinite(p).all(axis=1) & (mallet.t >= orders.t[0]) & (mallet.t <= orders.end)
+    t, p = mallet.t[usable], p[usable]
+    windows = cut_windows(t, np.zeros(0))
+    if len(windows.begin) < FEWEST_WINDOWS:
+        raise UnusableError(f"mallet and orders overlap for {len(windows.begin) / 2:.1f} s, expected 6 s or more")
+    if p.std(axis=0).max() < SMALLEST_TRAVEL:
+        raise UnusableError("the mallet hardly moves")
+    noise = encoder_noise(t, p)
+    stride = max(1, round(len(t) / ENOUGH_SAMPLES))
+    t, p = t[::stride].copy(), p[::stride].copy()
+    place, speed = smoothed(t, p)
+    windows = cut_windows(t, np.zeros(0) if breaks is None else breaks)
+    return Run(orders, t, p, place, speed, noise.std(speed), windows)
+
+
+def find_orders(recording: Recording) -> Orders:
+    """What the motors were asked for: by the plans, else by the motors' log. Errors: UnusableError."""
+    if recording.commands is not None and recording.commands.rows:
+        return from_commands(recording.commands)
+    if recording.drive is not None and recording.drive.rows:
+        supply = recording.nominal("gantry", "supply_V")
+        return from_drive(recording.drive, BY_NAME["max_voltage"].default if supply is None else supply)
+    raise UnusableError("neither the plans (commands.csv) nor the motors' log (drive.csv) was recorded")
+
+
+def smoothed(t: np.ndarray, seen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Place [m] and speed [m/s], each (n, 2), of the path seen at `t`, averaged over SMOOTHED."""
+    half = max(1, round(0.5 * SMOOTHED / float(np.median(np.diff(t)))))
+    padded = np.pad(seen, ((half, half), (0, 0)), mode="edge")
+    total = np.cumsum(np.vstack([np.zeros(2), padded]), axis=0)
+    place = (total[2 * half + 1 :] - total[: -2 * half - 1]) / (2 * half + 1)
+    return place, np.gradient(place, t, axis=0)
