@@ -23,6 +23,7 @@ FAR_OFF = 2.0  # mean square residual beyond 1 of a typical launch, in units of 
 NEAR, HALF_WAY = 0.3, 0.3  # the same beside listed laws, and as a share of what the baseline leaves
 STRAY = 6.0  # times the usual sum of squares: a launch in which something else happened
 MOST_STRAY = 0.1
+LEAST_SIZE = 20.0  # sum of squares by which a law must stand out of the final fit
 FEW_ROUNDS = 4  # of a fit, to see which start leads farthest
 
 
@@ -71,16 +72,15 @@ def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray) -> 
     screen = problem.columns(baseline.values)
     chooser = Chooser(screen.grams, problem.units, use, _dispersion(problem, screen, use))
     model, gains = chooser.add(Model(problem.base), screen.listed, MOST_LISTED)
-    model = chooser.prune(model)
-    law = _refit(problem, baseline, model.laws, screen, use)
+    model, law = _standing(problem, baseline, chooser.prune(model), screen, use)
     columns = screen if law is baseline else problem.columns(law.values, law.free)
     refitted = Chooser(columns.grams, problem.units, use, chooser.dispersion)
     model = _with_remainder(chooser, model, _remainder(chooser, model, refitted, law, columns), screen)
     if not any(one.family for one in model.laws) and _far_off(problem, baseline, law, use):
         model = _likeliest(chooser, Model(problem.base), screen)
-    listed = tuple(law for law in model.laws if not law.family)
     unlisted = next((law for law in model.laws if law.family), None)
-    law = _refit(problem, baseline, listed, screen, use)
+    model, law = _standing(problem, baseline, model, screen, use)
+    listed = tuple(law for law in model.laws if not law.family)
     calm = _calm(problem, law, use, unlisted)
     if len(calm) < len(use):
         law = _refit(problem, baseline, listed, screen, calm)
@@ -164,6 +164,29 @@ def _refit(problem: Problem, baseline: Fit, listed: Sequence[Law], screen: Colum
             values = min(tries, key=lambda one: one.loss).values
         best = fit(problem, values, free, use)
     return best
+
+
+def _standing(problem: Problem, baseline: Fit, model: Model, screen: Columns, use: np.ndarray) -> tuple[Model, Fit]:
+    """The model without listed laws that come to nothing when all are fitted together, and that fit."""
+    while True:
+        listed = [law for law in model.laws if not law.family]
+        fitted = _refit(problem, baseline, listed, screen, use)
+        sizes = [_size(problem, fitted, law, use) for law in listed]
+        if not sizes or min(sizes) > LEAST_SIZE:
+            return model, fitted
+        model = model.minus(listed[int(np.argmin(sizes))])
+
+
+def _size(problem: Problem, fitted: Fit, law: Law, use: np.ndarray) -> float:
+    """How surely a law is there: the squares of its numbers by their covariance, or, where the recording does not feel
+    them, what the sum of squares grows by without them."""
+    rows = [name for name in problem.rows(law) if name in fitted.free]
+    off = {name: BY_NAME[name].default for name in rows}
+    without = problem.residuals({**fitted.values, **off}, (), use).r
+    at = [fitted.free.index(name) for name in rows]
+    away = np.array([fitted.values[name] - off[name] for name in rows])
+    surely = float(away @ np.linalg.pinv(fitted.covariance[np.ix_(at, at)], hermitian=True) @ away)
+    return min(surely, float(without @ without) - fitted.loss)
 
 
 def _calm(problem: Problem, law: Fit, use: np.ndarray, unlisted: Law | None) -> np.ndarray:
