@@ -14,7 +14,6 @@ from sim2real.diagnose.formula import Formula, Rest, find_formula
 from sim2real.diagnose.glide import swirls
 from sim2real.diagnose.glide.families import HARMONICS, Motion
 from sim2real.diagnose.glide.problem import GlideProblem
-from sim2real.diagnose.glide.trace import bend
 from sim2real.diagnose.glide.views import COORDINATES, DIRECTIONS, View, around, view
 
 UNIT = "m/s^2"
@@ -32,8 +31,7 @@ def readable(problem: GlideProblem, found: Explained, law: Law, use: np.ndarray)
     starts = [np.linalg.qr(block)[0] for block in np.split(by_start, 2 * data.first[1:-1])]
 
     def respond(forces: np.ndarray) -> np.ndarray:
-        moved = np.empty_like(forces)
-        bend(data.first, data.t, path, values["friction"], values["drag"], np.ascontiguousarray(forces), moved)
+        moved, _ = problem.bent(path, values, forces)
         columns = (moved / data.std[:, :, None]).reshape(2 * len(moved), -1)
         for q, a, b in zip(starts, 2 * data.first[:-1], 2 * data.first[1:], strict=True):
             columns[a:b] -= q @ (q.T @ columns[a:b])

@@ -62,7 +62,7 @@ def missing(
     if force is not None:
         moved = np.empty((len(data.t), 2, 1))
         columns = np.ascontiguousarray(force[:, :, None])
-        bend(data.first, data.t, path, values["friction"], values["drag"], columns, moved)
+        bend(data.first, data.t, path, values["friction"], values["drag"], columns, moved, np.empty_like(moved))
         rest = rest - moved[:, :, 0]
     return some.of(rest)
 
