@@ -150,14 +150,15 @@ def _puck(data: Cut, values: dict[str, float], progress: Progress):
     yield told
     states = glides.states(given(law)) if found is None else _states(glides, found)
     law |= {} if found is None else found.final.values
+    clear = found is None or found.unlisted is None
     progress("bounces", 0.6)
     impacts = [find_impacts(pieces, glides, states, k) for k, pieces in enumerate(data.pieces)]
     hits = bounces([hit for some in impacts for hit in some], geometry(data.recordings[0]))
-    yield _explain(WallProblem(hits, glides.clusters, law), law, proof, tables)[1]
+    yield _explain(WallProblem(hits, glides.clusters, law), law, proof, tables, clear)[1]
     progress("blows", 0.75)
     struck = _blows(data.recordings, impacts)
     if struck is not None:
-        yield _explain(MalletProblem(struck, glides.clusters, law), law, proof, tables)[1]
+        yield _explain(MalletProblem(struck, glides.clusters, law), law, proof, tables, clear)[1]
 
 
 def _glides(recording: Recording, pieces: Pieces) -> GlideData:
@@ -191,15 +192,15 @@ def _blows(recordings: Sequence[Recording], impacts: Sequence[list[Impact]]) -> 
     return join_blows(parts) if any(len(part) for part in parts) else None
 
 
-def _explain(problem: Problem, law: Mapping[str, float], proof: np.ndarray, tables: Sequence[Part]):
-    """The engine's findings of a problem (None where there is too little data), and its account."""
+def _explain(problem: Problem, law: Mapping[str, float], proof: np.ndarray, tables: Sequence[Part], clear: bool = True):
+    """The engine's findings of a problem (None where there is too little data), and its account; `clear` as there."""
     live = np.flatnonzero(problem.freedom > 0)
     use, apart = np.setdiff1d(live, proof), np.intersect1d(live, proof)
     if len(use) + len(apart) < FEWEST_LAUNCHES or not len(apart) or problem.freedom[use].sum() < FEWEST_RESIDUALS:
         return None, Account(problem.regime, (), {}, False, None, TOO_LITTLE)
     shipped = {name: law[name] for name in problem.base}
     check_agreement(problem, shipped, tables)
-    found = explain(problem, shipped, use)
+    found = explain(problem, shipped, use, clear)
     return found, illustrated(problem, found, account(problem, found, apart), use)
 
 

@@ -66,8 +66,11 @@ class Explained:
         return law.switch(self.theta[len(self.law.free) :])
 
 
-def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray) -> Explained:
-    """Explain the clusters `use` of a problem, starting from the simulator's own numbers `shipped`."""
+def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray, clear: bool = True) -> Explained:
+    """Explain the clusters `use` of a problem, starting from the simulator's own numbers `shipped`.
+
+    clear: what is far off and fits no law is missing physics of this regime, and not what another one left unexplained.
+    """
     baseline = fit(problem, shipped, problem.base, use)
     screen = problem.columns(baseline.values)
     chooser = Chooser(screen.grams, problem.units, use, _dispersion(problem, screen, use))
@@ -76,7 +79,7 @@ def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray) -> 
     columns = screen if law is baseline else problem.columns(law.values, law.free)
     refitted = Chooser(columns.grams, problem.units, use, chooser.dispersion)
     model = _with_remainder(chooser, model, _remainder(chooser, model, refitted, law, columns), screen)
-    if not any(one.family for one in model.laws) and _far_off(problem, baseline, law, use):
+    if clear and not any(one.family for one in model.laws) and far_off(problem, baseline, law, use):
         model = _likeliest(chooser, Model(problem.base), screen)
     unlisted = next((law for law in model.laws if law.family), None)
     model, law = _standing(problem, baseline, model, screen, use)
@@ -139,7 +142,7 @@ def _explained(chooser: Chooser, model: Model) -> float:
     return float((chooser.foretold(Model(model.base)) - chooser.foretold(model)).sum())
 
 
-def _far_off(problem: Problem, baseline: Fit, law: Fit, use: np.ndarray) -> bool:
+def far_off(problem: Problem, baseline: Fit, law: Fit, use: np.ndarray) -> bool:
     """Whether a law leaves far more than noise of most launches, or much of what the baseline does: then something
     else must be missing."""
     before, after = (float(np.median(_left(problem, one, use))) - 1.0 for one in (baseline, law))
