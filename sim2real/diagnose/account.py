@@ -59,7 +59,7 @@ def _listed(problem: Problem, found: Explained, law: Law, before: float, after: 
 
 def _unlisted(problem: Problem, found: Explained, law: Law, before: float, after: float) -> Finding:
     return Finding(
-        problem.regime, "unlisted", tuple(found.also.get(law.name, ())), (law.family,), law.name,
+        problem.regime, law.mechanism, tuple(found.also.get(law.name, ())), (law.family,), law.name,
         _sizes(found, law), found.chance[law.name], before, after, {}, found.switched(), found.rivals.get(law.name, ()),
     )  # fmt: skip
 

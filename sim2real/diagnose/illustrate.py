@@ -34,6 +34,8 @@ def illustrated(problem: Problem, found: Explained, account: Account, use: np.nd
 
 
 def _glide_finding(problem: GlideProblem, found: Explained, one: Finding, use: np.ndarray) -> Finding:
+    if found.unlisted is not None and one.mechanism == found.unlisted.mechanism != "unlisted":
+        return one  # a number for each launch is no curve
     if found.unlisted is None or one.mechanism != "unlisted":
         return replace(one, curve=glides.listed_curve(problem, found, one.mechanism))
     formula, looks = glide_formula(problem, found, found.unlisted, use)

@@ -36,7 +36,7 @@ class Law:
 
     `name`: a mechanism, or a family of smooth forces; `family` is what it depends on, "" for a mechanism. `start`:
     parameters of a nonlinear law at which its columns were taken. `switch`: the simulator's parameters by name for
-    coefficients of a family; none where the simulator has no place for it.
+    coefficients of a family; none where the simulator has no place for it. `mechanism`: what a finding calls a family.
     """
 
     name: str
@@ -44,6 +44,7 @@ class Law:
     family: str = ""
     start: dict[str, float] = field(default_factory=dict)
     switch: Callable[[np.ndarray], Mapping[str, float]] = no_parameters
+    mechanism: str = "unlisted"
 
 
 @dataclass(frozen=True)

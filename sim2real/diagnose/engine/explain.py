@@ -2,29 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.stats import chi2
 
 from puckpilot_env.parameters import BY_NAME
 from sim2real.diagnose.engine import gram
-from sim2real.diagnose.engine.choose import AMBIGUOUS, LEAST_FORETOLD, LEAST_SHARE, Chooser, Gain, Law, Model
+from sim2real.diagnose.engine.choose import LEAST_FORETOLD, LEAST_SHARE, Chooser, Gain, Law, Model
 from sim2real.diagnose.engine.fit import Fit, fit
+from sim2real.diagnose.engine.rivals import chance, compare
+from sim2real.diagnose.engine.settle import as_shipped, calm_clusters, far_off, refit, standing
 from sim2real.diagnose.finding import Rival
 from sim2real.diagnose.problem import Columns, Problem
 
 MOST_LISTED = 4
-FEWEST_CLUSTERS = 4
-CLEAR = 1e-4  # chance at which the simulator's own numbers would be refused though they are right
 REMAINDER = 0.1  # share of what the listed laws explain that a remainder must exceed to be worth a law
-FAR_OFF = 2.0  # mean square residual beyond 1 of a typical launch, in units of the noise, that nothing explains
-NEAR, HALF_WAY = 0.3, 0.3  # the same beside listed laws, and as a share of what the baseline leaves
-STRAY = 6.0  # times the usual sum of squares: a launch in which something else happened
-MOST_STRAY = 0.1
-LEAST_SIZE = 20.0  # sum of squares by which a law must stand out of the final fit
-FEW_ROUNDS = 4  # of a fit, to see which start leads farthest
 
 
 @dataclass(frozen=True)
@@ -75,25 +68,26 @@ def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray, cle
     screen = problem.columns(baseline.values)
     chooser = Chooser(screen.grams, problem.units, use, _dispersion(problem, screen, use))
     model, gains = chooser.add(Model(problem.base), screen.listed, MOST_LISTED)
-    model, law = _standing(problem, baseline, chooser.prune(model), screen, use)
+    listed, law = standing(problem, baseline, chooser.prune(model), screen, use)
     columns = screen if law is baseline else problem.columns(law.values, law.free)
     refitted = Chooser(columns.grams, problem.units, use, chooser.dispersion)
-    model = _with_remainder(chooser, model, _remainder(chooser, model, refitted, law, columns), screen)
+    model = _with_remainder(chooser, listed, _remainder(chooser, listed, refitted, law, columns), screen)
     if clear and not any(one.family for one in model.laws) and far_off(problem, baseline, law, use):
         model = _likeliest(chooser, Model(problem.base), screen)
-    unlisted = next((law for law in model.laws if law.family), None)
-    model, law = _standing(problem, baseline, model, screen, use)
-    listed = tuple(law for law in model.laws if not law.family)
-    calm = _calm(problem, law, use, unlisted)
+    unlisted = next((one for one in model.laws if one.family), None)
+    if model is not listed:
+        model, law = standing(problem, baseline, model, screen, use)
+    kept = tuple(one for one in model.laws if not one.family)
+    calm = use if unlisted else calm_clusters(problem, law, use)
     if len(calm) < len(use):
-        law = _refit(problem, baseline, listed, screen, calm)
+        law = refit(problem, baseline, kept, screen, calm)
     theta, spread, columns = _smooth(problem, law, unlisted, model, columns, use)
     also, rivals = {}, {}
     for one in model.laws:
-        also[one.name], rivals[one.name] = _compare(chooser, model, one, [*screen.listed, *screen.families])
+        also[one.name], rivals[one.name] = compare(chooser, model, one, [*screen.listed, *screen.families])
     return Explained(
-        baseline, law, _as_shipped(problem, shipped, baseline, use, chooser.dispersion), chooser.dispersion, listed,
-        unlisted, theta, spread, columns, {one.name: _chance(chooser, model, one, screen) for one in model.laws},
+        baseline, law, as_shipped(problem, shipped, baseline, use, chooser.dispersion), chooser.dispersion, kept,
+        unlisted, theta, spread, columns, {one.name: chance(chooser, model, one, screen) for one in model.laws},
         also, rivals, tuple(gains),
     )  # fmt: skip
 
@@ -142,64 +136,6 @@ def _explained(chooser: Chooser, model: Model) -> float:
     return float((chooser.foretold(Model(model.base)) - chooser.foretold(model)).sum())
 
 
-def far_off(problem: Problem, baseline: Fit, law: Fit, use: np.ndarray) -> bool:
-    """Whether a law leaves far more than noise of most launches, or much of what the baseline does: then something
-    else must be missing."""
-    before, after = (float(np.median(_left(problem, one, use))) - 1.0 for one in (baseline, law))
-    return after > FAR_OFF or (law is not baseline and after > NEAR and after > HALF_WAY * before)
-
-
-def _left(problem: Problem, law: Fit, use: np.ndarray) -> np.ndarray:
-    """What a law leaves of each cluster in `use`: its mean square residual in units of the noise."""
-    found = problem.residuals(law.values, (), use)
-    return np.bincount(found.cluster, found.r**2, problem.clusters)[use] / np.maximum(problem.freedom[use], 1.0)
-
-
-def _refit(problem: Problem, baseline: Fit, listed: Sequence[Law], screen: Columns, use: np.ndarray) -> Fit:
-    """The nonlinear fit of the baseline and the listed laws together, from each place at which one was looked for."""
-    best = baseline
-    for law in listed:
-        free = tuple(dict.fromkeys((*best.free, *problem.rows(law))))
-        values = {**best.values, **law.start}
-        if law.start:
-            starts = [one.start for one in screen.listed if one.name == law.name]
-            tries = [fit(problem, {**values, **start}, free, use, FEW_ROUNDS) for start in starts]
-            values = min(tries, key=lambda one: one.loss).values
-        best = fit(problem, values, free, use)
-    return best
-
-
-def _standing(problem: Problem, baseline: Fit, model: Model, screen: Columns, use: np.ndarray) -> tuple[Model, Fit]:
-    """The model without listed laws that come to nothing when all are fitted together, and that fit."""
-    while True:
-        listed = [law for law in model.laws if not law.family]
-        fitted = _refit(problem, baseline, listed, screen, use)
-        sizes = [_size(problem, fitted, law, use) for law in listed]
-        if not sizes or min(sizes) > LEAST_SIZE:
-            return model, fitted
-        model = model.minus(listed[int(np.argmin(sizes))])
-
-
-def _size(problem: Problem, fitted: Fit, law: Law, use: np.ndarray) -> float:
-    """How surely a law is there: the squares of its numbers by their covariance, or, where the recording does not feel
-    them, what the sum of squares grows by without them."""
-    rows = [name for name in problem.rows(law) if name in fitted.free]
-    off = {name: BY_NAME[name].default for name in rows}
-    without = problem.residuals({**fitted.values, **off}, (), use).r
-    at = [fitted.free.index(name) for name in rows]
-    away = np.array([fitted.values[name] - off[name] for name in rows])
-    surely = float(away @ np.linalg.pinv(fitted.covariance[np.ix_(at, at)], hermitian=True) @ away)
-    return min(surely, float(without @ without) - fitted.loss)
-
-
-def _calm(problem: Problem, law: Fit, use: np.ndarray, unlisted: Law | None) -> np.ndarray:
-    """The clusters that the final law explains; a few that it does not saw something of their own, and are left out."""
-    loss = _left(problem, law, use)
-    stray = loss > STRAY * max(float(np.median(loss)), 1.0)
-    few = 0 < stray.sum() <= MOST_STRAY * len(use) and unlisted is None
-    return use[~stray] if few else use
-
-
 def _smooth(problem: Problem, law: Fit, unlisted: Law | None, model: Model, columns: Columns, use: np.ndarray):
     """Coefficients of the family on top of the final fit, their covariance, and the columns that they belong to."""
     if unlisted is None:
@@ -210,45 +146,3 @@ def _smooth(problem: Problem, law: Fit, unlisted: Law | None, model: Model, colu
     units = problem.units.of(use)
     theta = gram.solve_softly(columns.grams, index, units, problem.units.freedom[units], ridge)
     return theta, gram.covariance(columns.grams, index, theta, units), columns
-
-
-def _as_shipped(problem: Problem, shipped: Mapping[str, float], baseline: Fit, use, dispersion: float) -> bool:
-    """Whether the simulator's own numbers explain the recording as well as the refitted ones."""
-    found = problem.residuals(shipped, (), use)
-    worse = (float(found.r @ found.r) - baseline.loss) / dispersion
-    return bool(chi2.sf(max(worse, 0.0), len(problem.base)) > CLEAR)
-
-
-def _chance(chooser: Chooser, model: Model, law: Law, screen: Columns) -> float:
-    """Chance that noise alone gains as much, for as many laws as were tried."""
-    gained = chooser.fitted(model.minus(law)) - chooser.fitted(model)
-    tried = len(screen.listed) + len(screen.families)
-    return float(min(max(tried * chi2.sf(gained, len(law.columns)), 1e-300), 1.0))
-
-
-def _compare(chooser: Chooser, model: Model, law: Law, others) -> tuple[tuple[str, ...], tuple[Rival, ...]]:
-    """What could stand in the place of `law`: names that the data cannot tell from it, and the rivals that lost."""
-    without = model.minus(law)
-    best = chooser.foretold(model)
-    also, rivals = [], {}
-    for other in others:
-        if other.name == law.name or other.name in {one.name for one in model.laws}:
-            continue
-        gain = chooser.gain(without, other)
-        loss = float((chooser.foretold(without) - gain.foretold - best).sum())
-        if loss < AMBIGUOUS and not other.family and not law.family and chooser.passes(gain):
-            also.append(other.name)
-        if other.name not in rivals or loss < rivals[other.name].loss:
-            rivals[other.name] = Rival(
-                other.name, loss, _why(gain, loss, float(chooser.foretold(without).sum() - best.sum()))
-            )
-    ordered = sorted(rivals.values(), key=lambda rival: rival.loss)
-    return tuple(dict.fromkeys(also)), tuple(ordered)
-
-
-def _why(gain: Gain, loss: float, whole: float) -> str:
-    if gain.total <= 0.0:
-        return "foretells held-out launches no better than the baseline"
-    if loss < AMBIGUOUS:
-        return "as good: this recording cannot tell the two apart"
-    return f"explains {100 * max(1.0 - loss / whole, 0.0):.0f} % of what the winner does"

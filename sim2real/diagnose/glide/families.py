@@ -16,17 +16,22 @@ UNIT = 0.1  # m/s^2, what a coefficient of 1 stands for
 RIPPLES = (14, 8)  # of cosines along one axis alone
 SPEED_KNOTS, HISTORY_KNOTS = 8, 6
 LONGEST_MEMORY = 2.0  # s after a contact
+SPIN_DECAY = 0.3  # 1/s, of a spin that is not seen
+SPIN = "side force by each launch's spin"
 
 
 @dataclass(frozen=True)
 class Motion:
     """Glides as the families see them: `t` (n,) [s], `place`, `velocity` (n, 2), `since` (n,) [s] after the last
-    contact (nan where none), and the table's `size` (2,) [m]."""
+    contact (nan where none), the number `launch` (n,) of the launch, the time `aged` (n,) [s] since it began, and the
+    table's `size` (2,) [m]."""
 
     t: np.ndarray
     place: np.ndarray
     velocity: np.ndarray
     since: np.ndarray
+    launch: np.ndarray
+    aged: np.ndarray
     size: np.ndarray
 
     @property
@@ -99,6 +104,12 @@ def _memory(motion: Motion) -> np.ndarray:
     return hats(np.minimum(since, LONGEST_MEMORY), knots)[:, :-1]
 
 
+def _spins(motion: Motion) -> np.ndarray:
+    """Speeds (n, launches) [m/s], each launch's in a column of its own, times what is left of its spin."""
+    speed = np.linalg.norm(motion.velocity, axis=1) * np.exp(-SPIN_DECAY * motion.aged)
+    return speed[:, None] * (motion.launch[:, None] == np.arange(motion.launch.max(initial=0.0) + 1.0))
+
+
 Family = Callable[[Motion], np.ndarray]
 FAMILIES: dict[str, tuple[str, Family]] = {
     "push by position": ("position", lambda m: _times(cosines(m), *_axes(m))),
@@ -113,5 +124,6 @@ FAMILIES: dict[str, tuple[str, Family]] = {
     "push by time": ("time", lambda m: _times(_moments(m), *_axes(m))),
     "brake by time": ("time", lambda m: _times(_moments(m), -m.along)),
     "brake after a contact": ("history", lambda m: _times(_memory(m), -m.along)),
+    SPIN: ("history", lambda m: _times(_spins(m), m.across)),
     "side force after a contact": ("history", lambda m: _times(_memory(m), m.across)),
 }

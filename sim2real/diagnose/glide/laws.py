@@ -11,7 +11,7 @@ import numpy as np
 from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.choose import Law
-from sim2real.diagnose.glide.families import FAMILIES, UNIT, Motion
+from sim2real.diagnose.glide.families import FAMILIES, SPIN, UNIT, Motion
 from sim2real.diagnose.glide.switched import switched_on
 from sim2real.diagnose.problem import Columns
 
@@ -52,7 +52,8 @@ def glide_columns(problem: GlideProblem, values: Mapping[str, float], free: Sequ
     for name, (depends, shape) in FAMILIES.items():
         block = columns(shape(motion))
         fresh = tuple(f"{name} {k}" for k in range(block.shape[1]))
-        families.append(Law(name, fresh, depends, switch=partial(switched_on, name, motion)))
+        mechanism = "side_force" if name == SPIN else "unlisted"
+        families.append(Law(name, fresh, depends, switch=partial(switched_on, name, motion), mechanism=mechanism))
         names += families[-1].columns
         blocks.append(block)
     jacobian = np.concatenate(blocks, axis=1)

@@ -62,9 +62,12 @@ class GlideProblem:
 
     def motion(self, path: np.ndarray) -> Motion:
         """A path (n, 4) as the families of smooth forces see it."""
-        since = self.data.t - self.data.of_frame(self.data.since)
+        data = self.data
+        since, launch = data.t - data.of_frame(data.since), data.of_frame(data.cluster)
+        begun = np.full(data.clusters, np.inf)
+        np.minimum.at(begun, launch, data.t)
         size = np.array([self._common["length"], self._common["width"]])
-        return Motion(self.data.t, path[:, :2], path[:, 2:], since, size)
+        return Motion(data.t, path[:, :2], path[:, 2:], since, launch.astype(float), data.t - begun[launch], size)
 
     def residuals(self, values: Mapping[str, float], free: Sequence[str], clusters: np.ndarray) -> Residuals:
         """See `Problem.residuals`."""

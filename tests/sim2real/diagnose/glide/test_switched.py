@@ -35,6 +35,8 @@ def test_the_simulator_s_force_is_the_family_s(family):
         rng.uniform(0, 1, (n, 2)) * SIZE,
         rng.normal(0, 1, (n, 2)),
         np.full(n, np.nan),
+        np.zeros(n),
+        np.zeros(n),
         SIZE,
     )
     columns = FAMILIES[family][1](motion)

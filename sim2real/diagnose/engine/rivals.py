@@ -1,0 +1,44 @@
+"""How sure a law is, and what else could stand in its place."""
+
+from __future__ import annotations
+
+from scipy.stats import chi2
+
+from sim2real.diagnose.engine.choose import AMBIGUOUS, Chooser, Gain, Law, Model
+from sim2real.diagnose.finding import Rival
+from sim2real.diagnose.problem import Columns
+
+
+def chance(chooser: Chooser, model: Model, law: Law, screen: Columns) -> float:
+    """Chance that noise alone gains as much, for as many laws as were tried."""
+    gained = chooser.fitted(model.minus(law)) - chooser.fitted(model)
+    tried = len(screen.listed) + len(screen.families)
+    return float(min(max(tried * chi2.sf(gained, len(law.columns)), 1e-300), 1.0))
+
+
+def compare(chooser: Chooser, model: Model, law: Law, others) -> tuple[tuple[str, ...], tuple[Rival, ...]]:
+    """What could stand in the place of `law`: names that the data cannot tell from it, and the rivals that lost."""
+    without = model.minus(law)
+    best = chooser.foretold(model)
+    also, rivals = [], {}
+    for other in others:
+        if other.name == law.name or other.name in {one.name for one in model.laws}:
+            continue
+        gain = chooser.gain(without, other)
+        loss = float((chooser.foretold(without) - gain.foretold - best).sum())
+        if loss < AMBIGUOUS and not other.family and not law.family and chooser.passes(gain):
+            also.append(other.name)
+        if other.name not in rivals or loss < rivals[other.name].loss:
+            rivals[other.name] = Rival(
+                other.name, loss, _why(gain, loss, float(chooser.foretold(without).sum() - best.sum()))
+            )
+    ordered = sorted(rivals.values(), key=lambda rival: rival.loss)
+    return tuple(dict.fromkeys(also)), tuple(ordered)
+
+
+def _why(gain: Gain, loss: float, whole: float) -> str:
+    if gain.total <= 0.0:
+        return "foretells held-out launches no better than the baseline"
+    if loss < AMBIGUOUS:
+        return "as good: this recording cannot tell the two apart"
+    return f"explains {100 * max(1.0 - loss / whole, 0.0):.0f} % of what the winner does"

@@ -1,0 +1,85 @@
+"""Laws fitted together, and what then stands: which come to nothing, what they leave, and of which launches."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from scipy.stats import chi2
+
+from puckpilot_env.parameters import BY_NAME
+from sim2real.diagnose.engine.choose import Law, Model
+from sim2real.diagnose.engine.fit import Fit, fit
+from sim2real.diagnose.problem import Columns, Problem
+
+CLEAR = 1e-4  # chance at which the simulator's own numbers would be refused though they are right
+FAR_OFF = 2.0  # mean square residual beyond 1 of a typical launch, in units of the noise, that nothing explains
+NEAR, HALF_WAY = 0.3, 0.3  # the same beside listed laws, and as a share of what the baseline leaves
+STRAY = 6.0  # times the usual sum of squares: a launch in which something else happened
+MOST_STRAY = 0.1
+LEAST_SIZE = 20.0  # sum of squares by which a law must stand out of the final fit
+FEW_ROUNDS = 4  # of a fit, to see which start leads farthest
+
+
+def far_off(problem: Problem, baseline: Fit, law: Fit, use: np.ndarray) -> bool:
+    """Whether a law leaves far more than noise of most launches, or much of what the baseline does: then something
+    else must be missing."""
+    before, after = (float(np.median(left_of(problem, one, use))) - 1.0 for one in (baseline, law))
+    return after > FAR_OFF or (law is not baseline and after > NEAR and after > HALF_WAY * before)
+
+
+def left_of(problem: Problem, law: Fit, use: np.ndarray) -> np.ndarray:
+    """What a law leaves of each cluster in `use`: its mean square residual in units of the noise."""
+    found = problem.residuals(law.values, (), use)
+    return np.bincount(found.cluster, found.r**2, problem.clusters)[use] / np.maximum(problem.freedom[use], 1.0)
+
+
+def refit(problem: Problem, baseline: Fit, listed: Sequence[Law], screen: Columns, use: np.ndarray) -> Fit:
+    """The nonlinear fit of the baseline and the listed laws together, from each place at which one was looked for."""
+    best = baseline
+    for law in listed:
+        free = tuple(dict.fromkeys((*best.free, *problem.rows(law))))
+        values = {**best.values, **law.start}
+        if law.start:
+            starts = [one.start for one in screen.listed if one.name == law.name]
+            tries = [fit(problem, {**values, **start}, free, use, FEW_ROUNDS) for start in starts]
+            values = min(tries, key=lambda one: one.loss).values
+        best = fit(problem, values, free, use)
+    return best
+
+
+def standing(problem: Problem, baseline: Fit, model: Model, screen: Columns, use: np.ndarray) -> tuple[Model, Fit]:
+    """The model without listed laws that come to nothing when all are fitted together, and that fit."""
+    while True:
+        listed = [law for law in model.laws if not law.family]
+        fitted = refit(problem, baseline, listed, screen, use)
+        sizes = [_size(problem, fitted, law, use) for law in listed]
+        if not sizes or min(sizes) > LEAST_SIZE:
+            return model, fitted
+        model = model.minus(listed[int(np.argmin(sizes))])
+
+
+def _size(problem: Problem, fitted: Fit, law: Law, use: np.ndarray) -> float:
+    """How surely a law is there: the squares of its numbers by their covariance, or, where the recording does not feel
+    them, what the sum of squares grows by without them."""
+    rows = [name for name in problem.rows(law) if name in fitted.free]
+    off = {name: BY_NAME[name].default for name in rows}
+    without = problem.residuals({**fitted.values, **off}, (), use).r
+    at = [fitted.free.index(name) for name in rows]
+    away = np.array([fitted.values[name] - off[name] for name in rows])
+    surely = float(away @ np.linalg.pinv(fitted.covariance[np.ix_(at, at)], hermitian=True) @ away)
+    return min(surely, float(without @ without) - fitted.loss)
+
+
+def calm_clusters(problem: Problem, law: Fit, use: np.ndarray) -> np.ndarray:
+    """The clusters that the final law explains; a few that it does not saw something of their own, and are left out."""
+    loss = left_of(problem, law, use)
+    stray = loss > STRAY * max(float(np.median(loss)), 1.0)
+    return use[~stray] if stray.sum() <= MOST_STRAY * len(use) else use
+
+
+def as_shipped(problem: Problem, shipped: Mapping[str, float], baseline: Fit, use, dispersion: float) -> bool:
+    """Whether the simulator's own numbers explain the recording as well as the refitted ones."""
+    found = problem.residuals(shipped, (), use)
+    worse = (float(found.r @ found.r) - baseline.loss) / dispersion
+    return bool(chi2.sf(max(worse, 0.0), len(problem.base)) > CLEAR)
