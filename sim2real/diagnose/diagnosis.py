@@ -176,7 +176,8 @@ def _gantry(data: Cut, values: dict[str, float], progress: Progress) -> list[Acc
         problem = gantry_problem(data.recordings, values, touched).proved_on(data.heldout, KEPT_APART)
     except UnusableError as why:
         return [Account("gantry", (), {}, False, None, str(why))]
-    return [_explain(problem, values, problem.proof, ())[1]]
+    alone = not any(len(times) for times in touched)
+    return [_explain(problem, values, problem.proof, (), alone)[1]]
 
 
 def _states(glides: GlideProblem, found: Explained) -> States:

@@ -12,7 +12,7 @@ from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.choose import LEAST_FORETOLD, LEAST_SHARE, Chooser, Gain, Law, Model
 from sim2real.diagnose.engine.fit import Fit, fit
 from sim2real.diagnose.engine.rivals import chance, compare
-from sim2real.diagnose.engine.settle import as_shipped, calm_clusters, far_off, refit, standing
+from sim2real.diagnose.engine.settle import as_shipped, calm_clusters, far_off, refit, standing, undisturbed
 from sim2real.diagnose.finding import Rival
 from sim2real.diagnose.problem import Columns, Problem
 
@@ -64,7 +64,7 @@ def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray, cle
 
     clear: what is far off and fits no law is missing physics of this regime, and not what another one left unexplained.
     """
-    baseline = fit(problem, shipped, problem.base, use)
+    use, baseline = undisturbed(problem, fit(problem, shipped, problem.base, use), use)
     screen = problem.columns(baseline.values)
     chooser = Chooser(screen.grams, problem.units, use, _dispersion(problem, screen, use))
     model, gains = chooser.add(Model(problem.base), screen.listed, MOST_LISTED)

@@ -17,6 +17,7 @@ FAR_OFF = 2.0  # mean square residual beyond 1 of a typical launch, in units of 
 NEAR, HALF_WAY = 0.3, 0.3  # the same beside listed laws, and as a share of what the baseline leaves
 STRAY = 6.0  # times the usual sum of squares: a launch in which something else happened
 MOST_STRAY = 0.1
+SPOILT, OUTSHINES = 1.5, 30.0  # mean square residual of a typical launch, and times that, of one that spoils the rest
 LEAST_SIZE = 20.0  # sum of squares by which a law must stand out of the final fit
 FEW_ROUNDS = 4  # of a fit, to see which start leads farthest
 
@@ -69,6 +70,22 @@ def _size(problem: Problem, fitted: Fit, law: Law, use: np.ndarray) -> float:
     away = np.array([fitted.values[name] - off[name] for name in rows])
     surely = float(away @ np.linalg.pinv(fitted.covariance[np.ix_(at, at)], hermitian=True) @ away)
     return min(surely, float(without @ without) - fitted.loss)
+
+
+def undisturbed(problem: Problem, baseline: Fit, use: np.ndarray) -> tuple[np.ndarray, Fit]:
+    """The clusters without a few that alone pull the baseline away from all others, and the baseline without them."""
+    kept = use
+    for _ in range(max(int(MOST_STRAY * len(use)), 1)):
+        left = left_of(problem, baseline, kept)
+        typical, worst = float(np.median(left)), int(np.argmax(left))
+        if typical < SPOILT or left[worst] < OUTSHINES * typical:
+            break
+        fewer = np.delete(kept, worst)
+        without = fit(problem, baseline.values, problem.base, fewer)
+        if np.median(left_of(problem, without, fewer)) > 0.5 * typical:
+            break
+        kept, baseline = fewer, without
+    return kept, baseline
 
 
 def calm_clusters(problem: Problem, law: Fit, use: np.ndarray) -> np.ndarray:

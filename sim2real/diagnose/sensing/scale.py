@@ -20,12 +20,11 @@ from sim2real.diagnose.strikes import Strike
 NAMES = ("scale_x", "scale_y", "shear")
 RADIUS, OFFSET, TURN = 0.001, 0.0005, 0.002  # m, m, rad: what a good calibration may be off by
 CUSHION = (0.0003, 0.0005)  # m and rad: how straight and true a wall is
-SURE = 1e-5
-TOLD = 1e-3  # of one of the three, once another is sure
+SURE = 1e-5  # chance of all three together, at which the map is wrong
+TOLD = 1e-3  # the same of one of them, once they are
 AT_LEAST = 0.001
 WRONG_SIZE = 0.022
 KNOWN = 0.003  # an error of a scale above which the lines do not tell it
-BETTER = 0.9
 FOLDS = 5
 
 
@@ -47,13 +46,13 @@ def scale_account(found: list[Strike], g: Geometry) -> ScaleAccount:
     if wrong:
         return ScaleAccount(np.zeros(3), (), None, wrong)
     sure = 2 * stats.norm.sf(np.abs(values) / std)
-    missing = (sure < SURE) & (np.abs(values) > AT_LEAST) & (std < KNOWN)
-    if not missing.any():
+    chance = float(stats.chi2.sf(values @ np.linalg.solve(covariance, values), len(NAMES)))
+    if chance > SURE or not np.any((sure < TOLD) & (np.abs(values) > AT_LEAST) & (std < KNOWN)):
         return ScaleAccount(np.zeros(3), (), None)
     told = (sure < TOLD) & (std < KNOWN)
     kept = np.where(told, values, 0.0)
     before, after, proof = _prove(found, g)
-    if proof.after_m > BETTER * proof.before_m:
+    if proof.after_m >= proof.before_m:
         return ScaleAccount(np.zeros(3), (), None)
     reach = 1.96 * std
     estimates = {
@@ -69,7 +68,7 @@ def scale_account(found: list[Strike], g: Geometry) -> ScaleAccount:
         depends_on=("position",),
         formula=EFFECTS["scale_error"].law,
         parameters=estimates,
-        p_value=max(float(sure[missing].min()), 1e-300),
+        p_value=max(chance, 1e-300),
         before=before,
         after=after,
         values={rows[name].name: float(values[k]) for k, name in enumerate(NAMES) if told[k]},
@@ -123,7 +122,8 @@ def _prove(found: list[Strike], g: Geometry) -> tuple[float, float, Proof]:
     rest: list[tuple[float, float, float]] = []
     for fold in range(FOLDS):
         skip = set(launches[fold::FOLDS])
-        values, _ = _solve(lines(found, g, skip), g)
+        values, covariance = _solve(lines(found, g, skip), g)
+        values = np.where(np.sqrt(np.diag(covariance)) < KNOWN, values, 0.0)
         for wall, line in whole.items():
             here = np.isin(line.launch, list(skip))
             expected = np.full(int(here.sum()), nominal_lines(g)[wall])
