@@ -20,6 +20,7 @@ FORBIDDEN = {
     "agents": ("sim2real", "puckpilot", "tests"),
     "sim2real": ("agents", "puckpilot", "tests"),
     "tests/reality": (*PACKAGES, "puckpilot"),
+    "tests/mujoco_table": (*PACKAGES, "puckpilot"),
 }
 # folder: all that the modules in it may import
 ALLOWED = {

@@ -12,12 +12,12 @@ from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.choose import LEAST_FORETOLD, LEAST_SHARE, Chooser, Gain, Law, Model
 from sim2real.diagnose.engine.fit import Fit, fit
 from sim2real.diagnose.engine.rivals import chance, compare
-from sim2real.diagnose.engine.settle import as_shipped, calm_clusters, far_off, refit, standing, undisturbed
+from sim2real.diagnose.engine.settle import as_shipped, calm_clusters, far_off, nearly_all, refit, standing, undisturbed
 from sim2real.diagnose.finding import Rival
 from sim2real.diagnose.problem import Columns, Problem
 
 MOST_LISTED = 4
-REMAINDER = 0.1  # share of what the listed laws explain that a remainder must exceed to be worth a law
+REMAINDER = 0.1  # share of what the listed laws foretell better that a law on top of them must add
 
 
 @dataclass(frozen=True)
@@ -69,9 +69,11 @@ def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray, cle
     chooser = Chooser(screen.grams, problem.units, use, _dispersion(problem, screen, use))
     model, gains = chooser.add(Model(problem.base), screen.listed, MOST_LISTED)
     listed, law = standing(problem, baseline, chooser.prune(model), screen, use)
-    columns = screen if law is baseline else problem.columns(law.values, law.free)
-    refitted = Chooser(columns.grams, problem.units, use, chooser.dispersion)
-    model = _with_remainder(chooser, listed, _remainder(chooser, listed, refitted, law, columns), screen)
+    columns, model = screen, listed
+    if not nearly_all(problem, baseline, law, use):
+        columns = screen if law is baseline else problem.columns(law.values, law.free)
+        refitted = Chooser(columns.grams, problem.units, use, chooser.dispersion)
+        model = _with_remainder(chooser, listed, _remainder(chooser, listed, refitted, law, columns), screen)
     if clear and not any(one.family for one in model.laws) and far_off(problem, baseline, law, use):
         model = _likeliest(chooser, Model(problem.base), screen)
     unlisted = next((one for one in model.laws if one.family), None)

@@ -14,6 +14,7 @@ from sim2real.diagnose.problem import Columns, Problem
 
 CLEAR = 1e-4  # chance at which the simulator's own numbers would be refused though they are right
 FAR_OFF = 2.0  # mean square residual beyond 1 of a typical launch, in units of the noise, that nothing explains
+REMAINDER = 0.1  # share of what the baseline leaves that must remain to be worth a law
 NEAR, HALF_WAY = 0.3, 0.3  # the same beside listed laws, and as a share of what the baseline leaves
 STRAY = 6.0  # times the usual sum of squares: a launch in which something else happened
 MOST_STRAY = 0.1
@@ -23,10 +24,16 @@ FEW_ROUNDS = 4  # of a fit, to see which start leads farthest
 
 
 def far_off(problem: Problem, baseline: Fit, law: Fit, use: np.ndarray) -> bool:
-    """Whether a law leaves far more than noise of most launches, or much of what the baseline does: then something
-    else must be missing."""
+    """Whether something must be missing still: a bare baseline leaves far more than noise of most launches, or listed
+    laws leave much of what it does."""
     before, after = (float(np.median(left_of(problem, one, use))) - 1.0 for one in (baseline, law))
-    return after > FAR_OFF or (law is not baseline and after > NEAR and after > HALF_WAY * before)
+    return after > FAR_OFF if law is baseline else after > NEAR and after > HALF_WAY * before
+
+
+def nearly_all(problem: Problem, baseline: Fit, law: Fit, use: np.ndarray) -> bool:
+    """Whether listed laws explain so much that what they leave is not worth a law of its own."""
+    noise = float(problem.freedom[use].sum())
+    return law is not baseline and law.loss - noise < REMAINDER * (baseline.loss - noise)
 
 
 def left_of(problem: Problem, law: Fit, use: np.ndarray) -> np.ndarray:
