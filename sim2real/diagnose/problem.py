@@ -17,12 +17,13 @@ class Residuals:
     """Residuals `r` (n,) in units of the sensor's noise, with nuisances (initial states) profiled out.
 
     `jacobian` (n, free): dr/dparameter, profiled likewise; `cluster` (n,) int: the launch that each comes from, the
-    unit of resampling.
+    unit of resampling. `unit` (n,) int: the unit that each comes from, where single ones may be wrong altogether.
     """
 
     r: np.ndarray
     jacobian: np.ndarray
     cluster: np.ndarray
+    unit: np.ndarray | None = None
 
 
 @dataclass(frozen=True)

@@ -62,7 +62,7 @@ class Explained:
 def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray, clear: bool = True) -> Explained:
     """Explain the clusters `use` of a problem, starting from the simulator's own numbers `shipped`.
 
-    clear: what is far off and fits no law is missing physics of this regime, and not what another one left unexplained.
+    clear: what fits no listed law is missing physics of this regime, and not what another one left unexplained.
     """
     use, baseline = undisturbed(problem, fit(problem, shipped, problem.base, use), use)
     screen = problem.columns(baseline.values)
@@ -70,7 +70,7 @@ def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray, cle
     model, gains = chooser.add(Model(problem.base), screen.listed, MOST_LISTED)
     listed, law = standing(problem, baseline, chooser.prune(model), screen, use)
     columns, model = screen, listed
-    if not nearly_all(problem, baseline, law, use):
+    if clear and not nearly_all(problem, baseline, law, use):
         columns = screen if law is baseline else problem.columns(law.values, law.free)
         refitted = Chooser(columns.grams, problem.units, use, chooser.dispersion)
         model = _with_remainder(chooser, listed, _remainder(chooser, listed, refitted, law, columns), screen)

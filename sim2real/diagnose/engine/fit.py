@@ -11,7 +11,7 @@ from scipy.stats import t as student
 from puckpilot_env.parameters import BY_NAME
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.finding import Estimate
-from sim2real.diagnose.problem import Problem
+from sim2real.diagnose.problem import Problem, Residuals
 
 ROUNDS = 40
 CONVERGED = 1e-3  # drop of the sum of squares, in units of what a residual has left, at which a fit ends
@@ -22,8 +22,8 @@ HALVINGS = 3  # of a step that leads uphill, before it is bent downhill
 class Fit:
     """A fitted law: all its `values` by name, the `free` ones' covariance (k, k), and what it leaves.
 
-    `loss`: sum of squares in units of the sensor's noise; `count`: residuals; `bound`: parameters that ended at a
-    bound of their range.
+    `loss`: sum of squares in units of the sensor's noise, as in `soft_loss`; `count`: residuals; `bound`: parameters
+    that ended at a bound of their range.
     """
 
     values: Mapping[str, float]
@@ -68,9 +68,10 @@ def fit(
     for _ in range(rounds):
         now.update(zip(free, map(float, at), strict=True))
         found = problem.residuals(now, free, clusters)
-        fresh = float(found.r @ found.r)
+        fresh, weight = soft_loss(problem, found)
         if fresh <= loss * (1.0 + 1e-12):
-            grams = gram.make_grams(free, found.r, found.jacobian, found.cluster, problem.clusters)
+            r, jacobian = weight * found.r, weight[:, None] * found.jacobian
+            grams = gram.make_grams(free, r, jacobian, found.cluster, problem.clusters)
             gained, loss, best = loss - fresh, fresh, at
             damping, halved = damping * 0.1, 0
             if gained < CONVERGED * max(1.0, loss / max(len(found.r), 1)):
@@ -90,6 +91,17 @@ def fit(
     spread = gram.covariance(grams, columns, np.zeros(len(free)), everything[clusters])
     bound = tuple(n for n, a, lo, hi in zip(free, best, low, high, strict=True) if a <= lo or a >= hi)
     return Fit(now, free, spread, loss, int(grams.count.sum()), len(clusters), bound)
+
+
+def soft_loss(problem: Problem, found: Residuals) -> tuple[float, np.ndarray]:
+    """Sum of squares, and the weight (n,) of each residual; where single units may be wrong altogether, their squares
+    grow softly (`gram.soft`), and they weigh less."""
+    if found.unit is None:
+        return float(found.r @ found.r), np.ones(len(found.r))
+    freedom = problem.units.freedom
+    left = np.bincount(found.unit, found.r**2, len(freedom))
+    weight = np.minimum(gram.soft_from(freedom) / np.maximum(left, 1e-9), 1.0)
+    return float(gram.soft(left, freedom).sum()), np.sqrt(weight)[found.unit]
 
 
 def _step(grams, damping: float, at, low, high, clusters) -> np.ndarray:

@@ -9,7 +9,7 @@ from scipy.stats import chi2
 
 from puckpilot_env.parameters import BY_NAME
 from sim2real.diagnose.engine.choose import Law, Model
-from sim2real.diagnose.engine.fit import Fit, fit
+from sim2real.diagnose.engine.fit import Fit, fit, soft_loss
 from sim2real.diagnose.problem import Columns, Problem
 
 CLEAR = 1e-4  # chance at which the simulator's own numbers would be refused though they are right
@@ -72,11 +72,11 @@ def _size(problem: Problem, fitted: Fit, law: Law, use: np.ndarray) -> float:
     them, what the sum of squares grows by without them."""
     rows = [name for name in problem.rows(law) if name in fitted.free]
     off = {name: BY_NAME[name].default for name in rows}
-    without = problem.residuals({**fitted.values, **off}, (), use).r
+    without, _ = soft_loss(problem, problem.residuals({**fitted.values, **off}, (), use))
     at = [fitted.free.index(name) for name in rows]
     away = np.array([fitted.values[name] - off[name] for name in rows])
     surely = float(away @ np.linalg.pinv(fitted.covariance[np.ix_(at, at)], hermitian=True) @ away)
-    return min(surely, float(without @ without) - fitted.loss)
+    return min(surely, without - fitted.loss)
 
 
 def undisturbed(problem: Problem, baseline: Fit, use: np.ndarray) -> tuple[np.ndarray, Fit]:
@@ -104,6 +104,6 @@ def calm_clusters(problem: Problem, law: Fit, use: np.ndarray) -> np.ndarray:
 
 def as_shipped(problem: Problem, shipped: Mapping[str, float], baseline: Fit, use, dispersion: float) -> bool:
     """Whether the simulator's own numbers explain the recording as well as the refitted ones."""
-    found = problem.residuals(shipped, (), use)
-    worse = (float(found.r @ found.r) - baseline.loss) / dispersion
+    found, _ = soft_loss(problem, problem.residuals(shipped, (), use))
+    worse = (found - baseline.loss) / dispersion
     return bool(chi2.sf(max(worse, 0.0), len(problem.base)) > CLEAR)

@@ -73,7 +73,8 @@ class MalletProblem:
         both = self.allowing(values, np.concatenate([r[:, None], jacobian], axis=1))
         cluster = np.repeat(self.data.cluster, 3)
         here = np.isin(cluster, clusters)
-        return Residuals(both[here, 0], both[here, 1:], cluster[here])
+        unit = np.repeat(np.arange(len(self.data)), 3)
+        return Residuals(both[here, 0], both[here, 1:], cluster[here], unit[here])
 
     def predicted(self, values: Mapping[str, float]) -> np.ndarray:
         """Velocity after along the normal and the tangent, and the mallet's step along the normal: (n, 3) [m/s]."""

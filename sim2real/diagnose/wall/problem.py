@@ -74,7 +74,8 @@ class WallProblem:
         both = self.allowing(values, now, np.concatenate([r[:, None], jacobian], axis=1))
         cluster = np.repeat(self.data.cluster, 2)
         here = np.isin(cluster, clusters)
-        return Residuals(both[here, 0], both[here, 1:], cluster[here])
+        unit = np.repeat(np.arange(len(self.data)), 2)
+        return Residuals(both[here, 0], both[here, 1:], cluster[here], unit[here])
 
     def predicted(self, values: Mapping[str, float]) -> np.ndarray:
         """Velocity after (n, 2) [m/s] along the normal and the tangent, under a law."""
