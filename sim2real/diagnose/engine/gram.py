@@ -113,7 +113,10 @@ def covariance(grams: Grams, columns: np.ndarray, theta: np.ndarray, clusters: n
     The larger of the two on each diagonal; the sandwich is corrected for few clusters (CR1).
     """
     g = grams.g[np.ix_(clusters, columns, columns)]
-    inverse = np.linalg.pinv(g.sum(axis=0), hermitian=True)
+    whole = g.sum(axis=0)
+    size = np.sqrt(np.maximum(np.diag(whole), 0.0))
+    size[size == 0.0] = 1.0  # scaled, since parameters differ by many powers of ten
+    inverse = np.linalg.pinv(whole / size[:, None] / size, hermitian=True) / size[:, None] / size
     count, c = grams.count[clusters].sum(), len(clusters)
     rest = max(losses(grams, columns, theta, clusters).sum() / max(count - len(columns), 1.0), 1.0)
     model = inverse * rest

@@ -53,7 +53,10 @@ def diagnosed(recording: Recording) -> Account:
 def test_one_effect_is_named_and_measured(tmp_path: Path, law: Law, name: str, parameter: str, value: float) -> None:
     found = diagnosed(recorded(tmp_path, law))
     assert [one.mechanism for one in found.findings] == [name]
-    assert found.findings[0].parameters[parameter].value == pytest.approx(value, rel=0.03)
+    estimate = found.findings[0].parameters[parameter]
+    width = estimate.high - estimate.low
+    assert abs(estimate.value - value) < 0.75 * width  # three standard deviations: once in 400 such tests by chance
+    assert 0.0 < width < 0.1 * abs(value)
     assert found.findings[0].after < 1.1 < found.findings[0].before
 
 
