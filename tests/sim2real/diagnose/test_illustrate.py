@@ -47,7 +47,7 @@ def test_a_braking_that_fades_gets_its_formula_and_its_parting(tmp_path):
     assert one.parameters["decay"].value == pytest.approx(0.3, rel=0.05)
     curve = _curve(found)
     assert curve.formula == pytest.approx(-0.25 * np.exp(-curve.x / 0.3), abs=0.02)
-    parting = found.accounts[0].parting
+    parting = next(each.parting for each in found.accounts if each.regime == "glide")
     assert parting is not None
     before, after = (np.sqrt(np.mean((some / parting.std) ** 2)) for some in (parting.before, parting.after))
     assert before > 2.0
