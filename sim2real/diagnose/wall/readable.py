@@ -35,6 +35,11 @@ def readable(problem: WallProblem, found: Explained, law: Law, use: np.ndarray) 
             made = [form(one, axis, [side], "1") for one in profiles(axis, "1")]
             forms |= {one.name: (one, here) for one in made}
     left = problem.residuals(found.final.values, found.final.free, np.arange(problem.clusters))
-    rest = Rest(left.r, left.jacobian, left.cluster, use, problem.whitened)
+    now = problem.predicted(found.final.values)
+
+    def respond(velocities: np.ndarray) -> np.ndarray:
+        return problem.allowing(found.final.values, now, problem.whitened(velocities))
+
+    rest = Rest(left.r, left.jacobian, left.cluster, use, respond)
     best = find_formula(rest, [one for one, _ in forms.values()], lambda one, shape: ())
     return best, View(label, np.where(forms[best.form.name][1], values, np.nan), component)
