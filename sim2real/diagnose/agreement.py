@@ -27,6 +27,7 @@ RELATIVE = 0.1  # of its size, which one table may change by from one day to the
 SIZE_APART = 0.01  # of a table's size
 HARM = 30.0  # growth of a sum of squares that noise does not make
 WORSE = 1.1  # times the sum of squares without a law, with it
+WORSE_SMOOTH = 1.5  # the same, softly, of a smooth law, which says little of places where its own recording has no puck
 
 
 @dataclass(frozen=True)
@@ -78,8 +79,9 @@ def check_agreement(problem: Problem, shipped: Mapping[str, float], parts: Seque
             name, a, b = told
             why = f"{name} is {a:.3g} in the one and {b:.3g} in the other"
             raise _two_tables(parts[one].name, parts[other].name, why)
-        harm = _loss_under(problem, alone[one], there), alone[other].baseline.loss
-        if harm[0] > WORSE * harm[1] and harm[0] - harm[1] > HARM * alone[other].dispersion:
+        harm = _losses_under(problem, alone[one], alone[other], there)
+        worse = WORSE if alone[one].unlisted is None else WORSE_SMOOTH
+        if harm[0] > worse * harm[1] and harm[0] - harm[1] > HARM * alone[other].dispersion:
             why = f"what the {problem.regime} of the one asks for makes the other's worse"
             raise _two_tables(parts[one].name, parts[other].name, why)
 
@@ -104,17 +106,25 @@ def _numbers_apart(one: Fit, other: Fit) -> tuple[str, float, float] | None:
     return told
 
 
-def _loss_under(problem: Problem, found: Explained, clusters: np.ndarray) -> float:
-    """Sum of squares of `clusters` under the effects found elsewhere, with the baseline's numbers refitted."""
+def _losses_under(problem: Problem, found: Explained, own: Explained, clusters: np.ndarray) -> tuple[float, float]:
+    """Losses of `clusters` under the effects found elsewhere and without them, with the baseline's numbers refitted.
+
+    own: what was found in the clusters themselves.
+    """
     if found.unlisted is None:
-        return fit(problem, found.law.values, problem.base, clusters).loss
-    grams = found.columns.grams
-    names = (*problem.base, *found.unlisted.columns)
-    columns, theta = grams.columns(names), np.zeros(len(names))
-    base = len(problem.base)
-    theta[base:] = found.theta[-len(found.unlisted.columns) :]
-    units = problem.units.of(clusters)
+        return fit(problem, found.law.values, problem.base, clusters).loss, own.baseline.loss
+    theta = found.theta[-len(found.unlisted.columns) :]
+    columns = found.columns.grams.columns((*problem.base, *found.unlisted.columns))
+    return _smooth_loss(problem, found, columns, theta, clusters), _smooth_loss(
+        problem, found, columns, np.zeros_like(theta), clusters
+    )
+
+
+def _smooth_loss(problem: Problem, found: Explained, columns: np.ndarray, theta: np.ndarray, clusters) -> float:
+    """Soft loss of `clusters` under the coefficients `theta` of a family, the last of `columns`; the rest refitted."""
+    grams, units, base = found.columns.grams, problem.units.of(clusters), len(problem.base)
     g = grams.g[np.ix_(units, columns, columns)].sum(axis=0)
     b = grams.b[np.ix_(units, columns)].sum(axis=0)
-    theta[:base] = gram.solve_normal(g[:base, :base], -(b[:base] + g[:base, base:] @ theta[base:]))
-    return float(gram.losses(grams, columns, theta, units).sum())
+    whole = np.concatenate([np.zeros(base), theta])
+    whole[:base] = gram.solve_normal(g[:base, :base], -(b[:base] + g[:base, base:] @ theta))
+    return float(gram.soft(gram.losses(grams, columns, whole, units), problem.units.freedom[units]).sum())
