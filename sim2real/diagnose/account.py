@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,19 +11,23 @@ from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.choose import Law, Model
 from sim2real.diagnose.engine.explain import Explained
+from sim2real.diagnose.engine.twins import twins
 from sim2real.diagnose.finding import Account, Estimate, Finding, Proof
 from sim2real.diagnose.labels import labelled
 from sim2real.diagnose.problem import Problem
 from sim2real.diagnose.where import whereabouts
 
 
-def account(problem: Problem, found: Explained, proof: np.ndarray) -> Account:
-    """What a regime says: `found` by the engine on other clusters, proved on the clusters `proof`."""
+def account(problem: Problem, found: Explained, use: np.ndarray, proof: np.ndarray) -> Account:
+    """What a regime says: `found` by the engine on the clusters `use`, proved on the clusters `proof`."""
     before = _rms(problem, float(np.sum(problem.residuals(found.baseline.values, (), proof).r ** 2)), proof)
     after = _rms(problem, _left(problem, found, proof), proof)
     findings = [_listed(problem, found, law, before, after) for law in found.listed]
     if found.unlisted is not None:
         findings.append(_unlisted(problem, found, found.unlisted, before, after))
+    if findings:
+        controls = twins(found.screen.grams, problem.units, found.model, use, proof)
+        findings = [replace(one, twins=controls) for one in findings]
     fitted = found.final
     return Account(
         problem.regime,
@@ -30,7 +35,8 @@ def account(problem: Problem, found: Explained, proof: np.ndarray) -> Account:
         {name: fitted.estimate(name) for name in problem.base},
         found.shipped and not findings,
         Proof(before * problem.noise_m, after * problem.noise_m, problem.noise_m, len(proof)),
-        next_recording=_next(findings),
+        next_recording=_next(findings) or _once_more(found),
+        doubt=_doubt(found),
     )
 
 
@@ -71,6 +77,18 @@ def _sizes(found: Explained, law: Law) -> Mapping[str, Estimate]:
         f"c{k}": Estimate(float(value), float(value - 1.96 * std), float(value + 1.96 * std), "1")
         for k, (value, std) in enumerate(zip(theta, spread, strict=True))
     }
+
+
+def _doubt(found: Explained) -> str:
+    if found.doubtful is None:
+        return ""
+    return f"{found.doubtful.name} would fit, but what asks for it is in too few launches to tell it from an accident"
+
+
+def _once_more(found: Explained) -> str:
+    if found.doubtful is None:
+        return ""
+    return f"to make sure of {found.doubtful.name}, record {EFFECTS[found.doubtful.name].excited_by}"
 
 
 def _next(findings: list[Finding]) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,6 +37,12 @@ KEPT_APART = 4  # every so manieth launch serves the proof alone
 FEWEST_LAUNCHES = 6
 FEWEST_RESIDUALS = 24
 TOO_LITTLE = "too little data"
+MORE_OF = {
+    "glide": "launches of the puck, twenty or more in all directions and from slow to fast",
+    "wall": "bounces off all four walls, thirty or more, slow and fast, steep and flat",
+    "mallet": "blows of the robot's mallet, thirty or more, some of them with the mallet at rest",
+    "gantry": "plans of the gantry, a minute or more over its whole area",
+}
 
 Progress = Callable[[str, float], None]
 
@@ -74,6 +80,17 @@ class Diagnosis:
         """What to record next, in one sentence; "" where nothing is open."""
         open_ones = (each.next_recording for each in self.accounts if each.next_recording)
         return self.remedy or next(open_ones, "")
+
+    @property
+    def untold(self) -> list[Account]:
+        """The regimes of which nothing can be said."""
+        return [each for each in self.accounts if each.undetermined]
+
+    @property
+    def remarks(self) -> list[str]:
+        """What should be known beside the verdict, a sentence each."""
+        untold = [f"{each.regime}: undetermined, {each.undetermined}" for each in self.untold]
+        return [*self.notes, *untold, *(f"{each.regime}: {each.doubt}" for each in self.accounts if each.doubt)]
 
     @property
     def proof(self) -> Proof | None:
@@ -132,15 +149,18 @@ def _accounts(
     values = parameters(recordings[0], shipped)
     sights = tuple(sight(one, pieces) for one, pieces in zip(data.recordings, data.pieces, strict=True))
     gantry = _gantry(data, values, progress)
-    return (sensed.account, *_puck(data, values, progress), *gantry), sights
+    return (sensed.account, *_puck(data, sights, values, progress), *gantry), sights
 
 
-def _puck(data: Cut, values: dict[str, float], progress: Progress):
-    """Accounts of the puck's regimes, in the order in which one leans on the other: hits are told by the glides."""
+def _puck(data: Cut, sights: Sequence[Sight], values: dict[str, float], progress: Progress) -> Iterator[Account]:
+    """Accounts of the puck's regimes, in the order in which one leans on the other: hits are told by the glides. None
+    where no puck was seen."""
+    if not any(seen.frames and seen.dropped < 1.0 for seen in sights):
+        return
     progress("glides", 0.2)
     parts = [_glides(one, pieces) for one, pieces in zip(data.recordings, data.pieces, strict=True)]
     if not sum(part.glides for part in parts):
-        yield Account("glide", (), {}, False, None, TOO_LITTLE)
+        yield _too_little("glide")
         return
     glides = GlideProblem(join(parts), values)
     proof = _kept_apart(glides, parts, data.heldout)
@@ -198,11 +218,15 @@ def _explain(problem: Problem, law: Mapping[str, float], proof: np.ndarray, tabl
     live = np.flatnonzero(problem.freedom > 0)
     use, apart = np.setdiff1d(live, proof), np.intersect1d(live, proof)
     if len(use) + len(apart) < FEWEST_LAUNCHES or not len(apart) or problem.freedom[use].sum() < FEWEST_RESIDUALS:
-        return None, Account(problem.regime, (), {}, False, None, TOO_LITTLE)
+        return None, _too_little(problem.regime)
     shipped = {name: law[name] for name in problem.base}
     check_agreement(problem, shipped, tables)
     found = explain(problem, shipped, use, clear)
-    return found, illustrated(problem, found, account(problem, found, apart), use)
+    return found, illustrated(problem, found, account(problem, found, use, apart), use)
+
+
+def _too_little(regime: str) -> Account:
+    return Account(regime, (), {}, False, None, TOO_LITTLE, f"record more {MORE_OF[regime]}")
 
 
 def _kept_apart(glides: GlideProblem, parts: Sequence[GlideData], heldout: int) -> np.ndarray:

@@ -32,8 +32,8 @@ def as_dict(diagnosis: Diagnosis) -> dict[str, Any]:
     }
     if diagnosis.reason:
         words["reason"] = diagnosis.reason
-    if diagnosis.notes:
-        words["notes"] = list(diagnosis.notes)
+    if diagnosis.remarks:
+        words["notes"] = diagnosis.remarks
     return words
 
 
@@ -47,7 +47,12 @@ def _finding(one: Finding) -> dict[str, Any]:
         "formula": one.formula,
         "parameters": {name: _estimate(value) for name, value in one.parameters.items()},
         "p_value": one.p_value,
-        "heldout": {"before": one.before, "after": one.after, "unit": "rms in units of the sensor's noise"},
+        "heldout": {
+            "before": one.before,
+            "after": one.after,
+            "unit": "rms in units of the sensor's noise",
+            **{f"{name}_twin": {"before": before, "after": after} for name, (before, after) in one.twins.items()},
+        },
     }
     return words if one.curve is None else {**words, "curve": _curve(one.curve)}
 

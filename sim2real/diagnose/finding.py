@@ -103,7 +103,8 @@ class Sight:
 class Finding:
     """One missing piece of physics, in the words of the format puckpilot-diagnosis/1.
 
-    `values`: the simulator's parameters that switch it on, by their names in `puckpilot_env.parameters`.
+    `values`: the simulator's parameters that switch it on, by their names in `puckpilot_env.parameters`. `twins`: the
+    same residuals before and after in controls where nothing is to be found, by the control's name (`engine.twins`).
     """
 
     regime: str
@@ -119,6 +120,7 @@ class Finding:
     values: Mapping[str, float] = field(default_factory=dict)
     rivals: tuple[Rival, ...] = ()
     curve: Curve | None = None
+    twins: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -126,6 +128,7 @@ class Account:
     """What one regime of the recording says. `undetermined` gives the reason why it cannot tell, "" if it can.
 
     `baseline`: the refitted parameters of the baseline law; `shipped`: whether the simulator's own numbers do as well.
+    `doubt`: what the data hint at without telling it surely, "" where nothing.
     """
 
     regime: str
@@ -136,3 +139,4 @@ class Account:
     undetermined: str = ""
     next_recording: str = ""
     parting: Parting | None = None
+    doubt: str = ""

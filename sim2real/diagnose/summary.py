@@ -24,7 +24,8 @@ def sentence(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "undetermined":
         reasons = [diagnosis.reason, *(each.undetermined for each in diagnosis.accounts)]
         return f"{SENTENCES['undetermined']}: {next((r for r in reasons if r), 'nothing in it tells')}."
-    return SENTENCES[diagnosis.verdict]
+    untold = " and ".join(each.regime for each in diagnosis.untold)
+    return SENTENCES[diagnosis.verdict] + (f" (Of the {untold} it cannot tell.)" if untold else "")
 
 
 def _name(one: Finding) -> str:
@@ -47,7 +48,7 @@ def summary(diagnosis: Diagnosis, written: Sequence[Path]) -> list[str]:
         )
     if diagnosis.next_recording:
         lines.append(f"  next: {diagnosis.next_recording}")
-    lines += [f"  note: {note}" for note in diagnosis.notes]
+    lines += [f"  note: {remark}" for remark in diagnosis.remarks]
     return [*lines[: MOST_LINES - 1], "wrote " + ", ".join(map(str, written))]
 
 

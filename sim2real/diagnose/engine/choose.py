@@ -162,6 +162,10 @@ class Chooser:
         enough = gain.fitted > LEAST_FIT + 2.0 * k and gain.total > LEAST_FORETOLD and gain.without_best > 0.0
         return enough and float(np.quantile(self._resampled @ gain.foretold, UNSURE)) > 0.0
 
+    def doubtful(self, gain: Gain) -> bool:
+        """Whether a law fits far better than chance lets it, and yet does not pass: few launches ask for it."""
+        return gain.fitted > LEAST_FIT + 2.0 * len(gain.law.columns) and not self.passes(gain)
+
     def same_in_both_halves(self, model: Model, law: Law) -> bool:
         """Whether the odd and the even launches ask for the law with the same sign, as far as either knows."""
         columns, ridge = model.plus(law, 1.0).columns(self.grams)

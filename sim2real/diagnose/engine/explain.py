@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,7 +23,9 @@ REMAINDER = 0.1  # share of what the listed laws foretell better that a law on t
 @dataclass(frozen=True)
 class Explained:
     """What the engine found. `law`: the final fit, of the baseline and the listed laws `listed`; `unlisted` and its
-    coefficients `theta` are a family on top of it. `also` and `rivals` are by the name of the law."""
+    coefficients `theta` are a family on top of it. `also` and `rivals` are by the name of the law. `doubtful`: what too
+    few launches ask for, where nothing was found. `columns` are those of the final law, `screen` and `model` those in
+    which it was chosen."""
 
     baseline: Fit
     law: Fit
@@ -34,10 +36,12 @@ class Explained:
     theta: np.ndarray
     theta_covariance: np.ndarray
     columns: Columns
+    screen: Columns
+    model: Model
     chance: Mapping[str, float]
     also: Mapping[str, tuple[str, ...]]
     rivals: Mapping[str, tuple[Rival, ...]]
-    gains: tuple[Gain, ...] = field(default=())
+    doubtful: Law | None
 
     @property
     def final(self) -> Fit:
@@ -89,9 +93,16 @@ def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray, cle
         also[one.name], rivals[one.name] = compare(chooser, model, one, [*screen.listed, *screen.families])
     return Explained(
         baseline, law, as_shipped(problem, shipped, baseline, use, chooser.dispersion), chooser.dispersion, kept,
-        unlisted, theta, spread, columns, {one.name: chance(chooser, model, one, screen) for one in model.laws},
-        also, rivals, tuple(gains),
+        unlisted, theta, spread, columns, screen, model,
+        {one.name: chance(chooser, model, one, screen) for one in model.laws},
+        also, rivals, None if model.laws else _doubtful(chooser, gains),
     )  # fmt: skip
+
+
+def _doubtful(chooser: Chooser, gains: Sequence[Gain]) -> Law | None:
+    """The law that fits best of those that few launches alone ask for."""
+    some = [gain for gain in gains if chooser.doubtful(gain)]
+    return max(some, key=lambda gain: gain.fitted).law if some else None
 
 
 def _dispersion(problem: Problem, screen: Columns, use: np.ndarray) -> float:

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from puckpilot_env.physics.effects import EFFECTS, MODULES
+from sim2real.diagnose.engine.twins import NULL, PERMUTED
 from sim2real.diagnose.finding import Finding, Rival
 from sim2real.diagnose.report import words
 from sim2real.diagnose.report.draw import curve_picture
 from sim2real.diagnose.report.words import number, text
 
 SHOWN = 5  # rivals before the rest is folded away
+TWINS = {
+    NULL: "null twin: the fitted baseline, and the sensor's noise",
+    PERMUTED: "permutation twin: the recording, with signs drawn launch by launch",
+}
 
 
 def finding_section(one: Finding, index: int) -> str:
@@ -18,7 +23,7 @@ def finding_section(one: Finding, index: int) -> str:
     body += words.paragraph(_where(one)) + _ambiguous(one)
     if one.parameters:
         body += words.estimates("Parameters", one.parameters.items())
-    body += _curve(one) + _proof(one) + _rivals(one.rivals)
+    body += _curve(one) + _proof(one) + _twins(one) + _rivals(one.rivals)
     return words.section(f"finding-{index}", title, body)
 
 
@@ -74,6 +79,18 @@ def _proof(one: Finding) -> str:
         f"On launches that no fit saw, residuals of the regime fall from {number(one.before)} to "
         f"{number(one.after)} times the sensor's noise. Chance that noise alone gains as much: p = {one.p_value:.1e}."
     )
+
+
+def _twins(one: Finding) -> str:
+    if not one.twins:
+        return ""
+    rows = [["the recording", number(one.before), number(one.after)]]
+    rows += [[TWINS[name], number(before), number(after)] for name, (before, after) in one.twins.items()]
+    note = (
+        "The same laws, fitted and tried likewise where nothing is to be found: rms residuals of untouched launches in "
+        "units of the noise"
+    )
+    return words.table(note, ("data", "before", "after"), rows, (1, 2))
 
 
 def _rivals(rivals: tuple[Rival, ...]) -> str:

@@ -36,7 +36,7 @@ def diagnosed(recording: Recording) -> Account:
     problem = gantry_problem([recording], values)
     proof = np.arange(problem.clusters)[3::4]
     use = np.setdiff1d(np.arange(problem.clusters), proof)
-    return account(problem, explain(problem, {name: values[name] for name in problem.base}, use), proof)
+    return account(problem, explain(problem, {name: values[name] for name in problem.base}, use), use, proof)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,43 @@
+"""Controls of a proof: laws gain on what they made, and nothing on its twins."""
+
+import numpy as np
+import pytest
+
+from sim2real.diagnose.engine import gram
+from sim2real.diagnose.engine.choose import Law, Model
+from sim2real.diagnose.engine.twins import NULL, PERMUTED, twins
+from sim2real.diagnose.problem import Units
+
+LAUNCHES, EACH = 24, 40
+USE, PROOF = np.arange(18), np.arange(18, LAUNCHES)
+UNITS = Units(np.arange(LAUNCHES), np.full(LAUNCHES, float(EACH)))
+ONE = Model(("base",), (Law("push", ("push",)),), (np.inf,))
+
+
+def _grams(columns: int = 1, size: float = 1.0):
+    """White noise about a baseline, and a law of this size, the first of so many columns."""
+    rng = np.random.default_rng(4)
+    jacobian = rng.normal(size=(LAUNCHES * EACH, 1 + columns))
+    r = -0.7 * jacobian[:, 0] - size * jacobian[:, 1] + rng.normal(size=len(jacobian))
+    names = ("base", *(f"push {k}" if k else "push" for k in range(columns)))
+    return gram.make_grams(names, r, jacobian, np.repeat(np.arange(LAUNCHES), EACH), LAUNCHES)
+
+
+def test_a_true_law_gains_nothing_on_noise():
+    before, after = twins(_grams(), UNITS, ONE, USE, PROOF)[NULL]
+    assert before == pytest.approx(1.0, abs=0.03)
+    assert after == pytest.approx(before, abs=0.01)
+
+
+def test_a_true_law_gains_nothing_where_launches_disagree_on_its_sign():
+    before, after = twins(_grams(), UNITS, ONE, USE, PROOF)[PERMUTED]
+    assert before == pytest.approx(np.sqrt(2.0), rel=0.1)
+    assert after > before - 0.01
+
+
+def test_too_rich_a_law_is_seen_to_lose_on_noise():
+    rich = Model(("base",), (Law("push", tuple(f"push {k}" if k else "push" for k in range(60))),), (np.inf,))
+    before, after = twins(_grams(60, 0.0), UNITS, rich, USE, PROOF)[NULL]
+    expected = np.sqrt(1.0 + 60 / (len(USE) * EACH))  # of a fit to white noise: columns over residuals, more error
+    assert after / before == pytest.approx(expected, rel=0.02)
+
