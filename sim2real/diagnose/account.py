@@ -33,10 +33,12 @@ def account(problem: Problem, found: Explained, use: np.ndarray, proof: np.ndarr
         problem.regime,
         tuple(sorted(findings, key=lambda one: one.p_value)),
         {name: fitted.estimate(name) for name in problem.base},
-        found.shipped and not findings,
+        found.shipped and not findings and not found.lost,
         Proof(before * problem.noise_m, after * problem.noise_m, problem.noise_m, len(proof)),
+        undetermined="something is missing, but there is too little data to tell what" if found.lost else "",
         next_recording=_next(findings) or _once_more(found),
         doubt=_doubt(found),
+        lost=found.lost,
     )
 
 

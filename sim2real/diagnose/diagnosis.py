@@ -34,8 +34,8 @@ from sim2real.nominal import parameters
 from sim2real.recording import Recording
 
 KEPT_APART = 4  # every so manieth launch serves the proof alone
-FEWEST_LAUNCHES = 6
-FEWEST_RESIDUALS = 24
+FEWEST_LAUNCHES = 4
+FEWEST_RESIDUALS = 8
 TOO_LITTLE = "too little data"
 MORE_OF = {
     "glide": "launches of the puck, twenty or more in all directions and from slow to fast",
@@ -71,7 +71,7 @@ class Diagnosis:
         if self.findings:
             return "missing_physics"
         told = [each for each in self.accounts if each.regime != "sensing" and not each.undetermined]
-        if self.reason or not told:
+        if self.reason or not told or any(each.lost for each in self.accounts):
             return "undetermined"
         return "agrees" if all(each.shipped for each in told) else "parameters_only"
 

@@ -128,7 +128,7 @@ class Account:
     """What one regime of the recording says. `undetermined` gives the reason why it cannot tell, "" if it can.
 
     `baseline`: the refitted parameters of the baseline law; `shipped`: whether the simulator's own numbers do as well.
-    `doubt`: what the data hint at without telling it surely, "" where nothing.
+    `doubt`: what the data hint at without telling it surely, "" where nothing. `lost`: whether no law explains it.
     """
 
     regime: str
@@ -140,3 +140,4 @@ class Account:
     next_recording: str = ""
     parting: Parting | None = None
     doubt: str = ""
+    lost: bool = False

@@ -22,6 +22,7 @@ UNKNOWN = 4.0  # sum of squares a column, below which half of the launches does 
 LEAST_SHARE = 0.05  # of what all laws together explain, or, where they explain far more than the noise,
 NOTICEABLE = 0.05  # of the noise's own sum of squares, that a law must explain to be needed
 AMBIGUOUS = 9.0  # held-out losses nearer than this do not tell two laws apart
+LOOSE = 0.1  # ridge of a nonlinear law's coefficients, of which 1 is the law as it is looked for
 SPREADS = (0.03, 0.3, 3.0)  # tried for the coefficients of a family
 
 
@@ -92,7 +93,7 @@ class Model:
         for law, spread in zip(self.laws, self.spreads, strict=True):
             fresh = [name for name in law.columns if name not in names]
             names += fresh
-            ridge += [1.0 / spread**2 if law.family else 0.0] * len(fresh)
+            ridge += [1.0 / spread**2 if law.family else LOOSE if law.start else 0.0] * len(fresh)
         return grams.columns(names), np.array(ridge)
 
 

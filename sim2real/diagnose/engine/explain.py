@@ -17,6 +17,7 @@ from sim2real.diagnose.finding import Rival
 from sim2real.diagnose.problem import Columns, Problem
 
 MOST_LISTED = 4
+PER_COEFFICIENT = 10.0  # residuals, below which a smooth law would follow the noise
 REMAINDER = 0.1  # share of what the listed laws foretell better that a law on top of them must add
 
 
@@ -24,7 +25,8 @@ REMAINDER = 0.1  # share of what the listed laws foretell better that a law on t
 class Explained:
     """What the engine found. `law`: the final fit, of the baseline and the listed laws `listed`; `unlisted` and its
     coefficients `theta` are a family on top of it. `also` and `rivals` are by the name of the law. `doubtful`: what too
-    few launches ask for, where nothing was found. `columns` are those of the final law, `screen` and `model` those in
+    few launches ask for, where nothing was found; `lost`: something is missing, but the data are too few for a smooth law
+    of what it may be. `columns` are those of the final law, `screen` and `model` those in
     which it was chosen."""
 
     baseline: Fit
@@ -42,6 +44,7 @@ class Explained:
     also: Mapping[str, tuple[str, ...]]
     rivals: Mapping[str, tuple[Rival, ...]]
     doubtful: Law | None
+    lost: bool
 
     @property
     def final(self) -> Fit:
@@ -69,16 +72,17 @@ def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray, cle
     clear: what fits no listed law is missing physics of this regime, and not what another one left unexplained.
     """
     use, baseline = undisturbed(problem, fit(problem, shipped, problem.base, use), use)
-    screen = problem.columns(baseline.values)
+    screen = _tellable(problem.columns(baseline.values), problem, use)
     chooser = Chooser(screen.grams, problem.units, use, _dispersion(problem, screen, use))
     model, gains = chooser.add(Model(problem.base), screen.listed, MOST_LISTED)
     listed, law = standing(problem, baseline, chooser.prune(model), screen, use)
     columns, model = screen, listed
     if clear and not nearly_all(problem, baseline, law, use):
-        columns = screen if law is baseline else problem.columns(law.values, law.free)
+        columns = screen if law is baseline else _tellable(problem.columns(law.values, law.free), problem, use)
         refitted = Chooser(columns.grams, problem.units, use, chooser.dispersion)
         model = _with_remainder(chooser, listed, _remainder(chooser, listed, refitted, law, columns), screen)
-    if clear and not any(one.family for one in model.laws) and far_off(problem, baseline, law, use):
+    lost = clear and not any(one.family for one in model.laws) and far_off(problem, baseline, law, use)
+    if lost and screen.families:
         model = _likeliest(chooser, Model(problem.base), screen)
     unlisted = next((one for one in model.laws if one.family), None)
     if model is not listed:
@@ -95,7 +99,7 @@ def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray, cle
         baseline, law, as_shipped(problem, shipped, baseline, use, chooser.dispersion), chooser.dispersion, kept,
         unlisted, theta, spread, columns, screen, model,
         {one.name: chance(chooser, model, one, screen) for one in model.laws},
-        also, rivals, None if model.laws else _doubtful(chooser, gains),
+        also, rivals, None if model.laws else _doubtful(chooser, gains), lost and not screen.families,
     )  # fmt: skip
 
 
@@ -103,6 +107,12 @@ def _doubtful(chooser: Chooser, gains: Sequence[Gain]) -> Law | None:
     """The law that fits best of those that few launches alone ask for."""
     some = [gain for gain in gains if chooser.doubtful(gain)]
     return max(some, key=lambda gain: gain.fitted).law if some else None
+
+
+def _tellable(columns: Columns, problem: Problem, use: np.ndarray) -> Columns:
+    """The columns, with no families but those of which the clusters `use` can tell the shape."""
+    most = float(problem.freedom[use].sum()) / PER_COEFFICIENT
+    return replace(columns, families=[law for law in columns.families if len(law.columns) <= most])
 
 
 def _dispersion(problem: Problem, screen: Columns, use: np.ndarray) -> float:

@@ -41,11 +41,13 @@ class Fit:
         return vector * np.sqrt(np.maximum(value, 0.0))
 
     def estimate(self, name: str) -> Estimate:
-        """A free parameter with its 95 % interval."""
+        """A free parameter with its 95 % interval, which ends where the parameter's range does."""
         k = self.free.index(name)
         half = float(np.sqrt(self.covariance[k, k]) * student.ppf(0.975, max(self.clusters - 1, 2)))
         value = float(self.values[name])
-        return Estimate(value, value - half, value + half, BY_NAME[name].unit)
+        row = BY_NAME[name]
+        low, high = max(value - half, min(row.low, value)), min(value + half, max(row.high, value))
+        return Estimate(value, low, high, row.unit)
 
 
 def given(values: Mapping[str, float]) -> Fit:
@@ -89,6 +91,8 @@ def fit(
     now.update(zip(free, map(float, best), strict=True))
     assert grams is not None
     spread = gram.covariance(grams, columns, np.zeros(len(free)), everything[clusters])
+    unfelt = np.diag(grams.g[clusters].sum(axis=0)) <= 0.0
+    spread[unfelt, unfelt] = (high - low)[unfelt] ** 2
     bound = tuple(n for n, a, lo, hi in zip(free, best, low, high, strict=True) if a <= lo or a >= hi)
     return Fit(now, free, spread, loss, int(grams.count.sum()), len(clusters), bound)
 

@@ -68,10 +68,14 @@ def standing(problem: Problem, baseline: Fit, model: Model, screen: Columns, use
 
 
 def _size(problem: Problem, fitted: Fit, law: Law, use: np.ndarray) -> float:
-    """How surely a law is there: the squares of its numbers by their covariance, or, where the recording does not feel
-    them, what the sum of squares grows by without them."""
+    """How surely a law is there: the squares of its numbers by their covariance, or what the sum of squares grows by
+    without them, if that is less. A nonlinear law may be sure though its numbers are not, such as a friction that
+    always grips: of it, what the sum of squares grows by when all else is fitted without it."""
     rows = [name for name in problem.rows(law) if name in fitted.free]
     off = {name: BY_NAME[name].default for name in rows}
+    if law.start:
+        others = [name for name in fitted.free if name not in rows]
+        return fit(problem, {**fitted.values, **off}, others, use).loss - fitted.loss
     without, _ = soft_loss(problem, problem.residuals({**fitted.values, **off}, (), use))
     at = [fitted.free.index(name) for name in rows]
     away = np.array([fitted.values[name] - off[name] for name in rows])
