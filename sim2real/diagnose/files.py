@@ -51,7 +51,7 @@ def _finding(one: Finding) -> dict[str, Any]:
             "before": one.before,
             "after": one.after,
             "unit": "rms in units of the sensor's noise",
-            **{f"{name}_twin": {"before": before, "after": after} for name, (before, after) in one.twins.items()},
+            **{f"{name}_twin": asdict(twin) for name, twin in one.twins.items()},
         },
     }
     return words if one.curve is None else {**words, "curve": _curve(one.curve)}
