@@ -27,9 +27,9 @@ def test_what_is_no_number_is_refused_wherever_it_comes_in(bad) -> None:
     before = env.state()
     with pytest.raises(ValueError, match=r"^the action of player_1 has numbers of dtype [^ ]+; expected real numbers$"):
         env.step({"player_0": good, "player_1": bad})
-    with pytest.raises(ValueError, match="^the array of actions has numbers of dtype"):
+    with pytest.raises(ValueError, match=r"^the array of actions has numbers of dtype"):
         seat.step(bad)
-    with pytest.raises(ValueError, match="^the array of actions has numbers of dtype"):
+    with pytest.raises(ValueError, match=r"^the array of actions has numbers of dtype"):
         tables.step([[bad, bad], [bad, bad]])  # pyright: ignore[reportArgumentType]
     np.testing.assert_array_equal(env.state(), before)
 
@@ -38,5 +38,5 @@ def test_what_is_no_number_is_refused_wherever_it_comes_in(bad) -> None:
 def test_actions_that_are_no_dict_are_refused(bad) -> None:
     env = match_v0.parallel_env()
     env.reset(seed=1)
-    with pytest.raises(ValueError, match="^actions is a [a-zA-Z]+; expected a dict with an action for each agent$"):
+    with pytest.raises(ValueError, match=r"^actions is a [a-zA-Z]+; expected a dict with an action for each agent$"):
         env.step(bad)

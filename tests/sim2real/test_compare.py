@@ -85,6 +85,7 @@ def test_glides_of_another_law_show_its_distance():
 
 def test_missing_rows_are_told(tmp_path, capsys):
     whole = glides(0.125, 0.125)
+    assert whole.frames is not None
     kept = np.r_[:700, 900:1800]  # 200 frames, 1.3 s, are missing
     columns = {name: whole.frames[name][kept] for name in ("t", "puck_x", "puck_y", "opponent_x", "opponent_y")}
     write_recording(tmp_path / "gap", Recording("gap", META, Stream(columns)))
