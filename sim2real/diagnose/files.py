@@ -11,6 +11,7 @@ import numpy as np
 
 from puckpilot_env.parameters import BY_NAME, EFFECT_ROWS, TABLE
 from puckpilot_env.physics.effects import EFFECTS
+from puckpilot_env.whole_file import write_text_whole
 from sim2real.diagnose.diagnosis import Diagnosis
 from sim2real.diagnose.finding import Curve, Estimate, Finding
 
@@ -110,11 +111,4 @@ def write(diagnosis: Diagnosis, folder: Path) -> list[Path]:
         "report.html": page(diagnosis),
         "effects.toml": effects_toml(diagnosis),
     }
-    return [_write_whole(folder / name, text) for name, text in texts.items()]
-
-
-def _write_whole(path: Path, text: str) -> Path:
-    draft = path.with_name(f".{path.name}.part")
-    draft.write_text(text, encoding="utf-8")
-    draft.replace(path)
-    return path
+    return [write_text_whole(folder / name, text) for name, text in texts.items()]
