@@ -18,6 +18,7 @@ from sim2real.diagnose.problem import Columns, Problem
 
 MOST_LISTED = 4
 REMAINDER = 0.1  # share of what the listed laws foretell better that a law on top of them must add
+MOSTLY = 2.0 / 3.0  # of what a family alone explains; listed laws that explain as much are no stand-ins
 
 
 @dataclass(frozen=True)
@@ -75,7 +76,8 @@ def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray, cle
         refitted = Chooser(columns.grams, problem.units, use, chooser.dispersion)
         model = _with_remainder(chooser, listed, _remainder(chooser, listed, refitted, law, columns), screen)
     if clear and not any(one.family for one in model.laws) and far_off(problem, baseline, law, use):
-        model = _likeliest(chooser, Model(problem.base), screen)
+        smooth = _likeliest(chooser, Model(problem.base), screen)
+        model = smooth if _explained(chooser, smooth) > _explained(chooser, model) else model
     unlisted = next((one for one in model.laws if one.family), None)
     if model is not listed:
         model, law = standing(problem, baseline, model, screen, use)
@@ -118,12 +120,14 @@ def _remainder(chooser: Chooser, model: Model, refitted: Chooser, law: Fit, colu
 
 
 def _with_remainder(chooser: Chooser, model: Model, rest: Gain | None, screen: Columns) -> Model:
-    """The model with the family `rest` on top; or a family alone, where that does as well: then listed laws only stood
-    in for parts of it."""
+    """The model with the family `rest` on top; or a family alone, where that does as well and the listed laws are but a
+    part of it: then they only stood in for it."""
     if rest is None:
         return model
     both = chooser.prune(model.plus(rest.law, rest.spread))
     alone = _likeliest(chooser, Model(model.base), screen)
+    if model.laws and _explained(chooser, model) > MOSTLY * _explained(chooser, alone):
+        return both if all(any(one is law for one in both.laws) for law in model.laws) else model
     worse = _explained(chooser, both) - _explained(chooser, alone)
     return alone if worse < max(LEAST_FORETOLD, LEAST_SHARE * _explained(chooser, both)) else both
 
