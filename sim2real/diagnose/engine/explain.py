@@ -60,14 +60,17 @@ class Explained:
         return law.switch(self.theta[len(self.law.free) :])
 
 
-def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray, clear: bool = True) -> Explained:
+def explain(
+    problem: Problem, shipped: Mapping[str, float], use: np.ndarray, clear: bool = True, dispersion: float | None = None
+) -> Explained:
     """Explain the clusters `use` of a problem, starting from the simulator's own numbers `shipped`.
 
     clear: what fits no listed law is missing physics of this regime, and not what another one left unexplained.
+    dispersion: noise beyond the problem's, in variance, where it is known; otherwise it is read off the richest law.
     """
     use, baseline = undisturbed(problem, fit(problem, shipped, problem.base, use), use)
     screen = problem.columns(baseline.values)
-    chooser = Chooser(screen.grams, problem.units, use, _dispersion(problem, screen, use))
+    chooser = Chooser(screen.grams, problem.units, use, dispersion or _dispersion(problem, screen, use))
     model, gains = chooser.add(Model(problem.base), screen.listed, MOST_LISTED)
     listed, law = standing(problem, baseline, chooser.prune(model), screen, use)
     columns, model = screen, listed
@@ -127,7 +130,7 @@ def _with_remainder(chooser: Chooser, model: Model, rest: Gain | None, screen: C
     both = chooser.prune(model.plus(rest.law, rest.spread))
     alone = _likeliest(chooser, Model(model.base), screen)
     if model.laws and _explained(chooser, model) > MOSTLY * _explained(chooser, alone):
-        return both if all(any(one is law for one in both.laws) for law in model.laws) else model
+        return model.plus(rest.law, rest.spread)
     worse = _explained(chooser, both) - _explained(chooser, alone)
     return alone if worse < max(LEAST_FORETOLD, LEAST_SHARE * _explained(chooser, both)) else both
 

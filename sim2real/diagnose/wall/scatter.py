@@ -34,7 +34,7 @@ def explain_bounces(
         return problem, found
     rough = _settled(problem, shipped, problem.base, use)
     for _ in range(AGAIN):
-        found = explain(rough, shipped, use, clear)
+        found = explain(rough, shipped, use, clear, dispersion=1.0)
         finer = _settled(problem, found.law.values, found.law.free, use)
         if np.all(np.abs(finer.scatter - rough.scatter) < SETTLED):
             break
