@@ -13,6 +13,7 @@ from sim2real.diagnose.impacts import Impact, Side
 KINDS = {"x0": bounce.WALL_X0, "x1": bounce.WALL_X1, "y0": bounce.WALL_Y0, "y1": bounce.WALL_Y1}
 SLOWEST = 0.05  # m/s along the normal; a slower touch is no clear bounce
 LATE = 0.02  # s, by which the time of a hit may be wrong
+UNUSUAL = 0.3  # difference of a restitution from the usual one that no wall makes
 STRAY = 12.0  # standard deviations of a jump in place across a bounce that is none
 
 
@@ -65,7 +66,16 @@ def bounces(impacts: list[Impact], g: Geometry) -> Bounces:
         np.array(field, kind).reshape(len(rows), *shape)
         for field, kind, shape in zip(fields, kinds, shapes, strict=True)
     ]
-    return Bounces(*arrays)
+    return _usual(Bounces(*arrays))
+
+
+def _usual(every: Bounces) -> Bounces:
+    """The bounces without hits at a wall of a quite unusual restitution: there something else was hit as well."""
+    restitution = every.split(every.after)[:, 0] / every.closing
+    wall = every.kind != bounce.POST
+    middle = np.median(restitution[wall]) if wall.any() else 0.0
+    kept = ~wall | (np.abs(restitution - middle) < UNUSUAL)
+    return Bounces(*(getattr(every, name)[kept] for name in Bounces.__dataclass_fields__))
 
 
 def _row(impact: Impact, g: Geometry):

@@ -1,9 +1,9 @@
 """Bounces that scatter by more than the sensor's noise: by how much is read off what the law itself leaves.
 
 A real wall is no ideal one: rims have seams, spins go unseen, an opponent touches the puck as well. Where even the law
-found leaves most bounces far outside the sensor's noise, a standard deviation for each component, a share of the closing
-speed, is added to it, so that half of the bounces lie within the middle half of what is expected; and laws are compared
-anew. A median asks nothing of the other half, so that blows taken for bounces do not count.
+found leaves most bounces far outside the sensor's noise, a standard deviation for each component, a share of the
+closing speed, is added to it, so that half of the bounces lie within the middle half of what is expected; and laws are
+compared anew. A median asks nothing of the other half, so that blows taken for bounces do not count.
 """
 
 from __future__ import annotations

@@ -66,7 +66,7 @@ def glides_of_first_half() -> Explained:
 def bounces_of(name: str) -> tuple[Bounces, int]:
     """The bounces of a recording, told by the law of the glides, and its number of launches."""
     here = part(name)
-    states = here.glides.states(given(glides_of_first_half().final.values))
+    states = here.glides.states(given(glides_of_first_half().law.values))
     return bounces(find_impacts(here.pieces, here.glides, states), geometry(here.recording)), here.glides.clusters
 
 
@@ -87,9 +87,9 @@ def test_what_the_first_half_s_glides_say_holds_in_the_second() -> None:
 
 
 def test_what_the_bounces_of_one_recording_say_holds_in_another() -> None:
-    values = dict(glides_of_first_half().final.values)
+    values = dict(glides_of_first_half().law.values)
     data, launches = bounces_of("play_a")
-    problem, found = explain_bounces(
+    _, found = explain_bounces(
         WallProblem(data, launches, values), {"wall_restitution": 0.7}, np.unique(data.cluster), True
     )
     assert {law.name for law in found.listed} == {"wall_friction_spin", "speed_dependent_restitution"}
@@ -104,8 +104,7 @@ def test_what_the_bounces_of_one_recording_say_holds_in_another() -> None:
     refitted = typical(seen - found.baseline.values["wall_restitution"] * np.array([-1.0, 1.0]) * before)
     final = typical(seen - WallProblem(other, launches, values).predicted(found.law.values))
     for words, base in (("shipped", shipped), ("refitted baseline", refitted)):
-        print(
-            f"puck_a's bounces, against the {words}: normal {final[0] / base[0] - 1:+.0%}, along {final[1] / base[1] - 1:+.0%}"
-        )
+        change = final / base - 1.0
+        print(f"puck_a's bounces, against the {words}: normal {change[0]:+.0%}, along the wall {change[1]:+.0%}")
     assert final[0] < 0.55 * shipped[0] and final[1] < 0.4 * shipped[1]
     assert final[0] < refitted[0] and final[1] < 0.4 * refitted[1]
