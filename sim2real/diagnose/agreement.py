@@ -74,13 +74,14 @@ def check_agreement(problem: Problem, shipped: Mapping[str, float], parts: Seque
     alone = [explain(problem, shipped, part.clusters) for part in parts]
     for one, other in permutations(range(len(parts)), 2):
         law, there = alone[one].law, parts[other].clusters
-        told = _numbers_apart(law, fit(problem, law.values, law.free, there))
+        whole = alone[one].unlisted is None  # numbers beside a smooth law stand for the places that it was fitted at
+        told = _numbers_apart(law, fit(problem, law.values, law.free, there)) if whole else None
         if told:
             name, a, b = told
             why = f"{name} is {a:.3g} in the one and {b:.3g} in the other"
             raise _two_tables(parts[one].name, parts[other].name, why)
         harm = _losses_under(problem, alone[one], alone[other], there)
-        worse = WORSE if alone[one].unlisted is None else WORSE_SMOOTH
+        worse = WORSE if whole else WORSE_SMOOTH
         if harm[0] > worse * harm[1] and harm[0] - harm[1] > HARM * alone[other].dispersion:
             why = f"what the {problem.regime} of the one asks for makes the other's worse"
             raise _two_tables(parts[one].name, parts[other].name, why)

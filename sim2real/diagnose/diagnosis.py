@@ -30,6 +30,7 @@ from sim2real.diagnose.sensing.account import sense
 from sim2real.diagnose.sight import sight
 from sim2real.diagnose.wall.data import bounces
 from sim2real.diagnose.wall.problem import WallProblem
+from sim2real.diagnose.wall.scatter import explain_bounces
 from sim2real.nominal import parameters
 from sim2real.recording import Recording
 
@@ -221,8 +222,11 @@ def _explain(problem: Problem, law: Mapping[str, float], proof: np.ndarray, tabl
     if len(use) + len(apart) < FEWEST_LAUNCHES or not len(apart) or problem.freedom[use].sum() < FEWEST_RESIDUALS:
         return None, _too_little(problem.regime)
     shipped = {name: law[name] for name in problem.base}
+    if isinstance(problem, WallProblem):
+        problem, found = explain_bounces(problem, shipped, use, clear)
+    else:
+        found = explain(problem, shipped, use, clear)
     check_agreement(problem, shipped, tables)
-    found = explain(problem, shipped, use, clear)
     return found, illustrated(problem, found, account(problem, found, use, apart), use)
 
 

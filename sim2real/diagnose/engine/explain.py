@@ -20,6 +20,7 @@ from sim2real.diagnose.problem import Columns, Problem
 MOST_LISTED = 4
 PER_COEFFICIENT = 10.0  # residuals, below which a smooth law would follow the noise
 REMAINDER = 0.1  # share of what the listed laws foretell better that a law on top of them must add
+MOSTLY = 2.0 / 3.0  # of what a family alone explains; listed laws that explain as much are no stand-ins
 
 
 @dataclass(frozen=True)
@@ -66,15 +67,18 @@ class Explained:
         return law.switch(self.theta[len(self.law.free) :])
 
 
-def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray, clear: bool = True) -> Explained:
+def explain(
+    problem: Problem, shipped: Mapping[str, float], use: np.ndarray, clear: bool = True, beyond: float | None = None
+) -> Explained:
     """Explain the clusters `use` of a problem, starting from the simulator's own numbers `shipped`.
 
     clear: what fits no listed law is missing physics of this regime, and not what another one left unexplained.
+    beyond: noise beyond the problem's, in variance, where it is known; otherwise it is read off the richest law.
     """
     use, baseline = undisturbed(problem, fit(problem, shipped, problem.base, use), use)
     screen = _tellable(problem.columns(baseline.values, (), use), problem, use)
     laws = [*screen.listed, *screen.families]
-    beyond = dispersion(screen.grams, problem.units, problem.base, laws, use)
+    beyond = beyond or dispersion(screen.grams, problem.units, problem.base, laws, use)
     chooser = Chooser(screen.grams, problem.units, use, beyond)
     model, gains = chooser.add(Model(problem.base), screen.listed, MOST_LISTED)
     listed, law = standing(problem, baseline, chooser.prune(model), screen, use)
@@ -111,7 +115,8 @@ def _completed(
         model = _with_remainder(chooser, listed, _remainder(chooser, listed, refitted, law, columns), screen)
     if any(one.family for one in model.laws) or not far_off(problem, baseline, law, use):
         return model
-    return _likeliest(chooser, Model(problem.base), screen) or model
+    smooth = _likeliest(chooser, Model(problem.base), screen)
+    return smooth if smooth is not None and _explained(chooser, smooth) > _explained(chooser, model) else model
 
 
 def _doubtful(chooser: Chooser, gains: Sequence[Gain]) -> Law | None:
@@ -138,14 +143,16 @@ def _remainder(chooser: Chooser, model: Model, refitted: Chooser, law: Fit, colu
 
 
 def _with_remainder(chooser: Chooser, model: Model, rest: Gain | None, screen: Columns) -> Model:
-    """The model with the family `rest` on top; or a family alone, where that does as well: then listed laws only stood
-    in for parts of it."""
+    """The model with the family `rest` on top; or a family alone, where that does as well and the listed laws are but a
+    part of it: then they only stood in for it."""
     if rest is None:
         return model
     both = chooser.prune(model.plus(rest.law, rest.spread))
     alone = _likeliest(chooser, Model(model.base), screen)
     if alone is None:
         return both
+    if model.laws and _explained(chooser, model) > MOSTLY * _explained(chooser, alone):
+        return model.plus(rest.law, rest.spread)
     worse = _explained(chooser, both) - _explained(chooser, alone)
     return alone if worse < max(LEAST_FORETOLD, LEAST_SHARE * _explained(chooser, both)) else both
 

@@ -24,9 +24,9 @@ FEW_ROUNDS = 4  # of a fit, to see which start leads farthest
 
 
 def far_off(problem: Problem, baseline: Fit, law: Fit, use: np.ndarray) -> bool:
-    """Whether something must be missing still: a bare baseline leaves far more than noise of most launches, or listed
-    laws leave much of what it does."""
-    before, after = (float(np.median(left_of(problem, one, use))) - 1.0 for one in (baseline, law))
+    """Whether something must be missing still: a bare baseline leaves far more than noise of most launches (of most
+    units, where single ones may be wrong altogether), or listed laws leave much of what it does."""
+    before, after = (_typical(problem, one, use) - 1.0 for one in (baseline, law))
     return after > FAR_OFF if law is baseline else after > NEAR and after > HALF_WAY * before
 
 
@@ -40,6 +40,16 @@ def left_of(problem: Problem, law: Fit, use: np.ndarray) -> np.ndarray:
     """What a law leaves of each cluster in `use`: its mean square residual in units of the noise."""
     found = problem.residuals(law.values, (), use)
     return np.bincount(found.cluster, found.r**2, problem.clusters)[use] / np.maximum(problem.freedom[use], 1.0)
+
+
+def _typical(problem: Problem, law: Fit, use: np.ndarray) -> float:
+    """What a law leaves of a typical launch or, where single units may be wrong altogether, of a typical unit: the mean
+    square residual in units of the noise."""
+    found = problem.residuals(law.values, (), use)
+    if found.unit is None:
+        return float(np.median(left_of(problem, law, use)))
+    units = np.unique(found.unit)
+    return float(np.median(np.bincount(found.unit, found.r**2)[units] / chi2.median(problem.units.freedom[units])))
 
 
 def refit(problem: Problem, baseline: Fit, listed: Sequence[Law], screen: Columns, use: np.ndarray) -> Fit:

@@ -44,17 +44,35 @@ class WallProblem:
     regime = "wall"
     base: tuple[str, ...] = ("wall_restitution",)
 
-    def __init__(self, data: Bounces, clusters: int, common: Mapping[str, float]) -> None:
-        """`clusters`: how many launches the recording has; `common`: sizes of the table."""
-        self.data, self.clusters, self._common = data, clusters, dict(common)
+    def __init__(
+        self, data: Bounces, clusters: int, common: Mapping[str, float], scatter: tuple[float, float] = (0.0, 0.0)
+    ) -> None:
+        """`clusters`: how many launches the recording has; `common`: sizes of the table; `scatter`: std by which no two
+        bounces are alike, of the velocity after along the normal and the tangent, as shares of the closing speed."""
+        self.data, self.clusters, self.scatter, self._common = data, clusters, np.array(scatter), dict(common)
         self._pucks = np.zeros(1, PUCK)
         self.units = Units(data.cluster, np.full(len(data), 2.0))
         self.freedom = 2.0 * np.bincount(data.cluster, minlength=clusters)
-        self._whiten, by_before = self._whitening(self._record({}))
+        self._covariance, by_before = self._noise(self._record({}))
+        value, vector = np.linalg.eigh(self._covariance)
+        self._whiten = vector @ (vector.transpose(0, 2, 1) / np.sqrt(np.maximum(value, 1e-12))[:, :, None])
         drift = data.drift[:, 1] - by_before @ data.drift[:, 0]
         self._drift = self.whitened(drift)
-        spread = data.spread.sum(axis=1)
-        self.noise_m = FLIGHT * float(np.sqrt(np.trace(spread, axis1=1, axis2=2).mean() / 2)) if len(data) else 0.0
+        noise = np.trace(data.spread.sum(axis=1), axis1=1, axis2=2) + (self._scattered**2).sum(axis=1)
+        self.noise_m = FLIGHT * float(np.sqrt(noise.mean() / 2)) if len(data) else 0.0
+
+    def scattering(self, scatter: tuple[float, float]) -> WallProblem:
+        """The same bounces with another scatter."""
+        return WallProblem(self.data, self.clusters, self._common, scatter)
+
+    @property
+    def sensed(self) -> np.ndarray:
+        """Variance (n, 2) [m^2/s^2] of the normal and the tangential residual without any scatter."""
+        return np.diagonal(self._covariance, axis1=1, axis2=2) - self._scattered**2
+
+    @property
+    def _scattered(self) -> np.ndarray:
+        return self.scatter * self.data.closing[:, None]
 
     @property
     def size(self) -> tuple[float, float]:
@@ -109,7 +127,9 @@ class WallProblem:
         """By how much (n,) the tangential noise grows where spin or normal is not known: up to what friction can do."""
         d = self.data
         reach = values["wall_mu"] * (1.0 + values["wall_restitution"]) * d.closing
-        unknown = d.lost | (d.kind == bounce.POST)
+        unknown = d.kind == bounce.POST
+        if not self.scatter.any():  # which holds what spins do that nobody saw
+            unknown |= d.lost
         return np.where(unknown, np.hypot(1.0, reach * self._whiten[:, 1, 1]), 1.0)
 
     def whitened(self, velocities: np.ndarray) -> np.ndarray:
@@ -138,9 +158,9 @@ class WallProblem:
         _rebounds(record, d.kind, d.normal, d.t, d.chain, before, spin, self._pucks, after)
         return after
 
-    def _whitening(self, record: np.void) -> tuple[np.ndarray, np.ndarray]:
-        """Inverse roots (n, 2, 2) of the covariance of velocity after less foretold, at the law `record`; and how the
-        foretold changes with the velocity before (n, 2, 2)."""
+    def _noise(self, record: np.void) -> tuple[np.ndarray, np.ndarray]:
+        """Covariance (n, 2, 2) of velocity after less foretold, at the law `record`; and how the foretold changes with
+        the velocity before (n, 2, 2)."""
         d = self.data
         axes = np.stack([d.normal, np.stack([-d.normal[:, 1], d.normal[:, 0]], axis=1)], axis=1)
         now = self._after(record, d.before)
@@ -150,5 +170,4 @@ class WallProblem:
         covariance = d.spread[:, 1] + by @ d.spread[:, 0] @ by.transpose(0, 2, 1)
         size = np.linalg.norm(d.before, axis=1) + np.linalg.norm(d.after, axis=1)
         covariance += np.eye(2) * ((d.turn * size) ** 2)[:, None, None]
-        value, vector = np.linalg.eigh(covariance)
-        return vector @ (vector.transpose(0, 2, 1) / np.sqrt(np.maximum(value, 1e-12))[:, :, None]), by
+        return covariance + np.eye(2) * self._scattered[:, None] ** 2, by

@@ -1,0 +1,60 @@
+"""Bounces off a wall that is rougher than the camera sees: by how much, and what they say all the same."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from puckpilot_env.parameters import TABLE
+from puckpilot_env.physics import bounce
+from sim2real.diagnose.wall.data import Bounces
+from sim2real.diagnose.wall.problem import WallProblem
+from sim2real.diagnose.wall.scatter import explain_bounces
+
+COUNT, LAUNCHES, NOISE = 120, 24, 0.001
+SHIPPED = {"wall_restitution": 0.7}
+DEFAULTS = {row.name: row.default for row in TABLE}
+
+
+def rough_wall(restitution, scatter: tuple[float, float], wrong: int = 0) -> WallProblem:
+    """Bounces off the wall y0 that keep `restitution` (of the closing speed) of both components, give or take a random
+    share of the closing speed; the last `wrong` ones lose all of it."""
+    rng = np.random.default_rng(3)
+    closing, along = rng.uniform(0.4, 4.0, COUNT), rng.uniform(-2.0, 2.0, COUNT)
+    off = rng.normal(size=(2, COUNT)) * np.array(scatter)[:, None] * closing + rng.normal(0.0, NOISE, (2, COUNT))
+    kept = restitution(closing)
+    before = np.stack([along, -closing], axis=1)
+    after = np.stack([kept * along + off[1], kept * closing + off[0]], axis=1)
+    if wrong:
+        after[rng.choice(COUNT, wrong, replace=False)] *= [1.0, 0.05]
+    up = np.tile([0.0, 1.0], (COUNT, 1))
+    spread = np.tile(0.5 * NOISE**2 * np.eye(2), (COUNT, 2, 1, 1))
+    t = np.arange(COUNT, dtype=float)
+    data = Bounces(
+        np.full(COUNT, bounce.WALL_Y0), up, t, np.stack([rng.uniform(0.2, 1.8, COUNT), np.full(COUNT, 0.03)], axis=1),
+        before, after, spread, np.zeros((COUNT, 2, 2, 0)), np.zeros(COUNT), np.arange(COUNT), np.ones(COUNT, bool),
+        np.full(COUNT, np.nan), np.arange(COUNT) * LAUNCHES // COUNT,
+    )  # fmt: skip
+    return WallProblem(data, LAUNCHES, DEFAULTS)
+
+
+def test_an_ideal_wall_has_no_scatter() -> None:
+    ideal = rough_wall(lambda closing: 0.8 + 0.0 * closing, (0.0, 0.0))
+    problem, found = explain_bounces(ideal, SHIPPED, np.arange(LAUNCHES), True)
+    assert problem is ideal and not found.listed and found.unlisted is None
+
+
+@pytest.mark.parametrize("wrong", [0, 15])
+def test_the_scatter_of_a_rough_wall_is_found_and_no_law_is(wrong: int) -> None:
+    rough = rough_wall(lambda closing: 0.8 + 0.0 * closing, (0.02, 0.05), wrong)
+    problem, found = explain_bounces(rough, SHIPPED, np.arange(LAUNCHES), True)
+    assert problem.scatter == pytest.approx([0.02, 0.05], rel=0.35)
+    assert found.law.values["wall_restitution"] == pytest.approx(0.8, abs=0.005)
+    assert not found.listed and found.unlisted is None
+
+
+def test_what_a_rough_wall_loses_with_the_speed_is_named() -> None:
+    rough = rough_wall(lambda closing: 0.88 - 0.03 * closing, (0.02, 0.05), 10)
+    _, found = explain_bounces(rough, SHIPPED, np.arange(LAUNCHES), True)
+    assert [law.name for law in found.listed] == ["speed_dependent_restitution"]
+    assert found.law.values["restitution_slope"] == pytest.approx(0.03, abs=0.006)
