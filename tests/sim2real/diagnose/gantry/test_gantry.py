@@ -13,7 +13,7 @@ from sim2real.diagnose.account import account
 from sim2real.diagnose.engine.explain import explain
 from sim2real.diagnose.engine.fit import fit
 from sim2real.diagnose.finding import Account
-from sim2real.diagnose.gantry.problem import GantryProblem, gantry_problem
+from sim2real.diagnose.gantry.problem import gantry_problem
 from sim2real.diagnose.gantry.run import UnusableError
 from sim2real.nominal import parameters
 from sim2real.recording import Recording, read_recording
@@ -33,7 +33,7 @@ def recorded(folder: Path, law: Law, scenario: str = "gantry", seconds: float = 
 
 def diagnosed(recording: Recording) -> Account:
     values = parameters(recording)
-    problem = gantry_problem([recording], values)
+    problem, _ = gantry_problem([recording], values)
     proof = np.arange(problem.clusters)[3::4]
     use = np.setdiff1d(np.arange(problem.clusters), proof)
     return account(problem, explain(problem, {name: values[name] for name in problem.base}, use), use, proof)
@@ -99,7 +99,7 @@ def test_motors_that_heed_a_plan_at_the_next_tick_lack_nothing(
 
     monkeypatch.setattr(volts, "sorted_changes", ticked)
     recording = recorded(tmp_path, law)
-    assert gantry_problem([recording], parameters(recording)).runs[0].orders.tick == tick
+    assert gantry_problem([recording], parameters(recording))[0].runs[0].orders.tick == tick
     assert [one.mechanism for one in diagnosed(recording).findings] == names
 
 
@@ -113,9 +113,9 @@ def test_motors_that_heed_a_plan_at_the_next_tick_lack_nothing(
 def test_what_is_missing_is_said(tmp_path: Path, change: dict[str, None], told: str) -> None:
     recording = recorded(tmp_path, Law(), seconds=2.0)
     with pytest.raises(UnusableError, match=told):
-        gantry_problem([replace(recording, **change)], {})
+        gantry_problem([replace(recording, **change)], parameters(recording))
     with pytest.raises(UnusableError, match=r"overlap for 2\.0 s, expected 6 s"):
-        gantry_problem([recording], {})
+        gantry_problem([recording], parameters(recording))
 
 
 def test_the_labelled_sag_is_found() -> None:
@@ -136,7 +136,7 @@ def test_the_real_gantry_s_logs_hold_no_sag(name: str) -> None:
         pytest.skip("no recordings of the real table beside the project")
     recording = read_recording(SHARED / "ubc" / name)
     values = parameters(recording)
-    problem: GantryProblem = gantry_problem([recording], values)
+    problem, _ = gantry_problem([recording], values)
     start = {row: values[row] for row in problem.base}
     law = fit(problem, start, (*problem.base, "voltage_sag"), np.arange(problem.clusters))
     sag = law.estimate("voltage_sag")
