@@ -62,7 +62,9 @@ def sense(recordings: Sequence[Recording], pieces: Sequence[Pieces]) -> Sensed:
 
 def _joined(found: list[list[Strike]]) -> list[Strike]:
     """The strikes of all recordings, their launches told apart."""
-    return [Strike(s.hit, s.state, s.covariance, s.launch + MANY_LAUNCHES * k) for k, part in enumerate(found) for s in part]
+    return [
+        Strike(s.hit, s.state, s.covariance, s.launch + MANY_LAUNCHES * k) for k, part in enumerate(found) for s in part
+    ]
 
 
 def _clock(recordings: list[Recording], found: list[list[Strike]]) -> ClockAccount:

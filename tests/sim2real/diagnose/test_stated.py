@@ -44,7 +44,7 @@ def test_other_gantries_are_other_tables(key, values):
 
 
 def test_sizes_are_compared_past_a_recording_that_states_none():
-    with pytest.raises(ValueError, match="b states table.length_m 2, c 2.4"):
+    with pytest.raises(ValueError, match=r"b states table\.length_m 2, c 2\.4"):
         together([stating("a", None), stating("b", 2.0), stating("c", 2.4)], {})
 
 
