@@ -43,6 +43,12 @@ def test_other_gantries_are_other_tables(key, values):
         together([stating(name, None, gantry={key: value}) for name, value in zip("ab", values, strict=True)], {})
 
 
+def test_a_gantry_measured_anew_is_the_same():
+    radii = (0.03568, 0.03569)
+    both = together([stating("ab"[k], 2.0, gantry={"pulley_radius_m": radii[k]}) for k in (0, 1)], {})
+    assert [parameters(one)["pulley_radius"] for one in both] == [radii[0], radii[0]]
+
+
 def test_sizes_are_compared_past_a_recording_that_states_none():
     with pytest.raises(ValueError, match=r"b states table\.length_m 2, c 2\.4"):
         together([stating("a", None), stating("b", 2.0), stating("c", 2.4)], {})
