@@ -24,7 +24,7 @@ SURE = 1e-5  # chance of all three together, at which the map is wrong
 TOLD = 1e-3  # the same of one of them, once they are
 AT_LEAST = 0.001
 WRONG_SIZE = 0.022
-KNOWN = 0.003  # an error of a scale above which the lines do not tell it
+KNOWN, ROUGHLY = 0.003, 0.01  # errors of a scale above which the lines do not tell it, or not even a wrong size
 FOLDS = 5
 
 
@@ -86,7 +86,7 @@ def wrong_size(values: np.ndarray, std: np.ndarray, g: Geometry) -> str:
     for axis, (name, size) in enumerate((("length", g.length), ("width", g.width))):
         off, guessed = abs(values[axis]), name in g.assumed
         surely = off > AT_LEAST + 3 * std[axis] if guessed else off > WRONG_SIZE
-        if (surely and std[axis] < KNOWN) or off > WRONG_SIZE + 2 * std[axis]:
+        if (surely and std[axis] < KNOWN) or (off > WRONG_SIZE + 2 * std[axis] and std[axis] < ROUGHLY):
             seen, how = (1 + values[axis]) * size, "guessed" if guessed else "stated"
             return (
                 f"the {how} {name} of {size:.3f} m is {off:.1%} off the {seen:.3f} m seen: "
