@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import tempfile
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -44,13 +44,21 @@ class Recording:
 
     def nominal(self, section: str, key: str) -> float | None:
         """A nominal value of the meta data, e.g. `nominal("puck", "radius_m")`; None where unknown."""
-        value = self.meta.get(section, {}).get(key)
+        value = (self.meta.get(section) or {}).get(key)
         return None if value is None else float(value)
 
     def streams(self) -> dict[str, Stream]:
         """The streams that are there, by name."""
         found = {name: getattr(self, name) for name in STREAMS}
         return {name: stream for name, stream in found.items() if stream is not None}
+
+    def from_zero(self) -> Recording:
+        """The same with all clocks counted from the earliest stamp of any stream: those of a day may be large."""
+        streams = {name: stream for name, stream in self.streams().items() if stream.rows}
+        zero = min((float(stream.t[0]) for stream in streams.values()), default=0.0)
+        return replace(
+            self, **{name: Stream({**stream.columns, "t": stream.t - zero}) for name, stream in streams.items()}
+        )
 
     def outside(self) -> np.ndarray:
         """Which frames show the puck far outside of the stated table, shape (frames,) bool: blunders of the vision."""

@@ -18,7 +18,9 @@ META_FIELDS: dict[str, dict[str, float]] = {
     "puck": {"radius_m": 1.0},
     "mallet": {"radius_m": 1.0},
     "camera": {"rate_hz": 1e5, "position_std_m": 1.0},
+    "gantry": {"supply_V": 1e3, "pulley_radius_m": 1.0},
 }
+OPTIONAL = ("gantry",)
 LARGEST_POSITION = 1e3
 LARGEST_TIME = 1e11
 BEYOND_END = 0.35
@@ -41,7 +43,8 @@ def read_meta(file: Path) -> dict[str, Any]:
     if meta.get("format") != FORMAT:
         reason = f"format is {str(meta.get('format'))[:60]!r}, expected {FORMAT!r}; convert the recording"
         raise RecordingError(file, reason)
-    return meta | {key: _section(file, meta, key) for key in META_FIELDS}
+    wanted = [key for key in META_FIELDS if key not in OPTIONAL or meta.get(key) is not None]
+    return meta | {key: _section(file, meta, key) for key in wanted}
 
 
 def _refuse_constant(word: str) -> float:

@@ -33,6 +33,7 @@ def run(args: argparse.Namespace) -> int:
 
     if args.out.exists() and not args.out.is_dir():
         raise ValueError(f"cannot write to {str(args.out)!r}: it is a file; give a folder")
+    _refuse_twice([*args.recordings, *args.holdout])
     shipped = read_baseline(args.baseline) if args.baseline else {}
     with _bar() as bar:
         task = bar.add_task("reading", total=1.0)
@@ -51,6 +52,16 @@ def run(args: argparse.Namespace) -> int:
 
         print("\n".join(summary(diagnosis, written)))
     return 0
+
+
+def _refuse_twice(folders: list[Path]) -> None:
+    """ValueError for a folder that is given twice: what a fit saw proves nothing."""
+    seen: dict[Path, Path] = {}
+    for folder in folders:
+        place = folder.resolve()
+        if place in seen:
+            raise ValueError(f"{folder} is given twice; give each recording once, for the fit or as --holdout")
+        seen[place] = folder
 
 
 def _bar():

@@ -8,24 +8,19 @@ from itertools import permutations
 
 import numpy as np
 
-from sim2real.diagnose.contacts import geometry
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.explain import Explained, explain
 from sim2real.diagnose.engine.fit import Fit, fit
 from sim2real.diagnose.glide.data import GlideData
-from sim2real.diagnose.pieces import Pieces
 from sim2real.diagnose.problem import Problem
-from sim2real.diagnose.sanity import UndeterminedError
-from sim2real.diagnose.sensing.scale import scale_account
-from sim2real.diagnose.strikes import strikes
-from sim2real.recording import Recording
+from sim2real.diagnose.sanity import two_tables
 
 FEWEST_LAUNCHES = 6
 FEWEST_RESIDUALS = 24
 APART = 8.0  # standard deviations between two fits of one number
 RELATIVE = 0.1  # of its size, which one table may change by from one day to the next
-SIZE_APART = 0.01  # of a table's size
 HARM = 30.0  # growth of a sum of squares that noise does not make
+WORSE_SMALL = 2.0  # times what the noise leaves, under a law found elsewhere
 WORSE = 1.1  # times the sum of squares without a law, with it
 WORSE_SMOOTH = 1.5  # the same, softly, of a smooth law, which says little of places where its own recording has no puck
 
@@ -43,35 +38,22 @@ def parts_of(data: GlideData, names: Sequence[str]) -> list[Part]:
     return [Part(name, np.unique(data.cluster[data.recording == k])) for k, name in enumerate(names)]
 
 
-def check_sizes(recordings: Sequence[Recording], pieces: Sequence[Pieces]) -> None:
-    """Raise `UndeterminedError` if the puck turns round in other places in one recording than in another."""
-    if len(recordings) < 2:
-        return
-    seen = []
-    for one, part in zip(recordings, pieces, strict=True):
-        scale = scale_account(strikes(one, part), geometry(one))
-        if scale.undetermined:
-            raise UndeterminedError(f"in {one.name}, {scale.undetermined}", "measure the table's length and width")
-        seen.append(scale.values)
-    for one, other in permutations(range(len(recordings)), 2):
-        apart = float(np.abs(seen[one] - seen[other]).max())
-        if apart > SIZE_APART:
-            names = recordings[one].name, recordings[other].name
-            raise _two_tables(*names, f"the places where the puck turns round differ by {apart:.1%}")
-
-
 def check_agreement(problem: Problem, shipped: Mapping[str, float], parts: Sequence[Part]) -> None:
     """Raise `UndeterminedError` if what recordings ask for, each by itself, cannot be one table.
 
     `shipped`: the simulator's own numbers, by name. A law that one recording asks for may not harm another, and its
-    numbers may not be others there.
+    numbers may not be others there. A recording too small to ask for a law may not be worse than noise under that of
+    another, or of all together where each is small.
     """
     live = np.flatnonzero(problem.freedom > 0)
     parts = [Part(part.name, np.intersect1d(part.clusters, live)) for part in parts]
-    parts = [part for part in parts if _enough(problem, part.clusters)]
+    parts = [part for part in parts if len(part.clusters)]
     if len(parts) < 2:
         return
+    small = [part for part in parts if not _enough(problem, part.clusters)]
+    parts = [part for part in parts if _enough(problem, part.clusters)]
     alone = [explain(problem, shipped, part.clusters) for part in parts]
+    _check_small(problem, small, alone, [part.name for part in parts], shipped)
     for one, other in permutations(range(len(parts)), 2):
         law, there = alone[one].law, parts[other].clusters
         whole = alone[one].unlisted is None  # numbers beside a smooth law stand for the places that it was fitted at
@@ -79,20 +61,54 @@ def check_agreement(problem: Problem, shipped: Mapping[str, float], parts: Seque
         if told:
             name, a, b = told
             why = f"{name} is {a:.3g} in the one and {b:.3g} in the other"
-            raise _two_tables(parts[one].name, parts[other].name, why)
+            raise two_tables(parts[one].name, parts[other].name, why)
         harm = _losses_under(problem, alone[one], alone[other], there)
         worse = WORSE if whole else WORSE_SMOOTH
         if harm[0] > worse * harm[1] and harm[0] - harm[1] > HARM * alone[other].dispersion:
             why = f"what the {problem.regime} of the one asks for makes the other's worse"
-            raise _two_tables(parts[one].name, parts[other].name, why)
+            raise two_tables(parts[one].name, parts[other].name, why)
 
 
 def _enough(problem: Problem, clusters: np.ndarray) -> bool:
     return len(clusters) >= FEWEST_LAUNCHES and problem.freedom[clusters].sum() >= FEWEST_RESIDUALS
 
 
-def _two_tables(one: str, other: str, why: str) -> UndeterminedError:
-    return UndeterminedError(f"{one} and {other} disagree as two tables do: {why}", "diagnose each recording by itself")
+def _check_small(
+    problem: Problem,
+    small: Sequence[Part],
+    alone: Sequence[Explained],
+    names: Sequence[str],
+    shipped: Mapping[str, float],
+) -> None:
+    """Raise `UndeterminedError` if one of the parts `small` fits none of the laws `alone`, of recordings `names`."""
+    if not small:
+        return
+    if not alone:
+        together = np.concatenate([part.clusters for part in small])
+        if not _enough(problem, together):
+            return
+        alone, names = [explain(problem, shipped, together)], ["the others"]
+    for part in small:
+        freedom = float(problem.freedom[part.clusters].sum())
+        excess = [
+            _loss_as_foretold(problem, law, part.clusters) / law.dispersion - WORSE_SMALL * freedom for law in alone
+        ]
+        if min(excess) > HARM:
+            name = names[int(np.argmin(excess))]
+            raise two_tables(name, part.name, f"the {problem.regime} of the one foretells the other's badly")
+
+
+def _loss_as_foretold(problem: Problem, found: Explained, clusters: np.ndarray) -> float:
+    """Soft loss of `clusters` under a law found elsewhere, nothing refitted."""
+    if found.unlisted is None:
+        left = problem.residuals(found.law.values, (), clusters)
+        loss = np.bincount(left.cluster, left.r**2, problem.clusters)
+    else:
+        grams, units = found.columns.grams, problem.units.of(clusters)
+        columns = grams.columns((*found.law.free, *found.unlisted.columns))
+        left = gram.losses(grams, columns, found.theta, units)
+        loss = np.bincount(problem.units.cluster[units], left, problem.clusters)
+    return float(gram.soft(loss[clusters], problem.freedom[clusters]).sum())
 
 
 def _numbers_apart(one: Fit, other: Fit) -> tuple[str, float, float] | None:

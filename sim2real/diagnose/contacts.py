@@ -7,27 +7,41 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from puckpilot_env.parameters import TABLE
+from sim2real.nominal import FROM_META, parameters
 from sim2real.recording import Recording
 
 WALLS = ("x0", "x1", "y0", "y1")
+POSTS = ("x0 right", "x0 left", "x1 right", "x1 left")
 NEAR = 0.006
 LINE_SEARCH = 0.03
 MALLET_NEAR = 0.008
 MALLET_CLOCK = 0.03
 MALLET_FARTHEST = 0.07
 SLOPE_SPAN = 0.012
+WIDER = 0.06  # m, by which a goal of unknown width may be wider than the simulator's
+SIZES = ("length", "width", "goal_width", "puck_radius", "mallet_radius")
 
 
 @dataclass(frozen=True)
 class Geometry:
-    """Nominal sizes [m]. `goal_width` is None where the recording does not say it."""
+    """Nominal sizes [m]. `assumed`: the names of those that the recording does not state, the simulator's own."""
 
     length: float
     width: float
-    goal_width: float | None
+    goal_width: float
     puck_radius: float
     mallet_radius: float
+    assumed: frozenset[str] = frozenset()
+
+    @property
+    def goals_known(self) -> bool:
+        return "goal_width" not in self.assumed
+
+    def post(self, where: str) -> np.ndarray:
+        """Place (2,) of a goal post: "x0 right", "x1 left", …"""
+        end, side = where.split()
+        sign = 1 if side == "left" else -1
+        return np.array([0.0 if end == "x0" else self.length, self.width / 2 + sign * self.goal_width / 2])
 
 
 @dataclass(frozen=True)
@@ -45,37 +59,28 @@ class Track:
 
 
 def geometry(recording: Recording) -> Geometry:
-    """Sizes from the recording's meta data, the table of parameters' defaults where these are unknown."""
-    default = {row.name: row.default for row in TABLE}
-
-    def size(section: str, key: str, name: str) -> float:
-        value = recording.nominal(section, key)
-        return default[name] if value is None else value
-
-    return Geometry(
-        size("table", "length_m", "length"),
-        size("table", "width_m", "width"),
-        recording.nominal("table", "goal_width_m"),
-        size("puck", "radius_m", "puck_radius"),
-        size("mallet", "radius_m", "mallet_radius"),
-    )
+    """Sizes from the recording's meta data, the simulator's own where these are unknown."""
+    sizes = parameters(recording)
+    assumed = frozenset(name for name in SIZES if recording.nominal(*FROM_META[name]) is None)
+    return Geometry(**{name: sizes[name] for name in SIZES}, assumed=assumed)
 
 
 def mallet_tracks(recording: Recording, t: np.ndarray) -> dict[str, Track]:
     """The mallets that were recorded, at the frames' times `t`: "robot" from its encoders, "opponent" from vision."""
-    tracks = {}
-    if recording.mallet is not None and recording.mallet.rows > 1:
-        stream = recording.mallet
-        tracks["robot"] = _track(stream.t, stream["mallet_x"], stream["mallet_y"], t)
-    if recording.frames is not None:
-        stream = recording.frames
-        if np.isfinite(stream["opponent_x"]).sum() > 1:
-            tracks["opponent"] = _track(stream.t, stream["opponent_x"], stream["opponent_y"], t)
-    return tracks
+    streams = {"robot": (recording.mallet, "mallet"), "opponent": (recording.frames, "opponent")}
+    found = {
+        who: _track(stream.t, stream[f"{column}_x"], stream[f"{column}_y"], t)
+        for who, (stream, column) in streams.items()
+        if stream is not None
+    }
+    return {who: track for who, track in found.items() if track is not None}
 
 
-def _track(clock: np.ndarray, x: np.ndarray, y: np.ndarray, t: np.ndarray) -> Track:
+def _track(clock: np.ndarray, x: np.ndarray, y: np.ndarray, t: np.ndarray) -> Track | None:
+    """The mallet seen at (x, y) (n,) at the times `clock` (n,); None where it was seen once at most."""
     seen = np.isfinite(x) & np.isfinite(y)
+    if seen.sum() < 2:
+        return None
     clock, x, y = clock[seen], x[seen], y[seen]
     near = np.clip(np.searchsorted(clock, t), 1, len(clock) - 1)
     known = np.minimum(np.abs(clock[near] - t), np.abs(clock[near - 1] - t)) < 3 * SLOPE_SPAN
@@ -133,12 +138,8 @@ def near_walls(lines: dict[str, float], p: np.ndarray, reach: float) -> np.ndarr
 def near_posts(g: Geometry, p: np.ndarray, reach: float) -> np.ndarray:
     """Places (n, 2) at which the puck is within `reach` [m] of touching a goal post, shape (n,) bool."""
     near = np.zeros(len(p), bool)
-    if g.goal_width is None:
-        return near
-    for x in (0.0, g.length):
-        for sign in (-1, 1):
-            away = p - np.array([x, g.width / 2 + sign * g.goal_width / 2])
-            near |= np.linalg.norm(away, axis=1) < g.puck_radius + reach
+    for where in POSTS if g.goals_known else ():
+        near |= np.linalg.norm(p - g.post(where), axis=1) < g.puck_radius + reach
     return near
 
 
@@ -169,20 +170,16 @@ def touched_walls(lines, g: Geometry, place, v_in, v_out, slack: float) -> list[
 
 def touched_post(g: Geometry, place: np.ndarray, dv: np.ndarray, slack: float) -> str:
     """The goal post ("x0 right", "x1 left", ...) that the puck at `place` touches; "" if none or goals unknown."""
-    if g.goal_width is None:
-        return ""
-    for end, x in (("x0", 0.0), ("x1", g.length)):
-        for side, sign in (("right", -1), ("left", 1)):
-            post = np.array([x, g.width / 2 + sign * g.goal_width / 2])
-            away = place - post
-            distance = float(np.linalg.norm(away))
-            in_mouth = (post[1] - place[1]) * sign > -slack
-            if in_mouth and abs(distance - g.puck_radius) < slack and away @ dv > 0.5 * distance * np.linalg.norm(dv):
-                return f"{end} {side}"
+    for where in POSTS if g.goals_known else ():
+        away = place - g.post(where)
+        distance = float(np.linalg.norm(away))
+        in_mouth = abs(place[1] - g.width / 2) < g.goal_width / 2 + slack
+        if in_mouth and abs(distance - g.puck_radius) < slack and away @ dv > 0.5 * distance * np.linalg.norm(dv):
+            return where
     return ""
 
 
-def touched_mallet(g, tracks, t, when, place, v_in, dv, slack: float) -> tuple[str, np.ndarray, np.ndarray]:
+def touched_mallet(g, tracks, t, when, place, dv, slack: float) -> tuple[str, np.ndarray, np.ndarray]:
     """The mallet that pushed the puck at the time `when`: its name ("" if none), its velocity (2,), the normal (2,)."""
     for who, track in tracks.items():
         m, m_velocity = track.at(t, when)
@@ -195,7 +192,11 @@ def touched_mallet(g, tracks, t, when, place, v_in, dv, slack: float) -> tuple[s
     return "", np.full(2, np.nan), np.full(2, np.nan)
 
 
+def may_be_goal(g: Geometry, wall: str, place: np.ndarray) -> bool:
+    """Whether what looks like a touch of `wall` may be one of a goal post, as nobody said how wide the goals are."""
+    reach = g.goal_width / 2 + WIDER / 2 + g.puck_radius
+    return wall[0] == "x" and not g.goals_known and abs(place[1] - g.width / 2) < reach
+
+
 def _in_mouth(g: Geometry, wall: str, place: np.ndarray) -> bool:
-    if wall[0] == "y" or g.goal_width is None:
-        return False
-    return abs(place[1] - g.width / 2) < g.goal_width / 2
+    return wall[0] == "x" and g.goals_known and abs(place[1] - g.width / 2) < g.goal_width / 2

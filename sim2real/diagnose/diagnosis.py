@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim2real.diagnose.account import account
-from sim2real.diagnose.agreement import Part, check_agreement, check_sizes, parts_of
+from sim2real.diagnose.agreement import Part, check_agreement, parts_of
 from sim2real.diagnose.contacts import geometry, mallet_tracks
 from sim2real.diagnose.encoders import read_encoders
 from sim2real.diagnose.engine.explain import Explained, explain
@@ -25,9 +25,11 @@ from sim2real.diagnose.mallet.data import join as join_blows
 from sim2real.diagnose.mallet.problem import MalletProblem
 from sim2real.diagnose.pieces import Pieces, cut
 from sim2real.diagnose.problem import Problem
-from sim2real.diagnose.sanity import UndeterminedError, check_together, check_usable, notes
+from sim2real.diagnose.sanity import UndeterminedError, check_usable, notes
 from sim2real.diagnose.sensing.account import sense
+from sim2real.diagnose.sensing.agreement import check_sensing
 from sim2real.diagnose.sight import sight
+from sim2real.diagnose.stated import together
 from sim2real.diagnose.wall.data import bounces
 from sim2real.diagnose.wall.problem import WallProblem
 from sim2real.diagnose.wall.scatter import explain_bounces
@@ -125,10 +127,11 @@ def diagnose(
 
     ValueError, in one line, for recordings that state different tables.
     """
-    every = [*recordings, *heldout]
-    check_together(every)
+    every = together([*recordings, *heldout], shipped)
     try:
-        accounts, sights = _accounts(recordings, heldout, shipped, progress)
+        check_usable(every)
+        timed = [one.from_zero() for one in every]
+        accounts, sights = _accounts(timed[: len(recordings)], timed[len(recordings) :], shipped, progress)
     except UndeterminedError as why:
         return Diagnosis((), why.reason, why.remedy, notes(every))
     return Diagnosis(accounts, notes=notes(every), sights=sights)
@@ -138,10 +141,9 @@ def _accounts(
     recordings: Sequence[Recording], heldout: Sequence[Recording], shipped: Mapping[str, float], progress: Progress
 ) -> tuple[tuple[Account, ...], tuple[Sight, ...]]:
     """What each regime says, and the sensor of each recording."""
-    check_usable([*recordings, *heldout])
     progress("cutting", 0.0)
     pieces = [cut(one) for one in recordings]
-    check_sizes([*recordings, *heldout], [*pieces, *(cut(one) for one in heldout)])
+    check_sensing([*recordings, *heldout], [*pieces, *(cut(one) for one in heldout)])
     progress("sensing", 0.1)
     sensed = sense(recordings, pieces)
     if sensed.account.undetermined:
@@ -195,11 +197,16 @@ def _gantry(data: Cut, values: dict[str, float], progress: Progress) -> list[Acc
     progress("gantry", 0.2)
     touched = [np.array([hit.t for hit in part.hits if hit.where == "robot"]) for part in data.pieces]
     try:
-        problem = gantry_problem(data.recordings, values, touched).proved_on(data.heldout, KEPT_APART)
+        problem, runs = gantry_problem(data.recordings, values, touched)
     except UnusableError as why:
         return [Account("gantry", (), {}, False, None, str(why))]
+    apart = sum(k >= len(data.recordings) - data.heldout for k in runs)
+    if apart == len(runs):
+        return [_too_little("gantry")]
+    problem = problem.proved_on(apart, KEPT_APART)
+    tables = [Part(data.recordings[k].name, part) for k, part in zip(runs, problem.clusters_of_runs, strict=True)]
     alone = not any(len(times) for times in touched)
-    return [_explain(problem, values, problem.proof, (), alone)[1]]
+    return [_explain(problem, values, problem.proof, tables, alone)[1]]
 
 
 def _states(glides: GlideProblem, found: Explained) -> States:

@@ -92,13 +92,15 @@ def explain(event: Event, path: Path, noise: Noise, g, lines, tracks) -> list[Hi
     slack = contacts.NEAR + 4 * spread + 0.3 * float(np.diff(path.t)[event.gap] * np.linalg.norm(dv))
     walls = contacts.touched_walls(lines, g, event.place, v_in, v_out, slack)
     post = contacts.touched_post(g, event.place, dv, slack)
-    who, mallet_v, normal = contacts.touched_mallet(g, tracks, path.t, event.t, event.place, v_in, dv, slack)
+    who, mallet_v, normal = contacts.touched_mallet(g, tracks, path.t, event.t, event.place, dv, slack)
     post = "" if walls else post
     causes = len(walls) + bool(post) + bool(who)
     if len(walls) == 2 and causes == 2:
         return [_corner_hit(event, path, wall) for wall in walls]
     if causes > 1:
         return [_hit(event, path, "unexplained", " or ".join(filter(None, [*walls, post, who])), None)]
+    if any(contacts.may_be_goal(g, wall, event.place) for wall in walls):
+        return [_hit(event, path, "unexplained", f"{walls[0]} or a post", None)]
     if walls:
         return [_hit(event, path, "wall", walls[0], contacts.wall_axis(walls[0]))]
     if post:

@@ -11,7 +11,7 @@ from sim2real.diagnose.hits import Hit
 from sim2real.diagnose.pieces import Pieces
 
 FARTHEST = 0.12  # s from a glide's last frame to the hit
-CORNER_APART = 0.02  # s; hits nearer to each other have no glide between them
+SPIN_UNTOLD = ("post", "unexplained")  # the normal is uncertain, and so is the spin that such a contact gives
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ def find_impacts(pieces: Pieces, problem: GlideProblem, states: States, recordin
         cluster = int(data.cluster[here[after]])
         last = found[-1] if found and found[-1].glide == before else None
         since = hit.t - last.hit.t if last else np.nan
-        if last and last.hit.kind != "post":  # a post's normal is uncertain, and so is the spin that it gives
+        if last and last.hit.kind not in SPIN_UNTOLD:
             chain, lost = last.chain, last.lost
         else:
             chain, lost = int(here[after]), _touched_before(pieces, hit)

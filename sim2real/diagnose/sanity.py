@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from sim2real.diagnose.clocks import leaps
+from sim2real.diagnose.stated import assumptions
 from sim2real.recording import POSITIONS, Recording, Stream
 
 LEAST_SECONDS = 5.0
@@ -24,18 +25,9 @@ class UndeterminedError(Exception):
         self.reason, self.remedy = reason, remedy
 
 
-def check_together(recordings: Sequence[Recording]) -> None:
-    """ValueError, in one line, if the recordings state sizes of different tables, pucks or mallets."""
-    first = recordings[0]
-    for other in recordings[1:]:
-        for section in ("table", "puck", "mallet"):
-            for key in first.meta[section]:
-                one, two = first.nominal(section, key), other.nominal(section, key)
-                if one is not None and two is not None and not np.isclose(one, two, rtol=1e-6):
-                    raise ValueError(
-                        f"{first.name} states {section}.{key} {one:g}, {other.name} {two:g}: "
-                        "these are different tables; diagnose each by itself"
-                    )
+def two_tables(one: str, other: str, why: str) -> UndeterminedError:
+    """What to raise where the recordings of these names cannot be of one table."""
+    return UndeterminedError(f"{one} and {other} disagree as two tables do: {why}", "diagnose each recording by itself")
 
 
 def check_usable(recordings: Sequence[Recording]) -> None:
@@ -52,14 +44,15 @@ def check_usable(recordings: Sequence[Recording]) -> None:
 
 
 def notes(recordings: Sequence[Recording]) -> tuple[str, ...]:
-    """What should be known of the recordings, a sentence each: blunders, and pauses at which they were cut."""
+    """What should be known of the recordings, a sentence each: blunders, pauses at which they were cut, and numbers
+    that none of them states."""
     found = [f"{one.name}: {note}" for one in recordings for note in one.notes]
     for one in recordings:
         for name, stream in _rows(one).items():
             pauses = int((np.diff(stream.t) > PAUSE).sum()) if name in POSITIONS else 0
             if pauses:
                 found.append(f"{one.name}: {name}.csv has {pauses} pauses of more than {PAUSE:g} s and is cut there")
-    return tuple(found)
+    return (*found, *assumptions(recordings))
 
 
 def _rows(one: Recording) -> dict[str, Stream]:

@@ -95,6 +95,8 @@ def test_refuses_broken_frames_by_file_line_and_reason(tmp_path, frames, line, w
         (json.dumps(META | {"puck": {"radius_m": "big"}}), "puck.radius_m is 'big'"),
         (json.dumps(META | {"puck": {"radius_m": True}}), "puck.radius_m"),
         (json.dumps(META | {"table": {"length_m": 2000}}), "table.length_m"),
+        (json.dumps(META | {"gantry": {"supply_V": "24 V"}}), "gantry.supply_V is '24 V'"),
+        (json.dumps(META | {"gantry": 24}), '"gantry"'),
         (json.dumps(META).replace("100.0", "NaN"), "NaN"),
     ],
 )
@@ -102,6 +104,21 @@ def test_refuses_broken_meta_data(tmp_path, meta, words):
     with pytest.raises(RecordingError, match=r"meta\.json") as error:
         read_recording(folder_with(tmp_path, HEADER, meta))
     assert words in str(error.value) and "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("gantry", [None, {}, {"supply_V": None, "pulley_radius_m": 0.03}])
+def test_a_gantry_may_be_unknown(tmp_path, gantry):
+    found = read_recording(folder_with(tmp_path, HEADER, META | {"gantry": gantry}))
+    assert found.nominal("gantry", "supply_V") is None
+    assert found.nominal("gantry", "pulley_radius_m") == (gantry or {}).get("pulley_radius_m")
+
+
+def test_all_clocks_can_be_counted_from_the_earliest_stamp(tmp_path):
+    frames, mallet = rows("1700000000.25,1,0.5,,", "1700000000.5,1,0.5,,"), "t,mallet_x,mallet_y\n1700000000,0.2,0.5\n"
+    found = read_recording(folder_with(tmp_path, frames, mallet=mallet, drive="t,pwm_left,pwm_right\n")).from_zero()
+    assert found.frames is not None and found.mallet is not None and found.drive is not None
+    assert found.frames.t.tolist() == [0.25, 0.5] and found.mallet.t.tolist() == [0.0] and found.drive.rows == 0
+    assert found.frames["puck_x"].tolist() == [1.0, 1.0]
 
 
 def test_refuses_what_is_no_recording(tmp_path):

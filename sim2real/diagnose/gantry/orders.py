@@ -21,7 +21,8 @@ class Orders:
 
     `load` (m,): |V_x| + |V_y| [V] that pull at the supply: of a plan its two volts, however long each lasts. `switch`
     (m,) bool: a switch within a plan, whose time is known as well as it is written. `tick` [s]: the motors heed a
-    change at the next whole tick of their control loop; 0: at once. `end` [s]: until when the orders are known.
+    change at the next whole tick of their control loop; 0: at once. `end` [s]: until when the orders are known;
+    `unknown` (k, 2) [s]: begin and end of times before it when they are not.
     """
 
     t: np.ndarray
@@ -29,7 +30,14 @@ class Orders:
     load: np.ndarray
     switch: np.ndarray
     end: float
+    unknown: np.ndarray
     tick: float = 0.0
+
+    def known_at(self, t: np.ndarray, late: float) -> np.ndarray:
+        """Whether the orders are known at the times `t` (n,) [s], and were `late` [s] before."""
+        begins, ends = np.vstack([[-np.inf, -np.inf], self.unknown]).T
+        last = np.searchsorted(begins, t, side="right") - 1
+        return (t >= self.t[0]) & (t <= self.end) & (t >= ends[last] + late)
 
     def at_motors(self, p: np.void) -> tuple[np.ndarray, np.ndarray]:
         """`(t (m,) [s of the encoders' clock], volts (m, 2) [V])` at the motors under `p`, a record of RECORD."""
@@ -62,8 +70,9 @@ def from_commands(commands: Stream) -> Orders:
     switches = np.stack([commands[f"t_{axis}{k}"] for axis in "xy" for k in (1, 2)], axis=1)
     moments = np.sort(np.maximum(np.column_stack([np.zeros(len(start)), switches]), 0.0), axis=1)
     until = np.append(np.diff(start), np.inf)
+    whole = np.isfinite(switches).all(axis=1) & np.isfinite(commands["V_x"] + commands["V_y"])
     fresh = np.column_stack([np.ones(len(start), bool), np.diff(moments, axis=1) > 0.0])
-    used = fresh & (moments < until[:, None])
+    used = fresh & (moments < until[:, None]) & whole[:, None]
     plan, which = np.nonzero(used)
     moment = moments[used]
     volts = np.empty((len(plan), 2))
@@ -72,7 +81,8 @@ def from_commands(commands: Stream) -> Orders:
         volts[:, k] = np.where(moment < t1, full, np.where(moment < t2, -full, 0.0))
     load = np.abs(commands["V_x"][plan]) + np.abs(commands["V_y"][plan])
     pause = float(np.median(np.diff(start))) if len(start) > 1 else float(np.max(switches[-1], initial=0.0))
-    return Orders(start[plan] + moment, volts, load, which > 0, float(start[-1]) + pause)
+    end = float(start[-1]) + pause
+    return Orders(start[plan] + moment, volts, load, which > 0, end, _without(whole, start, end))
 
 
 def from_drive(drive: Stream, supply: float) -> Orders:
@@ -82,6 +92,14 @@ def from_drive(drive: Stream, supply: float) -> Orders:
     volts = supply * np.column_stack([left - right, -(left + right)])[known]
     t = drive.t[known]
     end = float(t[-1]) if len(t) else 0.0
+    unknown = _without(known, drive.t, end)
     fresh = np.append(True, np.any(np.diff(volts, axis=0) != 0.0, axis=1))[: len(t)]
     t, volts = t[fresh], volts[fresh]
-    return Orders(t, volts, np.abs(volts).sum(axis=1), np.zeros(len(t), bool), end)
+    return Orders(t, volts, np.abs(volts).sum(axis=1), np.zeros(len(t), bool), end, unknown)
+
+
+def _without(known: np.ndarray, start: np.ndarray, end: float) -> np.ndarray:
+    """Begin and end (k, 2) of the times of rows that are not `known` (n,), each lasting from its `start` (n,) to the
+    next, the last one to `end` [s]."""
+    missing = np.flatnonzero(~known)
+    return np.column_stack([start[missing], np.append(start[1:], max(end, start[-1]))[missing]])

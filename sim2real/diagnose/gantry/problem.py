@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.gantry.candidates import Candidate, candidates
 from sim2real.diagnose.gantry.laws import gantry_columns
-from sim2real.diagnose.gantry.run import Run, read_run
+from sim2real.diagnose.gantry.run import Run, UnusableError, read_run
 from sim2real.diagnose.gantry.tick import find_tick
 from sim2real.diagnose.problem import Columns, Residuals, Units
 from sim2real.recording import Recording
@@ -47,6 +48,11 @@ class GantryProblem:
         self._sign = np.concatenate([np.repeat((-1.0, 1.0), size) for size in sizes])
         of_rows = [a + run.cluster_of_rows() for a, run in zip(self.first, runs, strict=False)]
         self.cluster = np.concatenate([*of_rows, np.repeat(np.arange(self.clusters), len(GUESSED))])
+
+    @property
+    def clusters_of_runs(self) -> list[np.ndarray]:
+        """The clusters of each run."""
+        return [np.arange(a, b) for a, b in pairwise(self.first.tolist())]
 
     def of(self, runs: Sequence[Run]) -> GantryProblem:
         """The same of other runs, all to be seen."""
@@ -131,17 +137,26 @@ class GantryProblem:
 
 def gantry_problem(
     recordings: Sequence[Recording], common: Mapping[str, float], breaks: Sequence[np.ndarray] = ()
-) -> GantryProblem:
-    """The gantry in all `recordings`; `breaks`: for each, the times [s] at which something else pushed the mallet.
+) -> tuple[GantryProblem, list[int]]:
+    """The gantry in those of `recordings` that show it, and their indices; `breaks`: for each recording, the times [s]
+    at which something else pushed the mallet. `common`: what they all share, by the names of `nominal.parameters`.
 
-    Errors: UnusableError, why one of them says nothing.
+    Errors: UnusableError, why none of them says anything.
     """
     given = breaks or [np.zeros(0)] * len(recordings)
-    runs = [read_run(recording, times) for recording, times in zip(recordings, given, strict=True)]
-    radius = recordings[0].nominal("gantry", "pulley_radius_m")
-    law = dict(common) if radius is None else {**common, "pulley_radius": radius}
-    tick = find_tick(GantryProblem([runs[0]], law)) if runs[0].orders.switch.any() else 0.0
-    return GantryProblem([run.with_tick(tick) for run in runs], law)
+    runs: dict[int, Run] = {}
+    reasons: list[str] = []
+    for k, (recording, times) in enumerate(zip(recordings, given, strict=True)):
+        try:
+            runs[k] = read_run(recording, common["max_voltage"], times)
+        except UnusableError as why:
+            reasons.insert(0 if recording.mallet is not None else len(reasons), str(why))
+    if not runs:
+        raise UnusableError(reasons[0])
+    every = list(runs.values())
+    ticking = next((run for run in every if run.orders.switch.any()), None)
+    tick = 0.0 if ticking is None else find_tick(GantryProblem([ticking], common))
+    return GantryProblem([run.with_tick(tick) for run in every], common), list(runs)
 
 
 def _step(name: str, value: float) -> float:

@@ -153,11 +153,11 @@ def shift_by_play(gap, motor, play):
 
 
 @array_kernel
-def axis_residuals(p, axis, changes, volts, loose, t, seen, weight, begin, end, chosen, extra, out):
+def axis_residuals(p, axis, changes, volts, loose, t, seen, weight, begin, end, extra, out):
     """`out` (samples, 1 + m): the weighted residual and, for `extra` (samples, m) [m], columns, starts projected out.
 
     changes (k,), volts (k,): at the motors; loose: indices of doubtful switches; t, seen, weight (samples,): the
-    encoders [s, m, 1/m]; begin, end (windows,): their samples; chosen (windows,) bool: which of them are wanted.
+    encoders [s, m, 1/m]; begin, end (windows,): their samples.
     """
     c, gap = axis_of(p, axis), p.backlash_gap
     carried, next_loose = 0.0, 0
@@ -166,8 +166,6 @@ def axis_residuals(p, axis, changes, volts, loose, t, seen, weight, begin, end, 
         a, b = begin[w], end[w]
         while now + 1 < len(changes) and changes[now + 1] <= t[a]:
             now += 1
-        if not chosen[w] and gap == 0.0:
-            continue
         times, n = t[a:b], b - a
         columns, path = np.empty((n, STARTS + MOST_LOOSE)), np.empty(n)
         drive_window(c, changes, volts, now, times, path)

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from puckpilot_env.parameters import BY_NAME
 from sim2real.diagnose.gantry.encoder import encoder_noise
 from sim2real.diagnose.gantry.orders import Orders, from_commands, from_drive
 from sim2real.diagnose.gantry.response import axis_residuals
@@ -16,6 +15,7 @@ from sim2real.recording import Recording
 FEWEST_WINDOWS = 12
 SMALLEST_TRAVEL = 0.01  # m of standard deviation
 ENOUGH_SAMPLES = 10_000  # of the encoders, evenly taken; more would cost time and not tell more
+LATEST = 0.05  # s, after which no order that was not recorded is still obeyed
 SMOOTHED = 0.009  # s, over which the path is averaged for its speed
 START_COLUMNS = 3  # of a window and axis, taken out of its residuals
 
@@ -68,14 +68,13 @@ class Run:
         extra = np.zeros((len(self.t), 2, 0)) if extra is None else extra
         changes, volts = self.orders.at_motors(p)
         loose = self.orders.loose(p)
-        everything = np.ones(len(self.windows.begin), bool)
         rows, found = self.windows.rows, []
         for axis in range(2):
             out = np.empty((len(self.t), 1 + extra.shape[2]))
             columns = (self.seen[:, axis], 1.0 / self.noise[:, axis])
             axis_residuals(
                 p, axis, changes + late, volts[:, axis].copy(), loose, self.t, *(c.copy() for c in columns),
-                self.windows.begin, self.windows.end, everything, np.ascontiguousarray(extra[:, axis]), out,
+                self.windows.begin, self.windows.end, np.ascontiguousarray(extra[:, axis]), out,
             )  # fmt: skip
             found.append(out[rows])
         return np.concatenate(found)
@@ -85,16 +84,18 @@ class Run:
         return np.tile(np.repeat(self.windows.cluster, self.windows.end - self.windows.begin), 2)
 
 
-def read_run(recording: Recording, breaks: np.ndarray | None = None) -> Run:
-    """The run in `recording`; `breaks` [s]: times at which something else pushed the mallet. Errors: UnusableError."""
+def read_run(recording: Recording, supply: float, breaks: np.ndarray) -> Run:
+    """The run in `recording` under a supply of `supply` [V]; `breaks` [s]: times at which something else pushed the
+    mallet. Errors: UnusableError."""
     if recording.mallet is None:
         raise UnusableError("the mallet's path was not recorded (mallet.csv)")
-    orders = find_orders(recording)
+    orders = find_orders(recording, supply)
     mallet = recording.mallet
     p = np.column_stack([mallet["mallet_x"], mallet["mallet_y"]])
-    usable = np.isfinite(p).all(axis=1) & (mallet.t >= orders.t[0]) & (mallet.t <= orders.end)
+    usable = np.isfinite(p).all(axis=1) & orders.known_at(mallet.t, LATEST)
     t, p = mallet.t[usable], p[usable]
-    windows = cut_windows(t, np.zeros(0))
+    lost = np.unique(orders.unknown)
+    windows = cut_windows(t, lost)
     if len(windows.begin) < FEWEST_WINDOWS:
         raise UnusableError(f"mallet and orders overlap for {len(windows.begin) / 2:.1f} s, expected 6 s or more")
     if p.std(axis=0).max() < SMALLEST_TRAVEL:
@@ -103,18 +104,23 @@ def read_run(recording: Recording, breaks: np.ndarray | None = None) -> Run:
     stride = max(1, round(len(t) / ENOUGH_SAMPLES))
     t, p = t[::stride].copy(), p[::stride].copy()
     place, speed = smoothed(t, p)
-    windows = cut_windows(t, np.zeros(0) if breaks is None else breaks)
+    windows = cut_windows(t, np.concatenate([breaks, lost]))
     return Run(orders, t, p, place, speed, noise.std(speed), windows)
 
 
-def find_orders(recording: Recording) -> Orders:
+def find_orders(recording: Recording, supply: float) -> Orders:
     """What the motors were asked for: by the plans, else by the motors' log. Errors: UnusableError."""
-    if recording.commands is not None and recording.commands.rows:
-        return from_commands(recording.commands)
-    if recording.drive is not None and recording.drive.rows:
-        supply = recording.nominal("gantry", "supply_V")
-        return from_drive(recording.drive, BY_NAME["max_voltage"].default if supply is None else supply)
-    raise UnusableError("neither the plans (commands.csv) nor the motors' log (drive.csv) was recorded")
+    ways = (
+        ("commands", recording.commands, from_commands),
+        ("drive", recording.drive, lambda drive: from_drive(drive, supply)),
+    )
+    recorded = [(name, read(stream)) for name, stream, read in ways if stream is not None and stream.rows]
+    if not recorded:
+        raise UnusableError("neither the plans (commands.csv) nor the motors' log (drive.csv) was recorded")
+    name, orders = next(((name, one) for name, one in recorded if len(one.t)), recorded[0])
+    if not len(orders.t):
+        raise UnusableError(f"{name}.csv holds no complete row")
+    return orders
 
 
 def smoothed(t: np.ndarray, seen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from itertools import product
 
 import numpy as np
@@ -51,7 +51,7 @@ def _rigid(motion: Motion, way: str) -> Form:
         f"rigid {way}", np.zeros((1, 0)),
         lambda n: np.concatenate([turned(motion, 0.0, 0.0, way)[:, :, None], axes], axis=2), named,
         lambda p: p["rate"] * turned(motion, p["x"], p["y"], way),
-        lambda p: f"a = {p['rate']:.4g} r 1/s^2 {_way(way, p)}, {_about(p)}",
+        lambda p: f"a = {p['rate']:.4g} r 1/s^2 {_way(way)}, {_about(p)}",
     )  # fmt: skip
 
 
@@ -64,7 +64,7 @@ def _local(motion: Motion, way: str) -> Form:
         f"local {way}", _points(motion), lambda n: at(*n)[:, :, None], lambda n, a: _spot(n, float(a[0])),
         lambda p: p["size"] * at(p["x"], p["y"], p["radius"]),
         lambda p: f"a = {p['size']:.4g} (r / {p['radius']:.4g} m) exp((1 - (r / {p['radius']:.4g} m)^2) / 2) m/s^2 "
-        f"{_way(way, p)}, {_about(p)}",
+        f"{_way(way)}, {_about(p)}",
     )  # fmt: skip
 
 
@@ -81,8 +81,5 @@ def _about(p: Mapping[str, float]) -> str:
     return f"r from ({p['x']:.4g}, {p['y']:.4g}) m"
 
 
-def _way(way: str, p: Mapping[str, float]) -> str:
+def _way(way: str) -> str:
     return "turning left round it" if way == ROUND else "away from it"
-
-
-Maker = Callable[[Motion, str], Form]

@@ -16,10 +16,8 @@ from sim2real.diagnose.sensing.clock_findings import ClockAccount, clock_account
 from sim2real.diagnose.sensing.correct import corrected
 from sim2real.diagnose.sensing.held import held_finding, repeats
 from sim2real.diagnose.sensing.scale import ScaleAccount, scale_account
-from sim2real.diagnose.strikes import Strike, strikes
+from sim2real.diagnose.strikes import MANY_LAUNCHES, Strike, strikes
 from sim2real.recording import Recording
-
-LAUNCHES = 100_000  # more than a recording has
 
 
 @dataclass(frozen=True)
@@ -64,7 +62,9 @@ def sense(recordings: Sequence[Recording], pieces: Sequence[Pieces]) -> Sensed:
 
 def _joined(found: list[list[Strike]]) -> list[Strike]:
     """The strikes of all recordings, their launches told apart."""
-    return [Strike(s.hit, s.state, s.covariance, s.launch + LAUNCHES * k) for k, part in enumerate(found) for s in part]
+    return [
+        Strike(s.hit, s.state, s.covariance, s.launch + MANY_LAUNCHES * k) for k, part in enumerate(found) for s in part
+    ]
 
 
 def _clock(recordings: list[Recording], found: list[list[Strike]]) -> ClockAccount:

@@ -13,7 +13,7 @@ import numpy as np
 
 from sim2real.diagnose.contacts import Geometry
 from sim2real.diagnose.encoders import Encoders
-from sim2real.diagnose.strikes import Strike
+from sim2real.diagnose.strikes import MANY_LAUNCHES, Strike
 
 LONGEST = 0.12  # s
 FASTEST = 0.001  # 1, the drift of a clock
@@ -27,7 +27,6 @@ TAIL = 4.0  # degrees of freedom of the gaps' errors
 SMOOTH = 0.004  # s
 TOUCHED = 0.02  # m: a larger gap is none
 LEAST = 4
-MANY = 100_000  # launches that a recording has not
 
 
 @dataclass(frozen=True)
@@ -146,7 +145,7 @@ def fit(tables: list[Meetings], start: tuple[float, float], free: tuple[bool, bo
     theta = np.concatenate([np.where(free, start, 0.0), np.zeros(len(NUISANCE))])
     prior = 1 / np.square(NUISANCE)
     kept = np.flatnonzero([*free, *np.ones(len(NUISANCE), bool)])
-    launch = np.concatenate([MANY * k + each.launch for k, each in enumerate(tables)])
+    launch = np.concatenate([MANY_LAUNCHES * k + each.launch for k, each in enumerate(tables)])
     seen = ~np.isin(launch, skip)
     for _ in range(12):
         rows = [linearise(each, theta[0], theta[1]) for each in tables]

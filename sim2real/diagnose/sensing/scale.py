@@ -24,7 +24,7 @@ SURE = 1e-5  # chance of all three together, at which the map is wrong
 TOLD = 1e-3  # the same of one of them, once they are
 AT_LEAST = 0.001
 WRONG_SIZE = 0.022
-KNOWN = 0.003  # an error of a scale above which the lines do not tell it
+KNOWN, ROUGHLY = 0.003, 0.01  # errors of a scale above which the lines do not tell it, or not even a wrong size
 FOLDS = 5
 
 
@@ -40,9 +40,9 @@ class ScaleAccount:
 
 def scale_account(found: list[Strike], g: Geometry) -> ScaleAccount:
     """What the strikes at the walls say of the camera's map."""
-    values, covariance = _solve(lines(found, g), g)
+    values, covariance = fitted_map(found, g)
     std = np.sqrt(np.diag(covariance))
-    wrong = _wrong_size(values, std, g)
+    wrong = wrong_size(values, std, g)
     if wrong:
         return ScaleAccount(np.zeros(3), (), None, wrong)
     sure = 2 * stats.norm.sf(np.abs(values) / std)
@@ -76,12 +76,20 @@ def scale_account(found: list[Strike], g: Geometry) -> ScaleAccount:
     return ScaleAccount(kept, (finding,), proof)
 
 
-def _wrong_size(values: np.ndarray, std: np.ndarray, g: Geometry) -> str:
+def fitted_map(found: list[Strike], g: Geometry) -> tuple[np.ndarray, np.ndarray]:
+    """Estimates (3,) of NAMES and their covariance (3, 3): vast where the strikes do not tell them."""
+    return _solve(lines(found, g), g)
+
+
+def wrong_size(values: np.ndarray, std: np.ndarray, g: Geometry) -> str:
+    """Why the size cannot be right: a large error, or any where the size is a mere guess; "" if it may be."""
     for axis, (name, size) in enumerate((("length", g.length), ("width", g.width))):
-        if abs(values[axis]) > WRONG_SIZE + 2 * std[axis] or (abs(values[axis]) > WRONG_SIZE and std[axis] < KNOWN):
-            seen = (1 + values[axis]) * size
+        off, guessed = abs(values[axis]), name in g.assumed
+        surely = off > AT_LEAST + 3 * std[axis] if guessed else off > WRONG_SIZE
+        if (surely and std[axis] < KNOWN) or (off > WRONG_SIZE + 2 * std[axis] and std[axis] < ROUGHLY):
+            seen, how = (1 + values[axis]) * size, "guessed" if guessed else "stated"
             return (
-                f"the stated {name} of {size:.3f} m is {abs(values[axis]):.1%} off the {seen:.3f} m seen: "
+                f"the {how} {name} of {size:.3f} m is {off:.1%} off the {seen:.3f} m seen: "
                 "measure the table and state its size, or calibrate the camera"
             )
     return ""

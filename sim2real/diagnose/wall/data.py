@@ -84,7 +84,7 @@ def _row(impact: Impact, g: Geometry):
     sure = np.linalg.inv(weight[0] + weight[1])
     place = sure @ (weight[0] @ before.place + weight[1] @ after.place)
     if hit.kind == "post":
-        post = _post(hit.where, g)
+        post = g.post(hit.where)
         place = sure @ sum(
             w @ _on_circle(side, post, g.puck_radius) for w, side in zip(weight, (before, after), strict=True)
         )
@@ -120,10 +120,3 @@ def _on_circle(side: Side, post: np.ndarray, radius: float) -> np.ndarray:
     apart = float(np.linalg.norm(away))
     rate = float(side.velocity @ away) / apart
     return side.place + side.velocity * float(np.clip((radius - apart) / rate, -LATE, LATE)) if rate else side.place
-
-
-def _post(where: str, g: Geometry) -> np.ndarray:
-    end, side = where.split()
-    assert g.goal_width is not None
-    sign = 1 if side == "left" else -1
-    return np.array([0.0 if end == "x0" else g.length, g.width / 2 + sign * g.goal_width / 2])

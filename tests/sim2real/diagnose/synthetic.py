@@ -10,7 +10,7 @@ LENGTH, WIDTH, RADIUS, MALLET = 2.0, 1.0, 0.03, 0.05
 RATE = 150.0
 META = {
     "format": "puckpilot-recording/1",
-    "table": {"length_m": LENGTH, "width_m": WIDTH, "goal_width_m": None},
+    "table": {"length_m": LENGTH, "width_m": WIDTH, "goal_width_m": 0.001},  # none, as good as
     "puck": {"radius_m": RADIUS},
     "mallet": {"radius_m": MALLET},
     "camera": {"rate_hz": RATE, "position_std_m": None},

@@ -1,13 +1,21 @@
 """Several recordings in one call: of one table they help each other, of two they name nothing."""
 
 import json
+from contextlib import nullcontext
 from functools import cache
 from pathlib import Path
 
 import pytest
 
 from puckpilot import main
+from sim2real.diagnose.agreement import FEWEST_LAUNCHES, check_agreement, parts_of
+from sim2real.diagnose.contacts import geometry
 from sim2real.diagnose.diagnosis import diagnose
+from sim2real.diagnose.glide.data import glide_data, join
+from sim2real.diagnose.glide.problem import GlideProblem
+from sim2real.diagnose.pieces import cut
+from sim2real.diagnose.sanity import UndeterminedError
+from sim2real.nominal import parameters
 from sim2real.recording import read_recording
 from tests.reality.camera import Camera
 from tests.reality.law import Law
@@ -80,6 +88,30 @@ def test_a_held_out_recording_of_another_table_names_nothing(recorded):
 def test_two_recordings_of_one_table_agree(recorded, name, mechanism):
     found = _diagnosis([recorded(name), recorded(f"{name} again")])
     assert [one.mechanism for one in found.findings] == [mechanism]
+
+
+@pytest.mark.parametrize("name, agrees", [("plain", True), ("tilted", False)])
+def test_a_recording_too_small_for_a_law_is_held_against_the_other_s(recorded, tmp_path, name, agrees):
+    make_recording(tmp_path / "short", LAWS[name], "launches", 77, 8.0, camera=CAMERA, dt=1e-4)
+    recordings = [read_recording(folder) for folder in (recorded("plain"), tmp_path / "short")]
+    values = parameters(recordings[0])
+    cuts = [glide_data(cut(one), geometry(one), {}) for one in recordings]
+    problem = GlideProblem(join(cuts), values)
+    parts = parts_of(problem.data, ["long", "short"])
+    assert len(parts[1].clusters) < FEWEST_LAUNCHES
+    with nullcontext() if agrees else pytest.raises(UndeterminedError, match="long and short disagree"):
+        check_agreement(problem, {name: values[name] for name in problem.base}, parts)
+
+
+def test_a_robot_s_recording_beside_one_without_keeps_its_account(tmp_path):
+    """Two recordings of one table, one of the robot alone and one of the puck alone; and the robot's as a proof."""
+    make_recording(tmp_path / "robot", Law(voltage_sag=0.02), "gantry", 3, 14.0, dt=1e-4)
+    make_recording(tmp_path / "puck", Law(), "launches", 4, 10.0, camera=CAMERA, dt=1e-4)
+    found = _diagnosis([tmp_path / "puck", tmp_path / "robot"])
+    assert [one.mechanism for one in found.findings] == ["voltage_sag"]
+    apart = _diagnosis([tmp_path / "puck"], [tmp_path / "robot"])
+    gantry = next(each for each in apart.accounts if each.regime == "gantry")
+    assert gantry.findings == () and gantry.undetermined == "too little data"
 
 
 def test_stated_sizes_of_two_tables_are_refused_in_one_line(recorded, tmp_path, capsys):

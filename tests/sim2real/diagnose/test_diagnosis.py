@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,7 +12,7 @@ from puckpilot import main
 from puckpilot_env.effects_file import effect_values
 from sim2real.diagnose.diagnosis import diagnose
 from sim2real.diagnose.summary import summary
-from sim2real.recording import read_recording
+from sim2real.recording import Stream, read_recording
 from tests.reality.camera import Camera
 from tests.reality.law import Law
 from tests.reality.record import make_recording
@@ -88,6 +89,26 @@ def test_what_is_no_recording_gets_one_line(words, told, tmp_path, capsys):
     error = capsys.readouterr().err
     assert told in error and error.count("\n") == 1
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("words", [["a", "../here/a"], ["a", "--holdout", "a"]])
+def test_a_folder_given_twice_proves_nothing(words, tmp_path, monkeypatch, capsys):
+    (tmp_path / "here" / "a").mkdir(parents=True)
+    monkeypatch.chdir(tmp_path / "here")
+    assert main(["diagnose", *words, "--out", str(tmp_path / "out")]) == 2
+    error = capsys.readouterr().err
+    assert "is given twice" in error and error.count("\n") == 1
+
+
+def test_the_clock_s_zero_does_not_matter(tmp_path):
+    """Stamps of a day's clock, as many loggers write them: the same delay of the camera as with stamps from zero."""
+    make_recording(tmp_path / "rally", Law(camera_delay=0.03), "rally", 1, 20.0, dt=1e-4)
+    recording = read_recording(tmp_path / "rally")
+    late = {name: Stream({**stream.columns, "t": stream.t + 1.7e9}) for name, stream in recording.streams().items()}
+    found = diagnose([replace(recording, **late)], [], {}, lambda stage, share: None)
+    (one,) = found.findings
+    assert (one.mechanism, one.also_possible) == ("camera_delay", ())
+    assert one.parameters["delay_s"].value == pytest.approx(0.03, abs=0.001)
 
 
 @pytest.mark.skipif(not PRACTICE.exists(), reason="the shared practice recordings are not here")

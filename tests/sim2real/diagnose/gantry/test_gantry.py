@@ -10,13 +10,15 @@ import pytest
 
 from puckpilot_env.parameters import BY_NAME
 from sim2real.diagnose.account import account
+from sim2real.diagnose.agreement import Part, check_agreement
 from sim2real.diagnose.engine.explain import explain
 from sim2real.diagnose.engine.fit import fit
 from sim2real.diagnose.finding import Account
-from sim2real.diagnose.gantry.problem import GantryProblem, gantry_problem
+from sim2real.diagnose.gantry.problem import gantry_problem
 from sim2real.diagnose.gantry.run import UnusableError
+from sim2real.diagnose.sanity import UndeterminedError
 from sim2real.nominal import parameters
-from sim2real.recording import Recording, read_recording
+from sim2real.recording import Recording, Stream, read_recording
 from tests.reality import volts
 from tests.reality.law import Law
 from tests.reality.record import make_recording
@@ -33,7 +35,7 @@ def recorded(folder: Path, law: Law, scenario: str = "gantry", seconds: float = 
 
 def diagnosed(recording: Recording) -> Account:
     values = parameters(recording)
-    problem = gantry_problem([recording], values)
+    problem, _ = gantry_problem([recording], values)
     proof = np.arange(problem.clusters)[3::4]
     use = np.setdiff1d(np.arange(problem.clusters), proof)
     return account(problem, explain(problem, {name: values[name] for name in problem.base}, use), use, proof)
@@ -99,7 +101,7 @@ def test_motors_that_heed_a_plan_at_the_next_tick_lack_nothing(
 
     monkeypatch.setattr(volts, "sorted_changes", ticked)
     recording = recorded(tmp_path, law)
-    assert gantry_problem([recording], parameters(recording)).runs[0].orders.tick == tick
+    assert gantry_problem([recording], parameters(recording))[0].runs[0].orders.tick == tick
     assert [one.mechanism for one in diagnosed(recording).findings] == names
 
 
@@ -113,9 +115,66 @@ def test_motors_that_heed_a_plan_at_the_next_tick_lack_nothing(
 def test_what_is_missing_is_said(tmp_path: Path, change: dict[str, None], told: str) -> None:
     recording = recorded(tmp_path, Law(), seconds=2.0)
     with pytest.raises(UnusableError, match=told):
-        gantry_problem([replace(recording, **change)], {})
+        gantry_problem([replace(recording, **change)], parameters(recording))
     with pytest.raises(UnusableError, match=r"overlap for 2\.0 s, expected 6 s"):
-        gantry_problem([recording], {})
+        gantry_problem([recording], parameters(recording))
+
+
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory: pytest.TempPathFactory) -> Recording:
+    """A gantry that lacks nothing."""
+    return recorded(tmp_path_factory.mktemp("plain"), Law(), seconds=12.0)
+
+
+def blanked(stream: Stream, column: str, rows: slice) -> Stream:
+    values = stream[column].copy()
+    values[rows] = np.nan
+    return Stream({**stream.columns, column: values})
+
+
+def test_plans_with_blank_cells_are_left_out(plain: Recording) -> None:
+    """The motors did something between 3.0 s and 4.0 s: nobody knows what, and all else is as good as before."""
+    assert plain.commands is not None
+    asked = (plain.commands.t > 2.99) & (plain.commands.t < 3.99)
+    rows = slice(int(np.argmax(asked)), int(np.argmax(asked) + asked.sum()))
+    commands = blanked(blanked(plain.commands, "V_x", rows), "t_y2", rows)
+    problem, _ = gantry_problem([replace(plain, commands=commands)], parameters(plain))
+    run, shipped = problem.runs[0], {name: BY_NAME[name].default for name in problem.base}
+    assert not np.any((run.t > commands.t[rows.start]) & (run.t < commands.t[rows.stop]))
+    assert len(run.t) > 0.85 * gantry_problem([plain], parameters(plain))[0].runs[0].t.size
+    left = problem.residuals(shipped, (), np.arange(problem.clusters)).r
+    assert left @ left < 1.1 * problem.freedom.sum()
+
+
+@pytest.mark.parametrize("file, column", [("commands", "V_x"), ("drive", "pwm_left")])
+def test_orders_that_are_all_blank_are_none(plain: Recording, file: str, column: str) -> None:
+    drive = Stream({"t": plain.mallet.t, "pwm_left": plain.mallet.t, "pwm_right": plain.mallet.t})  # type: ignore[union-attr]
+    stream = plain.commands if file == "commands" else drive
+    assert stream is not None
+    bare = replace(plain, **{"commands": None, file: blanked(stream, column, slice(None))})
+    with pytest.raises(UnusableError, match=rf"{file}\.csv holds no complete row"):
+        gantry_problem([bare], parameters(plain))
+
+
+def test_a_log_without_stated_supply_has_the_one_of_the_baseline(plain: Recording) -> None:
+    drive = Stream({"t": np.array([0.0, 20.0]), "pwm_left": np.array([0.5, 0.5]), "pwm_right": np.zeros(2)})
+    other = replace(plain, commands=None, drive=drive)
+    problem, _ = gantry_problem([other], parameters(other, {"max_voltage": 10.0}))
+    np.testing.assert_allclose(problem.runs[0].orders.volts, [[5.0, -5.0]])
+
+
+def test_a_recording_without_a_robot_leaves_the_others_theirs(plain: Recording) -> None:
+    puck_alone = replace(plain, mallet=None, commands=None)
+    problem, runs = gantry_problem([puck_alone, plain, replace(plain, commands=None)], parameters(plain))
+    assert runs == [1] and len(problem.runs) == 1
+
+
+def test_two_gantries_are_told_apart(plain: Recording, tmp_path: Path) -> None:
+    values = parameters(plain)
+    problem, _ = gantry_problem([plain, recorded(tmp_path, replace(Law(), a2=0.0075), seconds=8.0)], values)
+    parts = [Part(name, part) for name, part in zip("ab", problem.clusters_of_runs, strict=True)]
+    with pytest.raises(UndeterminedError, match="a and b disagree as two tables do: a2 is"):
+        check_agreement(problem, {name: values[name] for name in problem.base}, parts)
 
 
 def test_the_labelled_sag_is_found() -> None:
@@ -136,7 +195,7 @@ def test_the_real_gantry_s_logs_hold_no_sag(name: str) -> None:
         pytest.skip("no recordings of the real table beside the project")
     recording = read_recording(SHARED / "ubc" / name)
     values = parameters(recording)
-    problem: GantryProblem = gantry_problem([recording], values)
+    problem, _ = gantry_problem([recording], values)
     start = {row: values[row] for row in problem.base}
     law = fit(problem, start, (*problem.base, "voltage_sag"), np.arange(problem.clusters))
     sag = law.estimate("voltage_sag")

@@ -1,0 +1,26 @@
+"""When the lines of the walls say that the table has another size than stated."""
+
+import numpy as np
+import pytest
+
+from sim2real.diagnose.contacts import Geometry
+from sim2real.diagnose.sensing.scale import wrong_size
+
+STATED = Geometry(2.0, 1.0, 0.32, 0.03, 0.05)
+GUESSED = Geometry(2.0, 1.0, 0.32, 0.03, 0.05, frozenset({"length"}))
+
+
+@pytest.mark.parametrize(
+    "table, stretch, error, told",
+    [
+        (STATED, 0.03, 0.0005, "stated length of 2.000 m is 3.0% off the 2.060 m"),
+        (STATED, 0.04, 0.006, "stated length"),
+        (STATED, 0.012, 0.0005, ""),
+        (STATED, -0.29, 0.025, ""),  # one wall alone, whose touches are a few millimetres off, tells nothing
+        (GUESSED, 0.012, 0.0005, "guessed length of 2.000 m is 1.2% off the 2.024 m"),
+        (GUESSED, 0.0012, 0.0005, ""),
+    ],
+)
+def test_a_wrong_size_is_told_from_a_stretched_map_and_from_too_few_touches(table, stretch, error, told):
+    said = wrong_size(np.array([stretch, 0.0, 0.0]), np.array([error, 0.0005, 0.0005]), table)
+    assert said.startswith("the " + told) if told else said == ""
