@@ -7,14 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
+from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.finding import Estimate, Finding, Proof, Rival
 from sim2real.diagnose.sensing.clock import EXACT, TOUCHED, Clock, Fit, Meetings, fit, search
 
 MODELS = {"none": (False, False), "camera_delay": (True, False), "clock_drift": (False, True), "both": (True, True)}
-FORMULAS = {
-    "camera_delay": "a frame stamped t shows the encoders' time t - delay_s",
-    "clock_drift": "the camera's clock runs (1 + ppm 1e-6) times as fast as the encoders'",
-}
+DRIFT = EFFECTS["clock_drift"]
+FORMULAS = {"camera_delay": "a frame stamped t shows the encoders' time t - delay_s", "clock_drift": DRIFT.law}
 SURE = 1e-5
 REJECTED = 1e-3
 LATE_AT_LEAST = 0.0005  # s: less is no more than the jitter of stamps
@@ -115,7 +114,7 @@ def _finding(name: str, named, best: Fit, fits, chance, full: Fit, before: float
     value = (best.clock.delay, best.clock.rate * 1e6)[index]
     error = float(np.sqrt(best.clock.covariance[index, index])) * (1.0, 1e6)[index]
     reach = float(stats.t.ppf(0.975, best.freedom)) * error
-    unit, label = (("s", "delay_s"), ("1e-6", "ppm"))[index]
+    unit, label = (("s", "delay_s"), (DRIFT.rows["ppm"].unit, "ppm"))[index]
     without = _chance(fits[("camera_delay", "clock_drift")[1 - index]], full, 1) if len(named) == 2 else chance["none"]
     other = ("camera_delay", "clock_drift")[1 - index]
     rival = Rival(
@@ -132,6 +131,7 @@ def _finding(name: str, named, best: Fit, fits, chance, full: Fit, before: float
         p_value=max(without, 1e-300),
         before=before,
         after=after,
+        where={"stream": "frames"} if index else {},
         values={"camera_latency": value} if index == 0 else {},
         rivals=(rival,) if unlike and len(named) == 1 else (),
     )

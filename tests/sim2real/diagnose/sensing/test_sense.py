@@ -54,6 +54,7 @@ def test_a_drift_is_no_delay(rally):
     told, numbers = said(restamped(rally, lambda t: t * (1 + 2e-4)))
     assert [one.mechanism for one in told.findings] == ["clock_drift"]
     assert numbers["ppm"].value == pytest.approx(200.0, rel=0.1)
+    assert told.findings[0].where == {"stream": "frames"}
 
 
 def test_without_a_mallet_the_clock_is_not_judged(tmp_path):
