@@ -81,8 +81,7 @@ def _figures(study: Study) -> Any:
     for one in study.figures:
         value = "-" if one.value is None else f"{one.value:.3g}"
         interval = "" if one.value is None else f"{one.low:.3g} to {one.high:.3g}"
-        reached = {True: "reached", False: "MISSED", None: ""}[one.reached if _bar(one) else None]
-        row = [one.name, value, interval, str(one.count), _bar(one), reached]
+        row = [one.name, value, interval, str(one.count), _bar(one), _outcome(one)]
         if peers:
             peer = peers[one.name]
             row += ["-" if peer.value is None else f"{peer.value:.3g}", str(peer.count)]
@@ -95,6 +94,13 @@ def _bar(figure: Any) -> str:
     if low and high:
         return f"{figure.least:g} to {figure.most:g}"
     return f"≥ {figure.least:g}" if low else f"≤ {figure.most:g}" if high else ""
+
+
+def _outcome(figure: Any) -> str:
+    """Whether a figure reaches its bar, and whether its interval leaves a doubt; nothing where there is no bar."""
+    if figure.reached is None or not _bar(figure):
+        return ""
+    return ("reached" if figure.reached else "MISSED") + ("" if figure.sure else ", not sure")
 
 
 def _mechanisms(study: Study) -> Any:

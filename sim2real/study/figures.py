@@ -29,11 +29,23 @@ class Figure:
     @property
     def reached(self) -> bool | None:
         """Whether it does; None where there was nothing to measure."""
-        return None if self.value is None else self.least <= self.value <= self.most
+        return None if self.value is None else self._within(self.value)
+
+    @property
+    def sure(self) -> bool | None:
+        """Whether the whole interval says the same as the value; None where there was nothing to measure."""
+        if self.value is None:
+            return None
+        if self._within(self.value):
+            return self._within(self.low) and self._within(self.high)
+        return self.high < self.least or self.low > self.most
+
+    def _within(self, value: float) -> bool:
+        return self.least <= value <= self.most
 
     def as_dict(self) -> dict[str, Any]:
         """The same as plain data."""
-        return {**asdict(self), "reached": self.reached}
+        return {**asdict(self), "reached": self.reached, "sure": self.sure}
 
 
 def share(name: str, answers: Iterable[bool | None], least: float = 0.0, most: float = 1.0) -> Figure:

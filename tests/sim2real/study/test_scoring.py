@@ -161,6 +161,16 @@ def test_shares_and_medians_have_the_intervals_of_the_books():
     assert middle.high - middle.low == pytest.approx(2 * 1.96 * 1.2533 / 20.0, rel=0.3)  # normal theory
 
 
+def test_a_bar_is_surely_reached_or_missed_where_the_whole_interval_says_so():
+    """Clopper and Pearson: 0 of 24 is up to 0.142, 0 of 400 up to 0.009; 20 of 24 is 0.626 to 0.953."""
+    few, many = (share("x", [False] * n, most=0.01) for n in (24, 400))
+    assert (few.reached, few.sure, many.reached, many.sure) == (True, False, True, True)
+    some = [True] * 20 + [False] * 4
+    sure = {least: (share("x", some, least).reached, share("x", some, least).sure) for least in (0.6, 0.8, 0.9, 0.96)}
+    assert sure == {0.6: (True, True), 0.8: (True, False), 0.9: (False, False), 0.96: (False, True)}
+    assert share("x", [], 0.5).sure is None
+
+
 def made() -> list[Score]:
     right = answer(finding("table_tilt"))
     return [
