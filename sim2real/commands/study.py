@@ -51,6 +51,8 @@ def run(args: argparse.Namespace) -> int:
         print(json.dumps(study.as_dict(), indent=1))
     else:
         _print(study, args.out)
+        if args.peer and not study.peer_scores:
+            print("PySINDy was asked nothing: no case is of a gliding puck alone")
     return int(any(figure.reached is False for figure in study.figures))
 
 
@@ -80,7 +82,8 @@ def _figures(study: Study) -> Any:
         table.add_column(heading, justify="left" if k in (0, 5) else "right", no_wrap=True)
     for one in study.figures:
         value = "-" if one.value is None else f"{one.value:.3g}"
-        interval = "" if one.value is None else f"{one.low:.3g} to {one.high:.3g}"
+        known = one.value is not None and one.high < float("inf")
+        interval = f"{one.low:.3g} to {one.high:.3g}" if known else ""
         row = [one.name, value, interval, str(one.count), _bar(one), _outcome(one)]
         if peers:
             peer = peers[one.name]

@@ -33,7 +33,8 @@ def _tangential(law: Law, fit: Fit) -> Numbers:
 
 def _odd_wall(law: Law, fit: Fit) -> Numbers:
     """Which wall it is stands in the finding's `where`."""
-    return {"delta": fit.estimate(row) for row in law.columns}
+    (row,) = law.columns
+    return {"delta": fit.estimate(row)}
 
 
 def _posts(law: Law, fit: Fit) -> Numbers:

@@ -40,4 +40,3 @@ def test_too_rich_a_law_is_seen_to_lose_on_noise():
     before, after = twins(_grams(60, 0.0), UNITS, rich, USE, PROOF)[NULL]
     expected = np.sqrt(1.0 + 60 / (len(USE) * EACH))  # of a fit to white noise: columns over residuals, more error
     assert after / before == pytest.approx(expected, rel=0.02)
-
