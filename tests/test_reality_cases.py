@@ -89,11 +89,11 @@ def test_brakes_that_come_as_two_are_both_felt(names: tuple[str, str]):
     assert not any(set(names) <= rivals for rivals in RIVALS)
     for seed in range(4):  # both forms of the uneven friction
         changes = [MECHANISMS[name].draw(np.random.default_rng(seed), 1.0, Law(), "launches").law for name in names]
-        place = [{**changes[0], **changes[1]}.get(f"patch_{axis}", 0.5) for axis in "xy"]
+        x, y = ({**changes[0], **changes[1]}.get(f"patch_{axis}", 0.5) for axis in "xy")
 
-        def brake(*some: dict[str, float], place=tuple(place)) -> float:
+        def brake(*some: dict[str, float], x: float = x, y: float = y) -> float:
             law = replace(Law(), **{name: value for change in some for name, value in change.items()}).numbers()
-            return acceleration(law, 10.0, *place, 0.4, 0.0, 0.0, 1.0)[0]
+            return acceleration(law, 10.0, x, y, 0.4, 0.0, 0.0, 1.0)[0]
 
         for one, other in (changes, changes[::-1]):
             assert abs(brake(one, other) - brake(other)) > 0.5 * abs(brake(one) - brake()) > 0.002

@@ -104,11 +104,11 @@ def excess_removed(heldout: dict[str, Any] | None) -> float | None:
 
 def compare(finding: dict[str, Any], key: dict[str, Any]) -> list[Number]:
     """The numbers of a rightly named finding that the key knows, beside the true ones: 0 at another wall or clock."""
-    truths = key["values"].get(finding["mechanism"], {})
+    truths: dict[str, float] = key["values"].get(finding["mechanism"], {})
     there = _there(finding.get("where", {}), key.get("where", {}).get(finding["mechanism"], {}))
     numbers = []
     for given, estimate in finding.get("parameters", {}).items():
-        name = OTHER_NAMES.get(given, given)
+        name = OTHER_NAMES[given] if given in OTHER_NAMES else given
         if name not in truths:
             continue
         truth, value = truths[name] if there else 0.0, estimate["value"]

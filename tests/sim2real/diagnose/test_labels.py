@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from numpy.typing import ArrayLike
 
 from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.engine.fit import Fit
@@ -12,7 +13,7 @@ from sim2real.diagnose.labels import labelled
 MANY = 100_000  # clusters: Student's quantile is the normal one
 
 
-def fitted(values: dict[str, float], covariance: list[list[float]]) -> Fit:
+def fitted(values: dict[str, float], covariance: ArrayLike) -> Fit:
     return Fit(values, tuple(values), np.array(covariance), 0.0, 0, MANY, ())
 
 
