@@ -8,9 +8,12 @@ import importlib
 import os
 import re
 import shutil
+import signal
 import sys
 import textwrap
-from collections.abc import Sequence
+import threading
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from importlib.metadata import version
 from typing import NoReturn
 
@@ -60,6 +63,25 @@ def _unknown(name: str) -> str:
     return f"puckpilot: unknown command '{name}'; {hint}"
 
 
+@contextmanager
+def _orderly_end() -> Iterator[None]:
+    """Inside, being told to end (SIGTERM, or SIGHUP of a closed terminal) is as Ctrl-C: no draft of a file is left."""
+
+    def stop(number: int, frame: object) -> NoReturn:
+        raise KeyboardInterrupt(number)
+
+    numbers = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
+    ours = threading.current_thread() is threading.main_thread()  # no other may set handlers
+    kept = [number for number in numbers if ours and signal.getsignal(number) is signal.SIG_DFL]  # nohup ignores one
+    for number in kept:
+        signal.signal(number, stop)
+    try:
+        yield
+    finally:
+        for number in kept:
+            signal.signal(number, signal.SIG_DFL)
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one sub-command. 0: did it; 1: did it, and the answer is bad news; 2: could not, with one line why."""
     words = list(sys.argv[1:] if arguments is None else arguments)
@@ -82,13 +104,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     )
     module.add_arguments(parser)
     try:
-        return module.run(parser.parse_args(rest))
+        with _orderly_end():
+            return module.run(parser.parse_args(rest))
     except BrokenPipeError:  # the reader, `head` say, has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as stop:
         print(f"puckpilot {name}: stopped", file=sys.stderr)
-        return 130
+        return 128 + (stop.args[0] if stop.args else signal.SIGINT)
     except OSError as error:
         place = f"{error.filename}: " if error.filename else ""
         print(f"puckpilot {name}: {place}{error.strerror or error}; name another place", file=sys.stderr)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import csv
 import json
-import secrets
 from collections.abc import Callable
 from pathlib import Path
 
 from baselines.payoff_table import draw_payoff
 from baselines.tournament import Tournament
+from puckpilot_env.whole_file import write_whole
 
 
 def write_tournament(folder: Path, tournament: Tournament) -> list[Path]:
@@ -21,7 +21,7 @@ def write_tournament(folder: Path, tournament: Tournament) -> list[Path]:
         "payoff.csv": lambda path: _write_csv(path, tournament),
         "payoff.png": lambda path: draw_payoff(path, tournament.payoff, tournament.ratings),
     }
-    return [_write_whole(folder / name, write) for name, write in writers.items()]
+    return [write_whole(folder / name, write) for name, write in writers.items()]
 
 
 def _write_csv(path: Path, tournament: Tournament) -> None:
@@ -30,14 +30,3 @@ def _write_csv(path: Path, tournament: Tournament) -> None:
         writer = csv.DictWriter(file, list(rows[0]))
         writer.writeheader()
         writer.writerows(rows)
-
-
-def _write_whole(path: Path, write: Callable[[Path], object]) -> Path:
-    """Let `write` make a file beside `path`, and put it there once it is complete."""
-    temporary = path.with_name(f".{path.stem}-{secrets.token_hex(4)}{path.suffix}")
-    try:
-        write(temporary)
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
-    return path

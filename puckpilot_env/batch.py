@@ -6,7 +6,7 @@ import numpy as np
 
 from puckpilot_env import random_stream
 from puckpilot_env.game.rules import RUNNING, STEP_LIMIT
-from puckpilot_env.game.sensing import MOST_WANTED
+from puckpilot_env.game.sensing import MOST_WANTED, SHOT_COLUMNS
 from puckpilot_env.game.step import begin_table, observe_table, step_table
 from puckpilot_env.kernel import kernel
 from puckpilot_env.physics.advance import EVENT_COLUMNS
@@ -69,7 +69,7 @@ def _copy_rows(source, target):
 
 def scratch(threads: int) -> tuple[np.ndarray, np.ndarray]:
     """`log, films` of so many threads: no events are logged, and every frame of a step has its place."""
-    return np.zeros((0, EVENT_COLUMNS)), np.zeros((threads, MOST_WANTED, 3))
+    return np.zeros((0, EVENT_COLUMNS)), np.zeros((threads, MOST_WANTED, SHOT_COLUMNS))
 
 
 @kernel

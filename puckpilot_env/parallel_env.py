@@ -15,6 +15,7 @@ from puckpilot_env.effects_file import Effects
 from puckpilot_env.game.rules import ENDING_NAMES
 from puckpilot_env.infos import drawn_info, only_row
 from puckpilot_env.motion import mallet_motion, puck_motion
+from puckpilot_env.real_numbers import real_numbers
 from puckpilot_env.tables import ACTION_COLUMNS, Tables
 from puckpilot_env.variants import Variant
 
@@ -109,11 +110,13 @@ class TableEnv(ParallelEnv):
         """Play one step. Raises ValueError, having changed nothing, for an action missing or not in its space."""
         if not self.agents:
             raise ValueError("the episode is over (or has not begun); call reset() before step()")
+        if not isinstance(actions, Mapping):
+            raise ValueError(f"actions is a {type(actions).__name__}; expected a dict with an action for each agent")
         rows = self._actions[0]
         for k, agent in enumerate(AGENTS):
             if agent not in actions:
                 raise ValueError(f"no action for {agent}; expected one for each of {', '.join(AGENTS)}")
-            action = np.asarray(actions[agent])
+            action = real_numbers(actions[agent], f"the action of {agent}")
             if action.shape != (4,):
                 raise ValueError(f"the action of {agent} has shape {action.shape}; expected (4,): {_action_names()}")
             rows[k] = action

@@ -81,15 +81,23 @@ def normal_pair(stream):
     Noise comes in pairs, one number for either axis.
     """
     bits = _next(stream)
-    return _normal(stream, np.int64(bits >> _S32)), _normal(stream, np.int64(bits & _LOW))
+    x, first = _under_layer(np.int64(bits >> _S32))
+    y, second = _under_layer(np.int64(bits & _LOW))
+    if (abs(x) < _EDGE[first + 1]) & (abs(y) < _EDGE[second + 1]):
+        return x, y
+    return _normal(stream, first, x), _normal(stream, second, y)
 
 
 @inlined_kernel
-def _normal(stream, bits):
-    """A standard normal number from 32 bits: 8 choose a layer, the others a place in it."""
+def _under_layer(bits):
+    """`(x, layer)` of 32 bits: 8 choose a layer, the others a place in it."""
     layer = bits & (LAYERS - 1)
-    share = ((bits >> 8) - _HALF_PLACES) * _PLACE
-    x = share * _EDGE[layer]
+    return ((bits >> 8) - _HALF_PLACES) * _PLACE * _EDGE[layer], layer
+
+
+@kernel
+def _normal(stream, layer, x):
+    """A standard normal number from a place `x` in a layer."""
     return x if abs(x) < _EDGE[layer + 1] else _normal_beside(stream, layer, x)
 
 

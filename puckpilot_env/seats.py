@@ -7,6 +7,7 @@ from typing import Any, Protocol, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from puckpilot_env.real_numbers import real_numbers
 from puckpilot_env.tables import ACTION_COLUMNS, Tables
 
 ALTERNATE = "alternate"
@@ -68,10 +69,11 @@ class Seats:
 
         Raises ValueError, having changed nothing, for actions that are not in the space.
         """
-        actions = np.asarray(actions)
+        actions = real_numbers(actions, "the array of actions")
         self._check_shape(actions, "the actions have")
         if not self._answered:
-            answer = np.asarray(self.opponent.act(self.tables.observations[self._theirs].copy()))
+            answer = self.opponent.act(self.tables.observations[self._theirs].copy())
+            answer = real_numbers(answer, "the opponent's array of actions")
             self._check_shape(answer, "the opponent's actions have")
             self._actions[self._theirs] = answer
             self._answered = True

@@ -16,7 +16,7 @@ ERROR_TERMS = 5  # of the camera's smooth error, each component
 
 CAMERA = np.dtype(
     [
-        ("error_x", np.float64, ERROR_TERMS),  # the smooth error's coefficients [m], see `game.sensing.measure`
+        ("error_x", np.float64, ERROR_TERMS),  # coefficients [m, 1, 1, 1/m, 1/m], see `game.sensing.smooth_error`
         ("error_y", np.float64, ERROR_TERMS),
         ("puck_vx", np.float64),  # latest estimate [m/s]
         ("puck_vy", np.float64),

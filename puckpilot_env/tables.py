@@ -14,6 +14,7 @@ from puckpilot_env import batch, parameters, state
 from puckpilot_env.effects_file import Effects, effect_values
 from puckpilot_env.game import mirror, observation, sensing
 from puckpilot_env.kernel import announce_compilation
+from puckpilot_env.real_numbers import real_numbers
 from puckpilot_env.team import Team
 from puckpilot_env.variants import Variant, find_variant
 
@@ -145,7 +146,7 @@ class Tables:
 
         Raises ValueError, having changed nothing, for a wrong shape, NaN, or a number outside the space.
         """
-        actions = np.ascontiguousarray(actions, np.float32)
+        actions = np.ascontiguousarray(real_numbers(actions, "the array of actions"), np.float32)
         if actions.shape != (len(self.states), 2, 4):
             raise ValueError(f"actions have shape {actions.shape}; expected {(len(self.states), 2, 4)}")
         bad = batch.first_outside(actions, self.action_bounds)
@@ -178,7 +179,7 @@ class Tables:
         low, high = self.action_bounds[:, column]
         value = actions[table, player, column]
         return (
-            f"action {name} of player_{player} on table {table} is {value:g}; "
+            f"action {name} of player_{player} on table {table} is {value!s}; "
             f"expected a number in [{low:g}, {high:g}] {unit}"
         )
 

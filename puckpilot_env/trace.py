@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from puckpilot_env import state
-from puckpilot_env.game.sensing import EXACT, MOST_WANTED
+from puckpilot_env.game.sensing import EXACT, MOST_WANTED, SHOT_COLUMNS
 from puckpilot_env.game.step import plan_both, play, play_and_film
 from puckpilot_env.kernel import announce_compilation, array_kernel
 from puckpilot_env.physics.advance import EVENT_COLUMNS
@@ -27,7 +27,7 @@ def trace_step(moments, p, rules, frames, actions, times, scored):
 
     Each copy is played from the start in one stretch, because a stretch cut in two differs in its last digits.
     """
-    film = np.zeros((MOST_WANTED, 3))
+    film = np.zeros((MOST_WANTED, SHOT_COLUMNS))
     log = np.zeros((0, EVENT_COLUMNS))
     rewards = np.zeros(2, np.float32)
     rule = rules[0]

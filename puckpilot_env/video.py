@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import secrets
 from pathlib import Path
 from types import TracebackType
 from typing import Protocol
@@ -12,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from puckpilot_env.gif import GifEncoder
+from puckpilot_env.whole_file import draft_of
 
 MOST_GIF_FPS = 50.0  # browsers slow faster ones down
 
@@ -48,9 +48,9 @@ class VideoWriter:
             raise ValueError(f"cannot write {str(self.path)!r}: its folder is not there; make it first")
         if self.path.is_dir():
             raise ValueError(f"cannot write {str(self.path)!r}: it is a folder; give a file name")
-        self._temporary = self.path.with_name(f".{self.path.stem}-{secrets.token_hex(4)}{ending}")
+        self._draft = draft_of(self.path)
         make = GifEncoder if ending == ".gif" else _Mp4Encoder
-        self._encoder: _Encoder = make(self._temporary, self.fps)
+        self._encoder: _Encoder = make(self._draft, self.fps)
         self._shape: tuple[int, ...] | None = None
 
     def add(self, frame: NDArray[np.uint8]) -> None:
@@ -70,13 +70,13 @@ class VideoWriter:
             if not self.frames:
                 raise ValueError(f"no frames were added to {str(self.path)!r}; nothing is written")
             self._encoder.finish()
-            self._temporary.replace(self.path)
+            self._draft.replace(self.path)
         finally:
             self._discard()
 
     def _discard(self) -> None:
         self._encoder.abandon()
-        self._temporary.unlink(missing_ok=True)
+        self._draft.unlink(missing_ok=True)
 
     def __enter__(self) -> VideoWriter:
         return self

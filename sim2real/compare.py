@@ -22,6 +22,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from puckpilot_env.whole_file import write_whole
 from sim2real.compare_predict import compare_pieces
 from sim2real.compare_summary import summarize
 from sim2real.diagnose.pieces import cut
@@ -73,8 +74,7 @@ def _draw(folder: Path, name: str, pieces, found, values: dict[str, float]) -> P
 
     folder.mkdir(parents=True, exist_ok=True)
     file = folder / f"compare_{name}.png"
-    draw(file, name, pieces, found, values)
-    return file
+    return write_whole(file, lambda draft: draw(draft, name, pieces, found, values))
 
 
 def print_summary(summary: dict[str, Any]) -> None:

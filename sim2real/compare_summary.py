@@ -8,6 +8,7 @@ import numpy as np
 
 from sim2real.compare_predict import Comparison, GlideError, HitError
 from sim2real.diagnose.pieces import Pieces
+from sim2real.diagnose.sanity import notes
 from sim2real.recording import Recording
 
 GROWTH = (0.1, 0.2, 0.5, 1.0, 2.0)
@@ -19,7 +20,7 @@ def summarize(recording: Recording, pieces: Pieces, found: Comparison, values: d
     seen = 0 if recording.frames is None else int(np.isfinite(recording.frames["puck_x"]).sum())
     summary = {
         "recording": recording.name,
-        "notes": list(recording.notes),
+        "notes": list(notes([recording])),
         "parameters": {name: values[name] for name in ("friction", "drag", "wall_restitution", "mallet_restitution")},
         "sensor": {
             "frames": 0 if recording.frames is None else recording.frames.rows,

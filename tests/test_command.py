@@ -23,6 +23,7 @@ OPTIONS = {
     "diagnose": ["--holdout", "--baseline", "--out", "--json"],
     "study": ["--cases", "--seed", "--out", "--seconds", "--only", "--mechanism", "--peer", "--workers", "--json"],
 }
+DUMPS = "TypeError: dumps() missing 1 required positional argument: 'obj'"
 HEAVY = ("numba", "pettingzoo", "gymnasium", "matplotlib", "rich", "scipy", "cv2", "torch", "numpy")
 
 
@@ -83,6 +84,12 @@ def test_overview(word, capsys):
             "puckpilot envs: unknown variant 'matsch-v0'; did you mean 'puckpilot/match-v0'?",
         ),
         (["bench", "--tables", "0"], "puckpilot bench: tables is 0; expected a whole number from 1 to 1,000,000"),
+        (
+            ["bench", "--dicts", "--startup"],
+            "puckpilot bench: argument --startup: not allowed with argument --dicts; see puckpilot bench --help",
+        ),
+        (["check", "match-v0", "--steps", "0"], "puckpilot check: steps is 0; expected at least 2"),
+        (["check", "json:dumps"], "puckpilot check: cannot make 'json:dumps': " + DUMPS),
         (["bench", "--threads", "0"], "puckpilot bench: threads is 0; expected a whole number from 1 to 256"),
         (["bench", "--seconds", "0"], "puckpilot bench: --seconds is 0; expected a number above 0, at most 3600"),
         (["bench", "--seconds", "nan"], "puckpilot bench: --seconds is nan; expected a number above 0, at most 3600"),

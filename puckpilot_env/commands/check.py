@@ -41,7 +41,8 @@ def _check_all(names: list[str], steps: int, seed: int) -> dict[str, list[Any]]:
     from puckpilot_env.check import check_names, run_checks
 
     found = {}
-    with Progress(console=Console(stderr=True), transient=True) as bar:
+    console = Console(stderr=True)
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
         task = bar.add_task("checking", total=len(names) * len(check_names()))
 
         for name in names:

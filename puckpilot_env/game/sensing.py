@@ -18,14 +18,16 @@ from puckpilot_env.game import mirror
 from puckpilot_env.kernel import inlined_kernel, kernel
 from puckpilot_env.physics import compose
 from puckpilot_env.physics.mallet import place_at, place_now
+from puckpilot_env.physics.places import places_at_both
 from puckpilot_env.state import ERROR_TERMS
 
 EXACT, ESTIMATED, HISTORY = range(3)  # kinds of sensing
 LAGS = (0, 1, 2, 5, 11)  # frames back from the newest, of a history
 OLDEST_LAG = LAGS[-1]
 VELOCITY_LAG = 2  # estimated velocities are a difference over so many frames
-_ROOT_3, _HALF_ROOT_5 = math.sqrt(3.0), 0.5 * math.sqrt(5.0)
+_ROOT_12, _HALF_ROOT_5 = math.sqrt(12.0), 0.5 * math.sqrt(5.0)
 MOST_WANTED = 62  # frames in a step; those on their way and the oldest lag are fewer
+SHOT_COLUMNS = 7  # of what a frame shows: time in the step [s], places of the puck and of both mallets [m]
 
 
 def frames_kept(sensing: int, camera_latency: float, frame_rate: float) -> int:
@@ -104,40 +106,43 @@ def draw_camera_error(table, p):
 
     The error of its map, which the effects say, is the same in every episode and added to it.
     """
-    camera = table.camera
     scale = p.camera_error / math.sqrt(2.0 * ERROR_TERMS)
     for term in range(ERROR_TERMS):
         x, y = random_stream.normal_pair(table.stream)
         turned = mirror.TURNED_ERROR[term] if table.puck.turned == 1 else 1.0
-        camera.error_x[term], camera.error_y[term] = turned * scale * x, turned * scale * y
+        table.camera.error_x[term], table.camera.error_y[term] = turned * scale * x, turned * scale * y
     xx, xy, yx, yy = compose.camera_map(p)
     flat = mirror.TURNED_ERROR[0] if table.puck.turned == 1 else 1.0
-    add_map(camera.error_x, xx * p.length, xy * p.width, flat)
-    add_map(camera.error_y, yx * p.length, yy * p.width, flat)
+    _lay_out(table.camera.error_x, p, xx, xy, flat)
+    _lay_out(table.camera.error_y, p, yx, yy, flat)
 
 
 @kernel
-def add_map(error, along_x, along_y, turned):
-    """Add to the coefficients of a component an error that grows to `along_x` and `along_y` [m] at the far sides."""
-    error[0] += turned * 0.5 * (along_x + along_y)
-    error[1] += along_x / (2.0 * _ROOT_3)
-    error[2] += along_y / (2.0 * _ROOT_3)
+def _lay_out(error, p, along_x, along_y, turned):
+    """Make weights of terms that are orthonormal over the table, so that each carries the same share of the rms, the
+    coefficients of `smooth_error`; and add an error that grows by `along_x` and `along_y` for each metre of x and y."""
+    steep_x, steep_y = _ROOT_12 / p.length, _ROOT_12 / p.width
+    error[0] += turned * 0.5 * (along_x * p.length + along_y * p.width) - _HALF_ROOT_5 * error[4]
+    error[1] = error[1] * steep_x + along_x
+    error[2] = error[2] * steep_y + along_y
+    error[3] *= steep_x * steep_y
+    error[4] *= _HALF_ROOT_5 * steep_x * steep_x
+
+
+@inlined_kernel
+def smooth_error(e, x, y):
+    """A component of the smooth error [m] at (x, y) [m] from the table's middle; e: its coefficients [m, 1, 1/m]."""
+    return (e[0] + e[2] * y) + x * (e[1] + (e[3] * y + e[4] * x))
 
 
 @inlined_kernel
 def measure(table, p, x, y, noise, measured):
-    """Write the place [m] as the camera reports `(x, y)` into `measured`: with the smooth error and white noise.
-
-    The error's terms are orthonormal over the table, so each carries the same share of its rms.
-    """
-    a, b = _ROOT_3 * (2.0 * x / p.length - 1.0), _ROOT_3 * (2.0 * y / p.width - 1.0)
-    c, d = a * b, _HALF_ROOT_5 * (a * a - 1.0)
+    """Write the place [m] as the camera reports `(x, y)` into `measured`: with the smooth error and white noise."""
+    from_middle_x, from_middle_y = x - 0.5 * p.length, y - 0.5 * p.width
     dx, dy = random_stream.normal_pair(table.stream)
     dx, dy = mirror.velocity(table.puck.turned, noise * dx, noise * dy)
-    e = table.camera.error_x
-    measured.x = x + (e[0] + e[1] * a + e[2] * b + e[3] * c + e[4] * d + dx)
-    e = table.camera.error_y
-    measured.y = y + (e[0] + e[1] * a + e[2] * b + e[3] * c + e[4] * d + dy)
+    measured.x = x + (smooth_error(table.camera.error_x, from_middle_x, from_middle_y) + dx)
+    measured.y = y + (smooth_error(table.camera.error_y, from_middle_x, from_middle_y) + dy)
 
 
 @kernel
@@ -151,15 +156,27 @@ def repeat_frame(table, frames, frame):
 
 
 @inlined_kernel
-def take_frame(table, p, frames, frame, puck_x, puck_y, time):
-    """Store frame number `frame` as the camera saw the puck and both mallets at `time` of the plans.
+def shoot_mallets(mallets, film):
+    """Write both mallets' places into shots, (m, SHOT_COLUMNS) in the order of their times."""
+    for k in range(2):
+        at = 3 + 2 * k
+        for i in range(0, film.shape[0] - 1, 2):
+            film[i, at], film[i, at + 1], film[i + 1, at], film[i + 1, at + 1] = places_at_both(
+                mallets[k], film[i, 0], film[i + 1, 0]
+            )
+        if film.shape[0] & 1:
+            film[-1, at], film[-1, at + 1] = place_at(mallets[k], film[-1, 0])
+
+
+@inlined_kernel
+def take_frame(table, p, frames, frame, shot):
+    """Store frame number `frame` as the camera saw a shot (SHOT_COLUMNS).
 
     Where the puck is not seen, its place is the one in the frame before.
     """
     taken, last = frames[slot(frames, frame)], frames[slot(frames, table.last_frame)]
-    x0, y0 = place_at(table.mallets[0], time)
-    x1, y1 = place_at(table.mallets[1], time)
-    beside = min(abs(puck_x - x0), abs(puck_x - x1))  # the nearer beam
+    puck_x, puck_y = shot[1], shot[2]
+    beside = min(abs(puck_x - shot[3]), abs(puck_x - shot[5]))  # the nearer beam
     if beside > 0.5 * p.beam_width and random_stream.uniform(table.stream) >= p.dropped_frames:
         near = beside < p.puck_radius + 0.5 * p.beam_width
         measure(table, p, puck_x, puck_y, p.beam_noise if near else p.camera_noise, taken.puck)
@@ -167,12 +184,9 @@ def take_frame(table, p, frames, frame, puck_x, puck_y, time):
     else:
         taken.puck.x, taken.puck.y = last.puck.x, last.puck.y
         taken.seen = 0.0
-    if table.puck.turned == 1:
-        measure(table, p, x1, y1, p.camera_noise, taken.mallets[1])
-        measure(table, p, x0, y0, p.camera_noise, taken.mallets[0])
-    else:
-        measure(table, p, x0, y0, p.camera_noise, taken.mallets[0])
-        measure(table, p, x1, y1, p.camera_noise, taken.mallets[1])
+    for i in range(2):
+        k = i ^ table.puck.turned  # a turned table draws for the same mallet first
+        measure(table, p, shot[3 + 2 * k], shot[4 + 2 * k], p.camera_noise, taken.mallets[k])
     table.last_frame = frame
 
 

@@ -68,11 +68,12 @@ def play_and_film(table, p, rule, frames, rewards, log, film):
             shots += 1
         frame, left = frame + 1, left >> 1
     over = play(table, p, rule, rule.period, rewards, log, film[:shots])
+    sensing.shoot_mallets(table.mallets, film[:shots])
     shots, frame, left = 0, first, wanted
     while left:
         if left & 1:
             if not (held >> shots & 1 and sensing.repeat_frame(table, frames, frame)):
-                sensing.take_frame(table, p, frames, frame, film[shots, 1], film[shots, 2], film[shots, 0])
+                sensing.take_frame(table, p, frames, frame, film[shots])
             shots += 1
         frame, left = frame + 1, left >> 1
     return over
@@ -92,8 +93,8 @@ def step_table(table, p, rule, frames, actions, rewards, log, film):
     """Play one step. Afterwards `table.ending` says whether and how the episode ended.
 
     table: a `state.TABLE` record; p: its parameters; rule: a `rules.RULES` record; frames: its camera frames;
-    actions: float32 (2, 4), finite; rewards: float32 (2,), written; log: see `physics.advance`; film: (MOST_WANTED, 3),
-    scratch.
+    actions: float32 (2, 4), finite; rewards: float32 (2,), written; log: see `physics.advance`; film: (MOST_WANTED,
+    SHOT_COLUMNS), scratch.
     """
     table.ending = rules.RUNNING
     plan_both(table, p, actions, rewards)

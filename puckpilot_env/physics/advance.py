@@ -173,8 +173,8 @@ def advance(puck, p, mallets, clock, start, end, log, film):
     `clock` [s] is the time of the episode when the plans began. Returns `(kind, time, events)`. `kind` says what it
     stopped at: GOAL_X0 or GOAL_X1 (the puck then rests on the goal line), MIDDLE_LINE (it is about to cross: call again
     from `time`), or NOTHING (it is `end`). `log` is a float64 (m, EVENT_COLUMNS) array that takes the first m events;
-    (0, EVENT_COLUMNS) to log none. `film` is a float64 (m, 3) array of times [s] and, written here where start < time
-    <= end, the puck's places then [m].
+    (0, EVENT_COLUMNS) to log none. `film` is a float64 (m, >= 3) array of times [s] and, written here where start <
+    time <= end, the puck's places then [m].
     """
     t = start
     events = 0

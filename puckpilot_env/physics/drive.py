@@ -10,7 +10,8 @@ import math
 
 from puckpilot_env.kernel import kernel
 from puckpilot_env.physics import compose
-from puckpilot_env.physics.mallet import axis_at, fade
+from puckpilot_env.physics.decay import fade
+from puckpilot_env.physics.mallet import axis_at
 from puckpilot_env.physics.plan import ROUNDING, SMALLEST_VOLTAGE
 
 HALVINGS = 50  # of a time span, to find when an axis meets the rail

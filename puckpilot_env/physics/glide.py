@@ -22,9 +22,9 @@ LARGEST = 1e300  # beyond it, or below its inverse, products overflow or lose th
 def _sinc(x2):
     """sin(x)/x as a function of x^2."""
     if x2 < 0.25:
-        return 1.0 - x2 * (
-            1 / 6 - x2 * (1 / 120 - x2 * (1 / 5040 - x2 * (1 / 362880 - x2 * (1 / 39916800 - x2 * (1 / 6227020800)))))
-        )
+        x4 = x2 * x2
+        tail = (1 / 362880 - x2 * (1 / 39916800)) + x4 * (1 / 6227020800)
+        return (1.0 - x2 * (1 / 6)) + x4 * ((1 / 120 - x2 * (1 / 5040)) + x4 * tail)
     x = math.sqrt(x2)
     return math.sin(x) / x
 
@@ -33,7 +33,9 @@ def _sinc(x2):
 def _versine(x2):
     """(1 - cos(x))/x^2 as a function of x^2."""
     if x2 < 0.25:
-        return 0.5 - x2 * (1 / 24 - x2 * (1 / 720 - x2 * (1 / 40320 - x2 * (1 / 3628800 - x2 * (1 / 479001600)))))
+        x4 = x2 * x2
+        tail = 1 / 3628800 - x2 * (1 / 479001600)
+        return (0.5 - x2 * (1 / 24)) + x4 * ((1 / 720 - x2 * (1 / 40320)) + x4 * tail)
     return (1.0 - math.cos(math.sqrt(x2))) / x2
 
 
@@ -41,10 +43,11 @@ def _versine(x2):
 def _log1p_ratio(u):
     """log(1 + u)/u, for u > -1."""
     if abs(u) < 0.1:
-        w = u / (2.0 + u)
-        w2 = w * w
-        series = 1.0 + w2 * (1 / 3 + w2 * (1 / 5 + w2 * (1 / 7 + w2 * (1 / 9 + w2 * (1 / 11)))))
-        return 2.0 * series / (2.0 + u)
+        inverse = 1.0 / (2.0 + u)
+        w2 = (u * inverse) * (u * inverse)
+        w4 = w2 * w2
+        tail = (1 / 5 + w2 * (1 / 7)) + w4 * (1 / 9 + w2 * (1 / 11))
+        return 2.0 * inverse * ((1.0 + w2 * (1 / 3)) + w4 * tail)
     return math.log(1.0 + u) / u
 
 
@@ -61,8 +64,10 @@ def _atan_ratio(x2):
 def _expm1_ratio(u):
     """(1 - exp(-u))/u, for u >= 0."""
     if u < 0.125:
-        tail = 1 / 5040 - u * (1 / 40320 - u * (1 / 362880 - u * (1 / 3628800)))
-        return 1.0 - u * (1 / 2 - u * (1 / 6 - u * (1 / 24 - u * (1 / 120 - u * (1 / 720 - u * tail)))))
+        u2 = u * u
+        u4 = u2 * u2
+        tail = (1 / 362880 - u * (1 / 3628800)) * u4 + (1 / 120 - u * (1 / 720)) + u2 * (1 / 5040 - u * (1 / 40320))
+        return (1.0 - u * (1 / 2)) + u2 * (1 / 6 - u * (1 / 24)) + u4 * tail
     return (1.0 - math.exp(-u)) / u
 
 

@@ -17,6 +17,7 @@ import math
 import numpy as np
 
 from puckpilot_env.kernel import inlined_kernel, kernel
+from puckpilot_env.physics.decay import decay, fade
 
 AXIS = np.dtype(
     [
@@ -42,8 +43,6 @@ AXIS = np.dtype(
     align=True,
 )
 MALLET = np.dtype([("x", AXIS), ("y", AXIS)], align=True)
-
-_NEGLIGIBLE = 40.0  # exp(-40) of a fast mode (under 1 mm) is under 1e-20 m
 
 
 @kernel
@@ -80,13 +79,6 @@ def place_axis(axis, position, velocity, acceleration):
 
 
 @inlined_kernel
-def fade(rate, t):
-    """exp(-rate t), 0 where that no longer matters."""
-    exponent = rate * t
-    return math.exp(-exponent) if exponent < _NEGLIGIBLE else 0.0
-
-
-@inlined_kernel
 def axis_at(axis, t):
     """`(rest, slow, fast, volts)` at time `t` [s] of the plan."""
     if t >= axis.halt:
@@ -101,7 +93,7 @@ def _running_axis_at(axis, t):
     if t >= axis.t2:
         slow, fast = axis.slow2, axis.fast2
         if slow != 0.0:
-            slow *= math.exp(-axis.slow_rate * (t - axis.t2))
+            slow *= decay(axis.slow_rate * (t - axis.t2))
         if fast != 0.0:
             fast *= fade(axis.fast_rate, t - axis.t2)
         return axis.rest2, slow, fast, 0.0
@@ -115,7 +107,7 @@ def _running_axis_at(axis, t):
     fast_end = axis.fast_gain * volts
     return (
         rest + axis.rest_gain * volts * since,
-        slow_end + (slow - slow_end) * math.exp(-axis.slow_rate * since),
+        slow_end + (slow - slow_end) * decay(axis.slow_rate * since),
         fast_end + (fast - fast_end) * fade(axis.fast_rate, since),
         volts,
     )
@@ -147,12 +139,17 @@ def motion_now(mallet):
     return x.rest + x.slow + x.fast, y.rest + y.slow + y.fast, vx, vy
 
 
-@inlined_kernel
+@kernel
+def axis_place(axis, t):
+    """Where an axis is [m] at time `t` of its plan."""
+    rest, slow, fast, _ = axis_at(axis, t)
+    return rest + slow + fast
+
+
+@kernel
 def place_at(mallet, t):
     """`(x, y)` [m] of a mallet at time `t` of its plan."""
-    rest_x, slow_x, fast_x, _ = axis_at(mallet.x, t)
-    rest_y, slow_y, fast_y, _ = axis_at(mallet.y, t)
-    return rest_x + slow_x + fast_x, rest_y + slow_y + fast_y
+    return axis_place(mallet.x, t), axis_place(mallet.y, t)
 
 
 @kernel

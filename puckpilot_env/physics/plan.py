@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics.mallet import fade
+from puckpilot_env.physics.decay import fade
 
 SMALLEST_VOLTAGE = 1e-6  # V; keeps switching times finite
 ROUNDING = 1e-9  # m; nearer to the edge, rounding alone could ask for all the voltage, and leave the other axis none

@@ -60,7 +60,8 @@ def run(args: argparse.Namespace) -> int:
     console.print("(puckpilot compare --help explains the words):")
     print_summary(comparison)
     console.print(
-        "\nNext: puckpilot envs, puckpilot tournament, puckpilot compare RECORDING; each explains itself with --help."
+        f"\nNext, which physics that recording's table has beyond the simulator: puckpilot diagnose {BUNDLED}\n"
+        "Or puckpilot envs, puckpilot tournament, puckpilot compare RECORDING; each explains itself with --help."
     )
     return 0
 

@@ -2,56 +2,117 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.stats import t as student
 
+from puckpilot_env.parameters import BY_NAME
 from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.choose import Law, Model
 from sim2real.diagnose.engine.explain import Explained
+from sim2real.diagnose.engine.fit import Fit, fit, soft_loss
 from sim2real.diagnose.engine.twins import twins
 from sim2real.diagnose.finding import Account, Estimate, Finding, Proof
 from sim2real.diagnose.labels import labelled
 from sim2real.diagnose.problem import Problem
 from sim2real.diagnose.where import whereabouts
 
+LOST = "something is missing, but these data do not tell what"
+LEAST_WORSE = 4.0  # growth of the sum of squares of untouched launches, in units of what it scatters by
+
 
 def account(problem: Problem, found: Explained, use: np.ndarray, proof: np.ndarray) -> Account:
-    """What a regime says: `found` by the engine on the clusters `use`, proved on the clusters `proof`."""
-    before = _rms(problem, float(np.sum(problem.residuals(found.baseline.values, (), proof).r ** 2)), proof)
-    after = _rms(problem, _left(problem, found, proof), proof)
-    findings = [_listed(problem, found, law, before, after) for law in found.listed]
-    if found.unlisted is not None:
-        findings.append(_unlisted(problem, found, found.unlisted, before, after))
-    if findings:
-        controls = twins(found.screen.grams, problem.units, found.model, use, proof)
-        findings = [replace(one, twins=controls) for one in findings]
-    fitted = found.final
+    """What a regime says: `found` by the engine on the clusters `use`, proved on the clusters `proof`.
+
+    The proof chooses nothing, but it may silence: laws that foretell untouched launches worse than no law are not told.
+    """
+    before = _squares(problem, found.baseline, proof)
+    refuted = _refuted(problem, found, proof)
+    after = before if refuted else _left(problem, found, proof)
+    findings = () if refuted else _findings(problem, found, use, proof, after)
+    freedom = max(float(problem.freedom[proof].sum()), 1.0)
+    rms = [problem.noise_m * float(np.sqrt(squares / freedom)) for squares in (before, after)]
+    lost = found.lost or refuted
     return Account(
         problem.regime,
-        tuple(sorted(findings, key=lambda one: one.p_value)),
-        {name: fitted.estimate(name) for name in problem.base},
-        found.shipped and not findings and not found.lost,
-        Proof(before * problem.noise_m, after * problem.noise_m, problem.noise_m, len(proof)),
-        undetermined="something is missing, but there is too little data to tell what" if found.lost else "",
+        findings,
+        {name: found.final.estimate(name) for name in problem.base},
+        found.shipped and not findings and not lost,
+        Proof(rms[0], rms[1], problem.noise_m, len(proof)),
+        undetermined=LOST if lost else "",
         next_recording=_next(findings) or _once_more(found),
         doubt=_doubt(found),
-        lost=found.lost,
+        lost=lost,
     )
+
+
+def _refuted(problem: Problem, found: Explained, proof: np.ndarray) -> bool:
+    """Whether the clusters `proof` speak against the law, softly; of numbers for each launch they can say nothing."""
+    if not found.model.laws or any(law.each_launch for law in found.model.laws):
+        return False
+    before, _ = soft_loss(problem, problem.residuals(found.baseline.values, (), proof))
+    after, _ = soft_loss(problem, problem.residuals(found.law.values, (), proof))
+    if found.unlisted is not None:
+        parts = problem.units.of(proof)
+        with_it, without = (_family_losses(found, theta, parts) for theta in (found.theta, 0.0 * found.theta))
+        freedom = problem.units.freedom[parts]
+        after += float((gram.soft(with_it, freedom) - gram.soft(without, freedom)).sum())
+    return after > before + LEAST_WORSE * found.dispersion
+
+
+def _findings(
+    problem: Problem, found: Explained, use: np.ndarray, proof: np.ndarray, after: float
+) -> tuple[Finding, ...]:
+    """All findings, with the squares `after` that all of them leave of the clusters `proof`; those first that most gets
+    lost without."""
+    if not found.model.laws:
+        return ()
+    freedom = max(float(problem.freedom[proof].sum()), 1.0)
+    told = []
+    for law in found.model.laws:
+        told.append((law, _squares(problem, _fit_without(problem, found, law, use), proof)))
+    controls = twins(found.screen.grams, problem.units, found.model, found.screen.listed, use, proof)
+    findings = []
+    for law, before in sorted(told, key=lambda one: -one[1]):
+        tell = _unlisted if law.family else _listed
+        rms = (float(np.sqrt(squares / freedom)) for squares in (before, after))
+        findings.append(replace(tell(problem, found, law, *rms), twins=controls))
+    return tuple(findings)
+
+
+def _fit_without(problem: Problem, found: Explained, law: Law, use: np.ndarray) -> Fit:
+    """The fit of the baseline and the listed laws but one; they alone where that one is a family."""
+    others = [one for one in found.listed if one is not law]
+    if not others:
+        return found.baseline
+    if len(others) == len(found.listed):
+        return found.law
+    rows = problem.rows(law)
+    free = [name for name in found.law.free if name not in rows]
+    values = {**found.law.values, **{name: BY_NAME[name].default for name in rows}}
+    return fit(problem, values, free, use)
+
+
+def _squares(problem: Problem, law: Fit, proof: np.ndarray) -> float:
+    """Sum of squares that a law of parameters leaves of the clusters `proof`."""
+    return float(np.sum(problem.residuals(law.values, (), proof).r ** 2))
 
 
 def _left(problem: Problem, found: Explained, proof: np.ndarray) -> float:
     """Sum of squares that the final law leaves of the clusters `proof`."""
     if found.unlisted is None:
-        return float(np.sum(problem.residuals(found.law.values, (), proof).r ** 2))
+        return _squares(problem, found.law, proof)
+    return float(_family_losses(found, found.theta, problem.units.of(proof)).sum())
+
+
+def _family_losses(found: Explained, theta: np.ndarray, parts: np.ndarray) -> np.ndarray:
+    """Sums of squares (parts,) that coefficients of the family, and steps of the listed numbers, leave of units."""
+    assert found.unlisted is not None
     index, _ = Model(found.law.free, (found.unlisted,), (1.0,)).columns(found.columns.grams)
-    return float(gram.losses(found.columns.grams, index, found.theta, problem.units.of(proof)).sum())
-
-
-def _rms(problem: Problem, squares: float, proof: np.ndarray) -> float:
-    return float(np.sqrt(squares / max(problem.freedom[proof].sum(), 1.0)))
+    return gram.losses(found.columns.grams, index, theta, parts)
 
 
 def _listed(problem: Problem, found: Explained, law: Law, before: float, after: float) -> Finding:
@@ -74,10 +135,11 @@ def _unlisted(problem: Problem, found: Explained, law: Law, before: float, after
 
 def _sizes(found: Explained, law: Law) -> Mapping[str, Estimate]:
     """The coefficients of a smooth law with their intervals."""
-    theta, spread = found.theta[-len(law.columns) :], np.sqrt(np.diag(found.theta_covariance))[-len(law.columns) :]
+    near = student.ppf(0.975, max(found.law.clusters - 1, 2)) * np.sqrt(np.diag(found.theta_covariance))
+    k = len(law.columns)
     return {
-        f"c{k}": Estimate(float(value), float(value - 1.96 * std), float(value + 1.96 * std), "1")
-        for k, (value, std) in enumerate(zip(theta, spread, strict=True))
+        f"c{i}": Estimate(float(value), float(value - half), float(value + half), "1")
+        for i, (value, half) in enumerate(zip(found.theta[-k:], near[-k:], strict=True))
     }
 
 
@@ -93,7 +155,7 @@ def _once_more(found: Explained) -> str:
     return f"to make sure of {found.doubtful.name}, record {EFFECTS[found.doubtful.name].excited_by}"
 
 
-def _next(findings: list[Finding]) -> str:
+def _next(findings: Sequence[Finding]) -> str:
     unclear = [one for one in findings if one.also_possible]
     if not unclear:
         return ""

@@ -64,7 +64,8 @@ class Diagnosis:
     @property
     def findings(self) -> list[Finding]:
         """All findings, strongest first."""
-        return sorted((one for each in self.accounts for one in each.findings), key=lambda one: one.p_value)
+        every = [one for each in self.accounts for one in each.findings]
+        return sorted(every, key=lambda one: (one.p_value, -one.before))
 
     @property
     def verdict(self) -> str:

@@ -11,6 +11,7 @@ import numpy as np
 
 from puckpilot_env.parameters import BY_NAME, EFFECT_ROWS, TABLE
 from puckpilot_env.physics.effects import EFFECTS
+from puckpilot_env.whole_file import write_text_whole
 from sim2real.diagnose.diagnosis import Diagnosis
 from sim2real.diagnose.finding import Curve, Estimate, Finding
 
@@ -51,7 +52,7 @@ def _finding(one: Finding) -> dict[str, Any]:
             "before": one.before,
             "after": one.after,
             "unit": "rms in units of the sensor's noise",
-            **{f"{name}_twin": {"before": before, "after": after} for name, (before, after) in one.twins.items()},
+            **{f"{name}_twin": asdict(twin) for name, twin in one.twins.items()},
         },
     }
     return words if one.curve is None else {**words, "curve": _curve(one.curve)}
@@ -110,11 +111,4 @@ def write(diagnosis: Diagnosis, folder: Path) -> list[Path]:
         "report.html": page(diagnosis),
         "effects.toml": effects_toml(diagnosis),
     }
-    return [_write_whole(folder / name, text) for name, text in texts.items()]
-
-
-def _write_whole(path: Path, text: str) -> Path:
-    draft = path.with_name(f".{path.name}.part")
-    draft.write_text(text, encoding="utf-8")
-    draft.replace(path)
-    return path
+    return [write_text_whole(folder / name, text) for name, text in texts.items()]

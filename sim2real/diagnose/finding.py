@@ -100,6 +100,17 @@ class Sight:
 
 
 @dataclass(frozen=True)
+class Twin:
+    """A control of a proof, in which nothing is to be found: rms residuals as a finding's, before and after, and in how
+    many of so many drawn twins a search named something."""
+
+    before: float
+    after: float
+    named: int
+    of: int
+
+
+@dataclass(frozen=True)
 class Finding:
     """One missing piece of physics, in the words of the format puckpilot-diagnosis/1.
 
@@ -120,7 +131,7 @@ class Finding:
     values: Mapping[str, float] = field(default_factory=dict)
     rivals: tuple[Rival, ...] = ()
     curve: Curve | None = None
-    twins: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    twins: Mapping[str, Twin] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -99,9 +99,10 @@ class Search:
 
         low, high = found.form.grid.min(axis=0), found.form.grid.max(axis=0)
         slack = BEYOND * (high - low)
+        least = np.where(low > 0.0, np.maximum(low - slack, 0.5 * low), low - slack)  # lengths and times stay positive
 
         def loss(shape: np.ndarray) -> float:
-            if (shape * scale < low - slack).any() or (shape * scale > high + slack).any():
+            if (shape * scale < least).any() or (shape * scale > high + slack).any():
                 return 0.0
             return -self._fitted(form, shape * scale, self._columns(form.basis(shape * scale))).gained
 

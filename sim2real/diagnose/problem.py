@@ -72,9 +72,9 @@ class Problem(Protocol):
         """
         ...
 
-    def columns(self, values: Mapping[str, float], free: Sequence[str] = ()) -> Columns:
+    def columns(self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray) -> Columns:
         """The columns of all clusters at a law: the base's, those of other parameters `free`, the listed effects' and
-        the families'."""
+        the families'. What must be looked for, such as a place, is looked for in the clusters `use` alone."""
         ...
 
     def rows(self, law: Law) -> tuple[str, ...]:

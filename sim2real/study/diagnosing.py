@@ -13,6 +13,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
+from puckpilot_env.whole_file import write_text_whole
 from sim2real.study.making import ROOT, Progress, with_root
 
 LONGEST = 600.0  # s, for one diagnosis
@@ -72,9 +73,7 @@ def _asker(folder: Path, kept: Path, tool: Sequence[str], heldout: bool) -> Call
                 answer.update(diagnosis=json.loads((out / "diagnosis.json").read_text()), error=None)
             except (OSError, ValueError) as problem:
                 answer["error"] = error or f"no diagnosis.json that can be read: {problem}"
-        whole = kept / f".{label}.part"
-        whole.write_text(json.dumps(answer) + "\n")
-        whole.replace(kept / f"{label}.json")
+        write_text_whole(kept / f"{label}.json", json.dumps(answer) + "\n")
 
     return ask
 

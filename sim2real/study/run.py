@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from puckpilot_env.whole_file import write_text_whole, write_whole
 from sim2real.study import confusion as matrix
 from sim2real.study.diagnosing import THIS, diagnose_cases
 from sim2real.study.figures import Figure, by_mechanism, figures
@@ -68,8 +69,8 @@ def run_study(
         peer_scores=peer_scores,
         peer_figures=figures(peer_scores, plan.seconds) if asked else [],
     )
-    (folder / "study.json").write_text(json.dumps(study.as_dict(), indent=1) + "\n")
-    matrix.draw(folder / "confusion.png", study.confusion)
+    write_text_whole(folder / "study.json", json.dumps(study.as_dict(), indent=1) + "\n")
+    write_whole(folder / "confusion.png", lambda draft: matrix.draw(draft, study.confusion))
     return study
 
 
@@ -84,4 +85,4 @@ def _claim(folder: Path, plan: Plan, tool: Sequence[str] | None, heldout: bool) 
             parts = ", ".join(f"{name} {there.get(name)}" for name in other)
             raise ValueError(f"{folder} holds another study ({parts}); name another folder with --out")
     folder.mkdir(parents=True, exist_ok=True)
-    note.write_text(json.dumps(wanted) + "\n")
+    write_text_whole(note, json.dumps(wanted) + "\n")

@@ -107,8 +107,9 @@ def compare(finding: dict[str, Any], key: dict[str, Any]) -> list[Number]:
     truths: dict[str, float] = key["values"].get(finding["mechanism"], {})
     there = _there(finding.get("where", {}), key.get("where", {}).get(finding["mechanism"], {}))
     numbers = []
-    for given, estimate in finding.get("parameters", {}).items():
-        name = OTHER_NAMES[given] if given in OTHER_NAMES else given
+    parameters: dict[str, Any] = finding.get("parameters", {})
+    for given, estimate in parameters.items():
+        name = OTHER_NAMES.get(given, given)
         if name not in truths:
             continue
         truth, value = truths[name] if there else 0.0, estimate["value"]

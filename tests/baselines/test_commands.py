@@ -14,7 +14,6 @@ from PIL import Image
 from baselines.commands import match, tournament
 from baselines.intervals import paired_win_rate
 from baselines.match import play
-from baselines.tournament_files import _write_whole
 
 DRILL = ["--variant", "defence-v0"]
 
@@ -122,19 +121,6 @@ def test_all_players_take_part_and_no_count_is_cut(tmp_path: Path, capsys, monke
     told = capsys.readouterr().out
     assert "…" not in told
     assert any(line.split() == player_names() for line in told.splitlines())
-
-
-def test_files_are_written_whole_or_not_at_all(tmp_path: Path) -> None:
-    def fail(path: Path) -> None:
-        path.write_text("half")
-        raise OSError("disk full")
-
-    for before in (None, "old"):
-        if before:
-            (tmp_path / "a.json").write_text(before)
-        with pytest.raises(OSError, match="disk full"):
-            _write_whole(tmp_path / "a.json", fail)
-        assert [path.read_text() for path in tmp_path.iterdir()] == ([before] if before else [])
 
 
 @pytest.mark.parametrize(

@@ -171,8 +171,8 @@ HIGHEST = np.finfo(np.float32).max
     [
         (0, np.nan, "action target_x of player_1 on table 2 is nan; expected a number in [0.0505, 0.9495] m"),
         (1, np.inf, "action target_y of player_1 on table 2 is inf; expected a number in [0.0505, 0.9495] m"),
-        (2, 10.00001, "action volts_x of player_1 on table 2 is 10; expected a number in [0.3, 10] V"),
-        (3, -HIGHEST, "action volts_y of player_1 on table 2 is -3.40282e+38; expected a number in [0.3, 10] V"),
+        (2, 10.00001, "action volts_x of player_1 on table 2 is 10.00001; expected a number in [0.3, 10] V"),
+        (3, -HIGHEST, "action volts_y of player_1 on table 2 is -3.4028235e+38; expected a number in [0.3, 10] V"),
     ],
 )
 @pytest.mark.parametrize("variant", ["match-randomized-v0", "defence-v0"])

@@ -83,6 +83,17 @@ def test_glides_of_another_law_show_its_distance():
         assert abs(off.error[-1, 1]) < 0.003
 
 
+def test_missing_rows_are_told(tmp_path, capsys):
+    whole = glides(0.125, 0.125)
+    assert whole.frames is not None
+    kept = np.r_[:700, 900:1800]  # 200 frames, 1.3 s, are missing
+    columns = {name: whole.frames[name][kept] for name in ("t", "puck_x", "puck_y", "opponent_x", "opponent_y")}
+    write_recording(tmp_path / "gap", Recording("gap", META, Stream(columns)))
+    assert command(str(tmp_path / "gap"), "--out", str(tmp_path / "o")) == 0
+    told = [line for line in capsys.readouterr().out.splitlines() if line.startswith("note: ")]
+    assert told == ["note: gap: frames.csv has 1 pauses of more than 0.5 s and is cut there"]
+
+
 def test_prints_one_json_object_and_draws(tmp_path, capsys):
     write_recording(tmp_path / "glides", glides(0.4, 0.125))
     assert command(str(tmp_path / "glides"), "--json", "--out", str(tmp_path / "o")) == 0

@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from sim2real.diagnose.problem import Units
 
 FOLDS = 10
-LEAST_FIT = 30.0  # drop of the loss (and 2 more a parameter) that chance does not make
+LEAST_FIT = 30.0  # drop of the loss (and 2 more a parameter, and for each e-fold of places) that is no chance
 LEAST_FORETOLD = 12.0  # drop of the held-out loss
-RESAMPLED, UNSURE = 400, 0.02  # draws of launches, and the share of them in which a law may be of no use
+RESAMPLED, UNSURE = 1000, 0.005  # draws of launches, and the share of them in which a law may be of no use
 UNKNOWN = 4.0  # sum of squares a column, below which half of the launches does not tell a sign
 LEAST_SHARE = 0.05  # of what all laws together explain, or, where they explain far more than the noise,
 NOTICEABLE = 0.05  # of the noise's own sum of squares, that a law must explain to be needed
@@ -38,6 +38,8 @@ class Law:
     `name`: a mechanism, or a family of smooth forces; `family` is what it depends on, "" for a mechanism. `start`:
     parameters of a nonlinear law at which its columns were taken. `switch`: the simulator's parameters by name for
     coefficients of a family; none where the simulator has no place for it. `mechanism`: what a finding calls a family.
+    `each_launch`: whether every launch has numbers of its own, which no other launch foretells; `searched`: how many
+    places or sizes the columns are the best of.
     """
 
     name: str
@@ -46,6 +48,8 @@ class Law:
     start: dict[str, float] = field(default_factory=dict)
     switch: Callable[[np.ndarray], Mapping[str, float]] = no_parameters
     mechanism: str = "unlisted"
+    each_launch: bool = False
+    searched: int = 1
 
 
 @dataclass(frozen=True)
@@ -107,7 +111,6 @@ class Chooser:
         self.grams, self.use, self.dispersion = grams, units.of(use), dispersion
         self._freedom = units.freedom[self.use] * dispersion
         self._launch = np.unique(units.cluster[self.use], return_inverse=True)[1]
-        self._folds = np.arange(len(self.use)) % min(FOLDS, len(self.use))
         draws = np.random.default_rng(0).integers(self._launches, size=(RESAMPLED, self._launches))
         self._known: dict[tuple[Any, ...], Any] = {}
         self._resampled = np.stack([np.bincount(row, minlength=self._launches) for row in draws])
@@ -120,9 +123,12 @@ class Chooser:
         """Loss that a model leaves when fitted to all units."""
         return self._once("fitted", model, self._fitted)
 
-    def foretold(self, model: Model) -> np.ndarray:
-        """Loss of each launch, its units foretold by the model fitted to those of the other folds."""
-        return self._once("foretold", model, self._foretold)
+    def foretold(self, model: Model, within: bool = False) -> np.ndarray:
+        """Loss of each launch, foretold by the model fitted to launches of other folds; or, `within` launches, of its
+        units by other units, also of its own: the only way for a law that has numbers for each launch."""
+        if within or any(law.each_launch for law in model.laws):
+            return self._once("foretold within", model, lambda one: self._foretold(one, np.arange(len(self.use))))
+        return self._once("foretold", model, lambda one: self._foretold(one, self._launch))
 
     def _once(self, what: str, model: Model, work: Callable[[Model], Any]) -> Any:
         key = (what, *model.key)
@@ -136,18 +142,17 @@ class Chooser:
         left = gram.losses(self.grams, columns, theta, self.use)
         return float(gram.soft(left, self._freedom).sum()) / self.dispersion
 
-    def _foretold(self, model: Model) -> np.ndarray:
+    def _foretold(self, model: Model, parts: np.ndarray) -> np.ndarray:
         columns, ridge = model.columns(self.grams)
-        left = np.zeros(len(self.use))
-        for fold in range(self._folds.max() + 1):
-            out = self._folds == fold
+        left, folds = np.zeros(len(self.use)), parts % FOLDS
+        for out in (folds == fold for fold in np.unique(folds)):
             theta = gram.solve_softly(self.grams, columns, self.use[~out], self._freedom[~out], ridge)
             left[out] = gram.losses(self.grams, columns, theta, self.use[out])
         return np.bincount(self._launch, gram.soft(left, self._freedom)) / self.dispersion
 
     def gain(self, model: Model, law: Law) -> Gain:
         """What `law` adds to `model`; a family with the best of SPREADS."""
-        before, fitted = self.foretold(model), self.fitted(model)
+        before, fitted = self.foretold(model, law.each_launch), self.fitted(model)
         best: Gain | None = None
         for spread in SPREADS if law.family else (np.inf,):
             more = model.plus(law, spread)
@@ -159,13 +164,16 @@ class Chooser:
 
     def passes(self, gain: Gain) -> bool:
         """Whether a gain is more than chance, in the fit and on held-out units, and not the doing of few launches."""
-        k = len(gain.law.columns)
-        enough = gain.fitted > LEAST_FIT + 2.0 * k and gain.total > LEAST_FORETOLD and gain.without_best > 0.0
+        enough = gain.fitted > self._by_chance(gain.law) and gain.total > LEAST_FORETOLD and gain.without_best > 0.0
         return enough and float(np.quantile(self._resampled @ gain.foretold, UNSURE)) > 0.0
+
+    @staticmethod
+    def _by_chance(law: Law) -> float:
+        return LEAST_FIT + 2.0 * len(law.columns) + 2.0 * float(np.log(law.searched))
 
     def doubtful(self, gain: Gain) -> bool:
         """Whether a law fits far better than chance lets it, and yet does not pass: few launches ask for it."""
-        return gain.fitted > LEAST_FIT + 2.0 * len(gain.law.columns) and not self.passes(gain)
+        return gain.fitted > self._by_chance(gain.law) and not self.passes(gain)
 
     def same_in_both_halves(self, model: Model, law: Law) -> bool:
         """Whether the odd and the even launches ask for the law with the same sign, as far as either knows."""

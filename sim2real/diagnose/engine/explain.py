@@ -11,6 +11,7 @@ from puckpilot_env.parameters import BY_NAME
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.choose import LEAST_FORETOLD, LEAST_SHARE, Chooser, Gain, Law, Model
 from sim2real.diagnose.engine.fit import Fit, fit
+from sim2real.diagnose.engine.noise import dispersion
 from sim2real.diagnose.engine.rivals import chance, compare
 from sim2real.diagnose.engine.settle import as_shipped, calm_clusters, far_off, nearly_all, refit, standing, undisturbed
 from sim2real.diagnose.finding import Rival
@@ -25,9 +26,8 @@ REMAINDER = 0.1  # share of what the listed laws foretell better that a law on t
 class Explained:
     """What the engine found. `law`: the final fit, of the baseline and the listed laws `listed`; `unlisted` and its
     coefficients `theta` are a family on top of it. `also` and `rivals` are by the name of the law. `doubtful`: what too
-    few launches ask for, where nothing was found; `lost`: something is missing, but the data are too few for a smooth law
-    of what it may be. `columns` are those of the final law, `screen` and `model` those in
-    which it was chosen."""
+    few launches ask for, where nothing was found; `lost`: whether something is missing that no law surely explains.
+    `columns` are those of the final law, `screen` and `model` those in which it was chosen."""
 
     baseline: Fit
     law: Fit
@@ -72,35 +72,46 @@ def explain(problem: Problem, shipped: Mapping[str, float], use: np.ndarray, cle
     clear: what fits no listed law is missing physics of this regime, and not what another one left unexplained.
     """
     use, baseline = undisturbed(problem, fit(problem, shipped, problem.base, use), use)
-    screen = _tellable(problem.columns(baseline.values), problem, use)
-    chooser = Chooser(screen.grams, problem.units, use, _dispersion(problem, screen, use))
+    screen = _tellable(problem.columns(baseline.values, (), use), problem, use)
+    laws = [*screen.listed, *screen.families]
+    beyond = dispersion(screen.grams, problem.units, problem.base, laws, use)
+    chooser = Chooser(screen.grams, problem.units, use, beyond)
     model, gains = chooser.add(Model(problem.base), screen.listed, MOST_LISTED)
     listed, law = standing(problem, baseline, chooser.prune(model), screen, use)
-    columns, model = screen, listed
-    if clear and not nearly_all(problem, baseline, law, use):
-        columns = screen if law is baseline else _tellable(problem.columns(law.values, law.free), problem, use)
-        refitted = Chooser(columns.grams, problem.units, use, chooser.dispersion)
-        model = _with_remainder(chooser, listed, _remainder(chooser, listed, refitted, law, columns), screen)
-    lost = clear and not any(one.family for one in model.laws) and far_off(problem, baseline, law, use)
-    if lost and screen.families:
-        model = _likeliest(chooser, Model(problem.base), screen)
-    unlisted = next((one for one in model.laws if one.family), None)
+    model = _completed(problem, baseline, law, listed, chooser, screen, use) if clear else listed
     if model is not listed:
         model, law = standing(problem, baseline, model, screen, use)
+    unlisted = next((one for one in model.laws if one.family), None)
     kept = tuple(one for one in model.laws if not one.family)
     calm = use if unlisted else calm_clusters(problem, law, use)
     if len(calm) < len(use):
         law = refit(problem, baseline, kept, screen, calm)
-    theta, spread, columns = _smooth(problem, law, unlisted, model, columns, use)
-    also, rivals = {}, {}
-    for one in model.laws:
-        also[one.name], rivals[one.name] = compare(chooser, model, one, [*screen.listed, *screen.families])
+    theta, spread, columns = _smooth(problem, law, unlisted, model, screen, use)
+    compared = {one.name: compare(chooser, model, one, laws) for one in model.laws}
     return Explained(
-        baseline, law, as_shipped(problem, shipped, baseline, use, chooser.dispersion), chooser.dispersion, kept,
+        baseline, law, as_shipped(problem, shipped, baseline, use, beyond), beyond, kept,
         unlisted, theta, spread, columns, screen, model,
         {one.name: chance(chooser, model, one, screen) for one in model.laws},
-        also, rivals, None if model.laws else _doubtful(chooser, gains), lost and not screen.families,
+        {name: also for name, (also, _) in compared.items()}, {name: rivals for name, (_, rivals) in compared.items()},
+        None if model.laws else _doubtful(chooser, gains),
+        clear and not model.laws and far_off(problem, baseline, law, use),
     )  # fmt: skip
+
+
+def _completed(
+    problem: Problem, baseline: Fit, law: Fit, listed: Model, chooser: Chooser, screen: Columns, use: np.ndarray
+) -> Model:
+    """The listed laws, of which `law` is the fit, with a family for what they leave, or in their place."""
+    model = listed
+    if not nearly_all(problem, baseline, law, use):
+        columns = screen
+        if law is not baseline:
+            columns = _tellable(problem.columns(law.values, law.free, use), problem, use)
+        refitted = Chooser(columns.grams, problem.units, use, chooser.dispersion)
+        model = _with_remainder(chooser, listed, _remainder(chooser, listed, refitted, law, columns), screen)
+    if any(one.family for one in model.laws) or not far_off(problem, baseline, law, use):
+        return model
+    return _likeliest(chooser, Model(problem.base), screen) or model
 
 
 def _doubtful(chooser: Chooser, gains: Sequence[Gain]) -> Law | None:
@@ -113,18 +124,6 @@ def _tellable(columns: Columns, problem: Problem, use: np.ndarray) -> Columns:
     """The columns, with no families but those of which the clusters `use` can tell the shape."""
     most = float(problem.freedom[use].sum()) / PER_COEFFICIENT
     return replace(columns, families=[law for law in columns.families if len(law.columns) <= most])
-
-
-def _dispersion(problem: Problem, screen: Columns, use: np.ndarray) -> float:
-    """Noise beyond the sensor's, in variance: what even the richest law leaves of a typical launch. At least 1."""
-    every = Model(problem.base)
-    for law in (*screen.listed, *screen.families):
-        every = every.plus(law, 1.0)
-    columns, ridge = every.columns(screen.grams)
-    units = problem.units.of(use)
-    theta = gram.solve(screen.grams, columns, units, ridge + 1e-6)
-    left = np.bincount(problem.units.cluster[units], gram.losses(screen.grams, columns, theta, units), problem.clusters)
-    return float(max(np.median(left[use] / np.maximum(problem.freedom[use], 1.0)), 1.0))
 
 
 def _remainder(chooser: Chooser, model: Model, refitted: Chooser, law: Fit, columns: Columns) -> Gain | None:
@@ -145,27 +144,31 @@ def _with_remainder(chooser: Chooser, model: Model, rest: Gain | None, screen: C
         return model
     both = chooser.prune(model.plus(rest.law, rest.spread))
     alone = _likeliest(chooser, Model(model.base), screen)
+    if alone is None:
+        return both
     worse = _explained(chooser, both) - _explained(chooser, alone)
     return alone if worse < max(LEAST_FORETOLD, LEAST_SHARE * _explained(chooser, both)) else both
 
 
-def _likeliest(chooser: Chooser, base: Model, screen: Columns) -> Model:
-    """The baseline and the family that alone foretells best."""
-    best = max((chooser.gain(base, law) for law in screen.families), key=lambda gain: gain.total)
-    return base.plus(best.law, best.spread)
+def _likeliest(chooser: Chooser, base: Model, screen: Columns) -> Model | None:
+    """The baseline and the family that alone foretells best, of those that are more than chance."""
+    some = [gain for gain in (chooser.gain(base, law) for law in screen.families) if chooser.passes(gain)]
+    best = max(some, key=lambda gain: gain.total, default=None)
+    return None if best is None else base.plus(best.law, best.spread)
 
 
 def _explained(chooser: Chooser, model: Model) -> float:
     return float((chooser.foretold(Model(model.base)) - chooser.foretold(model)).sum())
 
 
-def _smooth(problem: Problem, law: Fit, unlisted: Law | None, model: Model, columns: Columns, use: np.ndarray):
+def _smooth(problem: Problem, law: Fit, unlisted: Law | None, model: Model, screen: Columns, use: np.ndarray):
     """Coefficients of the family on top of the final fit, their covariance, and the columns that they belong to."""
     if unlisted is None:
-        return np.zeros(0), np.zeros((0, 0)), columns
-    columns = problem.columns(law.values, law.free)
+        return np.zeros(0), np.zeros((0, 0)), screen
+    columns = problem.columns(law.values, law.free, use)
     spread = model.spreads[model.laws.index(unlisted)]
     index, ridge = Model(law.free, (unlisted,), (spread,)).columns(columns.grams)
     units = problem.units.of(use)
     theta = gram.solve_softly(columns.grams, index, units, problem.units.freedom[units], ridge)
-    return theta, gram.covariance(columns.grams, index, theta, units), columns
+    launches = gram.gathered(columns.grams, problem.units.cluster, problem.clusters)
+    return theta, gram.covariance(launches, index, theta, use), columns

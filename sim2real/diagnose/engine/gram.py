@@ -51,6 +51,15 @@ def make_grams(names: Sequence[str], r: np.ndarray, jacobian: np.ndarray, cluste
     return Grams(tuple(names), g, b, s, count)
 
 
+def gathered(grams: Grams, into: np.ndarray, count: int) -> Grams:
+    """The sums of larger parts: part i goes into number `into[i]` (c,) of `count`."""
+    shapes = {"g": grams.g, "b": grams.b, "s": grams.s, "count": grams.count}
+    sums = {name: np.zeros((count, *part.shape[1:])) for name, part in shapes.items()}
+    for name, part in shapes.items():
+        np.add.at(sums[name], into, part)
+    return Grams(grams.names, **sums)
+
+
 def solve(grams: Grams, columns: np.ndarray, clusters: np.ndarray, ridge: np.ndarray | float = 0.0) -> np.ndarray:
     """Least squares theta (k,) of `columns` on `clusters`, with penalties `ridge` (k,); columns of zeros get 0."""
     g = grams.g[np.ix_(clusters, columns, columns)].sum(axis=0)

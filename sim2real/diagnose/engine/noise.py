@@ -1,8 +1,18 @@
-"""Noise that many residuals share."""
+"""Noise beyond the sensor's: that which many residuals share, and that which no law explains."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
 import numpy as np
+
+from sim2real.diagnose.engine import gram
+from sim2real.diagnose.engine.choose import Law, Model
+from sim2real.diagnose.engine.gram import Grams
+
+if TYPE_CHECKING:
+    from sim2real.diagnose.problem import Units
 
 
 def allowing_for(shared: np.ndarray, rows: np.ndarray) -> np.ndarray:
@@ -12,3 +22,16 @@ def allowing_for(shared: np.ndarray, rows: np.ndarray) -> np.ndarray:
         return rows
     vector, size, _ = np.linalg.svd(shared, full_matrices=False)
     return rows - vector @ ((1.0 - 1.0 / np.sqrt(1.0 + size**2))[:, None] * (vector.T @ rows))
+
+
+def dispersion(grams: Grams, units: Units, base: tuple[str, ...], laws: Sequence[Law], use: np.ndarray) -> float:
+    """Noise beyond the sensor's, in variance: what even all `laws` together leave of a typical launch. At least 1."""
+    every = Model(base, tuple(laws), (1.0,) * len(laws))
+    columns, ridge = every.columns(grams)
+    parts = units.of(use)
+    theta = gram.solve(grams, columns, parts, ridge + 1e-6)
+    launches = int(units.cluster.max(initial=0)) + 1
+    left = np.bincount(units.cluster[parts], gram.losses(grams, columns, theta, parts), launches)
+    freedom = np.bincount(units.cluster[parts], units.freedom[parts], launches)
+    seen = freedom > 0.0
+    return float(max(np.median(left[seen] / freedom[seen]), 1.0)) if seen.any() else 1.0

@@ -12,7 +12,7 @@ from sim2real.diagnose.problem import Columns
 def chance(chooser: Chooser, model: Model, law: Law, screen: Columns) -> float:
     """Chance that noise alone gains as much, for as many laws as were tried."""
     gained = chooser.fitted(model.minus(law)) - chooser.fitted(model)
-    tried = len(screen.listed) + len(screen.families)
+    tried = sum(one.searched for one in (*screen.listed, *screen.families))
     return float(min(max(tried * chi2.sf(gained, len(law.columns)), 1e-300), 1.0))
 
 

@@ -1,51 +1,61 @@
-"""Controls of a proof: the same laws, fitted and tried likewise, where by construction nothing is to be found."""
+"""Controls of a proof: the same search and the same laws, where by construction nothing is to be found."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from sim2real.diagnose.engine import gram
-from sim2real.diagnose.engine.choose import Model
+from sim2real.diagnose.engine.choose import Chooser, Law, Model
 from sim2real.diagnose.engine.gram import Grams
+from sim2real.diagnose.engine.noise import dispersion
+from sim2real.diagnose.finding import Twin
 from sim2real.diagnose.problem import Units
 
-DRAWS = 20
+DRAWS = 10
 NULL, PERMUTED = "null", "permutation"
 
-Twins = Mapping[str, tuple[float, float]]
 
+def twins(
+    grams: Grams, units: Units, model: Model, listed: Sequence[Law], use: np.ndarray, proof: np.ndarray
+) -> dict[str, Twin]:
+    """What twins of a recording say, by name: of the laws of `model`, fitted to the twins of the clusters `use` and
+    tried on those of `proof`; and of a search among the `listed` laws, and those of the model, for what they lack.
 
-def twins(grams: Grams, units: Units, model: Model, use: np.ndarray, proof: np.ndarray) -> Twins:
-    """The rms residuals (before, after), in units of the noise, that twins of the clusters `proof` have without and
-    with the laws of `model`, fitted to the same twins of the clusters `use`; means of DRAWS twins.
-
-    A null twin is the sensor's noise about the baseline; in a permutation twin the residuals of every launch keep their
-    size, but their signs are drawn, launch by launch.
+    A null twin is the sensor's noise about the baseline. In a permutation twin the residuals of every piece keep their
+    size, but their signs are drawn, piece by piece.
     """
+    laws = list({law.name: law for law in (*model.laws, *listed)}.values())
+    every = Model(model.base, tuple([*model.laws, *listed]), (1.0,) * (len(model.laws) + len(listed)))
+    inner = _only(grams, every.columns(grams)[0])
+    rest = _without(inner, inner.columns(model.base), units, use)
     drawn: Mapping[str, Callable[[np.random.Generator], Grams]] = {
         NULL: lambda rng: _noise(inner, units, rng),
-        PERMUTED: lambda rng: _flipped(rest, units, rng),
+        PERMUTED: lambda rng: _flipped(rest, rng),
     }
-    columns, ridge = model.columns(grams)
-    inner = _only(grams, columns)
-    base = np.arange(len(model.base))
-    rest = _without(inner, base, units, np.union1d(use, proof))
-    rng = np.random.default_rng(0)
-    found = {}
+    rng, found = np.random.default_rng(0), {}
     for name, draw in drawn.items():
-        tried = np.array([list(_tried(draw(rng), units, base, ridge, use, proof)) for _ in range(DRAWS)])
-        found[name] = float(tried[:, 0].mean()), float(tried[:, 1].mean())
+        some = [draw(rng) for _ in range(DRAWS)]
+        before, after = np.mean([list(_tried(one, units, model, use, proof)) for one in some], axis=0)
+        named = sum(_names(one, units, model, laws, use) for one in some)
+        found[name] = Twin(float(before), float(after), named, DRAWS)
     return found
 
 
-def _tried(grams: Grams, units: Units, base: np.ndarray, ridge: np.ndarray, use, proof) -> Iterator[float]:
-    """Rms of the residuals of `proof` under the baseline, and under all columns, fitted to `use`."""
+def _names(grams: Grams, units: Units, model: Model, laws: Sequence[Law], use: np.ndarray) -> bool:
+    """Whether a search finds that something is missing."""
+    chooser = Chooser(grams, units, use, dispersion(grams, units, model.base, laws, use))
+    return bool(chooser.prune(chooser.add(Model(model.base), laws, len(model.laws))[0]).laws)
+
+
+def _tried(grams: Grams, units: Units, model: Model, use: np.ndarray, proof: np.ndarray) -> Iterator[float]:
+    """Rms of the residuals of `proof` under the baseline, and under the model, fitted to `use`."""
     fitted, tried = units.of(use), units.of(proof)
-    for columns in (base, np.arange(len(ridge))):
-        theta = gram.solve_softly(grams, columns, fitted, units.freedom[fitted], ridge[: len(columns)])
+    for one in (Model(model.base), model):
+        columns, ridge = one.columns(grams)
+        theta = gram.solve_softly(grams, columns, fitted, units.freedom[fitted], ridge)
         left = gram.losses(grams, columns, theta, tried).sum()
         yield float(np.sqrt(max(left, 0.0) / max(units.freedom[tried].sum(), 1.0)))
 
@@ -55,18 +65,17 @@ def _only(grams: Grams, columns: np.ndarray) -> Grams:
     return replace(grams, names=names, g=grams.g[:, columns][:, :, columns], b=grams.b[:, columns])
 
 
-def _without(grams: Grams, base: np.ndarray, units: Units, clusters: np.ndarray) -> Grams:
-    """What the baseline, fitted to `clusters`, leaves."""
-    some = units.of(clusters)
+def _without(grams: Grams, base: np.ndarray, units: Units, use: np.ndarray) -> Grams:
+    """What the baseline, fitted to the clusters `use`, leaves of all."""
+    some = units.of(use)
     theta = np.zeros(len(grams.names))
     theta[base] = gram.solve_softly(grams, base, some, units.freedom[some])
     left = gram.losses(grams, np.arange(len(theta)), theta, np.arange(grams.clusters))
     return replace(grams, b=grams.b + grams.g @ theta, s=left)
 
 
-def _flipped(grams: Grams, units: Units, rng: np.random.Generator) -> Grams:
-    sign = rng.choice((-1.0, 1.0), units.cluster.max(initial=0) + 1)[units.cluster]
-    return replace(grams, b=sign[:, None] * grams.b)
+def _flipped(grams: Grams, rng: np.random.Generator) -> Grams:
+    return replace(grams, b=rng.choice((-1.0, 1.0), (grams.clusters, 1)) * grams.b)
 
 
 def _noise(grams: Grams, units: Units, rng: np.random.Generator) -> Grams:

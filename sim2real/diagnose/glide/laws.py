@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -13,7 +13,7 @@ from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.glide.families import FAMILIES, SPIN, UNIT, Motion
 from sim2real.diagnose.glide.switched import switched_on
-from sim2real.diagnose.problem import Columns
+from sim2real.diagnose.problem import Columns, Residuals
 
 if TYPE_CHECKING:
     from sim2real.diagnose.glide.problem import GlideProblem
@@ -23,6 +23,8 @@ PATCHES_KEPT = 3
 CHUNK = 120
 FINER, MOVES = 2, (-1, 0, 1)  # rounds of looking nearby, and steps there
 SPINNING = "spin_side_force"
+
+Force = Callable[[np.ndarray], np.ndarray]  # accelerations (n, 2, k) to columns of the residuals
 
 
 def listed_laws() -> list[Law]:
@@ -36,8 +38,8 @@ def listed_laws() -> list[Law]:
     return found
 
 
-def glide_columns(problem: GlideProblem, values: Mapping[str, float], free: Sequence[str]) -> Columns:
-    """Every column of a glide problem at one law."""
+def glide_columns(problem: GlideProblem, values: Mapping[str, float], free: Sequence[str], use: np.ndarray) -> Columns:
+    """Every column of a glide problem at one law; places of other friction are looked for in the clusters `use`."""
     path, by_start = problem.linearised(values)
     motion = problem.motion(path)
 
@@ -47,13 +49,14 @@ def glide_columns(problem: GlideProblem, values: Mapping[str, float], free: Sequ
     listed = listed_laws()
     free = tuple(dict.fromkeys((*problem.base, *(name for law in listed for name in law.columns), *free)))
     exact = problem.residuals(values, free, np.arange(problem.clusters))
-    patches, patch_columns = _patches(motion, columns, exact.r, exact.jacobian[:, : len(problem.base)])
+    patches, patch_columns = _patches(motion, columns, exact, len(problem.base), np.isin(exact.cluster, use))
     blocks, names, families = [exact.jacobian, patch_columns], [*free, *(law.columns[0] for law in patches)], []
     for name, (depends, shape) in FAMILIES.items():
         block = columns(shape(motion))
         fresh = tuple(f"{name} {k}" for k in range(block.shape[1]))
         mechanism = "side_force" if name == SPIN else "unlisted"
-        families.append(Law(name, fresh, depends, switch=partial(switched_on, name, motion), mechanism=mechanism))
+        switch = partial(switched_on, name, motion)
+        families.append(Law(name, fresh, depends, switch=switch, mechanism=mechanism, each_launch=name == SPIN))
         names += families[-1].columns
         blocks.append(block)
     jacobian = np.concatenate(blocks, axis=1)
@@ -62,14 +65,17 @@ def glide_columns(problem: GlideProblem, values: Mapping[str, float], free: Sequ
     return Columns(grams, [*listed, *patches], families)
 
 
-def _patches(motion: Motion, columns, r: np.ndarray, base: np.ndarray) -> tuple[list[Law], np.ndarray]:
-    """The discs of other friction that explain most of the residuals, one at a time; with their columns."""
-    frame = np.linalg.qr(base)[0]
-    rest = r - frame @ (frame.T @ r)
+def _patches(
+    motion: Motion, columns: Force, exact: Residuals, base: int, seen: np.ndarray
+) -> tuple[list[Law], np.ndarray]:
+    """The discs of other friction that explain most of the residuals that are `seen` (n,) bool, one at a time, beside
+    the first `base` parameters; with their columns for all residuals."""
+    frame = np.linalg.qr(exact.jacobian[seen, :base])[0]
+    rest = exact.r[seen] - frame @ (frame.T @ exact.r[seen])
 
     def gains(discs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         block = columns(_inside(motion, discs))
-        alone = block - frame @ (frame.T @ block)
+        alone = block[seen] - frame @ (frame.T @ block[seen])
         size = np.einsum("ik,ik->k", alone, alone)
         return np.where(size > 1e-9, (alone.T @ rest) ** 2 / np.maximum(size, 1e-9), 0.0), block / UNIT
 
@@ -80,7 +86,7 @@ def _patches(motion: Motion, columns, r: np.ndarray, base: np.ndarray) -> tuple[
         for k, disc in enumerate(best):
             near = _near(disc, 0.5**finer)
             best[k] = near[np.argmax(gains(near)[0])]
-    laws = [_patch(f"patch_extra@{k}", disc) for k, disc in enumerate(best)]
+    laws = [_patch(f"patch_extra@{k}", disc, len(grid)) for k, disc in enumerate(best)]
     return laws, gains(best)[1]
 
 
@@ -92,9 +98,10 @@ def _near(disc: np.ndarray, share: float) -> np.ndarray:
     return np.array(some)
 
 
-def _patch(column: str, disc: np.ndarray) -> Law:
+def _patch(column: str, disc: np.ndarray, searched: int) -> Law:
     x, y, radius = map(float, disc)
-    return Law("friction_patch", (column,), start={"patch_x": x, "patch_y": y, "patch_radius": radius})
+    start = {"patch_x": x, "patch_y": y, "patch_radius": radius}
+    return Law("friction_patch", (column,), start=start, searched=searched)
 
 
 def _discs(size: np.ndarray) -> np.ndarray:

@@ -50,9 +50,9 @@ class GlideProblem:
         self.freedom = np.bincount(data.cluster, self.units.freedom, data.clusters)
         self.noise_m = float(np.sqrt(np.mean(data.std**2)))
 
-    def columns(self, values: Mapping[str, float], free: Sequence[str] = ()) -> Columns:
+    def columns(self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray) -> Columns:
         """See `Problem.columns`."""
-        return glide_columns(self, values, free)
+        return glide_columns(self, values, free, use)
 
     def rows(self, law: Law) -> tuple[str, ...]:
         """See `Problem.rows`."""

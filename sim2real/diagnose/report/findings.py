@@ -12,7 +12,7 @@ from sim2real.diagnose.report.words import number, text
 SHOWN = 5  # rivals before the rest is folded away
 TWINS = {
     NULL: "null twin: the fitted baseline, and the sensor's noise",
-    PERMUTED: "permutation twin: the recording, with signs drawn launch by launch",
+    PERMUTED: "permutation twin: the recording, with signs drawn piece by piece",
 }
 
 
@@ -84,13 +84,16 @@ def _proof(one: Finding) -> str:
 def _twins(one: Finding) -> str:
     if not one.twins:
         return ""
-    rows = [["the recording", number(one.before), number(one.after)]]
-    rows += [[TWINS[name], number(before), number(after)] for name, (before, after) in one.twins.items()]
+    rows = [["the recording", number(one.before), number(one.after), "yes"]]
+    rows += [
+        [TWINS[name], number(twin.before), number(twin.after), f"in {twin.named} of {twin.of}"]
+        for name, twin in one.twins.items()
+    ]
     note = (
-        "The same laws, fitted and tried likewise where nothing is to be found: rms residuals of untouched launches in "
-        "units of the noise"
+        "The same laws and the same search where nothing is to be found: rms residuals of untouched launches in units "
+        "of the noise, and whether the search names something"
     )
-    return words.table(note, ("data", "before", "after"), rows, (1, 2))
+    return words.table(note, ("data", "before", "after", "named"), rows, (1, 2, 3))
 
 
 def _rivals(rivals: tuple[Rival, ...]) -> str:

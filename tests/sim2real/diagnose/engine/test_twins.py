@@ -24,19 +24,20 @@ def _grams(columns: int = 1, size: float = 1.0):
 
 
 def test_a_true_law_gains_nothing_on_noise():
-    before, after = twins(_grams(), UNITS, ONE, USE, PROOF)[NULL]
-    assert before == pytest.approx(1.0, abs=0.03)
-    assert after == pytest.approx(before, abs=0.01)
+    twin = twins(_grams(), UNITS, ONE, [], USE, PROOF)[NULL]
+    assert twin.before == pytest.approx(1.0, abs=0.03)
+    assert twin.after == pytest.approx(twin.before, abs=0.01)
+    assert (twin.named, twin.of) == (0, 10)
 
 
 def test_a_true_law_gains_nothing_where_launches_disagree_on_its_sign():
-    before, after = twins(_grams(), UNITS, ONE, USE, PROOF)[PERMUTED]
-    assert before == pytest.approx(np.sqrt(2.0), rel=0.1)
-    assert after > before - 0.01
+    twin = twins(_grams(), UNITS, ONE, [], USE, PROOF)[PERMUTED]
+    assert twin.before == pytest.approx(np.sqrt(2.0), rel=0.1)
+    assert twin.after > twin.before - 0.01
 
 
 def test_too_rich_a_law_is_seen_to_lose_on_noise():
     rich = Model(("base",), (Law("push", tuple(f"push {k}" if k else "push" for k in range(60))),), (np.inf,))
-    before, after = twins(_grams(60, 0.0), UNITS, rich, USE, PROOF)[NULL]
+    twin = twins(_grams(60, 0.0), UNITS, rich, [], USE, PROOF)[NULL]
     expected = np.sqrt(1.0 + 60 / (len(USE) * EACH))  # of a fit to white noise: columns over residuals, more error
-    assert after / before == pytest.approx(expected, rel=0.02)
+    assert twin.after / twin.before == pytest.approx(expected, rel=0.02)

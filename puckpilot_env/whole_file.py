@@ -1,0 +1,31 @@
+"""Files that are there whole or not at all: made beside their place under a hidden name, then put there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+
+def draft_of(path: Path) -> Path:
+    """Where `path` is made: a hidden name beside it with its ending, always the same, so that what a killed process
+    left there is written over by the next one."""
+    return path.with_name(f".{path.stem}.tmp{path.suffix}")
+
+
+def write_whole(path: Path, write: Callable[[Path], object]) -> Path:
+    """Let `write` make the draft of `path`, put it there once it is complete, and return `path`.
+
+    If `write` raises, what was there before stays.
+    """
+    draft = draft_of(path)
+    try:
+        write(draft)
+        draft.replace(path)
+    finally:
+        draft.unlink(missing_ok=True)
+    return path
+
+
+def write_text_whole(path: Path, text: str) -> Path:
+    """`write_whole` of a text, in UTF-8."""
+    return write_whole(path, lambda draft: draft.write_text(text, encoding="utf-8"))

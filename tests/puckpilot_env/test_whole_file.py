@@ -1,0 +1,79 @@
+"""Files that are there whole or not at all, whoever ends the process that makes them."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from puckpilot_env.video import VideoWriter
+from puckpilot_env.whole_file import write_text_whole, write_whole
+
+ROOT = Path(__file__).resolve().parents[2]
+FILM = ["match", "still", "still", "--games", "2", "--variant", "match-v0", "--video"]
+
+
+@pytest.mark.parametrize("before", [None, "old"])
+def test_a_failing_writer_leaves_what_was_there(tmp_path: Path, before: str | None) -> None:
+    def fail(path: Path) -> None:
+        path.write_text("half")
+        raise OSError("disk full")
+
+    if before:
+        (tmp_path / "a.json").write_text(before)
+    with pytest.raises(OSError, match="disk full"):
+        write_whole(tmp_path / "a.json", fail)
+    assert [path.read_text() for path in tmp_path.iterdir()] == ([before] if before else [])
+
+
+def test_nothing_half_written_is_in_its_place(tmp_path: Path) -> None:
+    place = tmp_path / "a.txt"
+    seen = []
+
+    def write(draft: Path) -> None:
+        draft.write_text("half")
+        seen.append(place.exists())
+        draft.write_text("whole ½")
+
+    assert write_whole(place, write) == place and seen == [False]
+    assert place.read_text() == "whole ½"
+    assert write_text_whole(place, "new ½").read_text(encoding="utf-8") == "new ½"
+    assert list(tmp_path.iterdir()) == [place]
+
+
+def _begin_film(place: Path) -> subprocess.Popen[str]:
+    """A process that films a game, stopped by the caller once its draft has appeared."""
+    film = subprocess.Popen(
+        [sys.executable, "puckpilot.py", *FILM, str(place)], cwd=ROOT, stderr=subprocess.PIPE, text=True
+    )
+    while not list(place.parent.glob(".*")) and film.poll() is None:
+        time.sleep(0.01)
+    assert film.poll() is None, film.communicate()
+    return film
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_film_that_is_stopped_leaves_nothing(tmp_path: Path, number: signal.Signals) -> None:
+    film = _begin_film(tmp_path / "a.mp4")
+    film.send_signal(number)
+    told = film.communicate(timeout=60)[1]
+    assert film.returncode == 128 + number
+    assert told.splitlines()[-1] == "puckpilot match: stopped" and "Traceback" not in told
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+def test_what_a_killed_film_left_goes_with_the_next(tmp_path: Path) -> None:
+    film = _begin_film(tmp_path / "a.mp4")
+    film.kill()
+    film.communicate(timeout=60)
+    assert len(list(tmp_path.glob(".*"))) == len(list(tmp_path.iterdir())) == 1
+    with pytest.raises(ValueError, match="no frames"), VideoWriter(tmp_path / "a.mp4"):
+        pass
+    assert not list(tmp_path.iterdir())
