@@ -142,4 +142,4 @@ def _confusion(study: Study) -> Any:
 def _plain_table(make: Any, title: str) -> Any:
     from rich import box
 
-    return make(title=title, box=box.SIMPLE_HEAD, title_justify="left", pad_edge=False)
+    return make(title=title, min_width=len(title), box=box.SIMPLE_HEAD, title_justify="left", pad_edge=False)
