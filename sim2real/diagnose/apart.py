@@ -20,11 +20,12 @@ class Launches:
     """The launches of several recordings, counted through all of them.
 
     `of_row`: for each recording, the number (frames,) of the launch that each row of its frames belongs to; `apart`:
-    the numbers of those that serve the proof alone.
+    the numbers of those that serve the proof alone; `heldout`: whether these are whole recordings.
     """
 
     of_row: tuple[np.ndarray, ...]
     apart: np.ndarray
+    heldout: bool
 
     def is_apart(self, launch: np.ndarray) -> np.ndarray:
         """Which of the launches, by their numbers, serve the proof alone."""
@@ -52,7 +53,7 @@ def keep_apart(recordings: Sequence[Recording], pieces: Sequence[Pieces], heldou
         first.append(first[-1] + max(part.clusters, 1))
     numbers = np.arange(first[-1])
     apart = numbers[first[len(recordings) - heldout] :] if heldout else numbers[KEPT_APART - 1 :: KEPT_APART]
-    return Launches(tuple(of_row), apart)
+    return Launches(tuple(of_row), apart, bool(heldout))
 
 
 def glides_of(recording: Recording, pieces: Pieces) -> GlideData:

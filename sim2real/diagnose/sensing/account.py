@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sim2real.diagnose.apart import Launches
-from sim2real.diagnose.contacts import geometry
+from sim2real.diagnose.contacts import Geometry, geometry
 from sim2real.diagnose.encoders import read_encoders
 from sim2real.diagnose.finding import Account
 from sim2real.diagnose.pieces import Pieces, cut
@@ -34,12 +34,12 @@ class Sensed:
 def sense(recordings: Sequence[Recording], pieces: Sequence[Pieces], launches: Launches) -> Sensed:
     """Explain the sensing of recordings of one table: the map first, then the clock, then the frames held.
 
-    The launches kept apart are corrected as the others are, and tell nothing but the proof.
+    The launches kept apart are corrected as the others are, and tell nothing but the proof; but of recordings that are
+    not held out all touches of the walls are asked for the map, for they are few: `_scale`.
     """
     recordings, pieces = list(recordings), list(pieces)
     found = _strikes(recordings, pieces, launches)
-    seen, unseen = ([s for part in found for s in part if (s.launch in launches.apart) is it] for it in (False, True))
-    scale = scale_account(seen, geometry(recordings[0]), unseen)
+    scale = _scale(found, geometry(recordings[0]), launches)
     if scale.findings:
         recordings = [corrected(one, scale.values) for one in recordings]
         pieces = [cut(one) for one in recordings]
@@ -68,6 +68,18 @@ def _strikes(recordings: list[Recording], pieces: list[Pieces], launches: Launch
         whole = np.ptp(launches.is_apart(ends).astype(int), axis=1) == 0
         found.append([replace(s, launch=int(end)) for s, end, use in zip(some, ends[:, 0], whole, strict=True) if use])
     return found
+
+
+def _scale(found: list[list[Strike]], g: Geometry, launches: Launches) -> ScaleAccount:
+    """The map by all recordings but those held out, proved on these or launch by launch; what is undone is, as far as
+    they tell it, by the launches alone that are not kept apart."""
+    every = [s for part in found for s in part]
+    seen = [s for s in every if s.launch not in launches.apart]
+    if launches.heldout:
+        return scale_account(seen, g, [s for s in every if s.launch in launches.apart])
+    told = scale_account(every, g)
+    values = scale_account(seen, g).values if told.findings else told.values
+    return replace(told, values=np.where((values != 0.0) & (told.values != 0.0), values, told.values))
 
 
 def _clock(recordings: list[Recording], found: list[list[Strike]], apart: np.ndarray) -> ClockAccount:

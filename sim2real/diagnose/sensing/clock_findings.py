@@ -66,7 +66,7 @@ def clock_account(tables: list[Meetings], apart: np.ndarray) -> ClockAccount:
     sizes = unseen or foretold
     named = ("camera_delay", "clock_drift") if name == "both" else (name,)
     findings = tuple(_finding(each, named, best, fits, chance, full, sizes) for each in named)
-    return ClockAccount(best.clock, findings, None if unseen is None else unseen.proof, True)
+    return ClockAccount(best.clock, findings, sizes.proof, True)
 
 
 def _choose(chance: dict[str, float], full: Fit, span: float) -> str:

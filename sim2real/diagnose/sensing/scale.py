@@ -41,7 +41,8 @@ class ScaleAccount:
 
 
 def scale_account(found: list[Strike], g: Geometry, unseen: Sequence[Strike] = ()) -> ScaleAccount:
-    """What the strikes `found` at the walls say of the camera's map; those of `unseen` launches serve the proof."""
+    """What the strikes `found` at the walls say of the camera's map; those of `unseen` launches serve the proof, or,
+    where there are none, each launch that of the fits without it."""
     values, covariance = _solve(lines(found, g), g)
     std = np.sqrt(np.diag(covariance))
     wrong = _wrong_size(values, std, g)
@@ -53,12 +54,11 @@ def scale_account(found: list[Strike], g: Geometry, unseen: Sequence[Strike] = (
         return ScaleAccount(np.zeros(3), (), None)
     told = (sure < TOLD) & (std < KNOWN)
     kept = np.where(told, values, 0.0)
-    apart = _distances(lines([*found, *unseen], g), kept, {s.launch for s in unseen}, g)
+    apart = _distances(lines(list(unseen), g), kept, {s.launch for s in unseen}, g)
     sizes = measured(*np.concatenate([apart, _foretold(found, g)]).T)
     if sizes is None or sizes.proof.after_m >= sizes.proof.before_m:
         return ScaleAccount(np.zeros(3), (), None)
-    proved = measured(*apart.T)
-    sizes = proved or sizes
+    sizes = measured(*apart.T) or sizes
     reach = 1.96 * std
     estimates = {
         name: Estimate(float(values[k]), float(values[k] - reach[k]), float(values[k] + reach[k]), "1")
@@ -78,7 +78,7 @@ def scale_account(found: list[Strike], g: Geometry, unseen: Sequence[Strike] = (
         after=sizes.after,
         values={rows[name].name: float(values[k]) for k, name in enumerate(NAMES) if told[k]},
     )
-    return ScaleAccount(kept, (finding,), None if proved is None else proved.proof)
+    return ScaleAccount(kept, (finding,), sizes.proof)
 
 
 def _wrong_size(values: np.ndarray, std: np.ndarray, g: Geometry) -> str:
