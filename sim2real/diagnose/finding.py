@@ -31,7 +31,7 @@ class Proof:
 
 @dataclass(frozen=True)
 class Rival:
-    """A mechanism that was tried and not chosen: how much worse it foretells held-out launches, and why it lost."""
+    """A mechanism that was tried and not chosen: how much worse it foretells held-out pieces, and why it lost."""
 
     mechanism: str
     loss: float

@@ -1,4 +1,4 @@
-"""Which laws a recording asks for: candidates compared by how well they foretell launches that no fit saw."""
+"""Which laws a recording asks for: candidates compared by how well they foretell pieces that their fit did not see."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 FOLDS = 10
 LEAST_FIT = 30.0  # drop of the loss (and 2 more a parameter, and for each e-fold of places) that is no chance
 LEAST_FORETOLD = 12.0  # drop of the held-out loss
-RESAMPLED, UNSURE = 1000, 0.005  # draws of launches, and the share of them in which a law may be of no use
+LEAST_ELSEWHERE = 2.0  # the same in all launches but the one that gains most
+RESAMPLED, UNSURE = 400, 0.02  # draws of launches, and the share of them in which a law may be of no use
 UNKNOWN = 4.0  # sum of squares a column, below which half of the launches does not tell a sign
 LEAST_SHARE = 0.05  # of what all laws together explain, or, where they explain far more than the noise,
 NOTICEABLE = 0.05  # of the noise's own sum of squares, that a law must explain to be needed
@@ -123,12 +124,10 @@ class Chooser:
         """Loss that a model leaves when fitted to all units."""
         return self._once("fitted", model, self._fitted)
 
-    def foretold(self, model: Model, within: bool = False) -> np.ndarray:
-        """Loss of each launch, foretold by the model fitted to launches of other folds; or, `within` launches, of its
-        units by other units, also of its own: the only way for a law that has numbers for each launch."""
-        if within or any(law.each_launch for law in model.laws):
-            return self._once("foretold within", model, lambda one: self._foretold(one, np.arange(len(self.use))))
-        return self._once("foretold", model, lambda one: self._foretold(one, self._launch))
+    def foretold(self, model: Model) -> np.ndarray:
+        """Loss of each launch, its units foretold by the model fitted to those of the other folds: other units, of this
+        launch or another, since what a single launch met, such as a patch, no other launch may know."""
+        return self._once("foretold", model, self._foretold)
 
     def _once(self, what: str, model: Model, work: Callable[[Model], Any]) -> Any:
         key = (what, *model.key)
@@ -142,9 +141,9 @@ class Chooser:
         left = gram.losses(self.grams, columns, theta, self.use)
         return float(gram.soft(left, self._freedom).sum()) / self.dispersion
 
-    def _foretold(self, model: Model, parts: np.ndarray) -> np.ndarray:
+    def _foretold(self, model: Model) -> np.ndarray:
         columns, ridge = model.columns(self.grams)
-        left, folds = np.zeros(len(self.use)), parts % FOLDS
+        left, folds = np.zeros(len(self.use)), np.arange(len(self.use)) % FOLDS
         for out in (folds == fold for fold in np.unique(folds)):
             theta = gram.solve_softly(self.grams, columns, self.use[~out], self._freedom[~out], ridge)
             left[out] = gram.losses(self.grams, columns, theta, self.use[out])
@@ -152,7 +151,7 @@ class Chooser:
 
     def gain(self, model: Model, law: Law) -> Gain:
         """What `law` adds to `model`; a family with the best of SPREADS."""
-        before, fitted = self.foretold(model, law.each_launch), self.fitted(model)
+        before, fitted = self.foretold(model), self.fitted(model)
         best: Gain | None = None
         for spread in SPREADS if law.family else (np.inf,):
             more = model.plus(law, spread)
@@ -164,7 +163,11 @@ class Chooser:
 
     def passes(self, gain: Gain) -> bool:
         """Whether a gain is more than chance, in the fit and on held-out units, and not the doing of few launches."""
-        enough = gain.fitted > self._by_chance(gain.law) and gain.total > LEAST_FORETOLD and gain.without_best > 0.0
+        enough = (
+            gain.fitted > self._by_chance(gain.law)
+            and gain.total > LEAST_FORETOLD
+            and gain.without_best > LEAST_ELSEWHERE
+        )
         return enough and float(np.quantile(self._resampled @ gain.foretold, UNSURE)) > 0.0
 
     @staticmethod

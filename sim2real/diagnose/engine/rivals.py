@@ -38,7 +38,7 @@ def compare(chooser: Chooser, model: Model, law: Law, others) -> tuple[tuple[str
 
 def _why(gain: Gain, loss: float, whole: float) -> str:
     if gain.total <= 0.0:
-        return "foretells held-out launches no better than the baseline"
+        return "foretells held-out pieces no better than the baseline"
     if loss < AMBIGUOUS:
         return "as good: this recording cannot tell the two apart"
     return f"explains {100 * max(1.0 - loss / whole, 0.0):.0f} % of what the winner does"

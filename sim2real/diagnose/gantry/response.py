@@ -11,8 +11,8 @@ import math
 import numpy as np
 
 from puckpilot_env.kernel import array_kernel, kernel
-from puckpilot_env.physics.effects import backlash, belt_compliance
 from puckpilot_env.physics.decay import fade
+from puckpilot_env.physics.effects import backlash, belt_compliance
 from puckpilot_env.physics.mallet import axis_constants
 
 MOST_LOOSE = 24  # switches in doubt within one window that get a column

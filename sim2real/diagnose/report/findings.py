@@ -101,7 +101,7 @@ def _rivals(rivals: tuple[Rival, ...]) -> str:
         return ""
     rows = [[text(one.mechanism), number(one.loss), text(one.reason)] for one in rivals]
     head = ("rival", "worse by", "why it lost")
-    note = "Rivals, by how much worse they foretell untouched launches (sum of squares in units of the noise)"
+    note = "Rivals, by how much worse they foretell unseen pieces (sum of squares in units of the noise)"
     first = words.table(note, head, rows[:SHOWN], (1,))
     if len(rows) <= SHOWN:
         return first

@@ -1,6 +1,7 @@
 """Sums by launch: the same least squares as numpy's on all rows at once."""
 
 import numpy as np
+from scipy.stats import t as student
 
 from sim2real.diagnose.engine import gram
 
@@ -39,6 +40,30 @@ def test_intervals_cover_what_made_the_data():
         std = np.sqrt(np.diag(gram.covariance(grams, np.arange(3), theta, np.arange(8))))
         inside.append(np.abs(theta - truth) < 1.96 * std)
     assert 0.92 <= np.mean(inside) <= 0.99
+
+
+def test_intervals_cover_where_launches_scatter_more_than_their_noise():
+    launches, inside = 24, []
+    for seed in range(300):
+        rng = np.random.default_rng(seed)
+        launch = np.repeat(np.arange(launches), 30)
+        jacobian = rng.normal(size=(len(launch), 2))
+        own = 0.5 + 0.3 * rng.normal(size=launches)  # the number is another in every launch; 0.5 in the mean
+        r = rng.normal(size=len(launch)) - own[launch] * jacobian[:, 0] - 0.2 * jacobian[:, 1]
+        grams = gram.make_grams("ab", r, jacobian, launch, launches)
+        theta = gram.solve(grams, np.arange(2), np.arange(launches))
+        std = np.sqrt(np.diag(gram.covariance(grams, np.arange(2), theta, np.arange(launches))))
+        inside.append(abs(theta[0] - 0.5) < student.ppf(0.975, launches - 1) * std[0])
+    assert 0.92 <= np.mean(inside) <= 0.98
+
+
+def test_parts_gather_into_the_sums_of_larger_ones():
+    r, jacobian, cluster, _ = _problem(2)
+    fine = gram.make_grams("abc", r, jacobian, cluster, 8)
+    into = np.array([0, 0, 1, 1, 2, 2, 0, 1])
+    found, expected = gram.gathered(fine, into, 3), gram.make_grams("abc", r, jacobian, into[cluster], 3)
+    for name in ("g", "b", "s", "count"):
+        assert np.allclose(getattr(found, name), getattr(expected, name))
 
 
 def test_a_column_without_data_gets_nothing():
