@@ -6,8 +6,6 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("mujoco")
-
 from sim2real.diagnose.diagnosis import diagnose
 from sim2real.recording import read_recording
 from tests.mujoco_table.cases import CASES

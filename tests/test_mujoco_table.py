@@ -9,8 +9,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-pytest.importorskip("mujoco")
-
 from tests.mujoco_table.cases import CASES
 from tests.mujoco_table.launches import fly, make_recording
 from tests.mujoco_table.model import Settings

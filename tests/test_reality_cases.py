@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from dataclasses import fields
+from dataclasses import fields, replace
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ import pytest
 from tests.reality import Law, make_cases
 from tests.reality.cases import BLOCK, KINDS, draw_case
 from tests.reality.mechanisms import MECHANISMS, RIVALS
+from tests.reality.puck import acceleration
 from tests.reality.record import make_recording
 from tests.reality.scene import Hand
 from tests.reality.unlisted import LAWS
@@ -77,6 +79,24 @@ def test_each_can_be_asked_for_and_changes_the_recording(name: str, tmp_path: Pa
     path = truth.mallets[0] if case.truth["regimes"] == ["gantry"] else truth.puck
     other = still.mallets[0] if case.truth["regimes"] == ["gantry"] else still.puck
     assert np.nanmax(abs(path - other)) > 2e-4
+
+
+@pytest.mark.parametrize(
+    "names", combinations(["friction_anisotropy", "air_drift", "friction_patch", "linear_drag"], 2)
+)
+def test_brakes_that_come_as_two_are_both_felt(names: tuple[str, str]):
+    """Each of two that brake a puck changes what the other leaves, by at least half of what it does alone."""
+    assert not any(set(names) <= rivals for rivals in RIVALS)
+    for seed in range(4):  # both forms of the uneven friction
+        changes = [MECHANISMS[name].draw(np.random.default_rng(seed), 1.0, Law(), "launches").law for name in names]
+        x, y = ({**changes[0], **changes[1]}.get(f"patch_{axis}", 0.5) for axis in "xy")
+
+        def brake(*some: dict[str, float], x: float = x, y: float = y) -> float:
+            law = replace(Law(), **{name: value for change in some for name, value in change.items()}).numbers()
+            return acceleration(law, 10.0, x, y, 0.4, 0.0, 0.0, 1.0)[0]
+
+        for one, other in (changes, changes[::-1]):
+            assert abs(brake(one, other) - brake(other)) > 0.5 * abs(brake(one) - brake()) > 0.002
 
 
 def test_sizes_of_an_effect_lie_between_half_and_double_the_typical():

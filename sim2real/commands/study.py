@@ -51,6 +51,8 @@ def run(args: argparse.Namespace) -> int:
         print(json.dumps(study.as_dict(), indent=1))
     else:
         _print(study, args.out)
+        if args.peer and not study.peer_scores:
+            print("PySINDy was asked nothing: no case is of a gliding puck alone")
     return int(any(figure.reached is False for figure in study.figures))
 
 
@@ -80,9 +82,9 @@ def _figures(study: Study) -> Any:
         table.add_column(heading, justify="left" if k in (0, 5) else "right", no_wrap=True)
     for one in study.figures:
         value = "-" if one.value is None else f"{one.value:.3g}"
-        interval = "" if one.value is None else f"{one.low:.3g} to {one.high:.3g}"
-        reached = {True: "reached", False: "MISSED", None: ""}[one.reached if _bar(one) else None]
-        row = [one.name, value, interval, str(one.count), _bar(one), reached]
+        known = one.value is not None and one.high < float("inf")
+        interval = f"{one.low:.3g} to {one.high:.3g}" if known else ""
+        row = [one.name, value, interval, str(one.count), _bar(one), _outcome(one)]
         if peers:
             peer = peers[one.name]
             row += ["-" if peer.value is None else f"{peer.value:.3g}", str(peer.count)]
@@ -95,6 +97,13 @@ def _bar(figure: Any) -> str:
     if low and high:
         return f"{figure.least:g} to {figure.most:g}"
     return f"≥ {figure.least:g}" if low else f"≤ {figure.most:g}" if high else ""
+
+
+def _outcome(figure: Any) -> str:
+    """Whether a figure reaches its bar, and whether its interval leaves a doubt; nothing where there is no bar."""
+    if figure.reached is None or not _bar(figure):
+        return ""
+    return ("reached" if figure.reached else "MISSED") + ("" if figure.sure else ", not sure")
 
 
 def _mechanisms(study: Study) -> Any:
@@ -133,4 +142,4 @@ def _confusion(study: Study) -> Any:
 def _plain_table(make: Any, title: str) -> Any:
     from rich import box
 
-    return make(title=title, box=box.SIMPLE_HEAD, title_justify="left", pad_edge=False)
+    return make(title=title, min_width=len(title), box=box.SIMPLE_HEAD, title_justify="left", pad_edge=False)

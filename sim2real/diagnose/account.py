@@ -121,7 +121,7 @@ def _listed(problem: Problem, found: Explained, law: Law, before: float, after: 
     rows = [name for name in problem.rows(law) if name in fitted.free]
     return Finding(
         effect.regime, law.name, tuple(found.also.get(law.name, ())), effect.depends_on, effect.law,
-        labelled(law.name, fitted), found.chance[law.name], before, after, whereabouts(law, fitted.values),
+        labelled(law, fitted), found.chance[law.name], before, after, whereabouts(law, fitted.values),
         {**law.start, **{name: fitted.values[name] for name in rows}}, found.rivals.get(law.name, ()),
     )  # fmt: skip
 

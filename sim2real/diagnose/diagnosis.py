@@ -9,14 +9,15 @@ import numpy as np
 
 from sim2real.diagnose.account import account
 from sim2real.diagnose.agreement import Part, check_agreement, parts_of
-from sim2real.diagnose.contacts import geometry, mallet_tracks
+from sim2real.diagnose.apart import KEPT_APART, Launches, glides_of, keep_apart
+from sim2real.diagnose.contacts import geometry
 from sim2real.diagnose.encoders import read_encoders
 from sim2real.diagnose.engine.explain import Explained, explain
 from sim2real.diagnose.engine.fit import given
 from sim2real.diagnose.finding import Account, Finding, Proof, Sight
 from sim2real.diagnose.gantry.problem import gantry_problem
 from sim2real.diagnose.gantry.run import UnusableError
-from sim2real.diagnose.glide.data import GlideData, glide_data, join
+from sim2real.diagnose.glide.data import join
 from sim2real.diagnose.glide.problem import GlideProblem, States
 from sim2real.diagnose.illustrate import illustrated
 from sim2real.diagnose.impacts import Impact, find_impacts
@@ -25,6 +26,7 @@ from sim2real.diagnose.mallet.data import join as join_blows
 from sim2real.diagnose.mallet.problem import MalletProblem
 from sim2real.diagnose.pieces import Pieces, cut
 from sim2real.diagnose.problem import Problem
+from sim2real.diagnose.proof import pooled
 from sim2real.diagnose.sanity import UndeterminedError, check_usable, notes
 from sim2real.diagnose.sensing.account import sense
 from sim2real.diagnose.sensing.agreement import check_sensing
@@ -36,7 +38,6 @@ from sim2real.diagnose.wall.scatter import explain_bounces
 from sim2real.nominal import parameters
 from sim2real.recording import Recording
 
-KEPT_APART = 4  # every so manieth launch serves the proof alone
 FEWEST_LAUNCHES = 4
 FEWEST_RESIDUALS = 8
 TOO_LITTLE = "too little data"
@@ -100,24 +101,18 @@ class Diagnosis:
     def proof(self) -> Proof | None:
         """Held-out residuals over the regimes with findings, or over all where there are none."""
         lacking = [each for each in self.accounts if each.findings] or self.accounts
-        some = [each.proof for each in lacking if each.proof is not None]
-        if not some:
-            return None
-        pieces = sum(one.pieces for one in some)
-        sizes = [
-            float(np.sqrt(sum(one.pieces * getattr(one, name) ** 2 for one in some) / max(pieces, 1)))
-            for name in ("before_m", "after_m", "floor_m")
-        ]
-        return Proof(sizes[0], sizes[1], sizes[2], pieces)
+        return pooled([each.proof for each in lacking if each.proof is not None])
 
 
 @dataclass(frozen=True)
 class Cut:
-    """Recordings of one table, cut up. `heldout`: how many of the last ones serve the proof alone."""
+    """Recordings of one table, cut up. `heldout`: how many of the last ones serve the proof alone; `launches` of all
+    that do."""
 
     recordings: Sequence[Recording]
     pieces: Sequence[Pieces]
     heldout: int
+    launches: Launches
 
 
 def diagnose(
@@ -142,14 +137,15 @@ def _accounts(
 ) -> tuple[tuple[Account, ...], tuple[Sight, ...]]:
     """What each regime says, and the sensor of each recording."""
     progress("cutting", 0.0)
-    pieces = [cut(one) for one in recordings]
-    check_sensing([*recordings, *heldout], [*pieces, *(cut(one) for one in heldout)])
+    every = [*recordings, *heldout]
+    pieces = [cut(one) for one in every]
+    check_sensing(every, pieces)
     progress("sensing", 0.1)
-    sensed = sense(recordings, pieces)
+    launches = keep_apart(every, pieces, len(heldout))
+    sensed = sense(every, pieces, launches)
     if sensed.account.undetermined:
         raise UndeterminedError(sensed.account.undetermined, sensed.account.next_recording)
-    apart = [sensed.exact(one) for one in heldout]
-    data = Cut([*sensed.recordings, *apart], [*sensed.pieces, *(cut(one) for one in apart)], len(heldout))
+    data = Cut(sensed.recordings, sensed.pieces, len(heldout), launches)
     values = parameters(recordings[0], shipped)
     sights = tuple(sight(one, pieces) for one, pieces in zip(data.recordings, data.pieces, strict=True))
     gantry = _gantry(data, values, progress)
@@ -162,12 +158,12 @@ def _puck(data: Cut, sights: Sequence[Sight], values: dict[str, float], progress
     if not any(seen.frames and seen.dropped < 1.0 for seen in sights):
         return
     progress("glides", 0.2)
-    parts = [_glides(one, pieces) for one, pieces in zip(data.recordings, data.pieces, strict=True)]
+    parts = [glides_of(one, pieces) for one, pieces in zip(data.recordings, data.pieces, strict=True)]
     if not sum(part.glides for part in parts):
         yield _too_little("glide")
         return
     glides = GlideProblem(join(parts), values)
-    proof = _kept_apart(glides, parts, data.heldout)
+    proof = data.launches.clusters_apart(data.recordings, parts)
     tables = parts_of(glides.data, [one.name for one in data.recordings])
     law = dict(values)
     found, told = _explain(glides, law, proof, tables)
@@ -183,11 +179,6 @@ def _puck(data: Cut, sights: Sequence[Sight], values: dict[str, float], progress
     struck = _blows(data.recordings, impacts)
     if struck is not None:
         yield _explain(MalletProblem(struck, glides.clusters, law), law, proof, tables, clear)[1]
-
-
-def _glides(recording: Recording, pieces: Pieces) -> GlideData:
-    t = np.zeros(0) if recording.frames is None else recording.frames.t
-    return glide_data(pieces, geometry(recording), mallet_tracks(recording, t))
 
 
 def _gantry(data: Cut, values: dict[str, float], progress: Progress) -> list[Account]:
@@ -239,11 +230,3 @@ def _explain(problem: Problem, law: Mapping[str, float], proof: np.ndarray, tabl
 
 def _too_little(regime: str) -> Account:
     return Account(regime, (), {}, False, None, TOO_LITTLE, f"record more {MORE_OF[regime]}")
-
-
-def _kept_apart(glides: GlideProblem, parts: Sequence[GlideData], heldout: int) -> np.ndarray:
-    """The launches that no fit sees: those of the held-out recordings, or every KEPT_APART-th."""
-    clusters = np.arange(glides.clusters)
-    if heldout:
-        return clusters[sum(part.clusters for part in parts[:-heldout]) :]
-    return clusters[KEPT_APART - 1 :: KEPT_APART]

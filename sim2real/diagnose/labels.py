@@ -5,57 +5,61 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from puckpilot_env.physics.effects import EFFECTS
+from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.engine.fit import Fit
 from sim2real.diagnose.finding import Estimate
 
+Numbers = Mapping[str, Estimate]
 
-def labelled(mechanism: str, fit: Fit) -> Mapping[str, Estimate]:
+
+def labelled(law: Law, fit: Fit) -> Numbers:
     """The parameters of a mechanism that a fit freed, by the labels of its effect; some in the words of the format."""
-    if mechanism in SPECIAL:
-        return SPECIAL[mechanism](fit)
-    return _freed(mechanism, fit)
+    return SPECIAL.get(law.name, _freed)(law, fit)
 
 
-def _shifted(one: Estimate, by: float) -> Estimate:
-    return Estimate(one.value + by, one.low + by, one.high + by, one.unit)
+def _freed(law: Law, fit: Fit) -> Numbers:
+    return {label: fit.estimate(row.name) for label, row in EFFECTS[law.name].rows.items() if row.name in fit.free}
 
 
-def _scaled(one: Estimate, by: float) -> Estimate:
-    low, high = sorted((one.low * by, one.high * by))
-    return Estimate(one.value * by, low, high, one.unit)
+def _falling(base: str) -> Callable[[Law, Fit], Numbers]:
+    return lambda law, fit: {"e0": fit.estimate(base), **_freed(law, fit)}
 
 
-def _falling(mechanism: str, base: str) -> Callable[[Fit], dict[str, Estimate]]:
-    return lambda fit: {"e0": fit.estimate(base), **_freed(mechanism, fit)}
+def _tangential(law: Law, fit: Fit) -> Numbers:
+    e, ratio = (float(fit.values[name]) for name in ("wall_restitution", "tangential_ratio"))
+    e_t = _made(fit, ratio * e, {"wall_restitution": ratio, "tangential_ratio": e})
+    return {"e_n": fit.estimate("wall_restitution"), "e_t": e_t}
 
 
-def _freed(mechanism: str, fit: Fit) -> dict[str, Estimate]:
-    return {label: fit.estimate(row.name) for label, row in EFFECTS[mechanism].rows.items() if row.name in fit.free}
+def _odd_wall(law: Law, fit: Fit) -> Numbers:
+    """Which wall it is stands in the finding's `where`."""
+    (row,) = law.columns
+    return {"delta": fit.estimate(row)}
 
 
-def _tangential(fit: Fit) -> dict[str, Estimate]:
-    e = fit.estimate("wall_restitution")
-    return {"e_n": e, "e_t": _scaled(fit.estimate("tangential_ratio"), e.value)}
+def _posts(law: Law, fit: Fit) -> Numbers:
+    rows = ("wall_restitution", "post_extra")
+    return {"e": _made(fit, sum(float(fit.values[name]) for name in rows), dict.fromkeys(rows, 1.0))}
 
 
-def _odd_wall(fit: Fit) -> dict[str, Estimate]:
-    rows = EFFECTS["wall_to_wall_restitution"].rows
-    return {f"delta_{wall}": fit.estimate(row.name) for wall, row in rows.items() if row.name in fit.free}
+def _headings(law: Law, fit: Fit) -> Numbers:
+    """With the ratio of friction along x to that along y, where the interval leaves friction along y."""
+    numbers, grain = _freed(law, fit), fit.estimate("friction_anisotropy")
+    if grain.high >= 1.0:
+        return numbers
+    value, low, high = ((1.0 + one) / (1.0 - one) for one in (grain.value, grain.low, grain.high))
+    return {**numbers, "ratio": Estimate(value, low, high, "1")}
 
 
-def _posts(fit: Fit) -> dict[str, Estimate]:
-    return {"e": _shifted(fit.estimate("post_extra"), float(fit.values["wall_restitution"]))}
+def _made(fit: Fit, value: float, slopes: Mapping[str, float]) -> Estimate:
+    """A restitution made of fitted numbers, with its slopes by them."""
+    half = fit.reach(slopes)
+    return Estimate(value, value - half, value + half, "1")
 
 
-def _headings(fit: Fit) -> dict[str, Estimate]:
-    one = fit.estimate("friction_anisotropy")
-    value, low, high = ((1.0 + r) / (1.0 - r) for r in (one.value, one.low, one.high))
-    return {**_freed("friction_anisotropy", fit), "ratio": Estimate(value, low, high, "1")}
-
-
-SPECIAL: dict[str, Callable[[Fit], Mapping[str, Estimate]]] = {
-    "speed_dependent_restitution": _falling("speed_dependent_restitution", "wall_restitution"),
-    "mallet_speed_restitution": _falling("mallet_speed_restitution", "mallet_restitution"),
+SPECIAL: dict[str, Callable[[Law, Fit], Numbers]] = {
+    "speed_dependent_restitution": _falling("wall_restitution"),
+    "mallet_speed_restitution": _falling("mallet_restitution"),
     "tangential_restitution": _tangential,
     "wall_to_wall_restitution": _odd_wall,
     "corner_restitution": _posts,

@@ -16,7 +16,6 @@ SIDE_MOST = 36
 SIDE_LEAST = 4
 BRAKING = 1.5  # m/s^2: a puck's acceleration is 0 give or take this
 RECENTRED = 3
-MANY_LAUNCHES = 100_000  # more than a recording has
 
 
 @dataclass(frozen=True)

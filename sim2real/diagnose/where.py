@@ -10,11 +10,13 @@ from sim2real.diagnose.engine.choose import Law
 
 
 def whereabouts(law: Law, values: Mapping[str, float]) -> dict[str, Any]:
-    """The walls or the part of the table that a listed law acts at; empty for one that acts everywhere."""
+    """The walls, the part of the table or the stream that a listed law is about; empty where it is about everything."""
     if law.name == "friction_patch":
         x, y, radius = (float(values[name]) for name in ("patch_x", "patch_y", "patch_radius"))
         return {"x": [x - radius, x + radius], "y": [y - radius, y + radius]}
     if law.name == "wall_to_wall_restitution":
         rows = EFFECTS[law.name].rows
         return {"walls": [wall for wall, row in rows.items() if row.name in law.columns]}
+    if law.name == "clock_drift":
+        return {"stream": "mallet"}
     return {}

@@ -11,7 +11,6 @@ import numpy as np
 from sim2real.study.scoring import SILENT, Score
 
 LONG = 60.0  # s of a recording, from which on the stricter bar for one effect holds
-DRAWS = 2000  # of the bootstrap
 
 
 @dataclass(frozen=True)
@@ -29,11 +28,24 @@ class Figure:
     @property
     def reached(self) -> bool | None:
         """Whether it does; None where there was nothing to measure."""
-        return None if self.value is None else self.least <= self.value <= self.most
+        return None if self.value is None else self._within(self.value)
+
+    @property
+    def sure(self) -> bool | None:
+        """Whether the whole interval says the same as the value; None where there was nothing to measure."""
+        if self.value is None:
+            return None
+        if self._within(self.value):
+            return self._within(self.low) and self._within(self.high)
+        return self.high < self.least or self.low > self.most
+
+    def _within(self, value: float) -> bool:
+        return self.least <= value <= self.most
 
     def as_dict(self) -> dict[str, Any]:
-        """The same as plain data."""
-        return {**asdict(self), "reached": self.reached}
+        """The same as plain data; None for what is endless."""
+        plain = {name: None if value in (-np.inf, np.inf) else value for name, value in asdict(self).items()}
+        return {**plain, "reached": self.reached, "sure": self.sure}
 
 
 def share(name: str, answers: Iterable[bool | None], least: float = 0.0, most: float = 1.0) -> Figure:
@@ -47,16 +59,16 @@ def share(name: str, answers: Iterable[bool | None], least: float = 0.0, most: f
     return Figure(name, sum(known) / len(known), interval.low, interval.high, len(known), least, most)
 
 
-def median(
-    name: str, values: Iterable[float | None], least: float = -np.inf, most: float = np.inf, seed: int = 0
-) -> Figure:
-    """A median with the percentile interval of a bootstrap (Efron and Tibshirani, 1993, chapter 13)."""
-    known = np.array([value for value in values if value is not None], dtype=float)
+def median(name: str, values: Iterable[float | None], least: float = -np.inf, most: float = np.inf) -> Figure:
+    """A median with the interval between two of the values, however they are distributed (David and Nagaraja, Order
+    Statistics, 2003, section 7.1): endless where there are too few, fewer than six."""
+    from scipy.stats import binom
+
+    known = np.sort([value for value in values if value is not None]).astype(float)
     if not len(known):
         return Figure(name, None, -np.inf, np.inf, 0, least, most)
-    rng = np.random.default_rng(seed)
-    medians = [np.median(known[rng.integers(len(known), size=len(known))]) for _ in range(DRAWS)]
-    low, high = np.quantile(medians, (0.025, 0.975))
+    left_out = int(binom.ppf(0.025, len(known), 0.5)) - 1  # values at either end
+    low, high = (known[left_out], known[-1 - left_out]) if left_out >= 0 else (-np.inf, np.inf)
     return Figure(name, float(np.median(known)), float(low), float(high), len(known), least, most)
 
 

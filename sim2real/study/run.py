@@ -12,8 +12,9 @@ from puckpilot_env.whole_file import write_text_whole, write_whole
 from sim2real.study import confusion as matrix
 from sim2real.study.diagnosing import THIS, diagnose_cases
 from sim2real.study.figures import Figure, by_mechanism, figures
-from sim2real.study.making import Plan, make_cases
+from sim2real.study.making import ROOT, Plan, make_cases
 from sim2real.study.scoring import Score, score
+from sim2real.study.version import code_version
 
 
 @dataclass(frozen=True)
@@ -76,7 +77,7 @@ def run_study(
 def _claim(folder: Path, plan: Plan, tool: Sequence[str] | None, heldout: bool) -> None:
     """Write down what the folder holds; ValueError where it holds something else. More cases of a study are welcome."""
     note = folder / "plan.json"
-    wanted = {**plan.as_dict(), "tool": tool, "heldout": heldout}
+    wanted = {**plan.as_dict(), "tool": tool, "heldout": heldout, "code": code_version(ROOT)}
     if note.exists():
         there = json.loads(note.read_text())
         other = [name for name, value in wanted.items() if name != "cases" and there.get(name) != value]

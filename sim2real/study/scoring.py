@@ -8,7 +8,13 @@ from typing import Any
 
 SILENT = ("nothing", "parameters")  # kinds of cases in which nothing is missing
 # Numbers that are components of one: the error of each is measured by the size of all.
-VECTORS = (("tilt_x", "tilt_y"), ("warp_xx", "warp_yy", "warp_xy"), ("scale_x", "scale_y", "shear"))
+VECTORS = (
+    ("tilt_x", "tilt_y"),
+    ("warp_xx", "warp_yy", "warp_xy"),
+    ("scale_x", "scale_y", "shear"),
+    ("grain", "turning"),
+)
+PLACES = ("walls", "stream")  # where a law may be that is nothing elsewhere
 OTHER_NAMES = {"e_slope": "slope"}
 
 
@@ -65,7 +71,7 @@ def score(label: str, key: dict[str, Any], answer: dict[str, Any]) -> Score:
     }  # fmt: skip
     if kind in SILENT:
         quiet = names_right and verdict in ("agrees", "parameters_only")
-        return Score(**common, named=quiet, false_alarm=bool(said))
+        return Score(**common, named=quiet, false_alarm=bool(said) if diagnosis else None)
     possible = set(said).union(*(finding.get("also_possible", ()) for finding in findings))
     depends = None
     if kind == "unlisted":
@@ -81,8 +87,8 @@ def score(label: str, key: dict[str, Any], answer: dict[str, Any]) -> Score:
         within=set(truth) <= possible,
         set_size=len(possible) / len(truth) if possible else None,
         depends_right=depends,
-        excess_removed=excess_removed(diagnosis.get("heldout")) if names_right else None,
-        numbers=tuple(number for finding in findings for number in compare(finding, key["values"])),
+        excess_removed=excess_removed(diagnosis.get("heldout")),
+        numbers=tuple(number for finding in findings for number in compare(finding, key)),
     )
 
 
@@ -96,17 +102,24 @@ def excess_removed(heldout: dict[str, Any] | None) -> float | None:
     return (before - after) / (before - floor)
 
 
-def compare(finding: dict[str, Any], values: dict[str, dict[str, float]]) -> list[Number]:
-    """The numbers of a rightly named finding that the key knows, beside the true ones."""
-    truths = values.get(finding["mechanism"], {})
+def compare(finding: dict[str, Any], key: dict[str, Any]) -> list[Number]:
+    """The numbers of a rightly named finding that the key knows, beside the true ones: 0 at another wall or clock."""
+    truths: dict[str, float] = key["values"].get(finding["mechanism"], {})
+    there = _there(finding.get("where", {}), key.get("where", {}).get(finding["mechanism"], {}))
     numbers = []
-    for given, estimate in finding.get("parameters", {}).items():
+    parameters: dict[str, Any] = finding.get("parameters", {})
+    for given, estimate in parameters.items():
         name = OTHER_NAMES.get(given, given)
         if name not in truths:
             continue
-        truth, value = truths[name], estimate["value"]
+        truth, value = truths[name] if there else 0.0, estimate["value"]
         group = next((group for group in VECTORS if name in group), (name,))
         size = hypot(*(truths[one] for one in group))
         covered = estimate["low"] <= truth <= estimate["high"]
         numbers.append(Number(finding["mechanism"], name, truth, value, abs(value - truth) / size, covered))
     return numbers
+
+
+def _there(said: dict[str, Any], truth: dict[str, Any]) -> bool:
+    """Whether a finding is about the wall or the stream that the key is about."""
+    return all(said[name] == truth[name] for name in PLACES if name in said and name in truth)

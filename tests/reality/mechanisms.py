@@ -77,10 +77,12 @@ def _air_drift(rng: Rng, share: float, law: Law, scenario: str) -> Change:
 
 
 def _anisotropy(rng: Rng, share: float, law: Law, scenario: str) -> Change:
+    """Friction along x over that along y; it points straight back, or is a vector of two components that turns."""
     size = 0.25 * share * _sign(rng)
+    ratio = (1.0 + size) / (1.0 - size)
     if rng.uniform() < 0.5:
-        return Change(law={"friction_anisotropy": size}, values={"ratio": size})
-    return Change(law={"friction_ratio": (1.0 + size) / (1.0 - size)})  # a vector: the same along x and along y
+        return Change(law={"friction_anisotropy": size}, values={"ratio": ratio, "grain": size, "turning": 0.0})
+    return Change(law={"friction_ratio": ratio}, values={"ratio": ratio, "grain": size, "turning": size})
 
 
 def _side_force(rng: Rng, share: float, law: Law, scenario: str) -> Change:
@@ -107,14 +109,15 @@ def _tangential(rng: Rng, share: float, law: Law, scenario: str) -> Change:
 
 def _wall_spin(rng: Rng, share: float, law: Law, scenario: str) -> Change:
     mu, decay = 0.15 * share, rng.uniform(0.1, 1.0)
-    return Change(law={"wall_spin": True, "wall_mu": mu, "spin_decay": decay}, values={"mu": mu})
+    values = {"mu": mu, "kappa": law.spin_inertia, "decay": decay}
+    return Change(law={"wall_spin": True, "wall_mu": mu, "spin_decay": decay}, values=values)
 
 
 def _odd_wall(rng: Rng, share: float, law: Law, scenario: str) -> Change:
     wall, delta = int(rng.integers(4)), 0.06 * share * _sign(rng)
     name = ("x0", "x1", "y0", "y1")[wall]
     changes = {"odd_wall": wall, "odd_wall_extra": delta}
-    return Change(law=changes, values={"delta": delta, name: delta}, where={"walls": [name]})
+    return Change(law=changes, values={"delta": delta}, where={"walls": [name]})
 
 
 def _corner(rng: Rng, share: float, law: Law, scenario: str) -> Change:
@@ -145,8 +148,8 @@ def _belt(rng: Rng, share: float, law: Law, scenario: str) -> Change:
 
 def _clock(rng: Rng, share: float, law: Law, scenario: str) -> Change:
     drift = 4e-4 * share * _sign(rng)
-    clock = "encoder_clock" if scenario == "gantry" else "camera_clock"
-    return Change(law={clock: drift}, values={"ppm": 1e6 * drift})
+    clock, stream = ("encoder_clock", "mallet") if scenario == "gantry" else ("camera_clock", "frames")
+    return Change(law={clock: drift}, values={"ppm": 1e6 * drift}, where={"stream": stream})
 
 
 def _scale(rng: Rng, share: float, law: Law, scenario: str) -> Change:
@@ -190,5 +193,4 @@ MECHANISMS = {
 RIVALS = (
     {"tangential_restitution", "wall_friction_spin"},
     {"belt_compliance", "backlash"},
-    {"friction_anisotropy", "air_drift", "friction_patch", "linear_drag"},
 )

@@ -1,4 +1,4 @@
-"""The clock of the encoders runs fast against that of the plans."""
+"""The clock of one stream runs fast against the others': the encoders' here, the camera's where blows show it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ _SOURCE = "crystals of two computers: tens of ppm; a wrong divider: thousands"
 
 EFFECT = Effect(
     regime="sensing",
-    law="t_encoders = t (1 + 1e-6 ppm)",
+    law="a row of the stream is stamped t (1 + 1e-6 ppm), with t on the other streams' clock",
     rows={
         "ppm": Parameter("encoder_clock", "ppm", 0.0, -5000.0, 5000.0, "by which the encoders' clock is fast", _SOURCE)
     },

@@ -42,12 +42,15 @@ class Fit:
 
     def estimate(self, name: str) -> Estimate:
         """A free parameter with its 95 % interval, which ends where the parameter's range does."""
-        k = self.free.index(name)
-        half = float(np.sqrt(self.covariance[k, k]) * student.ppf(0.975, max(self.clusters - 1, 2)))
-        value = float(self.values[name])
+        value, half = float(self.values[name]), self.reach({name: 1.0})
         row = BY_NAME[name]
         low, high = max(value - half, min(row.low, value)), min(value + half, max(row.high, value))
         return Estimate(value, low, high, row.unit)
+
+    def reach(self, slopes: Mapping[str, float]) -> float:
+        """Half the 95 % interval of a number that has these `slopes` by the parameters (none by the others)."""
+        by = np.array([slopes.get(name, 0.0) for name in self.free])
+        return float(np.sqrt(by @ self.covariance @ by) * student.ppf(0.975, max(self.clusters - 1, 2)))
 
 
 def given(values: Mapping[str, float]) -> Fit:

@@ -7,13 +7,13 @@ error of the radii or of the camera's map differs from a delay in blows of slow 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from sim2real.diagnose.contacts import Geometry
 from sim2real.diagnose.encoders import Encoders
-from sim2real.diagnose.strikes import MANY_LAUNCHES, Strike
+from sim2real.diagnose.strikes import Strike
 
 LONGEST = 0.12  # s
 FASTEST = 0.001  # 1, the drift of a clock
@@ -41,6 +41,12 @@ class Meetings:
     launch: np.ndarray
     encoders: Encoders
     touch: float  # m, the sum of the radii
+
+    def without(self, launches: np.ndarray) -> Meetings:
+        """The same without the blows of some launches."""
+        kept = ~np.isin(self.launch, launches)
+        rows = {name: getattr(self, name)[kept] for name in ("t", "place", "push", "covariance", "launch")}
+        return replace(self, **rows)
 
     def gaps(self, delay: np.ndarray, rate: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Gaps (..., n) [m] of puck and mallet, and directions (..., n, 2) from the mallet, for each clock."""
@@ -111,14 +117,15 @@ def search(tables: list[Meetings]) -> tuple[float, float]:
 @dataclass(frozen=True)
 class Fit:
     """A fitted clock. `residual`, `std` (n,) [m] of all blows, nan where the encoders say nothing; `launch` (n,);
-    `met`: those that touched the mallet; `spread`: how much wider than their errors these scatter; `freedom`: how many
-    more they are than what was fitted."""
+    `met`: those that touched the mallet; `seen`: those of the launches that the fit saw; `spread`: how much wider than
+    their errors those that are both scatter; `freedom`: how many more they are than what was fitted."""
 
     clock: Clock
     residual: np.ndarray
     std: np.ndarray
     launch: np.ndarray
     met: np.ndarray
+    seen: np.ndarray
     spread: float
     freedom: int
 
@@ -145,7 +152,7 @@ def fit(tables: list[Meetings], start: tuple[float, float], free: tuple[bool, bo
     theta = np.concatenate([np.where(free, start, 0.0), np.zeros(len(NUISANCE))])
     prior = 1 / np.square(NUISANCE)
     kept = np.flatnonzero([*free, *np.ones(len(NUISANCE), bool)])
-    launch = np.concatenate([MANY_LAUNCHES * k + each.launch for k, each in enumerate(tables)])
+    launch = np.concatenate([each.launch for each in tables])
     seen = ~np.isin(launch, skip)
     for _ in range(12):
         rows = [linearise(each, theta[0], theta[1]) for each in tables]
@@ -173,4 +180,4 @@ def fit(tables: list[Meetings], start: tuple[float, float], free: tuple[bool, bo
     covariance[np.ix_(kept[: sum(free)], kept[: sum(free)])] = inverse[: sum(free), : sum(free)]
     covariance *= spread**2 * (TAIL + 3) / (TAIL + 1)
     clock = Clock(float(theta[0]), float(theta[1]), covariance)
-    return Fit(clock, residual, std, launch, met, float(spread), freedom)
+    return Fit(clock, residual, std, launch, met, seen, float(spread), freedom)

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
+from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.finding import Estimate, Finding, Proof, Rival
 from sim2real.diagnose.sensing.clock import EXACT, TOUCHED, Clock, Fit, Meetings, fit, search
+from sim2real.diagnose.sensing.measured import Measured, measured
 
 MODELS = {"none": (False, False), "camera_delay": (True, False), "clock_drift": (False, True), "both": (True, True)}
-FORMULAS = {
-    "camera_delay": "a frame stamped t shows the encoders' time t - delay_s",
-    "clock_drift": "the camera's clock runs (1 + ppm 1e-6) times as fast as the encoders'",
-}
+DRIFT = EFFECTS["clock_drift"]
+FORMULAS = {"camera_delay": "a frame stamped t shows the encoders' time t - delay_s", "clock_drift": DRIFT.law}
 SURE = 1e-5
 REJECTED = 1e-3
 LATE_AT_LEAST = 0.0005  # s: less is no more than the jitter of stamps
@@ -36,33 +36,37 @@ class ClockAccount:
     told: bool
 
 
-def clock_account(tables: list[Meetings]) -> ClockAccount:
-    """What the blows of all recordings (`tables`) say of the camera's clock."""
-    tables = [each for each in tables if len(each.t) >= 2]
+def clock_account(tables: list[Meetings], apart: np.ndarray) -> ClockAccount:
+    """What the blows of all recordings (`tables`) say of the camera's clock; those of the launches `apart` prove it."""
     nothing = ClockAccount(EXACT, (), None, False)
-    if not tables:
+    seen = [each for each in (one.without(apart) for one in tables) if len(each.t) >= 2]
+    if not seen:
         return nothing
-    start = search(tables)
-    fits = {name: fit(tables, start, free) for name, free in MODELS.items()}
+    start = search(seen)
+    fits = {name: fit(tables, start, free, apart) for name, free in MODELS.items()}
     if fits["both"] is None:
         fits["both"] = fits["camera_delay"]
     full = fits["both"]
     if full is None or full.freedom < 3:
         return nothing
     chance = {name: _chance(each, full, 2 - sum(MODELS[name])) for name, each in fits.items()}
-    span = max(float(np.ptp(each.t)) for each in tables)
+    span = max(float(np.ptp(each.t)) for each in seen)
     name = _choose(chance, full, span)
     told = float(np.sqrt(full.clock.covariance[0, 0])) < 10 * LATE_AT_LEAST
     if name == "none":
         return ClockAccount(EXACT, (), None, told)
     best = fits[name]
     assert best is not None
-    before, after, proof = _prove(tables, start, name, full)
-    if proof.after_m > BETTER * proof.before_m:
+    before = np.concatenate([each.gaps(np.array(0.0), np.array(0.0))[0] for each in tables])
+    before = np.where(full.met, before, np.nan)
+    foretold = measured(before, _foretold(tables, start, MODELS[name], full, apart), full.std, full.launch)
+    unseen = measured(before, np.where(full.seen, np.nan, best.residual), full.std, full.launch)
+    if foretold is None or foretold.proof.after_m > BETTER * foretold.proof.before_m:
         return ClockAccount(EXACT, (), None, told)
+    sizes = unseen or foretold
     named = ("camera_delay", "clock_drift") if name == "both" else (name,)
-    findings = tuple(_finding(each, named, best, fits, chance, full, before, after) for each in named)
-    return ClockAccount(best.clock, findings, proof, True)
+    findings = tuple(_finding(each, named, best, fits, chance, full, sizes) for each in named)
+    return ClockAccount(best.clock, findings, sizes.proof, True)
 
 
 def _choose(chance: dict[str, float], full: Fit, span: float) -> str:
@@ -86,36 +90,29 @@ def _chance(reduced: Fit | None, full: Fit, fewer: int) -> float:
 
 def _squares(each: Fit, full: Fit) -> float:
     """Sum of squares of the blows that met the mallet by the full fit, in units of their errors, none over WORST."""
-    z = np.nan_to_num(each.residual, nan=TOUCHED)[full.met] / (full.std[full.met] * full.spread)
+    used = full.met & full.seen
+    z = np.nan_to_num(each.residual, nan=TOUCHED)[used] / (full.std[used] * full.spread)
     return float((np.clip(z, -WORST, WORST) ** 2).sum())
 
 
-def _prove(tables, start, name: str, full: Fit) -> tuple[float, float, Proof]:
-    """Residuals of blows in launches that no fit saw: rms in units of their errors before and after, and in metres."""
-    launches = np.unique(full.launch)
-    before = np.concatenate([each.gaps(np.array(0.0), np.array(0.0))[0] for each in tables])
-    before, after = np.where(full.met, before, np.nan), np.full(len(before), np.nan)
+def _foretold(tables, start, free: tuple[bool, bool], full: Fit, apart: np.ndarray) -> np.ndarray:
+    """Residuals (n,) [m] of the blows that the full fit saw, each by a fit that did not see its launch; else nan."""
+    launches, found = np.unique(full.launch[full.seen]), np.full(len(full.launch), np.nan)
     for fold in range(FOLDS):
         skip = launches[fold::FOLDS]
-        here = np.isin(full.launch, skip) & full.met
-        each = fit(tables, start, MODELS[name], skip)
+        each = fit(tables, start, free, np.concatenate([apart, skip]))
         if each is not None:
-            after[here] = each.residual[here]
-    both = np.isfinite(before) & np.isfinite(after)
-
-    def rms(r: np.ndarray) -> float:
-        return float(np.sqrt(np.mean(r[both] ** 2)))
-
-    pieces = len(np.unique(full.launch[both]))
-    return rms(before / full.std), rms(after / full.std), Proof(rms(before), rms(after), rms(full.std), pieces)
+            here = np.isin(full.launch, skip)
+            found[here] = each.residual[here]
+    return found
 
 
-def _finding(name: str, named, best: Fit, fits, chance, full: Fit, before: float, after: float) -> Finding:
+def _finding(name: str, named, best: Fit, fits, chance, full: Fit, sizes: Measured) -> Finding:
     index = 0 if name == "camera_delay" else 1
     value = (best.clock.delay, best.clock.rate * 1e6)[index]
     error = float(np.sqrt(best.clock.covariance[index, index])) * (1.0, 1e6)[index]
     reach = float(stats.t.ppf(0.975, best.freedom)) * error
-    unit, label = (("s", "delay_s"), ("1e-6", "ppm"))[index]
+    unit, label = (("s", "delay_s"), (DRIFT.rows["ppm"].unit, "ppm"))[index]
     without = _chance(fits[("camera_delay", "clock_drift")[1 - index]], full, 1) if len(named) == 2 else chance["none"]
     other = ("camera_delay", "clock_drift")[1 - index]
     rival = Rival(
@@ -130,8 +127,9 @@ def _finding(name: str, named, best: Fit, fits, chance, full: Fit, before: float
         formula=FORMULAS[name],
         parameters={label: Estimate(value, value - reach, value + reach, unit)},
         p_value=max(without, 1e-300),
-        before=before,
-        after=after,
+        before=sizes.before,
+        after=sizes.after,
+        where={"stream": "frames"} if index else {},
         values={"camera_latency": value} if index == 0 else {},
         rivals=(rival,) if unlike and len(named) == 1 else (),
     )

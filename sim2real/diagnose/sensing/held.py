@@ -9,6 +9,7 @@ from scipy import stats
 
 from sim2real.diagnose.finding import Estimate, Finding, Proof
 from sim2real.diagnose.pieces import Pieces
+from sim2real.diagnose.sensing.measured import Measured, rms
 from sim2real.recording import Recording
 
 MOVED = 4.0  # in standard deviations of a position
@@ -20,21 +21,24 @@ WORDS = "a frame repeats the position before it, with this probability"
 
 @dataclass(frozen=True)
 class Repeats:
-    """Frames of a moving puck: how many, how many of them are `held`, and how far [m] each of those is off the path."""
+    """Frames of a moving puck. Of each: whether it is `held` (n,) bool, its `launch` (n,), how far it is off the
+    straight way between its neighbours, `miss` (n,) [m], nan where its motion breaks there, and that by the noise
+    alone, `std` (n,) [m]."""
 
-    frames: int
-    held: int
-    error: np.ndarray
-    noise: float
+    held: np.ndarray
+    launch: np.ndarray
+    miss: np.ndarray
+    std: np.ndarray
 
 
-def repeats(recording: Recording, pieces: Pieces) -> Repeats:
-    """Count the exact repeats of a position that the puck reached in motion, and from which it has moved on afterwards.
+def repeats(recording: Recording, pieces: Pieces, launch: np.ndarray) -> Repeats:
+    """The frames of a puck in motion, with the exact repeats of a position from which it has moved on afterwards.
 
-    A puck that rests, and one that comes to rest, do not count; nor do frames that see none, or a wrong one.
+    `launch` (frames,): the number of each row's launch. A puck that rests, and one that comes to rest, do not count;
+    nor do frames that see none, or a wrong one.
     """
     frames = recording.frames
-    nothing = Repeats(0, 0, np.zeros(0), pieces.noise_std)
+    nothing = Repeats(np.zeros(0, bool), np.zeros(0, int), np.zeros(0), np.zeros(0))
     if frames is None or frames.rows < 3:
         return nothing
     p = np.stack([frames["puck_x"], frames["puck_y"]], axis=1)
@@ -48,33 +52,61 @@ def repeats(recording: Recording, pieces: Pieces) -> Repeats:
     went = np.linalg.norm(p[left] - p[here], axis=1)
     moved = MOVED * pieces.noise_std + ROUNDING
     counted = (arrived > moved) & (went > moved) & (left - here - 1 == repeated)
-    error = [w * np.arange(1, m + 1) / (m + 1) for w, m in zip(went[counted], repeated[counted], strict=True)]
-    held = int(repeated[counted].sum())
-    return Repeats(int(counted.sum()) + held, held, np.concatenate([np.zeros(0), *error]), pieces.noise_std)
+    came, here, left, repeated = came[counted], here[counted], left[counted], repeated[counted]
+    held = np.concatenate([np.arange(a + 1, a + 1 + m) for a, m in zip(here, repeated, strict=True)] or [here[:0]])
+    first, last = np.repeat(here, repeated), np.repeat(left, repeated)
+    rows = np.concatenate([here, held])
+    miss, std = _off(frames.t, p, pieces, rows, np.concatenate([came, first]), np.concatenate([left, last]))
+    return Repeats(np.arange(len(rows)) >= len(here), launch[rows], miss, std)
 
 
-def held_finding(counts: list[Repeats]) -> tuple[Finding | None, Proof | None]:
-    """The finding `held_frames`, and what it does to the positions' error; None where repeats are rare."""
-    n, held = sum(each.frames for each in counts), sum(each.held for each in counts)
-    if n == 0:
-        return None, None
-    chance = float(stats.binom.sf(held - 1, n, RARE))
+def _off(t: np.ndarray, p: np.ndarray, pieces: Pieces, row, before, after) -> tuple[np.ndarray, np.ndarray]:
+    """How far [m] the rows are off the straight way between the rows `before` and `after`, nan where a contact or a
+    new launch is between these, and how far their noise takes them, each (n,)."""
+    share = ((t[row] - t[before]) / (t[after] - t[before]))[:, None]
+    miss = np.linalg.norm(p[row] - (1 - share) * p[before] - share * p[after], axis=1)
+    speed = np.linalg.norm(p[after] - p[before], axis=1) / (t[after] - t[before])
+    std = np.hypot(pieces.noise_std, pieces.noise.std(speed)) * np.sqrt(1 + (1 - share[:, 0]) ** 2 + share[:, 0] ** 2)
+    breaks = np.sort([*(hit.frames[1] for hit in pieces.hits), *(start for start, _ in pieces.launches)])
+    broken = np.searchsorted(breaks, after, side="right") > np.searchsorted(breaks, before, side="right")
+    return np.where(broken, np.nan, miss), std
+
+
+def held_finding(counts: list[Repeats], apart: np.ndarray) -> tuple[Finding | None, Proof | None]:
+    """The finding `held_frames`, by all launches but those kept `apart`; in these, how far frames are off their
+    neighbours' way with the repeats and without. None where repeats are rare."""
+    held, launch, miss, std = (
+        np.concatenate([getattr(each, name) for each in counts]) for name in ("held", "launch", "miss", "std")
+    )
+    unseen = np.isin(launch, apart)
+    n, repeated = int((~unseen).sum()), int(held[~unseen].sum())
+    chance = float(stats.binom.sf(repeated - 1, n, RARE)) if n else 1.0
     if chance > SURE:
         return None, None
-    interval = stats.binomtest(held, n).proportion_ci(0.95, "wilson")
-    noise = float(np.sqrt(2 * np.mean([each.noise**2 for each in counts])))
-    error = np.concatenate([each.error for each in counts])
-    before = float(np.sqrt(noise**2 + (error**2).sum() / n))
+    interval = stats.binomtest(repeated, n).proportion_ci(0.95, "wilson")
+    proved = _with_and_without(held[unseen], miss[unseen], std[unseen], launch[unseen])
+    sizes = proved or _with_and_without(held, miss, std, launch)
+    assert sizes is not None
     finding = Finding(
         regime="sensing",
         mechanism="held_frames",
         also_possible=(),
         depends_on=(),
         formula=WORDS,
-        parameters={"fraction": Estimate(held / n, float(interval.low), float(interval.high), "1")},
+        parameters={"fraction": Estimate(repeated / n, float(interval.low), float(interval.high), "1")},
         p_value=max(chance, 1e-300),
-        before=before / noise,
-        after=1.0,
-        values={"held_frames": held / n},
+        before=sizes.before,
+        after=sizes.after,
+        values={"held_frames": repeated / n},
     )
-    return finding, Proof(before, noise, noise, n)
+    return finding, None if proved is None else proved.proof
+
+
+def _with_and_without(held: np.ndarray, miss: np.ndarray, std: np.ndarray, launch: np.ndarray) -> Measured | None:
+    """How far all frames (n,) are off, and the fresh ones alone; None where none is known."""
+    known = np.isfinite(miss)
+    fresh = known & ~held
+    if not fresh.any():
+        return None
+    proof = Proof(rms(miss[known]), rms(miss[fresh]), rms(std[fresh]), len(np.unique(launch[known])))
+    return Measured(rms(miss[known] / std[known]), rms(miss[fresh] / std[fresh]), proof)

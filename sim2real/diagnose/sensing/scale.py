@@ -6,6 +6,7 @@ shear slants the short walls. From glides alone a stretch is a change of drag an
 
 from __future__ import annotations
 
+from collections.abc import Sequence, Set
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +16,7 @@ from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.contacts import Geometry, nominal_lines, wall_axis
 from sim2real.diagnose.finding import Estimate, Finding, Proof
 from sim2real.diagnose.sensing.lines import Line, lines
+from sim2real.diagnose.sensing.measured import measured
 from sim2real.diagnose.strikes import Strike
 
 NAMES = ("scale_x", "scale_y", "shear")
@@ -25,7 +27,7 @@ TOLD = 1e-3  # the same of one of them, once they are
 AT_LEAST = 0.001
 WRONG_SIZE = 0.022
 KNOWN, ROUGHLY = 0.003, 0.01  # errors of a scale above which the lines do not tell it, or not even a wrong size
-FOLDS = 5
+FOLDS = 20  # nearly one launch at a time: a wall has few touches
 
 
 @dataclass(frozen=True)
@@ -38,8 +40,9 @@ class ScaleAccount:
     undetermined: str = ""
 
 
-def scale_account(found: list[Strike], g: Geometry) -> ScaleAccount:
-    """What the strikes at the walls say of the camera's map."""
+def scale_account(found: list[Strike], g: Geometry, unseen: Sequence[Strike] = ()) -> ScaleAccount:
+    """What the strikes `found` at the walls say of the camera's map; those of `unseen` launches serve the proof, or,
+    where there are none, each launch that of the fits without it."""
     values, covariance = fitted_map(found, g)
     std = np.sqrt(np.diag(covariance))
     wrong = wrong_size(values, std, g)
@@ -51,9 +54,11 @@ def scale_account(found: list[Strike], g: Geometry) -> ScaleAccount:
         return ScaleAccount(np.zeros(3), (), None)
     told = (sure < TOLD) & (std < KNOWN)
     kept = np.where(told, values, 0.0)
-    before, after, proof = _prove(found, g)
-    if proof.after_m >= proof.before_m:
+    apart = _distances(lines(list(unseen), g), kept, {s.launch for s in unseen}, g)
+    sizes = measured(*np.concatenate([apart, _foretold(found, g)]).T)
+    if sizes is None or sizes.proof.after_m >= sizes.proof.before_m:
         return ScaleAccount(np.zeros(3), (), None)
+    sizes = measured(*apart.T) or sizes
     reach = 1.96 * std
     estimates = {
         name: Estimate(float(values[k]), float(values[k] - reach[k]), float(values[k] + reach[k]), "1")
@@ -69,11 +74,11 @@ def scale_account(found: list[Strike], g: Geometry) -> ScaleAccount:
         formula=EFFECTS["scale_error"].law,
         parameters=estimates,
         p_value=max(chance, 1e-300),
-        before=before,
-        after=after,
+        before=sizes.before,
+        after=sizes.after,
         values={rows[name].name: float(values[k]) for k, name in enumerate(NAMES) if told[k]},
     )
-    return ScaleAccount(kept, (finding,), proof)
+    return ScaleAccount(kept, (finding,), sizes.proof)
 
 
 def fitted_map(found: list[Strike], g: Geometry) -> tuple[np.ndarray, np.ndarray]:
@@ -123,27 +128,28 @@ def _solve(walls: dict[str, Line], g: Geometry) -> tuple[np.ndarray, np.ndarray]
     return (inverse @ (jacobian.T @ (weight @ seen)))[:3], inverse[:3, :3]
 
 
-def _prove(found: list[Strike], g: Geometry) -> tuple[float, float, Proof]:
-    """Distances of touches from their lines in launches that no fit saw: rms in errors before, after; in metres."""
+def _foretold(found: list[Strike], g: Geometry) -> np.ndarray:
+    """`_distances` of all touches, each by a map fitted without its launch."""
     launches = sorted({s.launch for s in found})
-    whole = lines(found, g)
-    rest: list[tuple[float, float, float]] = []
-    for fold in range(FOLDS):
+    whole, rows = lines(found, g), [np.zeros((0, 4))]
+    for fold in range(min(FOLDS, len(launches))):
         skip = set(launches[fold::FOLDS])
         values, covariance = _solve(lines(found, g, skip), g)
-        values = np.where(np.sqrt(np.diag(covariance)) < KNOWN, values, 0.0)
-        for wall, line in whole.items():
-            here = np.isin(line.launch, list(skip))
-            expected = np.full(int(here.sum()), nominal_lines(g)[wall])
-            axis, _ = wall_axis(wall)
-            moved = expected * (1 + values[axis])
-            if axis == 0:
-                moved = moved + values[2] * (g.width / 2 + line.along[here])
-            rest += zip(line.place[here] - expected, line.place[here] - moved, line.std[here], strict=True)
-    before, after, std = np.array(rest).T
+        rows.append(_distances(whole, np.where(np.sqrt(np.diag(covariance)) < KNOWN, values, 0.0), skip, g))
+    return np.concatenate(rows)
 
-    def rms(r: np.ndarray) -> float:
-        return float(np.sqrt(np.mean(r**2)))
 
-    proof = Proof(rms(before), rms(after), rms(std), len(launches))
-    return rms(before / std), rms(after / std), proof
+def _distances(walls: dict[str, Line], values: np.ndarray, launches: Set[int], g: Geometry) -> np.ndarray:
+    """Distances of the touches in `launches` from their lines, by the camera's own map and by the map `values`, their
+    errors [m], and their launches: (n, 4)."""
+    rows = [np.zeros((0, 4))]
+    for wall, line in walls.items():
+        here = np.isin(line.launch, list(launches))
+        expected = np.full(int(here.sum()), nominal_lines(g)[wall])
+        axis, _ = wall_axis(wall)
+        moved = expected * (1 + values[axis])
+        if axis == 0:
+            moved = moved + values[2] * (g.width / 2 + line.along[here])
+        place = line.place[here]
+        rows.append(np.stack([place - expected, place - moved, line.std[here], line.launch[here]], axis=1))
+    return np.concatenate(rows)

@@ -13,7 +13,6 @@ from tests.reality import Law
 from tests.reality.camera import Camera
 from tests.reality.record import make_recording
 
-pytest.importorskip("pysindy")
 CLEAN = Camera(noise=0.00002, jitter=0.0)
 
 

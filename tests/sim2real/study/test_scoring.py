@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from math import sqrt
 from pathlib import Path
 from typing import Any
 
@@ -9,9 +11,16 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from puckpilot_env.physics.effects import EFFECTS
+from sim2real.diagnose.engine.choose import Law as Named
+from sim2real.diagnose.engine.fit import Fit
+from sim2real.diagnose.labels import labelled
 from sim2real.study.confusion import confuse, draw
 from sim2real.study.figures import by_mechanism, figures, median, share
-from sim2real.study.scoring import Score, score
+from sim2real.study.scoring import OTHER_NAMES, Score, score
+from tests.reality import Law
+from tests.reality.mechanisms import MECHANISMS
+from tests.reality.puck import acceleration
 
 TILT = {"tilt_x": 0.03, "tilt_y": -0.04}
 
@@ -71,6 +80,51 @@ def test_wrong_names_wrong_places_and_one_name_too_many():
     assert not score("a", two, answer(finding("table_tilt"))).named
 
 
+def test_a_number_of_another_wall_is_held_against_nothing_there():
+    truth = key("one", "wall_to_wall_restitution", regimes=("wall",))
+    truth |= {"values": {"wall_to_wall_restitution": {"delta": 0.05}}}
+    truth |= {"where": {"wall_to_wall_restitution": {"walls": ["y0"]}}}
+    for walls, error, covered in ((["y0"], 0.2, True), (["x1"], 1.2, False)):
+        found = finding(
+            "wall_to_wall_restitution", "wall", parameters={"delta": number(0.06, 0.02)}, where={"walls": walls}
+        )
+        (delta,) = score("a", truth, answer(found)).numbers
+        assert (delta.error, delta.covered) == (pytest.approx(error), covered)
+
+
+def test_the_excess_counts_whatever_was_said_of_it():
+    heldout = {"before_m": 0.002, "after_m": 0.002, "floor_m": 0.0005, "pieces": 9}
+    silent = answer(verdict="parameters_only", heldout=heldout)
+    assert score("a", key("one", "table_tilt"), silent).excess_removed == 0.0
+    wrong = answer(finding("side_force"), heldout={**heldout, "after_m": 0.00125})
+    assert score("a", key("one", "table_tilt"), wrong).excess_removed == pytest.approx(0.5)
+    assert score("a", key("one", "table_tilt"), answer(verdict="undetermined")).excess_removed is None
+
+
+@pytest.mark.parametrize("name", sorted(set(MECHANISMS) & set(EFFECTS)))
+def test_what_a_diagnosis_calls_its_numbers_the_key_does_too(name: str):
+    rng = np.random.default_rng(1)
+    draws = [MECHANISMS[name].draw(rng, 1.0, Law(), MECHANISMS[name].scenarios[0]) for _ in range(40)]
+    known = {label for change in draws for label in change.values}
+    rows = [row.name for row in EFFECTS[name].rows.values()]
+    free = ("wall_restitution", "mallet_restitution", *rows)
+    fitted = Fit(dict.fromkeys(free, 0.5), free, 1e-8 * np.eye(len(free)), 0.0, 0, 100, ())
+    labels = {OTHER_NAMES.get(label, label) for label in labelled(Named(name, tuple(rows[:1])), fitted)}
+    assert labels & known and labels - known <= {"spin_coefficient"}  # of a spin that no camera sees
+
+
+def test_the_ratio_of_an_uneven_friction_is_what_a_puck_feels_along_x_over_along_y():
+    for seed in range(6):
+        change = MECHANISMS["friction_anisotropy"].draw(np.random.default_rng(seed), 1.0, Law(), "launches")
+        law = replace(Law(drag=0.0), **change.law).numbers()
+        x, y = (acceleration(law, 0.0, 1.0, 0.5, *v, 0.0, 1.0)[axis] for axis, v in enumerate(((1.0, 0.0), (0.0, 1.0))))
+        slant = np.array(acceleration(law, 0.0, 1.0, 0.5, sqrt(0.5), sqrt(0.5), 0.0, 1.0))
+        values = change.values
+        assert values["ratio"] == pytest.approx(x / y)
+        assert values["grain"] == pytest.approx((x - y) / (x + y))
+        assert values["turning"] == pytest.approx(2.0 * slant @ (-sqrt(0.5), sqrt(0.5)) / -(x + y), abs=1e-12)
+
+
 def test_silence_where_nothing_is_missing():
     for kind in ("nothing", "parameters"):
         assert score("a", key(kind), answer(verdict="agrees")).named
@@ -92,7 +146,7 @@ def test_no_diagnosis_is_never_right():
     failed = {"seconds": 1.0, "error": "boom", "diagnosis": None}
     for kind, names in (("nothing", ()), ("one", ("table_tilt",))):
         one = score("a", key(kind, *names), failed)
-        assert (one.named, one.verdict, one.error) == (False, "failed", "boom")
+        assert (one.named, one.verdict, one.error, one.false_alarm) == (False, "failed", "boom", None)
 
 
 def test_shares_and_medians_have_the_intervals_of_the_books():
@@ -105,6 +159,21 @@ def test_shares_and_medians_have_the_intervals_of_the_books():
     middle = median("m", values, most=2.9)
     assert middle.value == np.median(values) and not middle.reached
     assert middle.high - middle.low == pytest.approx(2 * 1.96 * 1.2533 / 20.0, rel=0.3)  # normal theory
+    ranks = median("m", range(1, 21))
+    assert (ranks.low, ranks.high) == (6.0, 15.0)  # tables
+    few = median("m", [1.0] * 5, most=1.5)  # of five, all are on one side once in 16 times
+    assert (few.reached, few.sure) == (True, False)
+    assert (few.as_dict()["low"], few.as_dict()["least"]) == (None, None)  # JSON has no infinity
+
+
+def test_a_bar_is_surely_reached_or_missed_where_the_whole_interval_says_so():
+    """Clopper and Pearson: 0 of 24 is up to 0.142, 0 of 400 up to 0.009; 20 of 24 is 0.626 to 0.953."""
+    few, many = (share("x", [False] * n, most=0.01) for n in (24, 400))
+    assert (few.reached, few.sure, many.reached, many.sure) == (True, False, True, True)
+    some = [True] * 20 + [False] * 4
+    sure = {least: (share("x", some, least).reached, share("x", some, least).sure) for least in (0.6, 0.8, 0.9, 0.96)}
+    assert sure == {0.6: (True, True), 0.8: (True, False), 0.9: (False, False), 0.96: (False, True)}
+    assert share("x", [], 0.5).sure is None
 
 
 def made() -> list[Score]:

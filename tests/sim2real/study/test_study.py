@@ -62,14 +62,22 @@ def test_a_study_asks_blindly_scores_and_goes_on_where_it_stopped(tmp_path: Path
         call(*words, "--mechanism", "table_tilt")
     call("--cases", "4", *words[2:], "--json")  # more of the same is welcome
     assert len(log.read_text().splitlines()) == 6
+    plan = json.loads((out / "plan.json").read_text())
+    (out / "plan.json").write_text(json.dumps({**plan, "code": "older"}))
+    with pytest.raises(ValueError, match=r"another study \(code older\)"):
+        call(*words)
 
 
 def test_a_study_of_one_kind_counts_silence_as_right(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     tool, _ = script(tmp_path)
-    assert call("--cases", "2", "--only", "nothing", "--out", str(tmp_path / "out"), "--tool", tool, "--json") == 0
+    words = ["--cases", "2", "--only", "nothing", "--out", str(tmp_path / "out"), "--tool", tool]
+    assert call(*words, "--json") == 0
     figures = {figure["name"]: figure for figure in json.loads(capsys.readouterr().out)["figures"]}
     assert figures["nothing missing, and says so"]["value"] == 1.0
     assert figures["false alarms where nothing is missing"]["count"] == 2
+    call(*words)
+    alarms = next(line for line in capsys.readouterr().out.splitlines() if "false alarms" in line)
+    assert alarms.rstrip().endswith("reached, not sure")  # none of two
 
 
 def test_what_cannot_be_studied_is_said_in_one_line(tmp_path: Path):

@@ -55,6 +55,7 @@ def diagnosed(recording: Recording) -> Account:
 def test_one_effect_is_named_and_measured(tmp_path: Path, law: Law, name: str, parameter: str, value: float) -> None:
     found = diagnosed(recorded(tmp_path, law))
     assert [one.mechanism for one in found.findings] == [name]
+    assert found.findings[0].where == ({"stream": "mallet"} if name == "clock_drift" else {})
     estimate = found.findings[0].parameters[parameter]
     width = estimate.high - estimate.low
     assert abs(estimate.value - value) < 0.75 * width  # three standard deviations: once in 400 such tests by chance

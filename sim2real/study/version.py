@@ -1,0 +1,18 @@
+"""Which code a study's answers are of: those of older code must not stand for those of newer."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+
+FOLDERS = ("sim2real", "puckpilot_env", "tests/reality")  # the diagnosis, its physics, and the table that it is told of
+
+
+def code_version(root: Path) -> str:
+    """A short digest of all that makes cases, diagnoses and scores in the checkout `root`."""
+    digest = hashlib.sha256()
+    for folder in FOLDERS:
+        for file in sorted((root / folder).rglob("*.py")):
+            text = file.read_bytes()
+            digest.update(f"{file.relative_to(root).as_posix()} {len(text)}\n".encode() + text)
+    return digest.hexdigest()[:12]

@@ -1,0 +1,24 @@
+"""The digest of the code changes with every source that a study leans on, and with nothing else."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from sim2real.study.version import code_version
+
+
+def test_any_source_that_answers_or_cases_depend_on_counts(tmp_path: Path):
+    files = ("sim2real/diagnose/a.py", "puckpilot_env/physics/b.py", "tests/reality/c.py")
+    for name in files:
+        (tmp_path / name).parent.mkdir(parents=True)
+        (tmp_path / name).write_text("x = 1\n")
+    seen = [code_version(tmp_path)]
+    for name in files:
+        (tmp_path / name).write_text("x = 2\n")
+        seen.append(code_version(tmp_path))
+    (tmp_path / files[0]).rename(tmp_path / "sim2real/diagnose/z.py")
+    seen.append(code_version(tmp_path))
+    assert len(set(seen)) == 5
+    (tmp_path / "sim2real/diagnose/notes.txt").write_text("no source")
+    (tmp_path / "tests/test_other.py").write_text("x = 1\n")
+    assert code_version(tmp_path) == seen[-1]
