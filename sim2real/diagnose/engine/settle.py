@@ -8,6 +8,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from puckpilot_env.parameters import BY_NAME
+from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.choose import Law, Model
 from sim2real.diagnose.engine.fit import Fit, fit, soft_loss
 from sim2real.diagnose.problem import Columns, Problem
@@ -15,6 +16,7 @@ from sim2real.diagnose.problem import Columns, Problem
 CLEAR = 1e-4  # chance at which the simulator's own numbers would be refused though they are right
 FAR_OFF = 2.0  # mean square residual beyond 1 of a typical launch, in units of the noise, that nothing explains
 REMAINDER = 0.1  # share of what the baseline leaves that must remain to be worth a law
+MANY_ASTRAY = 0.25  # of the launches: more than accidents, such as touches that nobody saw, spoil
 NEAR, HALF_WAY = 0.3, 0.3  # the same beside listed laws, and as a share of what the baseline leaves
 STRAY = 6.0  # times the usual sum of squares: a launch in which something else happened
 MOST_STRAY = 0.1
@@ -25,9 +27,18 @@ FEW_ROUNDS = 4  # of a fit, to see which start leads farthest
 
 def far_off(problem: Problem, baseline: Fit, law: Fit, use: np.ndarray) -> bool:
     """Whether something must be missing still: a bare baseline leaves far more than noise of most launches (of most
-    units, where single ones may be wrong altogether), or listed laws leave much of what it does."""
+    units, where single ones may be wrong altogether) or of many, or listed laws leave much of what it does."""
     before, after = (_typical(problem, one, use) - 1.0 for one in (baseline, law))
-    return after > FAR_OFF if law is baseline else after > NEAR and after > HALF_WAY * before
+    if law is baseline:
+        return after > FAR_OFF or _astray(problem, law, use) > MANY_ASTRAY
+    return after > NEAR and after > HALF_WAY * before
+
+
+def _astray(problem: Problem, law: Fit, use: np.ndarray) -> float:
+    """The share of launches of which a law leaves what noise alone hardly ever does."""
+    seen = problem.freedom[use] > 0.0
+    freedom = problem.freedom[use][seen]
+    return float(np.mean(left_of(problem, law, use)[seen] * freedom > gram.soft_from(freedom)))
 
 
 def nearly_all(problem: Problem, baseline: Fit, law: Fit, use: np.ndarray) -> bool:
