@@ -14,6 +14,7 @@ from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.choose import Law, Model
 from sim2real.diagnose.engine.explain import Explained
 from sim2real.diagnose.engine.fit import Fit, fit, soft_loss
+from sim2real.diagnose.engine.rivals import chance, compare
 from sim2real.diagnose.engine.twins import twins
 from sim2real.diagnose.finding import Account, Estimate, Finding, Proof
 from sim2real.diagnose.labels import labelled
@@ -119,17 +120,19 @@ def _listed(problem: Problem, found: Explained, law: Law, before: float, after: 
     effect = EFFECTS[law.name]
     fitted = found.final
     rows = [name for name in problem.rows(law) if name in fitted.free]
+    also, rivals = compare(found.chooser, found.model, law, found.screen)
     return Finding(
-        effect.regime, law.name, tuple(found.also.get(law.name, ())), effect.depends_on, effect.law,
-        labelled(law, fitted), found.chance[law.name], before, after, whereabouts(law, fitted.values),
-        {**law.start, **{name: fitted.values[name] for name in rows}}, found.rivals.get(law.name, ()),
+        effect.regime, law.name, also, effect.depends_on, effect.law, labelled(law, fitted),
+        chance(found.chooser, found.model, law, found.screen), before, after, whereabouts(law, fitted.values),
+        {**law.start, **{name: fitted.values[name] for name in rows}}, rivals,
     )  # fmt: skip
 
 
 def _unlisted(problem: Problem, found: Explained, law: Law, before: float, after: float) -> Finding:
+    also, rivals = compare(found.chooser, found.model, law, found.screen)
     return Finding(
-        problem.regime, law.mechanism, tuple(found.also.get(law.name, ())), (law.family,), law.name,
-        _sizes(found, law), found.chance[law.name], before, after, {}, found.switched(), found.rivals.get(law.name, ()),
+        problem.regime, law.mechanism, also, (law.family,), law.name, _sizes(found, law),
+        chance(found.chooser, found.model, law, found.screen), before, after, {}, found.switched(), rivals,
     )  # fmt: skip
 
 

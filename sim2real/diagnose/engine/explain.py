@@ -12,9 +12,7 @@ from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.choose import LEAST_FORETOLD, LEAST_SHARE, Chooser, Gain, Law, Model
 from sim2real.diagnose.engine.fit import Fit, fit
 from sim2real.diagnose.engine.noise import dispersion
-from sim2real.diagnose.engine.rivals import chance, compare
 from sim2real.diagnose.engine.settle import as_shipped, calm_clusters, far_off, nearly_all, refit, standing, undisturbed
-from sim2real.diagnose.finding import Rival
 from sim2real.diagnose.problem import Columns, Problem
 
 MOST_LISTED = 4
@@ -26,9 +24,8 @@ MOSTLY = 2.0 / 3.0  # of what a family alone explains; listed laws that explain 
 @dataclass(frozen=True)
 class Explained:
     """What the engine found. `law`: the final fit, of the baseline and the listed laws `listed`; `unlisted` and its
-    coefficients `theta` are a family on top of it. `also` and `rivals` are by the name of the law. `doubtful`: what too
-    few launches ask for, where nothing was found; `lost`: whether something is missing that no law surely explains.
-    `columns` are those of the final law, `screen` and `model` those in which it was chosen."""
+    coefficients `theta` are a family on top of it. `doubtful`: what too few launches ask for, where nothing was found;
+    `lost`: whether something is missing that no law surely explains. `columns` are those of the final law; `model` was chosen by `chooser` in those of `screen`."""
 
     baseline: Fit
     law: Fit
@@ -40,10 +37,8 @@ class Explained:
     theta_covariance: np.ndarray
     columns: Columns
     screen: Columns
+    chooser: Chooser
     model: Model
-    chance: Mapping[str, float]
-    also: Mapping[str, tuple[str, ...]]
-    rivals: Mapping[str, tuple[Rival, ...]]
     doubtful: Law | None
     lost: bool
 
@@ -91,12 +86,9 @@ def explain(
     if len(calm) < len(use):
         law = refit(problem, baseline, kept, screen, calm)
     theta, spread, columns = _smooth(problem, law, unlisted, model, screen, use)
-    compared = {one.name: compare(chooser, model, one, laws) for one in model.laws}
     return Explained(
         baseline, law, as_shipped(problem, shipped, baseline, use, beyond), beyond, kept,
-        unlisted, theta, spread, columns, screen, model,
-        {one.name: chance(chooser, model, one, screen) for one in model.laws},
-        {name: also for name, (also, _) in compared.items()}, {name: rivals for name, (_, rivals) in compared.items()},
+        unlisted, theta, spread, columns, screen, chooser, model,
         None if model.laws else _doubtful(chooser, gains),
         clear and not model.laws and far_off(problem, baseline, law, use),
     )  # fmt: skip

@@ -16,12 +16,12 @@ def chance(chooser: Chooser, model: Model, law: Law, screen: Columns) -> float:
     return float(min(max(tried * chi2.sf(gained, len(law.columns)), 1e-300), 1.0))
 
 
-def compare(chooser: Chooser, model: Model, law: Law, others) -> tuple[tuple[str, ...], tuple[Rival, ...]]:
+def compare(chooser: Chooser, model: Model, law: Law, screen: Columns) -> tuple[tuple[str, ...], tuple[Rival, ...]]:
     """What could stand in the place of `law`: names that the data cannot tell from it, and the rivals that lost."""
     without = model.minus(law)
     best = chooser.foretold(model)
     also, rivals = [], {}
-    for other in others:
+    for other in (*screen.listed, *screen.families):
         if other.name == law.name or other.name in {one.name for one in model.laws}:
             continue
         gain = chooser.gain(without, other)

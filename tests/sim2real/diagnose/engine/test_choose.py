@@ -112,6 +112,6 @@ def test_columns_that_are_one_are_both_possible():
     twin = gram.Grams(grams.names, grams.g[:, same][:, :, same], grams.b[:, same], grams.s, grams.count)
     chooser = Chooser(twin, UNITS, EVERY)
     model = BASE.plus(LAWS[0], np.inf)
-    also, rivals = compare(chooser, model, LAWS[0], LAWS)
+    also, rivals = compare(chooser, model, LAWS[0], Columns(twin, LAWS, []))
     assert also == ("patch",)
     assert {rival.mechanism: rival.reason for rival in rivals}["patch"].startswith("as good")
