@@ -72,9 +72,10 @@ class Problem(Protocol):
         """
         ...
 
-    def columns(self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray) -> Columns:
+    def columns(self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None) -> Columns:
         """The columns of all clusters at a law: the base's, those of other parameters `free`, the listed effects' and
-        the families'. What must be looked for, such as a place, is looked for in the clusters `use` alone."""
+        the families'. What must be looked for, such as a place, is looked for in the clusters `use` alone, or not at
+        all where they are None."""
         ...
 
     def rows(self, law: Law) -> tuple[str, ...]:

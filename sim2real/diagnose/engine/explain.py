@@ -25,7 +25,8 @@ MOSTLY = 2.0 / 3.0  # of what a family alone explains; listed laws that explain 
 class Explained:
     """What the engine found. `law`: the final fit, of the baseline and the listed laws `listed`; `unlisted` and its
     coefficients `theta` are a family on top of it. `doubtful`: what too few launches ask for, where nothing was found;
-    `lost`: whether something is missing that no law surely explains. `columns` are those of the final law; `model` was chosen by `chooser` in those of `screen`."""
+    `lost`: whether something is missing that no law surely explains. `columns` are those of the final law; `model` was
+    chosen by `chooser` in those of `screen`."""
 
     baseline: Fit
     law: Fit
@@ -89,7 +90,7 @@ def explain(
     return Explained(
         baseline, law, as_shipped(problem, shipped, baseline, use, beyond), beyond, kept,
         unlisted, theta, spread, columns, screen, chooser, model,
-        None if model.laws else _doubtful(chooser, gains),
+        _doubtful(chooser, gains) if clear and not model.laws else None,
         clear and not model.laws and far_off(problem, baseline, law, use),
     )  # fmt: skip
 
@@ -102,7 +103,7 @@ def _completed(
     if not nearly_all(problem, baseline, law, use):
         columns = screen
         if law is not baseline:
-            columns = _tellable(problem.columns(law.values, law.free, use), problem, use)
+            columns = _tellable(problem.columns(law.values, law.free, None), problem, use)
         refitted = Chooser(columns.grams, problem.units, use, chooser.dispersion)
         model = _with_remainder(chooser, listed, _remainder(chooser, listed, refitted, law, columns), screen)
     if any(one.family for one in model.laws) or not far_off(problem, baseline, law, use):
@@ -164,7 +165,7 @@ def _smooth(problem: Problem, law: Fit, unlisted: Law | None, model: Model, scre
     """Coefficients of the family on top of the final fit, their covariance, and the columns that they belong to."""
     if unlisted is None:
         return np.zeros(0), np.zeros((0, 0)), screen
-    columns = problem.columns(law.values, law.free, use)
+    columns = problem.columns(law.values, law.free, None)
     spread = model.spreads[model.laws.index(unlisted)]
     index, ridge = Model(law.free, (unlisted,), (spread,)).columns(columns.grams)
     units = problem.units.of(use)

@@ -14,7 +14,7 @@ from sim2real.diagnose.engine.noise import dispersion
 from sim2real.diagnose.finding import Twin
 from sim2real.diagnose.problem import Units
 
-DRAWS = 10
+DRAWS = 6
 NULL, PERMUTED = "null", "permutation"
 
 

@@ -100,7 +100,7 @@ class GantryProblem:
             moved[name] += step
         return (self._path(moved, late) - r) / step
 
-    def columns(self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray) -> Columns:
+    def columns(self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None) -> Columns:
         """See `Problem.columns`."""
         return gantry_columns(self, values, free)
 

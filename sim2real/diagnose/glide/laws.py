@@ -38,7 +38,9 @@ def listed_laws() -> list[Law]:
     return found
 
 
-def glide_columns(problem: GlideProblem, values: Mapping[str, float], free: Sequence[str], use: np.ndarray) -> Columns:
+def glide_columns(
+    problem: GlideProblem, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None
+) -> Columns:
     """Every column of a glide problem at one law; places of other friction are looked for in the clusters `use`."""
     path, by_start = problem.linearised(values)
     motion = problem.motion(path)
@@ -49,7 +51,9 @@ def glide_columns(problem: GlideProblem, values: Mapping[str, float], free: Sequ
     listed = listed_laws()
     free = tuple(dict.fromkeys((*problem.base, *(name for law in listed for name in law.columns), *free)))
     exact = problem.residuals(values, free, np.arange(problem.clusters))
-    patches, patch_columns = _patches(motion, columns, exact, len(problem.base), np.isin(exact.cluster, use))
+    patches, patch_columns = [], np.zeros((len(exact.r), 0))
+    if use is not None:
+        patches, patch_columns = _patches(motion, columns, exact, len(problem.base), np.isin(exact.cluster, use))
     blocks, names, families = [exact.jacobian, patch_columns], [*free, *(law.columns[0] for law in patches)], []
     for name, (depends, shape) in FAMILIES.items():
         block = columns(shape(motion))

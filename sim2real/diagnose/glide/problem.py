@@ -50,7 +50,7 @@ class GlideProblem:
         self.freedom = np.bincount(data.cluster, self.units.freedom, data.clusters)
         self.noise_m = float(np.sqrt(np.mean(data.std**2)))
 
-    def columns(self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray) -> Columns:
+    def columns(self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None) -> Columns:
         """See `Problem.columns`."""
         return glide_columns(self, values, free, use)
 

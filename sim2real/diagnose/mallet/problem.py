@@ -97,7 +97,7 @@ class MalletProblem:
         flat = velocities.reshape(len(self.data), 3, -1)
         return np.einsum("nij,njk->nik", self._whiten, flat).reshape(3 * len(self.data), *shape[2:])
 
-    def columns(self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray) -> Columns:
+    def columns(self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None) -> Columns:
         """See `Problem.columns`."""
         return mallet_columns(self, values, free)
 

@@ -138,7 +138,7 @@ class WallProblem:
         flat = velocities.reshape(len(self.data), 2, -1)
         return np.einsum("nij,njk->nik", self._whiten, flat).reshape(2 * len(self.data), *shape[2:])
 
-    def columns(self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray) -> Columns:
+    def columns(self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None) -> Columns:
         """See `Problem.columns`."""
         return wall_columns(self, values, free)
 

@@ -27,7 +27,7 @@ def test_a_true_law_gains_nothing_on_noise():
     twin = twins(_grams(), UNITS, ONE, [], USE, PROOF)[NULL]
     assert twin.before == pytest.approx(1.0, abs=0.03)
     assert twin.after == pytest.approx(twin.before, abs=0.01)
-    assert (twin.named, twin.of) == (0, 10)
+    assert (twin.named, twin.of) == (0, 6)
 
 
 def test_a_true_law_gains_nothing_where_launches_disagree_on_its_sign():
