@@ -53,18 +53,25 @@ def make_seat(
     render_mode: str | None = None,
     *,
     period: float | None = None,
-    max_steps: int | None = None,
+    max_cycles: int | None = None,
     parameters: Mapping[str, float] | None = None,
     effects: Effects | None = None,
 ) -> SingleEnv:
     """A Gymnasium environment of one seat (0 or 1); `opponent` plays the other.
 
-    `period` [s], `max_steps`, `parameters` and `effects` are those of `Tables`, which calls the third `values`. Raises
+    `period` [s], `max_cycles`, `parameters` and `effects` are those of `Tables`. Raises
     ValueError, in one line, for anything that cannot be.
     """
     seed = fresh_seed()
     tables = Tables(
-        variant, 1, seed=seed, autoreset=False, period=period, max_steps=max_steps, values=parameters, effects=effects
+        variant,
+        1,
+        seed=seed,
+        autoreset=False,
+        period=period,
+        max_cycles=max_cycles,
+        parameters=parameters,
+        effects=effects,
     )
     return SingleEnv(tables, find_opponent(opponent, tables, seed), seat=seat, render_mode=render_mode)
 
@@ -79,7 +86,7 @@ def make_seats(
     threads: int = 1,
     copy: bool = True,
     period: float | None = None,
-    max_steps: int | None = None,
+    max_cycles: int | None = None,
     parameters: Mapping[str, float] | None = None,
     effects: Effects | None = None,
 ) -> TablesVectorEnv:
@@ -89,7 +96,7 @@ def make_seats(
     """
     seed = fresh_seed()
     tables = Tables(
-        variant, num_envs, seed=seed, threads=threads, period=period, max_steps=max_steps, values=parameters,
+        variant, num_envs, seed=seed, threads=threads, period=period, max_cycles=max_cycles, parameters=parameters,
         effects=effects,
     )  # fmt: skip
     found = find_opponent(opponent, tables, seed)

@@ -60,7 +60,7 @@ def play(
     games: int,
     seed: int,
     *,
-    values: Mapping[str, float] | None = None,
+    parameters: Mapping[str, float] | None = None,
     effects: Effects | None = None,
     progress: Progress | None = None,
     threads: int = 1,
@@ -68,7 +68,7 @@ def play(
 ) -> MatchResult:
     """Play `games` episodes of `variant` (or its id), half of them with the seats exchanged.
 
-    Pair i uses random stream i of `seed` in both halves; of an odd number, the last pair is half. `values` and
+    Pair i uses random stream i of `seed` in both halves; of an odd number, the last pair is half. `parameters` and
     `effects` are those of `Tables`. `watch` sees every step of the games with first in seat 0, table 0 the first of
     them. The same call gives the same result.
     """
@@ -79,7 +79,9 @@ def play(
     for seats, count in (((first, second), (games + 1) // 2), ((second, first), games // 2)):
         if count == 0:
             break
-        tables = Tables(variant, count, seed=seed, threads=threads, autoreset=False, values=values, effects=effects)
+        tables = Tables(
+            variant, count, seed=seed, threads=threads, autoreset=False, parameters=parameters, effects=effects
+        )
         tick = (lambda ended, before=done: progress(before + ended, games)) if progress else None
         halves.append(_play_half(tables, seats, seed, tick, None if halves else watch))
         tables.close()

@@ -65,7 +65,7 @@ def play_tournament(
     games: int,
     seed: int,
     *,
-    values: Mapping[str, float] | None = None,
+    parameters: Mapping[str, float] | None = None,
     effects: Effects | None = None,
     threads: int = 1,
     progress: Progress | None = None,
@@ -87,7 +87,17 @@ def play_tournament(
     for number, (first, second) in enumerate(pairs):
         tick = _counting_on(progress, number * games, len(pairs) * games)
         matches.append(
-            play(variant, first, second, games, seed, values=values, effects=effects, progress=tick, threads=threads)
+            play(
+                variant,
+                first,
+                second,
+                games,
+                seed,
+                parameters=parameters,
+                effects=effects,
+                progress=tick,
+                threads=threads,
+            )
         )
     results = {match.players: match.results for match in matches}
     payoff, ratings = count_games(results), fit_ratings_from_pairs(results, seed)

@@ -59,7 +59,7 @@ class TableEnv(ParallelEnv):
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise ValueError(f"render_mode is {render_mode!r}; expected None or 'rgb_array'")
         self._tables = Tables(
-            variant, 1, autoreset=False, period=period, max_steps=max_cycles, values=parameters, effects=effects,
+            variant, 1, autoreset=False, period=period, max_cycles=max_cycles, parameters=parameters, effects=effects,
             seed=fresh_seed(),
         )  # fmt: skip
         self.metadata = {

@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from puckpilot_env import batch, parameters, state
+from puckpilot_env import batch, state
 from puckpilot_env.effects_file import Effects, effect_values
 from puckpilot_env.game import mirror, observation, sensing
 from puckpilot_env.kernel import announce_compilation
+from puckpilot_env.parameters import as_matrix, check_together, make_records, refuse_not_simulated
 from puckpilot_env.real_numbers import real_numbers
 from puckpilot_env.team import Team
 from puckpilot_env.variants import Variant, find_variant
@@ -60,15 +61,15 @@ class Tables:
         threads: int = 1,
         autoreset: bool = True,
         period: float | None = None,
-        max_steps: int | None = None,
-        values: Mapping[str, float] | None = None,
+        max_cycles: int | None = None,
+        parameters: Mapping[str, float] | None = None,
         effects: Effects | None = None,
     ) -> None:
         """Make `tables` tables of a variant (or its id) and reset them.
 
-        `period` [s] of a step replaces the variant's (from 1/120 s on), `max_steps` its step limit (truncation);
-        `effects` adds physics beyond the baseline (see `effects_file`), `values` puts parameters in place of all
-        others, by name; one that is given is no longer drawn.
+        `period` [s] of a step replaces the variant's (from 1/120 s on), `max_cycles` its step limit (truncation);
+        `effects` adds physics beyond the baseline (see `effects_file`), `parameters` stand in place of all others, by
+        name; one that is given is no longer drawn.
 
         Raises ValueError, in one line, for anything that cannot be.
         """
@@ -78,13 +79,13 @@ class Tables:
             raise ValueError(f"threads is {threads!r}; expected a whole number from 1 to 256")
         if isinstance(variant, str):
             variant = find_variant(variant)
-        values = {**effect_values(effects), **(values or {})}
-        parameters.refuse_not_simulated(values)
-        variant = _without_draws(_with_timing(variant, period, max_steps), values)
+        values = {**effect_values(effects), **(parameters or {})}
+        refuse_not_simulated(values)
+        variant = _without_draws(_with_timing(variant, period, max_cycles), values)
         self.variant = variant
         self.threads = min(int(threads), int(tables))
         self.autoreset = autoreset
-        self.params = parameters.make_records(tables, {**variant.parameters, **values})
+        self.params = make_records(tables, {**variant.parameters, **values})
         self.nominal = self.params[:1].copy()
         self._rules = variant.rules()
         self._drawn = variant.drawn()
@@ -109,7 +110,7 @@ class Tables:
             extreme = self.nominal[0].copy()
             for draw in self.variant.draws:
                 extreme[draw.parameter] = getattr(draw, bound)
-            parameters.check_together(extreme)
+            check_together(extreme)
 
     def _frames_kept(self) -> int:
         worst = {name: float(self.nominal[name][0]) for name in ("camera_latency", "frame_rate")}
@@ -124,7 +125,7 @@ class Tables:
     @property
     def _rows(self) -> NDArray[np.float64]:
         """The parameters as a matrix, made anew each time: a kept view would part from `params` in a copy."""
-        return parameters.as_matrix(self.params)
+        return as_matrix(self.params)
 
     def reset(self, seed: int | None = None) -> NDArray[np.float32]:
         """Begin a new episode on every table and return `observations`; with a seed, start its random streams anew."""
@@ -221,16 +222,16 @@ def _rows_of(tables: Any) -> Any:
     return tables if isinstance(tables, slice) else np.atleast_1d(tables)
 
 
-def _with_timing(variant: Variant, period: float | None, max_steps: int | None) -> Variant:
+def _with_timing(variant: Variant, period: float | None, max_cycles: int | None) -> Variant:
     if period is not None:
         if not isinstance(period, int | float) or not SHORTEST_PERIOD - 1e-9 <= period <= LONGEST_PERIOD:
             raise ValueError(f"period is {period!r}; expected a number of seconds from 1/120 to {LONGEST_PERIOD:g}")
         limit = max(round(variant.step_limit * variant.period / period), min(variant.step_limit, 1))
         variant = replace(variant, period=float(period), step_limit=limit)
-    if max_steps is not None:
-        if not isinstance(max_steps, int | np.integer) or not 1 <= max_steps <= MOST_STEPS:
-            raise ValueError(f"the limit of steps is {max_steps!r}; expected a whole number from 1 to {MOST_STEPS:,}")
-        variant = replace(variant, step_limit=int(max_steps))
+    if max_cycles is not None:
+        if not isinstance(max_cycles, int | np.integer) or not 1 <= max_cycles <= MOST_STEPS:
+            raise ValueError(f"the limit of steps is {max_cycles!r}; expected a whole number from 1 to {MOST_STEPS:,}")
+        variant = replace(variant, step_limit=int(max_cycles))
     return variant
 
 

@@ -31,12 +31,12 @@ from puckpilot_env.kernel import kernel
 from puckpilot_env.page import write_page
 
 def speeds(**values):
-    tables = Tables(VARIANT, 50, seed=1, values=values)
+    tables = Tables(VARIANT, 50, seed=1, parameters=values)
     return np.hypot(tables.states["puck"]["vx"], tables.states["puck"]["vy"]).tolist()
 
 def refusal(**values):
     try:
-        Tables(VARIANT, 1, values=values)
+        Tables(VARIANT, 1, parameters=values)
     except ValueError as error:
         return str(error)
 
@@ -51,7 +51,7 @@ shadow = make_player("shadow", Seat.from_tables(tables))
 seen, before = tables.observations.copy(), tables.observations[:, 0, 1].copy()
 for _ in range(5):
     tables.step(np.stack([shadow.act(tables.observations[:, 0]), shadow.act(tables.observations[:, 1])], axis=1))
-windy = Tables("match-v0", 1, effects={"wind": {"wind": 2.0, "pull": 0.1}}, values={"friction": 0.0, "drag": 0.0})
+windy = Tables("match-v0", 1, effects={"wind": {"wind": 2.0, "pull": 0.1}}, parameters={"friction": 0.0, "drag": 0.0})
 windy.states["puck"][0] = (1.2, 0.3, 0.0, 0.0, 0.0, 0)
 stay = np.concatenate([windy.observations[:, :, :2], np.full((1, 2, 2), 0.3, np.float32)], axis=2)
 windy.step(stay)

@@ -52,7 +52,7 @@ def _play(args: argparse.Namespace) -> tuple[MatchResult, str]:
     def played(watch: FirstGame | None) -> MatchResult:
         with progress_bar(f"{args.first} against {args.second}") as progress:
             return play(
-                args.variant, args.first, args.second, args.games, args.seed, values=parse_values(args.set),
+                args.variant, args.first, args.second, args.games, args.seed, parameters=parse_values(args.set),
                 effects=args.effects, progress=progress, threads=args.threads, watch=watch,
             )  # fmt: skip
 

@@ -34,7 +34,7 @@ def run(args: argparse.Namespace) -> int:
         raise ValueError(f"cannot write to {args.out!r}: it is a file; give a folder")
     with progress_bar("tournament") as progress:
         tournament = play_tournament(
-            args.variant, args.players or player_names(), args.games, args.seed, values=parse_values(args.set),
+            args.variant, args.players or player_names(), args.games, args.seed, parameters=parse_values(args.set),
             effects=args.effects, threads=args.threads, progress=progress,
         )  # fmt: skip
     written = write_tournament(folder, tournament)

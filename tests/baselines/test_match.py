@@ -49,7 +49,7 @@ def test_every_game_is_counted_once_and_an_odd_one_is_half_a_pair() -> None:
 def test_parameters_and_progress_are_passed_on() -> None:
     calls: list[tuple[int, int]] = []
     values = {"goal_width": 0.1}
-    narrow = play(SHORT, "follower", "still", 6, 2, values=values, progress=lambda *call: calls.append(call))
+    narrow = play(SHORT, "follower", "still", 6, 2, parameters=values, progress=lambda *call: calls.append(call))
     assert calls[-1] == (6, 6)
     assert sum(narrow.goals) < sum(play(SHORT, "follower", "still", 6, 2).goals)
 

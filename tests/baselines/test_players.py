@@ -42,7 +42,7 @@ def test_actions_stay_inside_the_bounds_on_every_variant(name: str, variant: str
 
 @pytest.mark.parametrize("name", player_names())
 def test_players_take_the_tables_size_from_their_seat(name: str) -> None:
-    _play_along(name, Tables(MATCH, 3, seed=2, values=WIDE), 50)
+    _play_along(name, Tables(MATCH, 3, seed=2, parameters=WIDE), 50)
 
 
 @pytest.mark.parametrize("name", player_names())

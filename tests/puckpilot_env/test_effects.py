@@ -84,7 +84,7 @@ def test_an_effect_too_small_to_see_changes_nothing(variant: str) -> None:
 
 def test_explicitly_off_is_off() -> None:
     off = {row.name: row.default for row in parameters.EFFECT_ROWS}
-    plain, given = Tables("match-randomized-v0", 32, seed=3), Tables("match-randomized-v0", 32, seed=3, values=off)
+    plain, given = Tables("match-randomized-v0", 32, seed=3), Tables("match-randomized-v0", 32, seed=3, parameters=off)
     for actions in actions_of(plain, 200):
         plain.step(actions)
         given.step(actions)
@@ -103,7 +103,7 @@ def test_every_entry_point_takes_them(tmp_path: Path) -> None:
         )
         for tables in environments:
             assert (tables.params["tilt_x"] == 0.1).all() and (tables.params["tilt_y"] == -0.05).all()
-    assert Tables("match-v0", 1, effects=TILT, values={"tilt_x": 0.0}).params["tilt_x"] == 0.0
+    assert Tables("match-v0", 1, effects=TILT, parameters={"tilt_x": 0.0}).params["tilt_x"] == 0.0
 
 
 def test_a_resting_puck_runs_down_a_tilted_table() -> None:
@@ -129,7 +129,7 @@ def test_a_puck_comes_to_rest_against_the_lower_wall() -> None:
 
 def test_air_drift_counts_from_the_begin_of_the_episode() -> None:
     """Friction (1 + t/100 s) from a start at 50 s: 1.5 times as much."""
-    tables = Tables("match-v0", 1, effects={"air_drift": {"rate": 0.01}}, values={"drag": 0.0, "friction": 0.1})
+    tables = Tables("match-v0", 1, effects={"air_drift": {"rate": 0.01}}, parameters={"drag": 0.0, "friction": 0.1})
     tables.states["steps"], tables.states["time"] = 500, 50.0
     tables.states["puck"][0] = (0.8, 0.3, 0.0, 0.5, 0.0, 0)
     stay = np.concatenate([tables.observations[:, :, :2], np.full((1, 2, 2), 0.3, np.float32)], axis=2)
@@ -139,7 +139,9 @@ def test_air_drift_counts_from_the_begin_of_the_episode() -> None:
 
 def test_a_draw_on_an_effect_s_row_is_drawn_and_acts() -> None:
     draws = (Draw("tilt_y", "uniform", -0.2, 0.2, "a test"),)
-    tables = Tables(replace(find_variant("match-v0"), draws=draws), 500, seed=1, values={"friction": 0.0, "drag": 0.0})
+    tables = Tables(
+        replace(find_variant("match-v0"), draws=draws), 500, seed=1, parameters={"friction": 0.0, "drag": 0.0}
+    )
     tilt = tables.params["tilt_y"].copy()
     assert tilt.min() < -0.15 and tilt.max() > 0.15 and np.unique(tilt).size == 500
     before = tables.states["puck"].copy()
@@ -155,7 +157,7 @@ def test_the_camera_sees_the_bent_path() -> None:
     clean: dict[str, float] = dict.fromkeys(
         ("camera_noise", "beam_noise", "camera_error", "beam_width", "dropped_frames", "held_frames"), 0.0
     )
-    tables = Tables("match-sensors-v0", 8, seed=4, values=clean, effects=SOME)
+    tables = Tables("match-sensors-v0", 8, seed=4, parameters=clean, effects=SOME)
     names = [column.name for column in tables.observation_columns]
     seen, frame_rate = names.index("puck_0_x"), 120.0
     for actions in actions_of(tables, 12):
@@ -164,7 +166,7 @@ def test_the_camera_sees_the_bent_path() -> None:
         now, phase = tables.states["time"], tables.states["frame_phase"]
         latest = np.floor((now - tables.params["camera_latency"]) * frame_rate - phase + 1e-9)
         exposed = (latest + phase) / frame_rate
-        past = Tables("match-sensors-v0", 8, seed=4, values=clean, effects=SOME)
+        past = Tables("match-sensors-v0", 8, seed=4, parameters=clean, effects=SOME)
         past.restore(before)
         for i in np.flatnonzero(tables.states["held"] > 0.1):
             (moment,), _ = trace(past, int(i), actions[i], [exposed[i] - before.states["time"][i]])
@@ -216,6 +218,6 @@ def test_pucks_stay_on_the_table_with_every_effect_on() -> None:
 
 
 def test_a_scripted_player_is_told_the_refitted_baseline_but_no_effect() -> None:
-    told = Seat.from_tables(Tables("match-v0", 1, effects=SOME, values={"friction": 0.05})).parameters
+    told = Seat.from_tables(Tables("match-v0", 1, effects=SOME, parameters={"friction": 0.05})).parameters
     assert told["friction"] == 0.05
     assert all(told[row.name] == row.default for row in parameters.EFFECT_ROWS)

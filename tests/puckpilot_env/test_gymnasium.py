@@ -59,7 +59,7 @@ def test_gymnasium_finds_nothing_to_say(id_: str) -> None:
 
 @pytest.mark.parametrize("id_", [DRILL, "puckpilot/attack-v0"])
 def test_vector_of_one_is_what_gymnasium_would_make_of_the_single_env(id_: str) -> None:
-    options = {"opponent": "random", "max_steps": 12}
+    options = {"opponent": "random", "max_cycles": 12}
     theirs = gymnasium.make_vec(
         id_, 1, vectorization_mode="sync", vector_kwargs={"autoreset_mode": "SameStep"}, **options
     )
@@ -197,7 +197,7 @@ def test_arrays_belong_to_the_caller() -> None:
 
 def test_an_opponent_object_is_told_what_it_has_to_know() -> None:
     opponent = Recorder((4, 4))
-    envs = make_seats("attack-v0", 4, opponent, "alternate", max_steps=9)
+    envs = make_seats("attack-v0", 4, opponent, "alternate", max_cycles=9)
     envs.reset(seed=3)
     assert opponent.seeds == [3] and opponent.masks[0].all()
     told = []
@@ -255,7 +255,7 @@ def test_mistakes_are_named_in_one_line(mistake, words: str) -> None:
 
 
 def test_wrong_shapes_and_a_step_too_many_are_refused() -> None:
-    env = make_seat("match-v0", max_steps=1)
+    env = make_seat("match-v0", max_cycles=1)
     env.reset(seed=1)
     with pytest.raises(ValueError, match=r"shape \(1, 4\); expected \(4,\)"):
         env.step(np.ones((1, 4), np.float32))

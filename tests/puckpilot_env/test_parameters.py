@@ -62,12 +62,12 @@ def test_ranges_are_enforced(name):
 @pytest.mark.parametrize("value", ["much", None, [1.0, 2.0], {}])
 def test_what_is_no_number_is_refused(value):
     with pytest.raises(ValueError, match=r"parameter 'friction' is .*; expected a number in \[0, 5\] m/s\^2"):
-        Tables("match-v0", 1, values={"friction": value})
+        Tables("match-v0", 1, parameters={"friction": value})
 
 
 def test_unknown_names_come_with_a_suggestion():
     with pytest.raises(ValueError, match=r"^unknown parameter 'frictoin'; did you mean 'friction'\?$"):
-        Tables("match-v0", 1, values={"frictoin": 0.1})
+        Tables("match-v0", 1, parameters={"frictoin": 0.1})
     with pytest.raises(ValueError, match=r"^unknown parameter 'zzz'; known: length, width, .*, impulse_speed$"):
         parameters.make_records(1, {"zzz": 0.1})
 

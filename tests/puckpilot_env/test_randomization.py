@@ -76,7 +76,7 @@ def test_gantries_differ_by_their_spread():
 
 
 def test_anew_for_each_episode():
-    tables = Tables("attack-randomized-v0", 8, seed=4, max_steps=3)
+    tables = Tables("attack-randomized-v0", 8, seed=4, max_cycles=3)
     home = np.tile(np.array([0.25, 0.5, 0.3, 0.3], np.float32), (8, 2, 1))
     before = tables.params.copy()
     for _ in range(2):

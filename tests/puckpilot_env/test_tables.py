@@ -39,9 +39,9 @@ def assert_same(a: dict[str, np.ndarray], b: dict[str, np.ndarray]) -> None:
 @pytest.mark.parametrize("variant", SHORT)
 def test_alone_or_among_8192(variant):
     """Streams depend on the table's index, so the lone table is taken out of the crowd and played beside it."""
-    crowd = Tables(variant, 8192, seed=3, max_steps=15)
+    crowd = Tables(variant, 8192, seed=3, max_cycles=15)
     picked = [0, 17, 8191]
-    alone = [Tables(variant, 1, seed=9, max_steps=15) for _ in picked]
+    alone = [Tables(variant, 1, seed=9, max_cycles=15) for _ in picked]
     for table, i in zip(alone, picked, strict=True):
         table.restore(crowd.snapshot([i]))
     episodes = crowd.states["episode"][picked].copy()
@@ -64,7 +64,7 @@ def test_the_first_tables_of_a_batch_do_not_depend_on_its_size(variant):
 
 @pytest.mark.parametrize("variant", SHORT)
 def test_one_thread_or_more(variant):
-    one, two, three = (Tables(variant, 500, seed=3, threads=n, max_steps=15) for n in (1, 2, 3))
+    one, two, three = (Tables(variant, 500, seed=3, threads=n, max_cycles=15) for n in (1, 2, 3))
     for actions in actions_for(one, 40):
         for tables in (one, two, three):
             tables.step(actions)
@@ -88,7 +88,7 @@ def test_threads_share_all_tables(tables, threads):
 @pytest.mark.parametrize("variant", SHORT)
 def test_restore_plays_the_same_again(variant):
     """Through automatic resets, random streams and drawn parameters included."""
-    tables = Tables(variant, 16, seed=1, max_steps=12)
+    tables = Tables(variant, 16, seed=1, max_cycles=12)
     script = actions_for(tables, 45)
     for actions in script[:10]:
         tables.step(actions)
@@ -107,7 +107,7 @@ def test_restore_plays_the_same_again(variant):
 
 @pytest.mark.parametrize("variant", SHORT)
 def test_restoring_one_leaves_the_others(variant):
-    tables = Tables(variant, 4, seed=1, max_steps=12)
+    tables = Tables(variant, 4, seed=1, max_cycles=12)
     script = actions_for(tables, 30)
     saved = tables.snapshot([2])
     for actions in script[:13]:
@@ -123,7 +123,7 @@ def test_restoring_one_leaves_the_others(variant):
 @pytest.mark.parametrize("variant", SHORT)
 def test_fork(variant):
     """All tables become one, and stay alike under alike actions; under others they part."""
-    tables = Tables(variant, 8, seed=1, max_steps=12)
+    tables = Tables(variant, 8, seed=1, max_cycles=12)
     script = actions_for(tables, 30)
     for actions in script[:5]:
         tables.step(actions)
@@ -147,7 +147,7 @@ def test_restore_refuses_what_does_not_fit():
 @pytest.mark.parametrize("variant", ["match-randomized-v0", "attack-v0", "match-sensors-v0"])
 def test_final_observations_are_the_ended_ones(variant):
     """What a batch keeps of an episode's end is what a batch without automatic reset shows there."""
-    going, stopping = Tables(variant, 32, seed=2, max_steps=9), Tables(variant, 32, autoreset=False, max_steps=9)
+    going, stopping = Tables(variant, 32, seed=2, max_cycles=9), Tables(variant, 32, autoreset=False, max_cycles=9)
     ends = 0
     for actions in actions_for(going, 30):
         stopping.restore(going.snapshot())
@@ -221,7 +221,7 @@ def test_a_finer_period_is_the_same_table():
     """A puck that nobody touches is after 1 s where it is after 10 or 120 steps."""
     places = []
     for period in (1 / 120, 0.1, 0.5):
-        tables = Tables("match-v0", 16, seed=4, period=period, values={"mallet_radius": 0.02})
+        tables = Tables("match-v0", 16, seed=4, period=period, parameters={"mallet_radius": 0.02})
         home = tables.observations[:, :, :2]
         stay = np.concatenate([home, np.full((16, 2, 2), 0.3, np.float32)], axis=2)
         for _ in range(round(1.0 / period)):
@@ -238,7 +238,7 @@ def test_a_finer_period_is_the_same_table():
         ({"tables": 0}, "tables is 0; expected a whole number from 1"),
         ({"threads": 0}, "threads is 0; expected a whole number from 1 to 256"),
         ({"period": 0.008}, "period is 0.008; expected a number of seconds from 1/120 to 1"),
-        ({"max_steps": 0}, "limit of steps is 0; expected a whole number from 1"),
+        ({"max_cycles": 0}, "limit of steps is 0; expected a whole number from 1"),
         ({"seed": -1}, r"seed is -1; expected a whole number from 0 to 2\*\*64 - 1"),
         ({"variant": "mach-v0"}, "unknown variant 'mach-v0'; did you mean 'puckpilot/match-v0'?"),
     ],
@@ -256,7 +256,7 @@ def test_the_newest_frame_shows_the_table_as_it_was(variant, period, frame_rate)
     clean = ("camera_noise", "beam_noise", "camera_error", "dropped_frames", "held_frames", "beam_width")
     given = {"frame_rate": frame_rate, "camera_latency": 0.06, "mallet_radius": 0.02, **dict.fromkeys(clean, 0.0)}
     known = find_variant(variant)
-    tables = Tables(replace(known, draws=()), 8, seed=4, period=period, values=given)
+    tables = Tables(replace(known, draws=()), 8, seed=4, period=period, parameters=given)
     names = [column.name for column in tables.observation_columns]
     seen = names.index("puck_0_x" if variant == "match-sensors-v0" else "puck_x")
     stay = np.concatenate([tables.observations[:, :, :2], np.full((8, 2, 2), 0.3, np.float32)], axis=2)
@@ -265,7 +265,7 @@ def test_the_newest_frame_shows_the_table_as_it_was(variant, period, frame_rate)
     now, phase = tables.states["time"], tables.states["frame_phase"]
     exposed = (np.floor((now - 0.06) * frame_rate - phase + 1e-9) + phase) / frame_rate
     for i in range(8):
-        past = Tables(replace(known, draws=()), 8, seed=4, period=1 / 120, values=given)
+        past = Tables(replace(known, draws=()), 8, seed=4, period=1 / 120, parameters=given)
         for _ in range(int(exposed[i] * 120)):
             past.step(stay)
         (moment,), _ = trace(past, i, stay[i], [exposed[i] - past.states["time"][i]])
@@ -282,7 +282,7 @@ def test_the_told_camera_delay_is_that_of_the_first_observation():
     draws = tuple(draw for draw in known.draws if draw.parameter not in clean)
     for latency in (0.0, 0.0134, 0.06):
         given = {**clean, "camera_latency": latency}
-        tables = Tables(replace(known, draws=draws), 200, seed=2, values=given)
+        tables = Tables(replace(known, draws=draws), 200, seed=2, parameters=given)
         names = [column.name for column in tables.observation_columns]
         puck = tables.states["puck"]
         seen = tables.observations[:, 0, names.index("puck_x")]
@@ -311,18 +311,18 @@ def test_a_spread_that_makes_a_gantry_swing_is_refused():
     """Poles are real as long as C6^2 > 4 C5 C7, for the worst of the drawn coefficients too."""
     slow = {"a1": 3e-4, "b1": 0.0}  # y: C6^2 / (4 C5 C7) = 0.138; x likewise 1.12
     with pytest.raises(ValueError, match="not overdamped"):
-        Tables("match-v0", 1, values=slow)
+        Tables("match-v0", 1, parameters=slow)
     nearly = {"a1": 3e-5, "b1": 0.0}  # y: 1.38, and with 20 % of spread 0.61
-    Tables("match-v0", 1, values=nearly)
+    Tables("match-v0", 1, parameters=nearly)
     with pytest.raises(ValueError, match=r"gantry axis y is not overdamped.*gantry_spread"):
-        Tables("match-v0", 1, values={**nearly, "gantry_spread": 0.2})
+        Tables("match-v0", 1, parameters={**nearly, "gantry_spread": 0.2})
     drawn = replace(find_variant("match-v0"), draws=(Draw("gantry_spread", "uniform", 0.0, 0.2, ""),))
     with pytest.raises(ValueError, match=r"gantry axis y is not overdamped.*gantry_spread"):
-        Tables(drawn, 1, values=nearly)
+        Tables(drawn, 1, parameters=nearly)
 
 
 def test_given_parameters_are_not_drawn():
-    tables = Tables("match-randomized-v0", 16, seed=1, values={"friction": 0.2})
+    tables = Tables("match-randomized-v0", 16, seed=1, parameters={"friction": 0.2})
     assert (tables.params["friction"] == 0.2).all() and len(set(tables.params["drag"])) == 16
     assert "friction" not in drawn_info(tables, np.zeros(16, int))["parameters"]
 
@@ -332,7 +332,7 @@ def test_a_held_frame_repeats_the_one_before():
     older one is; twice in a row is rarer."""
     clean = ("camera_noise", "beam_noise", "camera_error", "dropped_frames", "beam_width", "friction", "drag")
     values = {**dict.fromkeys(clean, 0.0), "held_frames": 0.05}
-    tables = Tables(replace(find_variant("defence-randomized-v0"), draws=()), 2000, seed=1, values=values)
+    tables = Tables(replace(find_variant("defence-randomized-v0"), draws=()), 2000, seed=1, parameters=values)
     column = [column.name for column in tables.observation_columns].index("puck_vx")
     stay = np.concatenate([tables.observations[:, :, :2], np.full((2000, 2, 2), 0.3, np.float32)], axis=2)
     before = tables.states["puck"]["vx"].copy()

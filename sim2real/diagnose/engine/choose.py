@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -161,14 +162,14 @@ class Chooser:
         assert best is not None
         return best
 
+    def likely(self, gain: Gain) -> bool:
+        """Whether a gain is more than chance, in the fit and on held-out units."""
+        return gain.fitted > self._by_chance(gain.law) and gain.total > LEAST_FORETOLD
+
     def passes(self, gain: Gain) -> bool:
         """Whether a gain is more than chance, in the fit and on held-out units, and not the doing of few launches."""
-        enough = (
-            gain.fitted > self._by_chance(gain.law)
-            and gain.total > LEAST_FORETOLD
-            and gain.without_best > LEAST_ELSEWHERE
-        )
-        return enough and float(np.quantile(self._resampled @ gain.foretold, UNSURE)) > 0.0
+        elsewhere = gain.without_best > LEAST_ELSEWHERE
+        return self.likely(gain) and elsewhere and float(np.quantile(self._resampled @ gain.foretold, UNSURE)) > 0.0
 
     @staticmethod
     def _by_chance(law: Law) -> float:
@@ -193,7 +194,25 @@ class Chooser:
 
     def add(self, model: Model, laws: Sequence[Law], most: int) -> tuple[Model, list[Gain]]:
         """Add the law that foretells best, again and again, whether it is sure or not: `prune` decides on all together.
-        Also returns the gains of each law alone, best first."""
+        Also returns the gains of each law alone, best first.
+
+        Where two laws together foretell much better than one after the other, those two come first: either alone may
+        explain little of what both do.
+        """
+        whole, first = self._added(model, laws, most)
+        pairs = [
+            model.plus(one, np.inf).plus(other, np.inf)
+            for one, other in combinations(laws, 2)
+            if one.name != other.name
+        ]
+        best = min(pairs, key=lambda pair: float(self.foretold(pair).sum()), default=None)
+        if best is None or most < len(best.laws):
+            return whole, first
+        together = self._added(best, laws, most)[0]
+        better = float((self.foretold(whole) - self.foretold(together)).sum())
+        return (together if better > LEAST_FORETOLD else whole), first
+
+    def _added(self, model: Model, laws: Sequence[Law], most: int) -> tuple[Model, list[Gain]]:
         first: list[Gain] = []
         while len(model.laws) < most:
             taken = {law.name for law in model.laws}

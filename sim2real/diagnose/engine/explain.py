@@ -16,8 +16,9 @@ from sim2real.diagnose.engine.settle import as_shipped, calm_clusters, far_off, 
 from sim2real.diagnose.problem import Columns, Problem
 
 MOST_LISTED = 4
-PER_COEFFICIENT = 10.0  # residuals, below which a smooth law would follow the noise
+PER_COEFFICIENT = 4.0  # residuals, below which a smooth law would follow the noise
 REMAINDER = 0.1  # share of what the listed laws foretell better that a law on top of them must add
+HALF = 0.5  # of what listed laws explain that leave much; a family that explains as much is nearer to the truth
 MOSTLY = 2.0 / 3.0  # of what a family alone explains; listed laws that explain as much are no stand-ins
 
 
@@ -109,7 +110,7 @@ def _completed(
     if any(one.family for one in model.laws) or not far_off(problem, baseline, law, use):
         return model
     smooth = _likeliest(chooser, Model(problem.base), screen)
-    return smooth if smooth is not None and _explained(chooser, smooth) > _explained(chooser, model) else model
+    return smooth if smooth is not None and _explained(chooser, smooth) > HALF * _explained(chooser, model) else model
 
 
 def _doubtful(chooser: Chooser, gains: Sequence[Gain]) -> Law | None:
@@ -151,8 +152,9 @@ def _with_remainder(chooser: Chooser, model: Model, rest: Gain | None, screen: C
 
 
 def _likeliest(chooser: Chooser, base: Model, screen: Columns) -> Model | None:
-    """The baseline and the family that alone foretells best, of those that are more than chance."""
-    some = [gain for gain in (chooser.gain(base, law) for law in screen.families) if chooser.passes(gain)]
+    """The baseline and the family that alone foretells best, of those that are more than chance; few launches may do:
+    that something is missing is sure already."""
+    some = [gain for gain in (chooser.gain(base, law) for law in screen.families) if chooser.likely(gain)]
     best = max(some, key=lambda gain: gain.total, default=None)
     return None if best is None else base.plus(best.law, best.spread)
 

@@ -33,13 +33,14 @@ def explain_bounces(
     if _typical(problem, found, use) < ROUGH * MIDDLE[1]:
         return problem, found
     rough = _settled(problem, shipped, problem.base, use)
+    anew = found
     for _ in range(AGAIN):
-        found = explain(rough, shipped, use, clear, beyond=1.0)
-        finer = _settled(problem, found.law.values, found.law.free, use)
+        anew = explain(rough, shipped, use, clear, beyond=1.0)
+        finer = _settled(problem, anew.law.values, anew.law.free, use)
         if np.all(np.abs(finer.scatter - rough.scatter) < SETTLED):
             break
         rough = finer
-    return rough, found
+    return (rough, anew) if anew.model.laws else (problem, found)  # a scatter explains nothing by itself
 
 
 def _typical(problem: WallProblem, found: Explained, use: np.ndarray) -> float:

@@ -22,7 +22,7 @@ BEAM = 0.04  # m; a mallet at home has its middle 0.25 m from its own end
 def watch(x: float, y: float, *, seen_by: int = 0, vx: float = 0.0, period: float = 0.1, **values: float) -> Tables:
     """Tables whose camera has watched the puck, at (x, y) as `seen_by` sees it, with nothing amiss but `values`."""
     clean = {**NO_CAMERA_NOISE, **FRICTIONLESS, "beam_width": BEAM, **values}
-    tables = Tables("match-sensors-v0", COUNT, seed=6, period=period, values=clean)
+    tables = Tables("match-sensors-v0", COUNT, seed=6, period=period, parameters=clean)
     put_puck(tables, x, y, vx, player=seen_by)
     for _ in range(round(0.3 / period)):
         tables.step(staying(tables))
@@ -83,7 +83,7 @@ def loudness(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 def test_smooth_error_in_play():
     """Fixed for an episode at a place, 1 mm rms over the table, the same for all frames and from both seats."""
     rng = np.random.default_rng(2)
-    tables = Tables("match-sensors-v0", COUNT, seed=6, values={**NO_CAMERA_NOISE, "camera_error": 0.001})
+    tables = Tables("match-sensors-v0", COUNT, seed=6, parameters={**NO_CAMERA_NOISE, "camera_error": 0.001})
     x, y = rng.uniform(0, LENGTH, COUNT), rng.uniform(0, WIDTH, COUNT)
     off = (np.abs(x - 0.25) > 0.09) & (np.abs(x - 1.75) > 0.09) & (np.abs(x - 1) < 0.97) & (np.abs(y - 0.5) < 0.47)
     put_puck(tables, x, y)
@@ -109,7 +109,7 @@ def measured(table: Any, p: Any, x: float, y: float) -> list[float]:
 def test_smooth_error_over_the_table():
     """A camera's error is a quadratic surface: third differences vanish, and 1 cm changes it little. Its mean square
     over the table is `camera_error` squared on average over cameras, and camera_error scales it."""
-    tables = Tables("match-sensors-v0", 100, seed=6, values={**NO_CAMERA_NOISE, "camera_error": 0.002})
+    tables = Tables("match-sensors-v0", 100, seed=6, parameters={**NO_CAMERA_NOISE, "camera_error": 0.002})
     p = tables.params[0]
     xs, ys = (np.arange(20) + 0.5) / 20 * LENGTH, (np.arange(10) + 0.5) / 10 * WIDTH
     squares = []
@@ -180,10 +180,10 @@ def test_a_stretched_and_sheared_map(player):
 
 def test_a_map_without_error_leaves_the_smooth_error_as_drawn():
     plain, given = (
-        Tables("match-sensors-v0", 50, seed=6, values=values)
+        Tables("match-sensors-v0", 50, seed=6, parameters=values)
         for values in ({}, {"camera_scale_x": 0.0, "camera_scale_y": 0.0, "camera_shear": 0.0})
     )
-    stretched = Tables("match-sensors-v0", 50, seed=6, values={"camera_scale_x": 0.01})
+    stretched = Tables("match-sensors-v0", 50, seed=6, parameters={"camera_scale_x": 0.01})
     for name in ("error_x", "error_y"):
         assert np.array_equal(plain.states["camera"][name], given.states["camera"][name])
     apart = stretched.states["camera"]["error_x"] - plain.states["camera"]["error_x"]

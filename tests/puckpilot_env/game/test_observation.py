@@ -27,7 +27,7 @@ CLOSE = 1e-6  # of float32
 
 def set_match(variant: Any, values: dict[str, float] | None = None) -> Tables:
     """One table in the midst of a match: 3 to 5 points, 42 s gone, the puck for 2.5 s in one half."""
-    tables = Tables(variant, 1, values={**NO_CAMERA_NOISE, **(values or {})})
+    tables = Tables(variant, 1, parameters={**NO_CAMERA_NOISE, **(values or {})})
     state = tables.states
     state["score"], state["time"], state["held"] = (3, 5), 42.0, 2.5
     state["defending"] = (1, 0)

@@ -81,7 +81,7 @@ OVER_THE_WALL = (2 * (WIDTH - PUCK) - 0.5 - 0.5) / 1.01  # slope from (0.99, 0.5
 )
 def test_crossing_the_middle_line(attacks, player, y, slope, mallet, outcome):
     """Exactly 5|v|/120, |v|/120, -0.05, or |v|^2/10, |v|^2/50, 0; the other player gets nothing for it."""
-    tables = Tables("match-v0", 1, values=FRICTIONLESS)
+    tables = Tables("match-v0", 1, parameters=FRICTIONLESS)
     put_mallet(tables, player, 0.2, 0.2)
     put_mallet(tables, 1 - player, *mallet, seen_by=player)
     put_puck(tables, 0.99, y, 3.0, 3.0 * slope, player)
@@ -112,7 +112,7 @@ def test_speed_is_that_on_the_line():
 @pytest.mark.parametrize("player", [0, 1])
 @pytest.mark.parametrize("variant", ["match-v0", "defence-v0"])
 def test_clear_pays_once_and_starts_an_attack(variant, player):
-    tables = Tables(variant, 1, values=FRICTIONLESS, autoreset=False)
+    tables = Tables(variant, 1, parameters=FRICTIONLESS, autoreset=False)
     tables.states["defending"] = 1
     tables.states["subject"] = player
     put_puck(tables, 0.6, 0.3, 0.05, 0.6, player)
@@ -147,7 +147,7 @@ def test_goals(variant, scored, conceder):
 @pytest.mark.parametrize("noise", [0.0, 0.5])
 def test_continuous_penalties(noise):
     """J.3 for both seats: from where the mallet was to where it shall go, and the volts as asked, noise or not."""
-    tables = Tables("match-v0", 200, values={"action_noise": noise})
+    tables = Tables("match-v0", 200, parameters={"action_noise": noise})
     low, high = tables.action_bounds
     rng = np.random.default_rng(1)
     put_mallet(tables, 0, rng.uniform(0.1, 0.9, 200), rng.uniform(0.1, 0.4, 200))

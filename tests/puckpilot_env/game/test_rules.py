@@ -15,7 +15,7 @@ DRILLS = ["defence-v0", "attack-v0"]
 
 
 def make(variant: str, tables: int = 1, **options) -> Tables:
-    return Tables(variant, tables, **{"autoreset": False, "values": FRICTIONLESS, **options})
+    return Tables(variant, tables, **{"autoreset": False, "parameters": FRICTIONLESS, **options})
 
 
 def stay(tables: Tables) -> None:
@@ -205,8 +205,8 @@ def test_drills_are_truncated_after_ten_seconds(variant, period, limit):
 
 
 @pytest.mark.parametrize("variant", ["match-v0", *DRILLS])
-def test_max_steps(variant):
-    tables = make(variant, max_steps=3, period=0.05)
+def test_max_cycles(variant):
+    tables = make(variant, max_cycles=3, period=0.05)
     for step in range(1, 4):
         park(tables)
         stay(tables)
@@ -214,7 +214,7 @@ def test_max_steps(variant):
 
 
 def test_an_ending_in_the_last_step_is_no_truncation():
-    tables = make("attack-v0", max_steps=1)
+    tables = make("attack-v0", max_cycles=1)
     park(tables)
     put_puck(tables, 0.95, 0.5, 3.0)
     stay(tables)

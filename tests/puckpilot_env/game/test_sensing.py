@@ -31,7 +31,7 @@ PERIODS = [1 / 120, 0.05, 0.1, 0.037, 1.0]
 
 def sliding(variant, period: float, camera: dict[str, float]) -> tuple[Tables, float]:
     """Tables whose puck has slid along x with `SPEED` from 0.7 m on until all frames show it, and the time [s]."""
-    tables = Tables(variant, COUNT, seed=3, period=period, values={**CLEAN, **camera})
+    tables = Tables(variant, COUNT, seed=3, period=period, parameters={**CLEAN, **camera})
     put_puck(tables, 0.7, 0.3, SPEED)
     return tables, play(tables, period, camera)
 
@@ -78,7 +78,7 @@ def test_lags_of_a_history(camera, period):
 @pytest.mark.parametrize("period", PERIODS)
 def test_frames_lie_on_the_path(period):
     """Each at its own exposure, over a bounce: (j + phase)/120 s for the newest j that has arrived, and before it."""
-    tables = Tables("match-sensors-v0", 300, seed=3, period=period, values=CLEAN)
+    tables = Tables("match-sensors-v0", 300, seed=3, period=period, parameters=CLEAN)
     start = (0.7, 0.1, 0.1, -0.5)
     bounce = (start[1] - PUCK) / -start[3]
     put_puck(tables, *start)
@@ -113,8 +113,8 @@ def test_frames_before_the_start():
 @pytest.mark.parametrize("period", [0.05, 0.1, 0.037])
 def test_a_moving_opponent(period):
     """The other mallet is shown where it was at the frame's exposure; against a table in steps of 1/120 s."""
-    tables = Tables("match-sensors-v0", 300, seed=3, period=period, values=CLEAN)
-    fine = Tables("match-v0", 1, period=1 / 120, values=CLEAN)
+    tables = Tables("match-sensors-v0", 300, seed=3, period=period, parameters=CLEAN)
+    fine = Tables("match-v0", 1, period=1 / 120, parameters=CLEAN)
     for each in (tables, fine):
         put_puck(each, 0.7, 0.05)
     actions = np.tile(np.array([[0.3, 0.5, 1.0, 1.0], [0.8, 0.9, 2.0, 2.0]], np.float32), (300, 1, 1))

@@ -68,7 +68,7 @@ def test_shots_are_aimed_as_promised():
 
 def test_shots_on_target_go_in():
     """Nobody in the way: none is in within 0.2 s; those aimed well inside the mouth go in, those well beside do not."""
-    tables = Tables("defence-v0", 4000, seed=5, autoreset=False, max_steps=100)
+    tables = Tables("defence-v0", 4000, seed=5, autoreset=False, max_cycles=100)
     puck = puck_motion(tables.states)
     aim, _ = aims(puck)
     fast = np.linalg.norm(puck[:, 2:], axis=1) > 1.8  # slower ones may stop on the way
@@ -116,7 +116,7 @@ def test_face_off_favours_nobody():
 
 
 def test_starts_differ_from_table_to_table_and_episode_to_episode():
-    tables = Tables("defence-v0", 1000, seed=2, max_steps=1)
+    tables = Tables("defence-v0", 1000, seed=2, max_cycles=1)
     first = puck_motion(tables.states)
     tables.reset()
     second = puck_motion(tables.states)
