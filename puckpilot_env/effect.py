@@ -22,6 +22,10 @@ class Parameter:
     meaning: str
     source: str
 
+    def within(self, value: float) -> float:
+        """The nearest value that the simulator accepts."""
+        return float(min(max(value, self.low), self.high))
+
 
 @dataclass(frozen=True)
 class Effect:

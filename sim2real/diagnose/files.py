@@ -7,8 +7,6 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from puckpilot_env.parameters import BY_NAME, EFFECT_ROWS, TABLE
 from puckpilot_env.physics.effects import EFFECTS
 from puckpilot_env.whole_file import write_text_whole
@@ -76,7 +74,7 @@ def effects_toml(diagnosis: Diagnosis) -> str:
     values = {name: one.value for each in diagnosis.accounts for name, one in each.baseline.items()}
     for one in diagnosis.findings:
         values |= one.values
-    near = {name: float(np.clip(value, BY_NAME[name].low, BY_NAME[name].high)) for name, value in values.items()}
+    near = {name: BY_NAME[name].within(value) for name, value in values.items()}
     plain = [row.name for row in TABLE if row.name in near and row not in EFFECT_ROWS]
     lines = [f'format = "{EFFECTS_FORMAT}"', "", "[parameters]", *(f"{name} = {near[name]!r}" for name in plain)]
     for name, effect in EFFECTS.items():

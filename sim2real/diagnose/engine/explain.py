@@ -51,8 +51,7 @@ class Explained:
             return self.law
         values = dict(self.law.values)
         for k, name in enumerate(self.law.free):
-            row = BY_NAME[name]
-            values[name] = float(np.clip(values[name] + self.theta[k], row.low, row.high))
+            values[name] = BY_NAME[name].within(values[name] + float(self.theta[k]))
         n = len(self.law.free)
         return replace(self.law, values=values, covariance=self.theta_covariance[:n, :n])
 

@@ -151,7 +151,9 @@ class GlideProblem:
         path, _ = self._fit_starts(self._record(law.values))
         kept, drift = self._starts.copy(), np.zeros((self.data.glides, 2, 4, len(law.free)))
         for k, change in enumerate(law.directions.T):
-            shifted = {name: law.values[name] + step for name, step in zip(law.free, change, strict=True)}
+            shifted = {
+                name: BY_NAME[name].within(law.values[name] + step) for name, step in zip(law.free, change, strict=True)
+            }
             other, _ = self._fit_starts(self._record({**law.values, **shifted}))
             drift[:, :, :, k] = np.stack([other[at] - path[at] for at in ends], axis=1)
             self._starts = kept.copy()
