@@ -1,0 +1,52 @@
+"""A regime small enough to check by hand: residuals that are linear in its parameters, and white noise."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from sim2real.diagnose.engine import gram
+from sim2real.diagnose.engine.choose import Law
+from sim2real.diagnose.problem import Columns, Residuals, Units
+
+LAUNCHES, PIECES, EACH = 20, 3, 20
+NAMES = ("friction", "drag", "tilt_x", "tilt_y")
+SHIPPED = {"friction": 0.125, "drag": 0.125}
+FELT = 50.0  # standard deviations of the noise that a parameter of 1 makes of a residual
+
+
+class LinearProblem:
+    """`truth`: parameters by name, each a number or one for each launch; `noise`: in units of the sensor's."""
+
+    regime = "glide"
+    base: tuple[str, ...] = ("friction", "drag")
+    noise_m = 0.001
+
+    def __init__(self, truth: Mapping[str, float | np.ndarray], noise: float = 1.0, seed: int = 0) -> None:
+        rng = np.random.default_rng(seed)
+        self.clusters = LAUNCHES
+        self.launch = np.repeat(np.arange(LAUNCHES), PIECES * EACH)
+        self.felt = FELT * rng.normal(size=(len(self.launch), len(NAMES)))
+        self.seen = noise * rng.normal(size=len(self.launch))
+        for k, name in enumerate(NAMES):
+            of_launch = np.broadcast_to(np.asarray(truth.get(name, SHIPPED.get(name, 0.0))), LAUNCHES)
+            self.seen += of_launch[self.launch] * self.felt[:, k]
+        self.units = Units(np.repeat(np.arange(LAUNCHES), PIECES), np.full(LAUNCHES * PIECES, float(EACH)))
+        self.freedom = np.full(LAUNCHES, float(PIECES * EACH))
+
+    def residuals(self, values: Mapping[str, float], free: Sequence[str], clusters: np.ndarray) -> Residuals:
+        """See `Problem.residuals`."""
+        left = self.seen - self.felt @ np.array([values.get(name, 0.0) for name in NAMES])
+        here = np.isin(self.launch, clusters)
+        jacobian = -self.felt[:, [NAMES.index(name) for name in free]]
+        return Residuals(left[here], jacobian[here], self.launch[here])
+
+    def columns(self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None) -> Columns:
+        """See `Problem.columns`."""
+        exact = self.residuals(values, NAMES, np.arange(LAUNCHES))
+        piece = np.repeat(np.arange(LAUNCHES * PIECES), EACH)
+        grams = gram.make_grams(NAMES, exact.r, exact.jacobian, piece, LAUNCHES * PIECES)
+        return Columns(grams, [Law("table_tilt", ("tilt_x", "tilt_y"))], [])
+
+    def rows(self, law: Law) -> tuple[str, ...]:
+        """See `Problem.rows`."""
+        return law.columns

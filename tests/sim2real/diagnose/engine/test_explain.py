@@ -1,0 +1,69 @@
+"""From residuals to an account: named, silent, refuted or undetermined, as the truth drawn here has it."""
+
+import numpy as np
+import pytest
+
+from sim2real.diagnose.account import account
+from sim2real.diagnose.diagnosis import Diagnosis
+from sim2real.diagnose.engine.explain import explain
+from sim2real.diagnose.finding import Account
+from tests.sim2real.diagnose.engine.linear_problem import LAUNCHES, SHIPPED, LinearProblem
+
+PROOF = np.arange(LAUNCHES)[3::4]
+USE = np.setdiff1d(np.arange(LAUNCHES), PROOF)
+TILT = {"tilt_x": 0.02, "tilt_y": -0.03}
+
+
+def _account(truth, noise: float = 1.0) -> Account:
+    problem = LinearProblem(truth, noise)
+    return account(problem, explain(problem, SHIPPED, USE), USE, PROOF)
+
+
+def test_the_simulator_s_own_numbers_agree():
+    found = _account({})
+    assert (found.findings, found.shipped, found.undetermined) == ((), True, "")
+    assert Diagnosis((found,)).verdict == "agrees"
+
+
+def test_other_numbers_are_only_parameters():
+    found = _account({"friction": 0.2})
+    assert (found.findings, found.shipped) == ((), False)
+    assert found.baseline["friction"].low < 0.2 < found.baseline["friction"].high
+    assert Diagnosis((found,)).verdict == "parameters_only"
+
+
+def test_a_law_is_named_measured_and_proved_beside_its_twins():
+    found = _account({**TILT, "friction": 0.2})
+    (one,) = found.findings
+    assert one.mechanism == "table_tilt" and one.p_value < 1e-12
+    for name, value in TILT.items():
+        assert one.parameters[name].low < value < one.parameters[name].high
+        assert one.parameters[name].value == pytest.approx(value, rel=0.1)
+    size = 50.0 * np.hypot(*TILT.values())  # what it makes of a residual, in units of the noise
+    assert one.before == pytest.approx(np.hypot(1.0, size), rel=0.1)
+    assert one.after == pytest.approx(1.0, abs=0.1)
+    assert one.twins["null"].named == 0 and one.twins["null"].after == pytest.approx(1.0, abs=0.1)
+
+
+def test_a_law_that_its_own_proof_speaks_against_is_not_told():
+    signs = np.where(np.isin(np.arange(LAUNCHES), PROOF), -1.0, 1.0)
+    found = _account({name: value * signs for name, value in TILT.items()})
+    assert found.findings == () and found.lost
+    assert Diagnosis((found,)).verdict == "undetermined"
+    assert found.proof is not None and found.proof.after_m == found.proof.before_m
+
+
+def test_what_no_law_explains_is_no_agreement():
+    found = _account({}, noise=2.5)
+    assert found.findings == () and found.lost and not found.shipped
+    diagnosis = Diagnosis((found,))
+    assert diagnosis.verdict == "undetermined"
+    assert any("something is missing" in remark for remark in diagnosis.remarks)
+
+
+def test_a_regime_with_too_little_data_leaves_the_verdict_to_the_others_and_is_told():
+    wall = Account("wall", (), {}, False, None, "too little data", "record more bounces")
+    diagnosis = Diagnosis((_account({}), wall))
+    assert diagnosis.verdict == "agrees"
+    assert diagnosis.remarks == ["wall: undetermined, too little data"]
+    assert diagnosis.next_recording == "record more bounces"
