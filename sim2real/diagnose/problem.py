@@ -57,10 +57,12 @@ class Problem(Protocol):
     `clusters`: how many launches there are, by which intervals and proofs are resampled; `freedom` (clusters,): how
     many of each one's residuals are left free by its nuisances; `units`: its parts; `noise_m`: the sensor's noise [m],
     rms over the residuals. `base`: the baseline's parameters that it can tell; `regime` as in the format.
+    `plain`: those of `base` that are fitted first; the rest may lead a fit astray that is far off still.
     """
 
     regime: str
     base: tuple[str, ...]
+    plain: tuple[str, ...]
     clusters: int
     freedom: np.ndarray
     units: Units

@@ -10,7 +10,7 @@ import numpy as np
 from puckpilot_env.parameters import BY_NAME
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.choose import LEAST_FORETOLD, LEAST_SHARE, Chooser, Gain, Law, Model
-from sim2real.diagnose.engine.fit import Fit, fit
+from sim2real.diagnose.engine.fit import Fit, fit, given
 from sim2real.diagnose.engine.noise import dispersion
 from sim2real.diagnose.engine.settle import as_shipped, calm_clusters, far_off, nearly_all, refit, standing, undisturbed
 from sim2real.diagnose.problem import Columns, Problem
@@ -71,7 +71,8 @@ def explain(
     clear: what fits no listed law is missing physics of this regime, and not what another one left unexplained.
     beyond: noise beyond the problem's, in variance, where it is known; otherwise it is read off the richest law.
     """
-    use, baseline = undisturbed(problem, fit(problem, shipped, problem.base, use), use)
+    roughly = given(shipped) if problem.plain == problem.base else fit(problem, shipped, problem.plain, use)
+    use, baseline = undisturbed(problem, fit(problem, roughly.values, problem.base, use), use)
     screen = _tellable(problem.columns(baseline.values, (), use), problem, use)
     laws = [*screen.listed, *screen.families]
     beyond = beyond or dispersion(screen.grams, problem.units, problem.base, laws, use)

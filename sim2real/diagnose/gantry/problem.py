@@ -10,7 +10,7 @@ import numpy as np
 from puckpilot_env.parameters import BY_NAME, make_records
 from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.engine.choose import Law
-from sim2real.diagnose.gantry.candidates import Candidate, candidates
+from sim2real.diagnose.gantry.candidates import PLAIN, Candidate, candidates
 from sim2real.diagnose.gantry.laws import gantry_columns
 from sim2real.diagnose.gantry.run import Run, UnusableError, read_run
 from sim2real.diagnose.gantry.tick import find_tick
@@ -29,6 +29,7 @@ class GantryProblem:
 
     regime = "gantry"
     base: tuple[str, ...] = ("a1", "a2", "a3", "b1", "b2", "b3")
+    plain: tuple[str, ...] = PLAIN
 
     def __init__(self, runs: Sequence[Run], common: Mapping[str, float], proof: np.ndarray | None = None) -> None:
         """`common`: what every law shares, e.g. the pulley's radius; `proof`: clusters that no fit may see.

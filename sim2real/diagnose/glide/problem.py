@@ -38,6 +38,7 @@ class GlideProblem:
 
     regime = "glide"
     base: tuple[str, ...] = ("friction", "drag")
+    plain: tuple[str, ...] = base
 
     def __init__(self, data: GlideData, values: Mapping[str, float]) -> None:
         """`values`: sizes of the table, and what else every law has in common."""

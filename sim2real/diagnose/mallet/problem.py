@@ -44,6 +44,7 @@ class MalletProblem:
 
     regime = "mallet"
     base: tuple[str, ...] = ("mallet_restitution",)
+    plain: tuple[str, ...] = base
 
     def __init__(self, data: Blows, clusters: int, common: Mapping[str, float]) -> None:
         """`clusters`: how many launches the recordings have; `common`: sizes of the table."""

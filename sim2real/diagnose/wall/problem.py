@@ -43,6 +43,7 @@ class WallProblem:
 
     regime = "wall"
     base: tuple[str, ...] = ("wall_restitution",)
+    plain: tuple[str, ...] = base
 
     def __init__(
         self, data: Bounces, clusters: int, common: Mapping[str, float], scatter: tuple[float, float] = (0.0, 0.0)

@@ -19,6 +19,7 @@ class LinearProblem:
 
     regime = "glide"
     base: tuple[str, ...] = ("friction", "drag")
+    plain: tuple[str, ...] = base
     noise_m = 0.001
 
     def __init__(self, truth: Mapping[str, float | np.ndarray], noise: float = 1.0, seed: int = 0) -> None:

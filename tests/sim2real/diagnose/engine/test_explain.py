@@ -39,7 +39,7 @@ def test_a_law_is_named_measured_and_proved_beside_its_twins():
     for name, value in TILT.items():
         assert one.parameters[name].low < value < one.parameters[name].high
         assert one.parameters[name].value == pytest.approx(value, rel=0.1)
-    size = 50.0 * np.hypot(*TILT.values())  # what it makes of a residual, in units of the noise
+    size = 50.0 * np.hypot(TILT["tilt_x"], TILT["tilt_y"])  # what it makes of a residual, in units of the noise
     assert one.before == pytest.approx(np.hypot(1.0, size), rel=0.1)
     assert one.after == pytest.approx(1.0, abs=0.1)
     assert one.twins["null"].named == 0 and one.twins["null"].after == pytest.approx(1.0, abs=0.1)
