@@ -220,11 +220,11 @@ def _explain(problem: Problem, law: Mapping[str, float], proof: np.ndarray, tabl
     if len(use) + len(apart) < FEWEST_LAUNCHES or not len(apart) or problem.freedom[use].sum() < FEWEST_RESIDUALS:
         return None, _too_little(problem.regime)
     shipped = {name: law[name] for name in problem.base}
+    check_agreement(problem, shipped, tables)
     if isinstance(problem, WallProblem):
         problem, found = explain_bounces(problem, shipped, use, clear)
     else:
         found = explain(problem, shipped, use, clear)
-    check_agreement(problem, shipped, tables)
     return found, illustrated(problem, found, account(problem, found, use, apart), use)
 
 

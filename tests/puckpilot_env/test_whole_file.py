@@ -62,7 +62,7 @@ def _begin_film(place: Path) -> subprocess.Popen[str]:
 def test_a_film_that_is_stopped_leaves_nothing(tmp_path: Path, number: signal.Signals) -> None:
     film = _begin_film(tmp_path / "a.mp4")
     film.send_signal(number)
-    told = film.communicate(timeout=60)[1]
+    told = film.communicate(timeout=240)[1]
     assert film.returncode == 128 + number
     assert told.splitlines()[-1] == "puckpilot match: stopped" and "Traceback" not in told
     assert not list(tmp_path.iterdir())
@@ -72,7 +72,7 @@ def test_a_film_that_is_stopped_leaves_nothing(tmp_path: Path, number: signal.Si
 def test_what_a_killed_film_left_goes_with_the_next(tmp_path: Path) -> None:
     film = _begin_film(tmp_path / "a.mp4")
     film.kill()
-    film.communicate(timeout=60)
+    film.communicate(timeout=240)
     assert len(list(tmp_path.glob(".*"))) == len(list(tmp_path.iterdir())) == 1
     with pytest.raises(ValueError, match="no frames"), VideoWriter(tmp_path / "a.mp4"):
         pass

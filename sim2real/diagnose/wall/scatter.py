@@ -30,7 +30,7 @@ def explain_bounces(
 ) -> tuple[WallProblem, Explained]:
     """What the engine's `explain` finds, and the problem with the scatter under which it does."""
     found = explain(problem, shipped, use, clear)
-    if _typical(problem, found, use) < ROUGH * MIDDLE[1]:
+    if found.unlisted is not None or _typical(problem, found, use) < ROUGH * MIDDLE[1]:
         return problem, found
     rough = _settled(problem, shipped, problem.base, use)
     anew = found

@@ -45,11 +45,10 @@ def test_an_ideal_wall_has_no_scatter() -> None:
 
 
 @pytest.mark.parametrize("wrong", [0, 15])
-def test_the_scatter_of_a_rough_wall_is_found_and_no_law_is(wrong: int) -> None:
+def test_a_rough_wall_alone_is_no_law(wrong: int) -> None:
     rough = rough_wall(lambda closing: 0.8 + 0.0 * closing, (0.02, 0.05), wrong)
     problem, found = explain_bounces(rough, SHIPPED, np.arange(LAUNCHES), True)
-    assert problem.scatter == pytest.approx([0.02, 0.05], rel=0.35)
-    assert found.law.values["wall_restitution"] == pytest.approx(0.8, abs=0.005)
+    assert not problem.scatter.any()
     assert not found.listed and found.unlisted is None
 
 
