@@ -16,7 +16,7 @@ from sim2real.diagnose.engine.settle import as_shipped, calm_clusters, far_off, 
 from sim2real.diagnose.problem import Columns, Problem
 
 MOST_LISTED = 4
-PER_COEFFICIENT = 4.0  # residuals, below which a smooth law would follow the noise
+PER_COEFFICIENT = 7.0  # residuals, below which a smooth law would follow the noise
 REMAINDER = 0.1  # share of what the listed laws foretell better that a law on top of them must add
 HALF = 0.5  # of what listed laws explain that leave much; a family that explains as much is nearer to the truth
 MOSTLY = 2.0 / 3.0  # of what a family alone explains; listed laws that explain as much are no stand-ins
