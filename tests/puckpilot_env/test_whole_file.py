@@ -17,6 +17,14 @@ from puckpilot_env.whole_file import write_text_whole, write_whole
 ROOT = Path(__file__).resolve().parents[2]
 FILM = ["match", "still", "still", "--games", "2", "--variant", "match-v0", "--video"]
 
+# Tests that run in the background, or under nohup, hand down signals that are ignored.
+AS_FROM_A_TERMINAL = (
+    "import signal, sys; from puckpilot import main; "
+    "signal.signal(signal.SIGINT, signal.default_int_handler); "
+    "[signal.signal(number, signal.SIG_DFL) for number in (signal.SIGTERM, signal.SIGHUP)]; "
+    "sys.exit(main())"
+)
+
 
 @pytest.mark.parametrize("before", [None, "old"])
 def test_a_failing_writer_leaves_what_was_there(tmp_path: Path, before: str | None) -> None:
@@ -49,7 +57,7 @@ def test_nothing_half_written_is_in_its_place(tmp_path: Path) -> None:
 def _begin_film(place: Path) -> subprocess.Popen[str]:
     """A process that films a game, stopped by the caller once its draft has appeared."""
     film = subprocess.Popen(
-        [sys.executable, "puckpilot.py", *FILM, str(place)], cwd=ROOT, stderr=subprocess.PIPE, text=True
+        [sys.executable, "-c", AS_FROM_A_TERMINAL, *FILM, str(place)], cwd=ROOT, stderr=subprocess.PIPE, text=True
     )
     while not list(place.parent.glob(".*")) and film.poll() is None:
         time.sleep(0.01)
