@@ -108,7 +108,7 @@ def find_opponent(opponent: AnyOpponent, tables: Tables, seed: int) -> Opponent:
     if isinstance(opponent, str):
         opponent = find_player(opponent)
     elif not isinstance(opponent, type) and hasattr(opponent, "act"):
-        return opponent  # pyright: ignore[reportReturnType]
+        return opponent  # pyright: ignore[reportReturnType] - what can act is an opponent
     if not callable(opponent):
         raise ValueError(f"opponent is {opponent!r}; expected a player's name, what makes a Player, or an Opponent")
     return SeededPlayer(opponent, Seat.from_tables(tables, seed=seed))

@@ -80,7 +80,7 @@ def _number(name: str, value: object) -> float:
     """`parameters.checked`, but a text or a truth value is no number."""
     if isinstance(value, str | bool):
         raise ValueError(f"parameter '{name}' is {value!r}; expected a number")
-    return checked(name, value)  # pyright: ignore[reportArgumentType]
+    return checked(name, value)  # pyright: ignore[reportArgumentType] - it refuses what is no number
 
 
 def _refuse_unknown(given: Iterable[str], known: Iterable[str], what: str) -> None:

@@ -34,7 +34,7 @@ class TableEnv(ParallelEnv):
     Every array handed out is the caller's own: no later step changes it.
     """
 
-    metadata = {  # noqa: RUF012
+    metadata = {  # noqa: RUF012 - upstream looks for it on the class
         "render_modes": ["rgb_array"],
         "render_fps": 10,
         "is_parallelizable": True,

@@ -23,7 +23,7 @@ class SingleEnv(gymnasium.Env[NDArray[Any], NDArray[Any]]):
     it ended (`infos.outcome_info`), at the beginning what was drawn for it (`infos.drawn_info`).
     """
 
-    metadata = {"render_modes": RENDER_MODES, "render_fps": 10}  # noqa: RUF012
+    metadata = {"render_modes": RENDER_MODES, "render_fps": 10}  # noqa: RUF012 - upstream looks for it on the class
 
     def __init__(self, tables: Tables, opponent: Opponent, *, seat: int = 0, render_mode: str | None = None) -> None:
         """tables: one, that does not reset itself; seat: 0 or 1, the caller's. Raises ValueError, in one line."""
@@ -64,7 +64,7 @@ class SingleEnv(gymnasium.Env[NDArray[Any], NDArray[Any]]):
     def _observation(self) -> NDArray[np.float32]:
         return self._seats.mine(self.tables.observations)[0].copy()
 
-    def render(self) -> NDArray[np.uint8] | None:  # pyright: ignore[reportIncompatibleMethodOverride]
+    def render(self) -> NDArray[np.uint8] | None:  # pyright: ignore[reportIncompatibleMethodOverride] - the base promises a frame in each mode
         """A picture of the table, (height, width, 3) uint8; None without a render mode."""
         return None if self.render_mode is None else draw_table(self.tables, 0, int(self._seats.own[0]))
 

@@ -56,7 +56,7 @@ class TablesVectorEnv(VectorEnv[Arrays, Arrays, Arrays]):
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
         self.action_space = batch_space(self.single_action_space, self.num_envs)
 
-    def reset(  # pyright: ignore[reportIncompatibleMethodOverride]
+    def reset(  # pyright: ignore[reportIncompatibleMethodOverride] - gymnasium's own seeds may be lists
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
         """Begin a new episode on every table; table i then plays random stream i of the seed.

@@ -71,7 +71,7 @@ def test_match_films_its_first_game(tmp_path: Path, capsys, ending: str) -> None
     if ending == "gif":
         with Image.open(path) as film:
             lengths = []
-            for frame in range(film.n_frames):  # pyright: ignore[reportAttributeAccessIssue]
+            for frame in range(film.n_frames):  # pyright: ignore[reportAttributeAccessIssue] - a GIF has frames
                 film.seek(frame)
                 lengths.append(film.info["duration"])
         assert len(lengths) > 5 and 100 * steps <= sum(lengths) <= 100 * steps + 1000

@@ -24,8 +24,8 @@ def fly(settings: Settings, start: tuple[float, float, float, float], seconds: f
 
     Ends early in a goal, or where the puck has been slow for RESTS.
     """
-    model = mujoco.MjModel.from_xml_string(xml(settings))  # pyright: ignore[reportAttributeAccessIssue]
-    data = mujoco.MjData(model)  # pyright: ignore[reportAttributeAccessIssue]
+    model = mujoco.MjModel.from_xml_string(xml(settings))  # pyright: ignore[reportAttributeAccessIssue] - mujoco is compiled
+    data = mujoco.MjData(model)  # pyright: ignore[reportAttributeAccessIssue] - mujoco is compiled
     data.qpos[:2], data.qvel[:2], data.qvel[3] = start[:2], start[2:], spin
     rows, slow = np.empty((round(seconds / FINE), 6)), 0.0
     for k in range(len(rows)):
@@ -35,7 +35,7 @@ def fly(settings: Settings, start: tuple[float, float, float, float], seconds: f
         slow = slow + FINE if hypot(vx, vy) < SLOW else 0.0
         if not 0.0 < x < settings.length or slow > RESTS:
             return rows[:k]
-        mujoco.mj_step(model, data, round(FINE / STEP))  # pyright: ignore[reportAttributeAccessIssue]
+        mujoco.mj_step(model, data, round(FINE / STEP))  # pyright: ignore[reportAttributeAccessIssue] - mujoco is compiled
     return rows
 
 

@@ -96,9 +96,9 @@ def test_every_entry_point_takes_them(tmp_path: Path) -> None:
     file.write_text('format = "puckpilot-effects/1"\n[effects.table_tilt]\ntilt_x = 0.1\ntilt_y = -0.05\n')
     for effects in (TILT, file, str(file)):
         environments = (
-            pettingzoo.make("parallel", "puckpilot/match-v0", effects=effects).unwrapped.tables,  # pyright: ignore[reportAttributeAccessIssue]
-            gymnasium.make("puckpilot/match-v0", effects=effects).unwrapped.tables,  # pyright: ignore[reportAttributeAccessIssue]
-            gymnasium.make_vec("puckpilot/match-v0", num_envs=2, effects=effects).tables,  # pyright: ignore[reportAttributeAccessIssue]
+            pettingzoo.make("parallel", "puckpilot/match-v0", effects=effects).unwrapped.tables,  # pyright: ignore[reportAttributeAccessIssue] - the unwrapped one has tables
+            gymnasium.make("puckpilot/match-v0", effects=effects).unwrapped.tables,  # pyright: ignore[reportAttributeAccessIssue] - the unwrapped one has tables
+            gymnasium.make_vec("puckpilot/match-v0", num_envs=2, effects=effects).tables,  # pyright: ignore[reportAttributeAccessIssue] - the unwrapped one has tables
             Tables("match-v0", 3, effects=effects),
         )
         for tables in environments:

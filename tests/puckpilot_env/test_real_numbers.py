@@ -30,7 +30,7 @@ def test_what_is_no_number_is_refused_wherever_it_comes_in(bad) -> None:
     with pytest.raises(ValueError, match=r"^the array of actions has numbers of dtype"):
         seat.step(bad)
     with pytest.raises(ValueError, match=r"^the array of actions has numbers of dtype"):
-        tables.step([[bad, bad], [bad, bad]])  # pyright: ignore[reportArgumentType]
+        tables.step([[bad, bad], [bad, bad]])  # pyright: ignore[reportArgumentType] - what is refused
     np.testing.assert_array_equal(env.state(), before)
 
 

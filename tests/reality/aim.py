@@ -58,7 +58,7 @@ def axis_plan(
         latest = earliest + 0.01
         while unsettled(latest) > 0.0:
             latest += 2.0 * (latest - earliest)
-        t1 = float(brentq(unsettled, earliest, latest, xtol=1e-12))  # type: ignore[arg-type]
+        t1 = float(brentq(unsettled, earliest, latest, xtol=1e-12))  # type: ignore[arg-type] - scipy's stubs want a float64
         return volts * sign, t1, 2.0 * t1 - net
     return 0.0, 0.0, 0.0
 

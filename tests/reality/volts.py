@@ -33,8 +33,8 @@ def sorted_changes(law: Law, plans: Plans) -> list[tuple[float, tuple[float, flo
     if plans is None:
         return []
     if len(plans) == 6 and not isinstance(plans[0], Sequence):
-        plans = [(0.0, plans)]  # type: ignore[list-item]
-    starts = [(start + law.command_delay, plan) for start, plan in plans]  # type: ignore[misc]
+        plans = [(0.0, plans)]  # type: ignore[list-item] - one plan alone is taken too
+    starts = [(start + law.command_delay, plan) for start, plan in plans]  # type: ignore[misc] - one plan alone is taken too
     changes = []
     for start, plan in starts:
         if plan is None:

@@ -71,7 +71,7 @@ def ours(start: Start, seconds: float) -> tuple[Motion, list[tuple[float, ...]]]
 
 def theirs(start: Start, plans: list[tuple[float, ...]], seconds: float, dt: float, shift: float = 0.0) -> Trace:
     x, y, vx, vy = start.puck
-    return run(LAW, (x + shift, y + 0.7 * shift, vx, vy), start.mallets, plans, seconds, dt)  # type: ignore[arg-type]
+    return run(LAW, (x + shift, y + 0.7 * shift, vx, vy), start.mallets, plans, seconds, dt)  # type: ignore[arg-type] - plans are tuples of fours
 
 
 def spread(one: np.ndarray, two: np.ndarray) -> float:

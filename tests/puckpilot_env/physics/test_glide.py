@@ -23,8 +23,8 @@ def integrated(v0: float, t: float, friction: float, drag: float) -> tuple[float
     def stopped(_: float, state: np.ndarray) -> float:
         return state[1]
 
-    stopped.terminal = True  # type: ignore[attr-defined]
-    stopped.direction = -1  # type: ignore[attr-defined]
+    stopped.terminal = True  # type: ignore[attr-defined] - how scipy takes an event
+    stopped.direction = -1  # type: ignore[attr-defined] - how scipy takes an event
 
     def slope(_: float, state: np.ndarray) -> list[float]:
         return [state[1], -(friction + drag * state[1] * abs(state[1]))]

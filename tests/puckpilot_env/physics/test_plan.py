@@ -119,6 +119,6 @@ def test_no_other_two_switches_arrive_sooner(volts, speed, away):
         grid = max(net, 0.0) + np.concatenate([[0.0], np.geomspace(1e-9, 20.0, 4000)])
         values = np.array([settled(t1) for t1 in grid])
         for i in np.flatnonzero(np.sign(values[:-1]) != np.sign(values[1:])):
-            t1 = float(brentq(settled, grid[i], grid[i + 1], xtol=1e-14))  # type: ignore[arg-type]
+            t1 = float(brentq(settled, grid[i], grid[i + 1], xtol=1e-14))  # type: ignore[arg-type] - scipy's stubs want a float64
             best = min(best, 2.0 * t1 - net)
     assert best - 1.0 / axis.fast_rate <= axis.t2 <= best + 1e-9  # the fast mode dies out by itself, so a little sooner

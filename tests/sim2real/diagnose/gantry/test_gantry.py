@@ -149,7 +149,7 @@ def test_plans_with_blank_cells_are_left_out(plain: Recording) -> None:
 
 @pytest.mark.parametrize("file, column", [("commands", "V_x"), ("drive", "pwm_left")])
 def test_orders_that_are_all_blank_are_none(plain: Recording, file: str, column: str) -> None:
-    drive = Stream({"t": plain.mallet.t, "pwm_left": plain.mallet.t, "pwm_right": plain.mallet.t})  # type: ignore[union-attr]
+    drive = Stream({"t": plain.mallet.t, "pwm_left": plain.mallet.t, "pwm_right": plain.mallet.t})  # type: ignore[union-attr] - this recording holds a mallet
     stream = plain.commands if file == "commands" else drive
     assert stream is not None
     bare = replace(plain, **{"commands": None, file: blanked(stream, column, slice(None))})

@@ -71,7 +71,7 @@ def test_a_stretched_map_is_measured_and_a_wrong_size_refused(tmp_path):
 
     def mapped(scale_x: float, scale_y: float, shear: float) -> Recording:
         seen = {"puck_x": (1 + scale_x) * x + shear * y, "puck_y": (1 + scale_y) * y}
-        return replace(clean, frames=Stream({**clean.frames.columns, **seen}))  # type: ignore[union-attr]
+        return replace(clean, frames=Stream({**clean.frames.columns, **seen}))  # type: ignore[union-attr] - these recordings hold frames
 
     told, numbers = said(mapped(0.006, -0.008, 0.005))
     assert [one.mechanism for one in told.findings] == ["scale_error"]
@@ -115,7 +115,7 @@ def test_a_map_is_undone_by_the_launches_that_are_not_kept_apart(tmp_path):
     sensed = sense([spoilt], [cut(spoilt)], launches)
     assert [one.mechanism for one in sensed.account.findings] == ["scale_error"]
     assert sensed.recordings[0].frames is not None
-    undone = np.nanmedian(spoilt.frames["puck_y"] / sensed.recordings[0].frames["puck_y"])  # type: ignore[union-attr]
+    undone = np.nanmedian(spoilt.frames["puck_y"] / sensed.recordings[0].frames["puck_y"])  # type: ignore[union-attr] - these recordings hold frames
     assert undone == pytest.approx(1.012, abs=0.0004)
     for unseen, told in ((spoilt, True), (clean, False)):
         every, pieces = [spoilt, unseen], [cut(spoilt), cut(unseen)]
