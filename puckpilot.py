@@ -24,6 +24,8 @@ COMMANDS = {
     "check": ("puckpilot_env.commands.check", "does an environment keep its promises?"),
     "match": ("baselines.commands.match", "two players against each other, in paired games"),
     "tournament": ("baselines.commands.tournament", "all against all: payoff matrix and ratings"),
+    "train": ("agents.commands.train", "train a player by self-play"),
+    "evaluate": ("agents.commands.evaluate", "how good a player is, and whether it could play on a gantry"),
     "bench": ("puckpilot_env.commands.bench", "how fast the simulator is here"),
     "compare": ("sim2real.compare", "where a recording of a table departs from the simulator"),
     "diagnose": ("sim2real.commands.diagnose", "which physics the simulator lacks, with proof on untouched data"),

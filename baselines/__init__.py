@@ -1,4 +1,6 @@
-"""Scripted players. A file in `baselines/players/` is a player, and its name is the player's name.
+"""Players by name. A file in `baselines/players/` is a scripted player, and its name is the player's name.
+
+A name `KIND:REST` is made by somebody above this package (`KINDS`): `policy:champion`, or `policy:run/policy.npz`.
 
 from baselines import make_player, player_names
 from baselines.player import Seat
@@ -12,9 +14,12 @@ from __future__ import annotations
 import difflib
 import importlib
 import pkgutil
+from collections.abc import Callable
 
 from baselines import players
 from baselines.player import Player, Seat
+
+KINDS = {"policy": "agents.policy:find_policy_player"}  # prefix of a name: what finds such a player, loaded when asked
 
 __all__ = ["Player", "Seat", "find_player", "make_player", "player_names"]
 
@@ -24,12 +29,16 @@ def player_names() -> list[str]:
     return sorted(name for _, name, _ in pkgutil.iter_modules(players.__path__) if not name.startswith("_"))
 
 
-def find_player(name: str) -> type[Player]:
-    """The class of the player of this name. Raises ValueError, in one line, for an unknown name."""
+def find_player(name: str) -> Callable[[Seat], Player]:
+    """What makes the player of this name for a seat. Raises ValueError, in one line, for an unknown name."""
+    kind, colon, rest = str(name).partition(":")
+    if colon and kind in KINDS:
+        module, _, finder = KINDS[kind].partition(":")
+        return getattr(importlib.import_module(module), finder)(rest)
     names = player_names()
     if name not in names:
         near = difflib.get_close_matches(str(name), names, n=1)
-        hint = f"did you mean '{near[0]}'?" if near else f"known: {', '.join(names)}"
+        hint = f"did you mean '{near[0]}'?" if near else f"known: {', '.join(names)}, and policy:NAME or policy:FILE"
         raise ValueError(f"unknown player '{name}'; {hint}")
     module = importlib.import_module(f"{players.__name__}.{name}")
     found = [c for c in vars(module).values() if isinstance(c, type) and c.__module__ == module.__name__]

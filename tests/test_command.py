@@ -18,6 +18,8 @@ OPTIONS = {
     "check": ["--steps", "--seed", "--json"],
     "match": ["--games", "--video", "--variant", "--seed", "--threads", "--json"],
     "tournament": ["--games", "--out", "--variant", "--seed", "--threads", "--json"],
+    "train": ["--preset", "--out", "--steps", "--minutes", "--resume", "--variant", "--effects", "--seed", "--threads"],
+    "evaluate": ["--games", "--against", "--variants", "--hampered", "--seed", "--json"],
     "bench": ["--tables", "--threads", "--seconds", "--against", "--dicts", "--startup", "--json"],
     "compare": ["--json", "--out"],
     "diagnose": ["--holdout", "--baseline", "--out", "--json"],

@@ -1,0 +1,1 @@
+"""Commands of `puckpilot` about learning players."""

@@ -1,0 +1,76 @@
+"""Who the learner plays besides itself: its earlier selves, and fixed anchors (scripts, specialists).
+
+Earlier selves sit more often the more they still win: a self that always loses teaches nothing (prioritized fictitious
+self-play, Vinyals et al., Nature 575, 2019).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from agents.policy import Policy
+
+FORGET = 0.8  # what a tally keeps from one round to the next
+DOUBT = 2.0  # points that a member is taken to have won, and lost, before it played
+LEAST_CHANCE = 0.02  # weight of a self that never wins, so that it is still met now and then
+
+
+@dataclass
+class Member:
+    """An opponent: a script's name, or a policy. `points`: the learner's and its own, of late; `games`: likewise
+    games that the learner won, drew and lost."""
+
+    name: str
+    policy: Policy | None = None
+    points: NDArray[np.float64] = field(default_factory=lambda: np.zeros(2))
+    games: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
+
+    @property
+    def share(self) -> float:
+        """Share of the points that the learner wins against it, 0 to 1."""
+        return float((self.points[0] + DOUBT) / (self.points.sum() + 2.0 * DOUBT))
+
+    @property
+    def win_rate(self) -> float:
+        """Share of the decided games of late that the learner won; NaN where there are none."""
+        decided = self.games[0] + self.games[2]
+        return float(self.games[0] / decided) if decided else float("nan")
+
+    def note(self, points: NDArray[np.float64], games: NDArray[np.float64]) -> None:
+        """Add a round's points (2,) and games (3,)."""
+        self.points = FORGET * self.points + points
+        self.games = FORGET * self.games + games
+
+
+@dataclass
+class League:
+    """`anchors` always sit; of `earlier` selves some do. A new self is admitted once the learner wins `gate` of the
+    points against those that it met, or after `cap` rounds."""
+
+    anchors: list[Member]
+    gate: float
+    cap: int
+    most: int
+    earlier: list[Member] = field(default_factory=list)
+    waited: int = 0
+
+    def choose(self, seats: int, rng: np.random.Generator) -> list[Member]:
+        """`seats` earlier selves for a round, some perhaps twice."""
+        weights = np.array([max((1.0 - member.share) ** 2, LEAST_CHANCE) for member in self.earlier])
+        picked = rng.choice(len(self.earlier), size=seats, p=weights / weights.sum())
+        return [self.earlier[index] for index in picked]
+
+    def wants_new(self, met: list[Member]) -> bool:
+        """Whether the learner, having `met` these, should join its earlier selves."""
+        self.waited += 1
+        return self.waited >= self.cap or min((member.share for member in met), default=1.0) >= self.gate
+
+    def admit(self, name: str, policy: Policy) -> None:
+        """A new self joins; of too many the one that loses most leaves."""
+        self.earlier.append(Member(name, policy))
+        self.waited = 0
+        if len(self.earlier) > self.most:
+            self.earlier.remove(max(self.earlier[:-1], key=lambda member: member.share))

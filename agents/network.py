@@ -1,0 +1,80 @@
+"""A trained network without torch: layers of weights, one compiled pass."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from puckpilot_env.kernel import kernel
+
+Array = NDArray[np.float32]
+
+
+class Network:
+    """A multi-layer perceptron with ReLU between its layers and nothing after the last.
+
+    `weights[l]` is (outputs, inputs) and `biases[l]` (outputs,) of layer l, as torch's `nn.Linear` has them.
+    Raises ValueError where they do not follow each other or are not finite.
+    """
+
+    def __init__(self, weights: Sequence[Array], biases: Sequence[Array]) -> None:
+        self.weights = tuple(np.ascontiguousarray(w, np.float32) for w in weights)
+        self.biases = tuple(np.ascontiguousarray(b, np.float32) for b in biases)
+        self.sizes = _sizes(self.weights, self.biases)
+        self._flat = np.concatenate([part for pair in self._transposed() for part in pair])
+        self._sizes = np.array(self.sizes, np.int64)
+        self._scratch = np.zeros((2, max(self.sizes)), np.float32)
+
+    def _transposed(self) -> list[tuple[Array, Array]]:
+        return [(w.T.ravel(), b) for w, b in zip(self.weights, self.biases, strict=True)]
+
+    def __call__(self, inputs: Array) -> Array:
+        """(n, outputs) float32 of (n, inputs)."""
+        outputs = np.empty((len(inputs), self.sizes[-1]), np.float32)
+        _forward(self._flat, self._sizes, np.ascontiguousarray(inputs, np.float32), outputs, self._scratch)
+        return outputs
+
+
+def _sizes(weights: Sequence[Array], biases: Sequence[Array]) -> tuple[int, ...]:
+    if not weights or len(weights) != len(biases):
+        raise ValueError(f"{len(weights)} layers of weights and {len(biases)} of biases; expected one each, or more")
+    sizes = [weights[0].shape[-1]]
+    for number, (w, b) in enumerate(zip(weights, biases, strict=True)):
+        if w.ndim != 2 or b.shape != w.shape[:1] or w.shape[1] != sizes[-1] or 0 in w.shape:
+            raise ValueError(f"layer {number} has weights {w.shape} and biases {b.shape} after {sizes[-1]} numbers")
+        if not (np.isfinite(w).all() and np.isfinite(b).all()):
+            raise ValueError(f"layer {number} holds numbers that are not finite")
+        sizes.append(w.shape[0])
+    return tuple(sizes)
+
+
+@kernel
+def _add_scaled(out, scale, row):
+    for k in range(out.size):
+        out[k] += scale * row[k]
+
+
+@kernel
+def _forward(flat, sizes, inputs, outputs, scratch):
+    """flat: transposed weights and biases of every layer; sizes: (layers + 1,); scratch: (2, widest)."""
+    layers = sizes.size - 1
+    for row in range(inputs.shape[0]):
+        for j in range(sizes[0]):
+            scratch[0, j] = inputs[row, j]
+        at, here = 0, 0
+        for layer in range(layers):
+            fan_in, fan_out = sizes[layer], sizes[layer + 1]
+            biases = at + fan_in * fan_out
+            out = scratch[1 - here, :fan_out]
+            for k in range(fan_out):
+                out[k] = flat[biases + k]
+            for j in range(fan_in):
+                x = scratch[here, j]
+                if layer == 0 or x > 0.0:  # ReLU, where the numbers are used: half of them need no work
+                    _add_scaled(out, x, flat[at : at + fan_out])
+                at += fan_out
+            at, here = biases + fan_out, 1 - here
+        for k in range(sizes[layers]):
+            outputs[row, k] = scratch[here, k]

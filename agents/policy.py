@@ -1,0 +1,112 @@
+"""A trained player as a file: numbers and names in an npz, played without torch. Nothing in it can run."""
+
+from __future__ import annotations
+
+import json
+import zipfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from agents.network import Network
+from agents.scaling import Reading, Scaling
+from baselines.player import Player, Seat
+from puckpilot_env.whole_file import write_whole
+
+FORMAT = "puckpilot-policy-1"
+SHIPPED = Path(__file__).parent / "policies"  # a file there is a policy, and its name is the policy's name
+OUTPUTS = 4  # medians of target x, y and voltages x, y, before tanh
+SCALINGS = ("centre", "span", "flip", "low", "high")
+
+
+@dataclass(frozen=True)
+class Policy:
+    """A network, and how it reads and acts.
+
+    - `columns`: names of the observation's columns that it was made for; it plays where others are shown too.
+    - `about`: what made it, as JSON can hold it: variant, command, seed, steps ...
+    """
+
+    network: Network
+    scaling: Scaling
+    columns: tuple[str, ...]
+    about: dict[str, Any]
+
+    def save(self, path: Path) -> Path:
+        """Write it to `path`, whole or not at all."""
+        arrays: dict[str, Any] = {name: getattr(self.scaling, name) for name in SCALINGS}
+        for layer, (w, b) in enumerate(zip(self.network.weights, self.network.biases, strict=True)):
+            arrays[f"weights_{layer}"], arrays[f"biases_{layer}"] = w, b
+        head = json.dumps({"format": FORMAT, "columns": self.columns, "about": self.about})
+        return write_whole(path, lambda draft: np.savez(draft, head=np.array(head), **arrays))
+
+
+def load_policy(path: Path) -> Policy:
+    """The policy of a file. ValueError, in one line, for a file that is not one, is cut short, or does not fit."""
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            arrays = {name: file[name] for name in file.files}
+        head = json.loads(str(arrays["head"]))
+    except FileNotFoundError:
+        raise ValueError(f"no policy at {path}") from None
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+        raise ValueError(f"{path} is no policy, or is cut short ({type(error).__name__})") from None
+    if not isinstance(head, dict) or head.get("format") != FORMAT:
+        raise ValueError(f"{path} is not of the format {FORMAT}")
+    try:
+        return _built(arrays, head)
+    except (KeyError, TypeError, ValueError) as error:
+        raise ValueError(f"{path} does not fit together: {error}") from None
+
+
+def _built(arrays: dict[str, NDArray[Any]], head: dict[str, Any]) -> Policy:
+    layers = sum(name.startswith("weights_") for name in arrays)
+    network = Network(*([arrays[f"{part}_{n}"] for n in range(layers)] for part in ("weights", "biases")))
+    scaling = Scaling(*(arrays[name].astype(np.float32) for name in SCALINGS))
+    columns = tuple(str(name) for name in head["columns"])
+    wide = {"centre": len(columns), "span": len(columns), "flip": len(columns), "low": OUTPUTS, "high": OUTPUTS}
+    for name, size in wide.items():
+        numbers = getattr(scaling, name)
+        if numbers.shape != (size,) or not np.isfinite(numbers).all():
+            raise ValueError(f"{name} has shape {numbers.shape}; expected ({size},) finite numbers")
+    if network.sizes[0] != len(columns) or network.sizes[-1] != OUTPUTS:
+        raise ValueError(f"a network of {network.sizes} for {len(columns)} columns and {OUTPUTS} outputs")
+    return Policy(network, scaling, columns, dict(head["about"]))
+
+
+class PolicyPlayer(Player):
+    """A policy at a seat; it does what it thinks best, without exploring."""
+
+    def __init__(self, policy: Policy, seat: Seat) -> None:
+        self.seat = seat
+        self.policy = policy
+        self._reading = Reading.of(policy.scaling, policy.columns, list(seat.columns))
+
+    def act(self, observation: NDArray[np.float32]) -> NDArray[np.float32]:
+        """observation: (n, d) float32; returns (n, 4) float32 actions inside the seat's bounds."""
+        wanted = self._reading.scaling.action(np.tanh(self.policy.network(self._reading.seen(observation))))
+        return np.clip(wanted, self.seat.action_bounds[0], self.seat.action_bounds[1])
+
+
+def policy_names() -> list[str]:
+    """Names of the shipped policies."""
+    return sorted(path.stem for path in SHIPPED.glob("*.npz"))
+
+
+def find_policy(name: str) -> Policy:
+    """The shipped policy of this name, or that of a file. ValueError, in one line, for one that cannot be loaded."""
+    if name in policy_names():
+        return load_policy(SHIPPED / f"{name}.npz")
+    if not Path(name).exists():
+        raise ValueError(f"no policy '{name}'; shipped: {', '.join(policy_names())}, or a path to an .npz file")
+    return load_policy(Path(name))
+
+
+def find_policy_player(name: str) -> Callable[[Seat], Player]:
+    """What makes the player of this policy for a seat; see `find_policy`."""
+    return partial(PolicyPlayer, find_policy(name))

@@ -1,0 +1,108 @@
+"""rsl-rl's runner, one update at a time, so that a league can change opponents in between."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import math
+import time
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import torch
+from rsl_rl.models import MLPModel
+from rsl_rl.runners import OnPolicyRunner
+from torch import nn
+
+from agents.distribution import TanhNormal
+from agents.learner_env import POLICY, PRIVILEGED, LearnerEnv
+from agents.network import Network
+from agents.policy import OUTPUTS, Policy
+from agents.ppo import FinalStatePPO
+from agents.preset import Preset
+
+DISTRIBUTIONS: dict[str, dict[str, Any]] = {
+    "TanhNormal": {"class_name": TanhNormal},
+    "Gaussian": {"class_name": "GaussianDistribution", "init_std": 0.5, "std_type": "log"},
+    "Beta": {"class_name": "BetaDistribution"},
+}
+
+
+class DivergedError(RuntimeError):
+    """The losses are no numbers any more."""
+
+
+@dataclass(frozen=True)
+class Iteration:
+    """One update: mean losses by name, and seconds in the environment, choosing actions, and learning."""
+
+    losses: dict[str, float]
+    environment: float
+    acting: float
+    learning: float
+
+
+class SelfPlayRunner(OnPolicyRunner):
+    """Collects and learns, one update a call. `env` is the runner's environment, with opponents seated."""
+
+    env: LearnerEnv
+
+    def __init__(self, env: LearnerEnv, preset: Preset, device: str = "cpu") -> None:
+        with contextlib.redirect_stdout(io.StringIO()):  # rsl-rl prints its networks
+            super().__init__(env, _config(preset), log_dir=None, device=device)
+        self.alg.train_mode()
+
+    def iterate(self) -> Iteration:
+        """Play `steps` steps on every table and learn from them. DivergedError where a loss is not finite."""
+        begun, played = time.perf_counter(), 0.0
+        with torch.inference_mode():
+            obs = self.env.get_observations()
+            for _ in range(self.cfg["num_steps_per_env"]):
+                actions = self.alg.act(obs)
+                before = time.perf_counter()
+                obs, rewards, dones, extras = self.env.step(actions)
+                played += time.perf_counter() - before
+                self.alg.process_env_step(obs, rewards, dones, extras)
+            collected = time.perf_counter()
+            self.alg.compute_returns(obs)
+        losses = self.alg.update()
+        self.current_learning_iteration += 1
+        if not all(math.isfinite(loss) for loss in losses.values()):
+            raise DivergedError(f"update {self.current_learning_iteration}: {losses}")
+        acting = collected - begun - played
+        return Iteration(losses, played, acting, time.perf_counter() - collected)
+
+    def policy(self, about: dict[str, Any]) -> Policy:
+        """What has been learned so far, as a player without torch."""
+        layers = [layer for layer in self.alg.get_policy().mlp.modules() if isinstance(layer, nn.Linear)]
+        weights = [layer.weight.detach().cpu().numpy().copy() for layer in layers]
+        biases = [layer.bias.detach().cpu().numpy().copy() for layer in layers]
+        weights[-1], biases[-1] = weights[-1][:OUTPUTS], biases[-1][:OUTPUTS]
+        reading = self.env.reading
+        return Policy(Network(weights, biases), reading.scaling, tuple(self.env.columns), about)
+
+    def random_state(self) -> torch.Tensor:
+        """The state of everything random in here."""
+        return torch.get_rng_state()
+
+
+def _config(preset: Preset) -> dict[str, Any]:
+    """A preset in rsl-rl's words."""
+    network = {"class_name": MLPModel, "hidden_dims": list(preset.hidden), "activation": "relu"}
+    algorithm: dict[str, Any] = {"class_name": FinalStatePPO, **preset.ppo}
+    if preset.flip == "augment":
+        algorithm["symmetry_cfg"] = {"data_augmentation_func": "agents.flip:augment", "use_data_augmentation": True}
+    return {
+        "num_steps_per_env": preset.steps,
+        "obs_groups": {"actor": [POLICY], "critic": [POLICY, PRIVILEGED]},
+        "actor": {**network, "distribution_cfg": dict(DISTRIBUTIONS[preset.distribution])},
+        "critic": network,
+        "algorithm": algorithm,
+    }
+
+
+def seed_everything(seed: int) -> np.random.Generator:
+    """Seed torch, and make the league's random numbers."""
+    torch.manual_seed(seed)
+    return np.random.default_rng(seed)

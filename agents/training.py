@@ -1,0 +1,184 @@
+"""A training run: rounds of a league, each some updates against the same opponents, then a checkpoint.
+
+A round seats its opponents anew, so that a checkpoint between rounds is all that there is to know: a run that was
+killed goes on from its last round and, on one thread, takes the very same path.
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import torch
+
+from agents.checkpoint import load_checkpoint, restore_tables, save_checkpoint, tables_as_tensors
+from agents.league import League, Member
+from agents.learner_env import LearnerEnv
+from agents.policy import Policy, PolicyPlayer, load_policy
+from agents.preset import Preset
+from agents.run_folder import RunFolder
+from agents.runner import Iteration, SelfPlayRunner
+from agents.scaling import Reading, Scaling
+from agents.seating import Seating
+from baselines import make_player
+from baselines.player import Player, Seat
+from puckpilot_env.effects_file import Effects
+from puckpilot_env.tables import Tables
+
+Row = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What is trained. `effects`: the text of an effects file, or None."""
+
+    variant: str
+    seed: int
+    threads: int
+    preset: Preset
+    effects: Effects | None = None
+
+
+class Training:
+    """A run in `folder`; `resume` takes it up where its last checkpoint left it."""
+
+    def __init__(self, folder: RunFolder, settings: Settings, *, resume: bool = False) -> None:
+        preset = settings.preset
+        torch.set_num_threads(settings.threads)
+        torch.manual_seed(settings.seed)
+        self.folder, self.settings = folder, settings
+        self.rng = np.random.default_rng(settings.seed)
+        self.tables = Tables(settings.variant, preset.tables, seed=settings.seed, effects=settings.effects)
+        stagger(self.tables, self.rng)
+        seating = Seating.of(preset.tables, [*preset.anchors.values(), *preset.earlier])
+        names = [column.name for column in self.tables.observation_columns]
+        reading = Reading.of(Scaling.from_tables(self.tables), names, names)
+        self.env = LearnerEnv(
+            self.tables, seating, reading, preset.rewards, gamma=preset.ppo["gamma"], flip=preset.flip == "rows"
+        )
+        self.runner = SelfPlayRunner(self.env, preset)
+        self.league = League([Member(name) for name in preset.anchors], preset.gate, preset.cap, preset.most)
+        self.rows: list[Row] = []
+        if resume:
+            self._resume()
+        else:
+            self._admit("self-0")
+
+    @property
+    def steps(self) -> int:
+        """Steps that the learner has taken, over all its seats."""
+        return self.rows[-1]["steps"] if self.rows else 0
+
+    def round(self) -> Row:
+        """One round, and its checkpoint; what came of it."""
+        preset, tally = self.settings.preset, self.env.tally
+        chosen = self.league.choose(len(preset.earlier), self.rng)
+        met = [*self.league.anchors, *chosen]
+        self.env.seat(self._players(met), [member.share for member in met])
+        tally.clear()
+        iterations = [self.runner.iterate() for _ in range(preset.round)]
+        for member, points, games in zip(met, tally.points, tally.games, strict=True):
+            member.note(points, games)
+        if self.league.wants_new(chosen):
+            self._admit(f"self-{len(self.rows) + 1}")
+        self.rows.append(self._row(iterations))
+        self._save()
+        return self.rows[-1]
+
+    def policy(self) -> Policy:
+        """What has been learned so far."""
+        about = {"variant": self.settings.variant, "seed": self.settings.seed, "steps": self.steps}
+        return self.runner.policy(about)
+
+    def _players(self, met: list[Member]) -> list[Player]:
+        seat = Seat.from_tables(self.tables)
+        players = []
+        for block, member in zip(self.env.seating.blocks, met, strict=True):
+            own = replace(seat, tables=block.last - block.first, seed=int(self.rng.integers(2**31)))
+            players.append(make_player(member.name, own) if member.policy is None else PolicyPlayer(member.policy, own))
+        return players
+
+    def _admit(self, name: str) -> None:
+        policy = self.policy()
+        policy.save(self.folder.selves / f"{name}.npz")
+        self.league.admit(name, policy)
+
+    def _row(self, iterations: list[Iteration]) -> Row:
+        preset = self.settings.preset
+        before = self.rows[-1] if self.rows else {"steps": 0, "seconds": 0.0}
+        spent = {part: sum(getattr(i, part) for i in iterations) for part in ("environment", "acting", "learning")}
+        taken = self.env.num_envs * preset.steps * preset.round
+        return {
+            "round": len(self.rows) + 1,
+            "steps": before["steps"] + taken,
+            "seconds": round(before["seconds"] + sum(spent.values()), 2),
+            "steps_per_s": round(taken / sum(spent.values())),
+            **{part: round(seconds / sum(spent.values()), 3) for part, seconds in spent.items()},
+            **{name: float(np.mean([i.losses[name] for i in iterations])) for name in iterations[0].losses},
+            "scale": float(self.runner.alg.get_policy().output_std.mean()),
+            "selves": len(self.league.earlier),
+            **{f"points_{member.name}": round(member.share, 4) for member in self.league.anchors},
+            **{f"wins_{member.name}": round(member.win_rate, 4) for member in self.league.anchors},
+        }
+
+    def _save(self) -> None:
+        self.policy().save(self.folder.policy)
+        self.folder.write_curve(self.rows)
+        league = self.league
+        save_checkpoint(
+            self.folder.checkpoint,
+            {
+                "learner": self.runner.alg.save(),
+                "torch_random": torch.get_rng_state(),
+                "random": json.dumps(self.rng.bit_generator.state),
+                "tables": tables_as_tensors(self.tables),
+                "rows": json.dumps(self.rows),
+                "waited": league.waited,
+                "anchors": [_as_dict(member) for member in league.anchors],
+                "earlier": [_as_dict(member) for member in league.earlier],
+            },
+        )
+
+    def _resume(self) -> None:
+        kept = load_checkpoint(self.folder.checkpoint)
+        self.runner.alg.load(kept["learner"], None, True)
+        torch.set_rng_state(kept["torch_random"])
+        self.rng.bit_generator.state = json.loads(kept["random"])
+        restore_tables(self.tables, kept["tables"])
+        self.rows = json.loads(kept["rows"])
+        self.runner.current_learning_iteration = len(self.rows) * self.settings.preset.round
+        league = self.league
+        league.waited = kept["waited"]
+        league.anchors = [_member(entry) for entry in kept["anchors"]]
+        league.earlier = [
+            _member(entry, load_policy(self.folder.selves / f"{entry['name']}.npz")) for entry in kept["earlier"]
+        ]
+
+
+def stagger(tables: Tables, rng: np.random.Generator) -> None:
+    """Let the tables' games end at different times: begin each somewhere within its time."""
+    rules = tables.variant
+    longest = rules.step_limit or round(rules.match_time / rules.period)
+    if longest < 200:  # drills are short enough to fall out of step by themselves
+        return
+    tables.states["steps"] = rng.integers(0, longest - 1, len(tables))
+    tables.states["time"] = tables.states["steps"] * rules.period
+
+
+def _as_dict(member: Member) -> dict[str, Any]:
+    return {"name": member.name, "points": member.points.tolist(), "games": member.games.tolist()}
+
+
+def _member(entry: Mapping[str, Any], policy: Policy | None = None) -> Member:
+    return Member(entry["name"], policy, np.array(entry["points"]), np.array(entry["games"]))
+
+
+def train(training: Training, *, steps: float, seconds: float, tell: Callable[[Row], None]) -> None:
+    """Rounds until `steps` steps are taken or `seconds` are over, whichever comes first."""
+    begun = time.monotonic()
+    while training.steps < steps and time.monotonic() - begun < seconds:
+        tell(training.round())
