@@ -10,8 +10,8 @@ import numpy as np
 from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.choose import Law
-from sim2real.diagnose.glide.families import hats
 from sim2real.diagnose.mallet.data import Blows
+from sim2real.diagnose.piecewise import spread_hats
 from sim2real.diagnose.problem import Columns
 
 if TYPE_CHECKING:
@@ -57,19 +57,14 @@ def _impulses(data: Blows, weights: np.ndarray, axis: int) -> np.ndarray:
     return columns
 
 
-def _spread_hats(x: np.ndarray) -> np.ndarray:
-    """Piecewise linear functions (n, KNOTS) with knots at quantiles of x."""
-    return hats(x, np.unique(np.quantile(x, np.linspace(0.0, 1.0, KNOTS)))) if len(x) else np.zeros((0, KNOTS))
-
-
 def _angle(data: Blows) -> np.ndarray:
     return np.arctan2(np.abs(data.split(data.before - data.driven)[:, 1]), data.closing)
 
 
 FAMILIES: dict[str, tuple[str, Callable[[Blows], np.ndarray]]] = {
-    "speed": ("speed", lambda d: _spread_hats(d.closing)),
-    "angle": ("heading", lambda d: _spread_hats(_angle(d))),
-    "place along the table": ("position", lambda d: _spread_hats(d.place[:, 0])),
-    "place across the table": ("position", lambda d: _spread_hats(d.place[:, 1])),
-    "time": ("time", lambda d: _spread_hats(d.t)),
+    "speed": ("speed", lambda d: spread_hats(d.closing, KNOTS)),
+    "angle": ("heading", lambda d: spread_hats(_angle(d), KNOTS)),
+    "place along the table": ("position", lambda d: spread_hats(d.place[:, 0], KNOTS)),
+    "place across the table": ("position", lambda d: spread_hats(d.place[:, 1], KNOTS)),
+    "time": ("time", lambda d: spread_hats(d.t, KNOTS)),
 }

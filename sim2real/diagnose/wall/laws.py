@@ -10,7 +10,7 @@ import numpy as np
 from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.choose import Law
-from sim2real.diagnose.glide.families import hats
+from sim2real.diagnose.piecewise import memory_hats, spread_hats
 from sim2real.diagnose.problem import Columns
 from sim2real.diagnose.wall.data import KINDS, Bounces
 
@@ -22,7 +22,6 @@ UNIT = 0.1  # of a restitution, what a coefficient of 1 stands for
 KNOTS = 5
 WAVES = 4
 ONE_ROW_EACH = ("wall_to_wall_restitution", "speed_dependent_restitution")
-MEMORY = 2.0  # s after a contact
 
 
 def wall_columns(problem: WallProblem, values: Mapping[str, float], free: Sequence[str]) -> Columns:
@@ -77,11 +76,6 @@ def _impulses(data: Bounces, weights: np.ndarray, axis: int) -> np.ndarray:
     return columns
 
 
-def _spread_hats(x: np.ndarray) -> np.ndarray:
-    """Piecewise linear functions (n, KNOTS) with knots at quantiles of x."""
-    return hats(x, np.unique(np.quantile(x, np.linspace(0.0, 1.0, KNOTS)))) if len(x) else np.zeros((0, KNOTS))
-
-
 def _angle(data: Bounces) -> np.ndarray:
     normal, along = data.split(data.before).T
     return np.arctan2(np.abs(along), -normal)
@@ -98,15 +92,10 @@ def _along_walls(data: Bounces) -> np.ndarray:
     return np.stack(columns, axis=1)
 
 
-def _memory(data: Bounces) -> np.ndarray:
-    since = np.minimum(np.where(np.isfinite(data.since), data.since, MEMORY), MEMORY)
-    return hats(since, MEMORY * np.linspace(0.0, 1.0, KNOTS) ** 2)[:, :-1]
-
-
 FAMILIES: dict[str, tuple[str, Callable[[Bounces], np.ndarray]]] = {
-    "speed": ("speed", lambda d: _spread_hats(d.closing)),
-    "angle": ("heading", lambda d: _spread_hats(_angle(d))),
+    "speed": ("speed", lambda d: spread_hats(d.closing, KNOTS)),
+    "angle": ("heading", lambda d: spread_hats(_angle(d), KNOTS)),
     "place": ("position", _along_walls),
-    "time": ("time", lambda d: _spread_hats(d.t)),
-    "time since a contact": ("history", _memory),
+    "time": ("time", lambda d: spread_hats(d.t, KNOTS)),
+    "time since a contact": ("history", lambda d: memory_hats(d.since, KNOTS)),
 }
