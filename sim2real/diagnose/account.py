@@ -91,7 +91,7 @@ def _fit_without(problem: Problem, found: Explained, law: Law, use: np.ndarray) 
         return found.baseline
     if len(others) == len(found.listed):
         return found.law
-    rows = problem.rows(law)
+    rows = law.rows
     free = [name for name in found.law.free if name not in rows]
     values = {**found.law.values, **{name: BY_NAME[name].default for name in rows}}
     return fit(problem, values, free, use)
@@ -119,7 +119,7 @@ def _family_losses(found: Explained, theta: np.ndarray, parts: np.ndarray) -> np
 def _listed(problem: Problem, found: Explained, law: Law, before: float, after: float) -> Finding:
     effect = EFFECTS[law.name]
     fitted = found.final
-    rows = [name for name in problem.rows(law) if name in fitted.free]
+    rows = [name for name in law.rows if name in fitted.free]
     also, rivals = compare(found.chooser, found.model, law, found.screen)
     return Finding(
         effect.regime, law.name, also, effect.depends_on, effect.law, labelled(law, fitted),

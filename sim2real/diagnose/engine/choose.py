@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.gram import Grams
 
@@ -52,6 +53,12 @@ class Law:
     mechanism: str = "unlisted"
     each_launch: bool = False
     searched: int = 1
+
+    @property
+    def rows(self) -> tuple[str, ...]:
+        """The parameters that a nonlinear fit of a mechanism frees: where it had to be looked for, such as a place,
+        all of its effect's, else those whose columns it has."""
+        return EFFECTS[self.name].row_names if self.start else self.columns
 
 
 @dataclass(frozen=True)

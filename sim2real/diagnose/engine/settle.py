@@ -67,7 +67,7 @@ def refit(problem: Problem, baseline: Fit, listed: Sequence[Law], screen: Column
     """The nonlinear fit of the baseline and the listed laws together, from each place at which one was looked for."""
     best = baseline
     for law in listed:
-        free = tuple(dict.fromkeys((*best.free, *problem.rows(law))))
+        free = tuple(dict.fromkeys((*best.free, *law.rows)))
         values = {**best.values, **law.start}
         if law.start:
             starts = [one.start for one in screen.listed if one.name == law.name]
@@ -92,7 +92,7 @@ def _size(problem: Problem, fitted: Fit, law: Law, use: np.ndarray) -> float:
     """How surely a law is there: the squares of its numbers by their covariance, or what the sum of squares grows by
     without them, if that is less. A nonlinear law may be sure though its numbers are not, such as a friction that
     always grips: of it, what the sum of squares grows by when all else is fitted without it."""
-    rows = [name for name in problem.rows(law) if name in fitted.free]
+    rows = [name for name in law.rows if name in fitted.free]
     off = {name: BY_NAME[name].default for name in rows}
     if law.start:
         others = [name for name in fitted.free if name not in rows]

@@ -99,7 +99,7 @@ def candidates(problem: GantryProblem, values: Mapping[str, float]) -> list[Cand
 
 def stands(problem: GantryProblem, without: Fit, law: Fit, name: str) -> bool:
     """Whether an effect's fit `law` is inside its range, surely not at none, and better than chance would make it."""
-    rows = effect_rows(name)
+    rows = EFFECTS[name].row_names
     if set(law.bound) & set(rows):
         return False
     sizes = [abs(law.values[row] - BY_NAME[row].default) > SURE * _std(law, row) for row in rows]
@@ -110,7 +110,7 @@ def stands(problem: GantryProblem, without: Fit, law: Fit, name: str) -> bool:
 
 def best_fit(problem: GantryProblem, without: Staged, name: str) -> Staged:
     """The best fit of an effect on top of others, all of whose parameters stay free."""
-    rows = (*(row for row in without.plain.free if row not in problem.base), *effect_rows(name))
+    rows = (*(row for row in without.plain.free if row not in problem.base), *EFFECTS[name].row_names)
     starts = [{**without.plain.values, **start} for start in STARTS[name]]
     if len(starts) > FOLLOWED:
         starts.sort(key=lambda start: promise(problem, start, (*PLAIN, *rows)))
@@ -136,11 +136,6 @@ def _delay_in_steps(problem: GantryProblem, law: Fit) -> Fit:
         return law
     best = min(starts, key=lambda start: promise(problem, start, free))
     return fit(problem, fit(problem, best, free, problem.seen, ROUNDS).values, law.free, problem.seen, ONCE)
-
-
-def effect_rows(name: str) -> tuple[str, ...]:
-    """The parameters of an effect."""
-    return tuple(row.name for row in EFFECTS[name].rows.values())
 
 
 def _std(law: Fit, row: str) -> float:

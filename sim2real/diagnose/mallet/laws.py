@@ -25,7 +25,7 @@ KNOTS = 4
 def mallet_columns(problem: MalletProblem, values: Mapping[str, float], free: Sequence[str]) -> Columns:
     """Every column of a mallet problem at one law."""
     smooth = [name for name, effect in EFFECTS.items() if effect.regime == "mallet" and name != "mallet_friction"]
-    laws = [Law(name, tuple(row.name for row in EFFECTS[name].rows.values())) for name in smooth]
+    laws = [Law(name, EFFECTS[name].row_names) for name in smooth]
     free = tuple(dict.fromkeys((*problem.base, *(name for law in laws for name in law.columns), *free)))
     exact = problem.residuals(values, free, np.arange(problem.clusters))
     names, blocks = list(free), [exact.jacobian]

@@ -11,15 +11,13 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from puckpilot_env.kernel import kernel
-from puckpilot_env.parameters import BY_NAME, make_records
+from puckpilot_env.parameters import BY_NAME
 from puckpilot_env.physics.advance import PUCK
-from puckpilot_env.physics.effects import EFFECTS
 from puckpilot_env.physics.rebound import strike
-from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.engine.noise import allowing_for
 from sim2real.diagnose.mallet.data import Blows
 from sim2real.diagnose.mallet.laws import mallet_columns
-from sim2real.diagnose.problem import Columns, Residuals, Units
+from sim2real.diagnose.problem import Columns, Residuals, Units, record_of
 
 FLIGHT = 0.1  # s; an error of a velocity is told as that of the place so much later
 STEP = 1e-5  # m/s
@@ -102,15 +100,8 @@ class MalletProblem:
         """See `Problem.columns`."""
         return mallet_columns(self, values, free)
 
-    def rows(self, law: Law) -> tuple[str, ...]:
-        """See `Problem.rows`."""
-        return tuple(row.name for row in EFFECTS[law.name].rows.values()) if law.start else law.columns
-
     def _record(self, values: Mapping[str, float]) -> np.void:
-        records = make_records(1)
-        for name, value in {**self._common, **values}.items():
-            records[name] = value
-        return records[0]
+        return record_of({**self._common, **values})
 
     def _predicted(self, record: np.void, before: np.ndarray, driven: np.ndarray) -> np.ndarray:
         after = np.empty_like(before)

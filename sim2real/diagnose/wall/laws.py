@@ -60,11 +60,10 @@ def _smooth_in_the_effect() -> list[Law]:
     for name, effect in EFFECTS.items():
         if effect.regime not in ("wall", "corner") or name == "wall_friction_spin":
             continue
-        rows = [row.name for row in effect.rows.values()]
         if name in ONE_ROW_EACH:
-            found += [Law(name, (row,)) for row in rows]
+            found += [Law(name, (row,)) for row in effect.row_names]
         else:
-            found.append(Law(name, tuple(rows)))
+            found.append(Law(name, effect.row_names))
     return found
 
 

@@ -7,14 +7,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from puckpilot_env.kernel import kernel
-from puckpilot_env.parameters import BY_NAME, make_records
+from puckpilot_env.parameters import BY_NAME
 from puckpilot_env.physics import bounce
 from puckpilot_env.physics.advance import PUCK
-from puckpilot_env.physics.effects import EFFECTS
 from puckpilot_env.physics.rebound import rebound
-from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.engine.noise import allowing_for
-from sim2real.diagnose.problem import Columns, Residuals, Units
+from sim2real.diagnose.problem import Columns, Residuals, Units, record_of
 from sim2real.diagnose.wall.data import Bounces
 from sim2real.diagnose.wall.laws import wall_columns
 
@@ -143,15 +141,8 @@ class WallProblem:
         """See `Problem.columns`."""
         return wall_columns(self, values, free)
 
-    def rows(self, law: Law) -> tuple[str, ...]:
-        """See `Problem.rows`."""
-        return tuple(row.name for row in EFFECTS[law.name].rows.values()) if law.start else law.columns
-
     def _record(self, values: Mapping[str, float]) -> np.void:
-        records = make_records(1)
-        for name, value in {**self._common, **values}.items():
-            records[name] = value
-        return records[0]
+        return record_of({**self._common, **values})
 
     def _after(self, record: np.void, before: np.ndarray, spin: float = 0.0) -> np.ndarray:
         d = self.data
