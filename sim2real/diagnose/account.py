@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.stats import t as student
 
 from puckpilot_env.parameters import BY_NAME
 from puckpilot_env.physics.effects import EFFECTS
@@ -17,6 +16,7 @@ from sim2real.diagnose.engine.fit import Fit, fit, soft_loss
 from sim2real.diagnose.engine.rivals import chance, compare
 from sim2real.diagnose.engine.twins import twins
 from sim2real.diagnose.finding import Account, Estimate, Finding, Proof
+from sim2real.diagnose.interval import reach_of_launches
 from sim2real.diagnose.labels import labelled
 from sim2real.diagnose.problem import Problem
 from sim2real.diagnose.where import whereabouts
@@ -138,7 +138,7 @@ def _unlisted(problem: Problem, found: Explained, law: Law, before: float, after
 
 def _sizes(found: Explained, law: Law) -> Mapping[str, Estimate]:
     """The coefficients of a smooth law with their intervals."""
-    near = student.ppf(0.975, max(found.law.clusters - 1, 2)) * np.sqrt(np.diag(found.theta_covariance))
+    near = reach_of_launches(found.law.clusters) * np.sqrt(np.diag(found.theta_covariance))
     k = len(law.columns)
     return {
         f"c{i}": Estimate(float(value), float(value - half), float(value + half), "1")

@@ -38,8 +38,7 @@ from sim2real.diagnose.wall.scatter import explain_bounces
 from sim2real.nominal import parameters
 from sim2real.recording import Recording
 
-FEWEST_LAUNCHES = 4
-FEWEST_RESIDUALS = 8
+FEWEST_LAUNCHES, FEWEST_RESIDUALS = 4, 8  # of all recordings together: with fewer, nothing is said of a regime
 TOO_LITTLE = "too little data"
 MORE_OF = {
     "glide": "launches of the puck, twenty or more in all directions and from slow to fast",

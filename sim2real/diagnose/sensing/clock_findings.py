@@ -9,6 +9,7 @@ from scipy import stats
 
 from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.finding import Estimate, Finding, Proof, Rival
+from sim2real.diagnose.interval import reach
 from sim2real.diagnose.sensing.clock import EXACT, TOUCHED, Clock, Fit, Meetings, fit, search
 from sim2real.diagnose.sensing.measured import Measured, measured
 
@@ -111,7 +112,7 @@ def _finding(name: str, named, best: Fit, fits, chance, full: Fit, sizes: Measur
     index = 0 if name == "camera_delay" else 1
     value = (best.clock.delay, best.clock.rate * 1e6)[index]
     error = float(np.sqrt(best.clock.covariance[index, index])) * (1.0, 1e6)[index]
-    reach = float(stats.t.ppf(0.975, best.freedom)) * error
+    half = reach(best.freedom) * error
     unit, label = (("s", "delay_s"), (DRIFT.rows["ppm"].unit, "ppm"))[index]
     without = _chance(fits[("camera_delay", "clock_drift")[1 - index]], full, 1) if len(named) == 2 else chance["none"]
     other = ("camera_delay", "clock_drift")[1 - index]
@@ -125,7 +126,7 @@ def _finding(name: str, named, best: Fit, fits, chance, full: Fit, sizes: Measur
         also_possible=() if unlike else (other,),
         depends_on=("time",) if index else (),
         formula=FORMULAS[name],
-        parameters={label: Estimate(value, value - reach, value + reach, unit)},
+        parameters={label: Estimate(value, value - half, value + half, unit)},
         p_value=max(without, 1e-300),
         before=sizes.before,
         after=sizes.after,

@@ -15,6 +15,7 @@ from scipy import stats
 from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.contacts import Geometry, nominal_lines, wall_axis
 from sim2real.diagnose.finding import Estimate, Finding, Proof
+from sim2real.diagnose.interval import NORMAL_REACH
 from sim2real.diagnose.sensing.lines import Line, lines
 from sim2real.diagnose.sensing.measured import measured
 from sim2real.diagnose.strikes import Strike
@@ -59,9 +60,9 @@ def scale_account(found: list[Strike], g: Geometry, unseen: Sequence[Strike] = (
     if sizes is None or sizes.proof.after_m >= sizes.proof.before_m:
         return ScaleAccount(np.zeros(3), (), None)
     sizes = measured(*apart.T) or sizes
-    reach = 1.96 * std
+    half = NORMAL_REACH * std
     estimates = {
-        name: Estimate(float(values[k]), float(values[k] - reach[k]), float(values[k] + reach[k]), "1")
+        name: Estimate(float(values[k]), float(values[k] - half[k]), float(values[k] + half[k]), "1")
         for k, name in enumerate(NAMES)
         if told[k]
     }
