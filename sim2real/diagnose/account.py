@@ -72,15 +72,13 @@ def _findings(
     if not found.model.laws:
         return ()
     freedom = max(float(problem.freedom[proof].sum()), 1.0)
-    told = []
-    for law in found.model.laws:
-        told.append((law, _squares(problem, _fit_without(problem, found, law, use), proof)))
+    without = [(law, _squares(problem, _fit_without(problem, found, law, use), proof)) for law in found.model.laws]
     controls = twins(found.screen.grams, problem.units, found.model, found.screen.listed, use, proof)
     findings = []
-    for law, before in sorted(told, key=lambda one: -one[1]):
-        tell = _unlisted if law.family else _listed
+    for law, before in sorted(without, key=lambda one: -one[1]):
         rms = (float(np.sqrt(squares / freedom)) for squares in (before, after))
-        findings.append(replace(tell(problem, found, law, *rms), twins=controls))
+        told = _unlisted(problem, found, law, *rms) if law.family else _listed(found, law, *rms)
+        findings.append(replace(told, twins=controls))
     return tuple(findings)
 
 
@@ -116,7 +114,7 @@ def _family_losses(found: Explained, theta: np.ndarray, parts: np.ndarray) -> np
     return gram.losses(found.columns.grams, index, theta, parts)
 
 
-def _listed(problem: Problem, found: Explained, law: Law, before: float, after: float) -> Finding:
+def _listed(found: Explained, law: Law, before: float, after: float) -> Finding:
     effect = EFFECTS[law.name]
     fitted = found.final
     rows = [name for name in law.rows if name in fitted.free]
