@@ -7,7 +7,8 @@ from itertools import pairwise
 
 import numpy as np
 
-GAUSS = 0.6745
+from sim2real.diagnose.robust import GAUSS
+
 NOISE_FLOOR = 1e-5
 WILD_AT_LEAST = 0.002
 WILD_SIGMAS = 8.0

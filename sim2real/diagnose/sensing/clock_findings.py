@@ -11,12 +11,11 @@ from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.finding import Estimate, Finding, Proof, Rival
 from sim2real.diagnose.interval import reach
 from sim2real.diagnose.sensing.clock import EXACT, TOUCHED, Clock, Fit, Meetings, fit, search
-from sim2real.diagnose.sensing.measured import Measured, measured
+from sim2real.diagnose.sensing.measured import SURE, Measured, measured
 
 MODELS = {"none": (False, False), "camera_delay": (True, False), "clock_drift": (False, True), "both": (True, True)}
 DRIFT = EFFECTS["clock_drift"]
 FORMULAS = {"camera_delay": "a frame stamped t shows the encoders' time t - delay_s", "clock_drift": DRIFT.law}
-SURE = 1e-5
 REJECTED = 1e-3
 LATE_AT_LEAST = 0.0005  # s: less is no more than the jitter of stamps
 BETTER = 0.9

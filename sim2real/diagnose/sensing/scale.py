@@ -17,13 +17,12 @@ from sim2real.diagnose.contacts import Geometry, nominal_lines, wall_axis
 from sim2real.diagnose.finding import Estimate, Finding, Proof
 from sim2real.diagnose.interval import NORMAL_REACH
 from sim2real.diagnose.sensing.lines import Line, lines
-from sim2real.diagnose.sensing.measured import measured
+from sim2real.diagnose.sensing.measured import SURE, measured
 from sim2real.diagnose.strikes import Strike
 
 NAMES = ("scale_x", "scale_y", "shear")
 RADIUS, OFFSET, TURN = 0.001, 0.0005, 0.002  # m, m, rad: what a good calibration may be off by
 CUSHION = (0.0003, 0.0005)  # m and rad: how straight and true a wall is
-SURE = 1e-5  # chance of all three together, at which the map is wrong
 TOLD = 1e-3  # the same of one of them, once they are
 AT_LEAST = 0.001
 WRONG_SIZE = 0.022
