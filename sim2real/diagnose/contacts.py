@@ -12,13 +12,13 @@ from sim2real.recording import Recording
 
 WALLS = ("x0", "x1", "y0", "y1")
 POSTS = ("x0 right", "x0 left", "x1 right", "x1 left")
-NEAR = 0.006
-LINE_SEARCH = 0.03
-MALLET_NEAR = 0.008
-MALLET_CLOCK = 0.03
-MALLET_FARTHEST = 0.07
+NEAR = 0.006  # m, by which a contact may be off its place beside all noise
+LINE_SEARCH = 0.03  # m, from a wall's nominal line, within which its true one is looked for
+MALLET_NEAR = 0.008  # m, the same of a mallet
+MALLET_CLOCK = 0.03  # s, by which a mallet's clock may be off the camera's
+MALLET_FARTHEST = 0.07  # m, to which all this may add up however fast the mallet is
 CLEARLY_IN, CLEARLY_OUT = 0.1, 0.05  # m/s along the normal; a slower touch may be noise or a slide
-SLOPE_SPAN = 0.012
+SLOPE_SPAN = 0.012  # s on either side, over which a mallet's velocity is a difference of places
 WIDER = 0.06  # m, by which a goal of unknown width may be wider than the simulator's
 SIZES = ("length", "width", "goal_width", "puck_radius", "mallet_radius")
 

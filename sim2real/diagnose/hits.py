@@ -11,8 +11,8 @@ from sim2real.diagnose.kinks import Side
 from sim2real.diagnose.path import Path
 from sim2real.diagnose.sensor import Noise
 
-SIDE_FRAMES = 12
-CLEAN_FRAMES = 5
+SIDE_FRAMES = 12  # beside a break, that tell the motion there
+CLEAN_FRAMES = 5  # two more than a parabola has numbers
 
 
 @dataclass(frozen=True)

@@ -14,9 +14,9 @@ from sim2real.diagnose.path import LAUNCH_FRAMES, Path, sense
 from sim2real.diagnose.sensor import Noise, held_frames
 from sim2real.recording import Recording
 
-GLIDE_FRAMES = 8
-ENDS_FRAMES = 24
-PUSHED = 0.4
+GLIDE_FRAMES = 8  # a shorter stretch is no glide
+ENDS_FRAMES = 24  # of a glide, that tell its velocity at an end
+PUSHED = 0.4  # m/s^2, more than which no free puck gains
 
 
 @dataclass(frozen=True)

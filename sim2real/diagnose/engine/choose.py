@@ -16,7 +16,7 @@ from sim2real.diagnose.engine.gram import Grams
 if TYPE_CHECKING:
     from sim2real.diagnose.problem import Units
 
-FOLDS = 10
+FOLDS = 10  # parts of the launches, each foretold by what the others say
 LEAST_FIT = 30.0  # drop of the loss (and 2 more a parameter, and for each e-fold of places) that is no chance
 LEAST_FORETOLD = 12.0  # drop of the held-out loss
 LEAST_ELSEWHERE = 2.0  # the same in all launches but the one that gains most

@@ -13,7 +13,7 @@ from sim2real.diagnose.finding import Estimate
 from sim2real.diagnose.interval import reach_of_launches
 from sim2real.diagnose.problem import Problem, Residuals
 
-ROUNDS = 40
+ROUNDS = 40  # at most; a fit ends when it has CONVERGED
 CONVERGED = 1e-3  # drop of the sum of squares, in units of what a residual has left, at which a fit ends
 HALVINGS = 3  # of a step that leads uphill, before it is bent downhill
 

@@ -31,15 +31,15 @@ STARTS: dict[str, tuple[dict[str, float], ...]] = {
     "clock_drift": tuple({"encoder_clock": ppm} for ppm in (-1000.0, -300.0, 300.0, 1000.0)),
 }
 RIVALS = {"belt_compliance": "backlash", "backlash": "belt_compliance"}  # either gives between motor and mallet
-PLAIN = ("a2", "a3", "b2", "b3")
-FOLLOWED, ROUNDS = 2, 15
+PLAIN = ("a2", "a3", "b2", "b3")  # the baseline's numbers but those GUESSED
+FOLLOWED, ROUNDS = 2, 15  # starts of an effect that are fitted, and steps of each fit
 ONCE = 1  # round: no step, only the spread of all that is free
 SAMPLES = 3000  # for the fits of each effect; the chosen law is fitted anew to all
 STEPS = tuple(0.125 * k for k in range(-8, 9))  # ticks, about a delay found by derivatives, at which it is tried
 MOST = 3  # effects on top of each other
 LITTLE_LEFT = 1.1  # mean square in units of the noise, at which nothing more is looked for
 MUCH_LEFT = 2.0  # mean square at which the effects found must at least explain the share SHARE of what was left before
-SHARE = 0.9
+SHARE = 0.9  # of what was left before
 LEAST_SHARE = 0.3  # of what was left before, that the first effect must explain; one on top of others: SHARE
 SURE = 3.0  # standard deviations that an effect's size is from none
 

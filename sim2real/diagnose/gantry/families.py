@@ -20,8 +20,8 @@ from sim2real.diagnose.piecewise import hats, spread_hats
 if TYPE_CHECKING:
     from sim2real.diagnose.gantry.problem import GantryProblem
 
-KNOTS, TIME_KNOTS = 8, 5
-HARMONICS = 3
+KNOTS, TIME_KNOTS = 8, 5  # of smooth laws by place, speed or volts, and by time
+HARMONICS = 3  # of the heading
 GRIP = 0.03  # m/s, above which friction that knows no speed is at its full
 MEMORIES = (0.03, 0.1, 0.3, 1.0)  # s
 INDEPENDENT = 0.03  # of the greatest direction of a family; what has less of its own is the baseline's

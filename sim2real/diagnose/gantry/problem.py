@@ -18,7 +18,7 @@ from sim2real.recording import Recording
 GUESSED, GUESS = ("a1", "b1"), 0.2  # known beforehand to this share of the simulator's own: nearly a delay of the path
 TWINS = {"b1": "a1", "b2": "a2", "b3": "a3"}
 STEP = 1e-6  # of a parameter's size, for its derivative
-FAR = 1e6
+FAR = 1e6  # standard deviations: a law that no axis can have is worse than any other
 SMALLEST_SIZE = 1e-3  # of a parameter's range, where it is zero
 
 

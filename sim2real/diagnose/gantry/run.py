@@ -12,7 +12,7 @@ from sim2real.diagnose.gantry.response import axis_residuals
 from sim2real.diagnose.gantry.windows import Windows, cut_windows
 from sim2real.recording import Recording
 
-FEWEST_WINDOWS = 12
+FEWEST_WINDOWS = 12  # of half a second: 6 s
 SMALLEST_TRAVEL = 0.01  # m of standard deviation
 ENOUGH_SAMPLES = 10_000  # of the encoders, evenly taken; more would cost time and not tell more
 LATEST = 0.05  # s, after which no order that was not recorded is still obeyed

@@ -15,7 +15,7 @@ from sim2real.diagnose.piecewise import hats, memory_hats, spread_knots
 
 UNIT = 0.1  # m/s^2, what a coefficient of 1 stands for
 RIPPLES = (14, 8)  # of cosines along one axis alone
-SPEED_KNOTS, HISTORY_KNOTS = 8, 6
+SPEED_KNOTS, HISTORY_KNOTS = 8, 6  # of forces that depend on the speed, and on the time since a contact
 SPIN_DECAY = 0.3  # 1/s, of a spin that is not seen
 SPIN = "side force by each launch's spin"
 

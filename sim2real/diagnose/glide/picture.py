@@ -19,7 +19,7 @@ from sim2real.diagnose.glide.views import COORDINATES, View, listed_view
 from sim2real.diagnose.glide.windows import missing, motion, windows
 
 SHORT_SPAN = 0.3  # s of a window, where what happens soon after a contact matters
-LAW_BINS = 30
+LAW_BINS = 30  # of a law's curve, which has no noise
 
 
 def parting(problem: GlideProblem, found: Explained) -> Parting:

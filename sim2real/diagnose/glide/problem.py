@@ -16,7 +16,7 @@ from sim2real.diagnose.glide.laws import glide_columns
 from sim2real.diagnose.glide.trace import bend, trace
 from sim2real.diagnose.problem import Columns, Residuals, Units, record_of
 
-ROUNDS = 3
+ROUNDS = 3  # of Gauss-Newton at most, from a parabola's start
 STEP = np.array([1e-6, 1e-6, 1e-5, 1e-5])  # of a start: m, m/s
 
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from sim2real.diagnose.mallet.problem import MalletProblem
 
 FRICTIONS = (0.05, 0.1, 0.2, 0.4)  # at which friction is looked for
-KNOTS = 4
+KNOTS = 4  # of a smooth law
 
 
 def mallet_columns(problem: MalletProblem, values: Mapping[str, float], free: Sequence[str]) -> Columns:

@@ -26,7 +26,7 @@ ALIGNED = 0.8  # cosine between the impulse and the line of centres
 NUISANCE = (0.0015, 0.0015, 0.0015, 0.004, 0.004, 0.004)  # of radii, offset x, y [m], scale x, y, shear: their spread
 SMOOTH = 0.004  # s
 TOUCHED = 0.02  # m: a larger gap is none
-LEAST = 4
+LEAST = 4  # blows that a fit needs
 
 
 @dataclass(frozen=True)

@@ -16,11 +16,11 @@ from sim2real.diagnose.sensing.measured import SURE, Measured, measured
 MODELS = {"none": (False, False), "camera_delay": (True, False), "clock_drift": (False, True), "both": (True, True)}
 DRIFT = EFFECTS["clock_drift"]
 FORMULAS = {"camera_delay": "a frame stamped t shows the encoders' time t - delay_s", "clock_drift": DRIFT.law}
-REJECTED = 1e-3
+REJECTED = 1e-3  # chance at which one of the two errors alone is not enough
 LATE_AT_LEAST = 0.0005  # s: less is no more than the jitter of stamps
-BETTER = 0.9
-FOLDS = 5
-WORST = 12.0
+BETTER = 0.9  # times the gaps as recorded, that the corrected ones must be below in launches that no fit saw
+FOLDS = 5  # parts of the launches, for that
+WORST = 12.0  # standard deviations; a blow counts no more, however far off
 
 
 @dataclass(frozen=True)

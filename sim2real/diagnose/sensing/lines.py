@@ -11,9 +11,9 @@ from sim2real.diagnose.robust import t_weights, typical
 from sim2real.diagnose.strikes import Strike
 
 FARTHEST = 0.06  # of the table's size, from the nominal line
-SLANTS = np.linspace(-0.05, 0.05, 21)
+SLANTS = np.linspace(-0.05, 0.05, 21)  # rad, of a wall against the axes of the camera, at which it is looked for
 BAND = 0.006  # m, the width in which the touches of a wall lie
-LEAST = 4
+LEAST = 4  # touches: two more than a line has numbers
 SHARE = 0.4  # of the candidates that must lie in the band
 
 

@@ -24,8 +24,8 @@ NAMES = ("scale_x", "scale_y", "shear")
 RADIUS, OFFSET, TURN = 0.001, 0.0005, 0.002  # m, m, rad: what a good calibration may be off by
 CUSHION = (0.0003, 0.0005)  # m and rad: how straight and true a wall is
 TOLD = 1e-3  # the same of one of them, once they are
-AT_LEAST = 0.001
-WRONG_SIZE = 0.022
+AT_LEAST = 0.001  # of a size; a smaller error is not told
+WRONG_SIZE = 0.022  # of a size; a larger error is that of the size stated, not of the camera
 KNOWN, ROUGHLY = 0.003, 0.01  # errors of a scale above which the lines do not tell it, or not even a wrong size
 FOLDS = 20  # nearly one launch at a time: a wall has few touches
 

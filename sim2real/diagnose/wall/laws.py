@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from sim2real.diagnose.wall.problem import WallProblem
 
 FRICTIONS = (0.04, 0.07, 0.1, 0.15, 0.2, 0.3, 0.5)  # at which friction with spin is looked for
-KNOTS = 5
-WAVES = 4
+KNOTS = 5  # of a smooth law
+WAVES = 4  # of cosines along each wall
 ONE_ROW_EACH = ("wall_to_wall_restitution", "speed_dependent_restitution")
 
 
