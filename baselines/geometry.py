@@ -11,7 +11,7 @@ import math
 
 from puckpilot_env.game.predict import expected_place
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics.mallet import place_axis, set_constants
+from puckpilot_env.physics.mallet import place_axis, set_scaled
 
 STEP = 0.02  # s between the instants at which the puck's way is looked at
 
@@ -23,12 +23,8 @@ def fill_mallet(mallet, p, scale, motion):
     scale: (2, 3), C5, C6, C7 of axes x, y relative to the nominal (see `Seen`). Its acceleration, which nothing tells,
     is taken to be 0.
     """
-    set_constants(
-        mallet.x, (p.a1 - p.b1) * scale[0, 0], (p.a2 - p.b2) * scale[0, 1], (p.a3 - p.b3) * scale[0, 2], p.pulley_radius
-    )
-    set_constants(
-        mallet.y, (p.a1 + p.b1) * scale[1, 0], (p.a2 + p.b2) * scale[1, 1], (p.a3 + p.b3) * scale[1, 2], p.pulley_radius
-    )
+    set_scaled(mallet.x, p, 0, scale[0])
+    set_scaled(mallet.y, p, 1, scale[1])
     place_axis(mallet.x, motion[0], motion[2], 0.0)
     place_axis(mallet.y, motion[1], motion[3], 0.0)
 

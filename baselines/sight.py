@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from puckpilot_env.game.predict import expected_place
+from puckpilot_env.game.sensing import mean_delay
 from puckpilot_env.kernel import kernel
 
 MOTION = ("_x", "_y", "_vx", "_vy")
@@ -38,7 +39,7 @@ class Sight:
         self._rate = float(nominal["frame_rate"][0])
         self._lags = sorted(int(m[1]) for m in (re.fullmatch(r"puck_(\d+)_x", name) for name in columns) if m)
         measured = bool(self._lags) or "seen" in columns
-        self._delay = float(nominal["camera_latency"][0]) + 0.5 / self._rate if measured else 0.0
+        self._delay = float(mean_delay(nominal[0])) if measured else 0.0
 
     def read(self, observation: NDArray[np.float32]) -> Seen:
         """What an observation (n, d) shows."""

@@ -46,3 +46,8 @@ class Effect:
     source: str
     listed: bool = True
     not_simulated: str = ""
+
+    @property
+    def row_names(self) -> tuple[str, ...]:
+        """The parameters by the names that the simulator gives them."""
+        return tuple(row.name for row in self.rows.values())

@@ -144,7 +144,7 @@ def _put_estimated(table, p, frames, rows, at):
         _put_velocity(rows[k], i, k, (mallet.x - before.x) * rate, (mallet.y - before.y) * rate)
     x = min(max(x, p.puck_radius), p.length - p.puck_radius)
     y = min(max(y, p.puck_radius), p.width - p.puck_radius)
-    at = _put_expected(p, rows, at + 8, x, y, vx, vy, -p.camera_latency - 0.5 / p.frame_rate)
+    at = _put_expected(p, rows, at + 8, x, y, vx, vy, -sensing.mean_delay(p))
     rows[0, at] = rows[1, at] = now.seen
     return at + 1
 

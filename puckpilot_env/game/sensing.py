@@ -53,6 +53,12 @@ def newest_frame(table, p, time):
     return math.floor((time - p.camera_latency) * p.frame_rate - table.frame_phase + 1e-9)
 
 
+@kernel
+def mean_delay(p):
+    """How old the newest frame is at a decision, on average [s]."""
+    return p.camera_latency + 0.5 / p.frame_rate
+
+
 def first_delay(frame_phase: np.ndarray, p: np.ndarray) -> np.ndarray:
     """How old the newest frame is at an episode's first decision [s]; `newest_frame` at time 0, for many tables."""
     newest = np.floor(-p["camera_latency"] * p["frame_rate"] - frame_phase + 1e-9)

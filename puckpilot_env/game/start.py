@@ -28,23 +28,16 @@ def draw_parameters(table, row, drawn):
 
 @kernel
 def build_gantries(table, p):
-    """Draw each player's gantry around the parameters and derive its constants (errata row 1)."""
+    """Draw each player's gantry around the parameters and derive its constants."""
     for k in range(2):
         for a in range(2):
-            sign = -1.0 if a == 0 else 1.0
             for c in range(3):
                 table.gantry_scale[k, a, c] = 1.0
                 if p.gantry_spread > 0.0:
                     table.gantry_scale[k, a, c] += random_stream.between(
                         table.streams[k], -p.gantry_spread, p.gantry_spread
                     )
-            mallet.set_constants(
-                table.mallets[k].x if a == 0 else table.mallets[k].y,
-                (p.a1 + sign * p.b1) * table.gantry_scale[k, a, 0],
-                (p.a2 + sign * p.b2) * table.gantry_scale[k, a, 1],
-                (p.a3 + sign * p.b3) * table.gantry_scale[k, a, 2],
-                p.pulley_radius,
-            )
+            mallet.set_scaled(table.mallets[k].x if a == 0 else table.mallets[k].y, p, a, table.gantry_scale[k, a])
 
 
 @kernel

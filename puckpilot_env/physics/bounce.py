@@ -110,6 +110,13 @@ def _first_at_end(depth, y, inward, uy, best, kind, radius, half_goal, middle, w
 
 
 @kernel
+def nearest_post(x, y, length, width, goal_width):
+    """Place of the goal post nearest to `(x, y)` [m]."""
+    post_x = 0.0 if x < 0.5 * length else length
+    return post_x, 0.5 * width + (0.5 * goal_width if y > 0.5 * width else -0.5 * goal_width)
+
+
+@kernel
 def boundary_normal(kind, x, y, length, width, goal_width):
     """Unit normal, from the table towards the puck at `(x, y)`, of a wall or post that it touches."""
     if kind == WALL_X0:
@@ -120,8 +127,7 @@ def boundary_normal(kind, x, y, length, width, goal_width):
         return 0.0, 1.0
     if kind == WALL_Y1:
         return 0.0, -1.0
-    post_x = 0.0 if x < 0.5 * length else length
-    post_y = 0.5 * width + (0.5 * goal_width if y > 0.5 * width else -0.5 * goal_width)
+    post_x, post_y = nearest_post(x, y, length, width, goal_width)
     dx, dy = x - post_x, y - post_y
     apart = size(dx, dy)
     return dx / apart, dy / apart
@@ -143,8 +149,7 @@ def touched(x, y, nx, ny, slack, length, width, goal_width, radius):
         kind, wx, wy, opposed = WALL_X1, -1.0, 0.0, -nx
     if min(x, length - x) < radius + slack and not beside_mouth:
         px, py = boundary_normal(POST, x, y, length, width, goal_width)
-        post_x = 0.0 if x < 0.5 * length else length
-        post_y = middle + (half_goal if y > middle else -half_goal)
+        post_x, post_y = nearest_post(x, y, length, width, goal_width)
         if size(x - post_x, y - post_y) - radius < slack and px * nx + py * ny < opposed:
             kind, wx, wy = POST, px, py
     return kind, wx, wy

@@ -46,6 +46,14 @@ MALLET = np.dtype([("x", AXIS), ("y", AXIS)], align=True)
 
 
 @kernel
+def axis_coefficients(p, axis):
+    """`(C5 [V s^3], C6 [V s^2], C7 [V s])` of axis 0 (x) or 1 (y): x feels the difference of what the own motor and
+    the other one do, y the sum (errata row 1)."""
+    sign = -1.0 if axis == 0 else 1.0
+    return p.a1 + sign * p.b1, p.a2 + sign * p.b2, p.a3 + sign * p.b3
+
+
+@kernel
 def axis_constants(c5, c6, c7, pulley_radius):
     """`(slow_rate, fast_rate [1/s], rest_gain [m/s/V], slow_gain, fast_gain [m/V])`; all NaN unless overdamped."""
     discriminant = c6 * c6 - 4.0 * c5 * c7
@@ -67,6 +75,13 @@ def set_constants(axis, c5, c6, c7, pulley_radius):
     axis.slow_rate, axis.fast_rate, axis.rest_gain, axis.slow_gain, axis.fast_gain = axis_constants(
         c5, c6, c7, pulley_radius
     )
+
+
+@kernel
+def set_scaled(axis, p, which, scale):
+    """Give an axis, 0 (x) or 1 (y), the coefficients of the parameters `p` times `scale` (3,)."""
+    c5, c6, c7 = axis_coefficients(p, which)
+    set_constants(axis, c5 * scale[0], c6 * scale[1], c7 * scale[2], p.pulley_radius)
 
 
 @kernel

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.stats import t as student
 
 from puckpilot_env.parameters import BY_NAME
 from puckpilot_env.physics.effects import EFFECTS
@@ -17,6 +16,7 @@ from sim2real.diagnose.engine.fit import Fit, fit, soft_loss
 from sim2real.diagnose.engine.rivals import chance, compare
 from sim2real.diagnose.engine.twins import twins
 from sim2real.diagnose.finding import Account, Estimate, Finding, Proof
+from sim2real.diagnose.interval import reach_of_launches
 from sim2real.diagnose.labels import labelled
 from sim2real.diagnose.problem import Problem
 from sim2real.diagnose.where import whereabouts
@@ -72,15 +72,13 @@ def _findings(
     if not found.model.laws:
         return ()
     freedom = max(float(problem.freedom[proof].sum()), 1.0)
-    told = []
-    for law in found.model.laws:
-        told.append((law, _squares(problem, _fit_without(problem, found, law, use), proof)))
+    without = [(law, _squares(problem, _fit_without(problem, found, law, use), proof)) for law in found.model.laws]
     controls = twins(found.screen.grams, problem.units, found.model, found.screen.listed, use, proof)
     findings = []
-    for law, before in sorted(told, key=lambda one: -one[1]):
-        tell = _unlisted if law.family else _listed
+    for law, before in sorted(without, key=lambda one: -one[1]):
         rms = (float(np.sqrt(squares / freedom)) for squares in (before, after))
-        findings.append(replace(tell(problem, found, law, *rms), twins=controls))
+        told = _unlisted(problem, found, law, *rms) if law.family else _listed(found, law, *rms)
+        findings.append(replace(told, twins=controls))
     return tuple(findings)
 
 
@@ -91,7 +89,7 @@ def _fit_without(problem: Problem, found: Explained, law: Law, use: np.ndarray) 
         return found.baseline
     if len(others) == len(found.listed):
         return found.law
-    rows = problem.rows(law)
+    rows = law.rows
     free = [name for name in found.law.free if name not in rows]
     values = {**found.law.values, **{name: BY_NAME[name].default for name in rows}}
     return fit(problem, values, free, use)
@@ -116,10 +114,10 @@ def _family_losses(found: Explained, theta: np.ndarray, parts: np.ndarray) -> np
     return gram.losses(found.columns.grams, index, theta, parts)
 
 
-def _listed(problem: Problem, found: Explained, law: Law, before: float, after: float) -> Finding:
+def _listed(found: Explained, law: Law, before: float, after: float) -> Finding:
     effect = EFFECTS[law.name]
     fitted = found.final
-    rows = [name for name in problem.rows(law) if name in fitted.free]
+    rows = [name for name in law.rows if name in fitted.free]
     also, rivals = compare(found.chooser, found.model, law, found.screen)
     return Finding(
         effect.regime, law.name, also, effect.depends_on, effect.law, labelled(law, fitted),
@@ -138,7 +136,7 @@ def _unlisted(problem: Problem, found: Explained, law: Law, before: float, after
 
 def _sizes(found: Explained, law: Law) -> Mapping[str, Estimate]:
     """The coefficients of a smooth law with their intervals."""
-    near = student.ppf(0.975, max(found.law.clusters - 1, 2)) * np.sqrt(np.diag(found.theta_covariance))
+    near = reach_of_launches(found.law.clusters) * np.sqrt(np.diag(found.theta_covariance))
     k = len(law.columns)
     return {
         f"c{i}": Estimate(float(value), float(value - half), float(value + half), "1")

@@ -15,8 +15,7 @@ from sim2real.diagnose.glide.data import GlideData
 from sim2real.diagnose.problem import Problem
 from sim2real.diagnose.sanity import two_tables
 
-FEWEST_LAUNCHES = 6
-FEWEST_RESIDUALS = 24
+LAUNCHES_ALONE, RESIDUALS_ALONE = 6, 24  # with fewer, a recording cannot ask for a law by itself
 APART = 8.0  # standard deviations between two fits of one number
 RELATIVE = 0.1  # of its size, which one table may change by from one day to the next
 HARM = 30.0  # growth of a sum of squares that noise does not make
@@ -70,7 +69,7 @@ def check_agreement(problem: Problem, shipped: Mapping[str, float], parts: Seque
 
 
 def _enough(problem: Problem, clusters: np.ndarray) -> bool:
-    return len(clusters) >= FEWEST_LAUNCHES and problem.freedom[clusters].sum() >= FEWEST_RESIDUALS
+    return len(clusters) >= LAUNCHES_ALONE and problem.freedom[clusters].sum() >= RESIDUALS_ALONE
 
 
 def _check_small(

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sim2real.diagnose.interval import NORMAL_REACH
+
 FEWEST = 4  # pieces of a bin
-Z = 1.96
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,7 @@ def half_band(bins: Binned, std: np.ndarray, columns: np.ndarray, spread: np.nda
     """Half widths (b,) of the 95 % band of binned `columns` (n, k) whose coefficients have the covariance `spread`."""
     weight = bins.members / std**2
     mean = (weight / weight.sum(axis=1, keepdims=True)) @ columns
-    return Z * np.sqrt(np.maximum(np.einsum("bi,ij,bj->b", mean, spread, mean), 0.0))
+    return NORMAL_REACH * np.sqrt(np.maximum(np.einsum("bi,ij,bj->b", mean, spread, mean), 0.0))
 
 
 def _mean(x: np.ndarray, y: np.ndarray, std: np.ndarray) -> tuple[float, float, float]:

@@ -12,12 +12,13 @@ from sim2real.recording import Recording
 
 WALLS = ("x0", "x1", "y0", "y1")
 POSTS = ("x0 right", "x0 left", "x1 right", "x1 left")
-NEAR = 0.006
-LINE_SEARCH = 0.03
-MALLET_NEAR = 0.008
-MALLET_CLOCK = 0.03
-MALLET_FARTHEST = 0.07
-SLOPE_SPAN = 0.012
+NEAR = 0.006  # m, by which a contact may be off its place beside all noise
+LINE_SEARCH = 0.03  # m, from a wall's nominal line, within which its true one is looked for
+MALLET_NEAR = 0.008  # m, the same of a mallet
+MALLET_CLOCK = 0.03  # s, by which a mallet's clock may be off the camera's
+MALLET_FARTHEST = 0.07  # m, to which all this may add up however fast the mallet is
+CLEARLY_IN, CLEARLY_OUT = 0.1, 0.05  # m/s along the normal; a slower touch may be noise or a slide
+SLOPE_SPAN = 0.012  # s on either side, over which a mallet's velocity is a difference of places
 WIDER = 0.06  # m, by which a goal of unknown width may be wider than the simulator's
 SIZES = ("length", "width", "goal_width", "puck_radius", "mallet_radius")
 
@@ -102,13 +103,12 @@ def nominal_lines(g: Geometry) -> dict[str, float]:
 def measured_lines(g: Geometry, place: np.ndarray, v_in: np.ndarray, v_out: np.ndarray) -> dict[str, float]:
     """The walls' contact lines [m] as the events (n, 2) show them; nominal where fewer than 5 clear hits tell.
 
-    A clear hit turns round a normal component of at least 0.1 m/s within LINE_SEARCH of the nominal line.
+    A clear hit turns the puck round within LINE_SEARCH of the nominal line.
     """
     lines = nominal_lines(g)
     for wall, line in lines.items():
-        axis, inward = wall_axis(wall)
-        turned = (v_in[:, axis] * inward < -0.1) & (v_out[:, axis] * inward > 0.05)
-        here = place[turned & (np.abs(place[:, axis] - line) < LINE_SEARCH), axis]
+        axis, _ = wall_axis(wall)
+        here = place[turned_round(wall, v_in, v_out) & (np.abs(place[:, axis] - line) < LINE_SEARCH), axis]
         if len(here) >= 5:
             lines[wall] = float(np.median(here))
     return lines
@@ -117,6 +117,12 @@ def measured_lines(g: Geometry, place: np.ndarray, v_in: np.ndarray, v_out: np.n
 def wall_axis(wall: str) -> tuple[int, int]:
     """The axis (0 is x, 1 is y) and the sign of the inward normal of a wall."""
     return "xy".index(wall[0]), 1 if wall[1] == "0" else -1
+
+
+def turned_round(wall: str, v_in: np.ndarray, v_out: np.ndarray) -> np.ndarray:
+    """Whether velocities (…, 2) [m/s] before and after a hit clearly go towards a wall and away from it, (…) bool."""
+    axis, inward = wall_axis(wall)
+    return (v_in[..., axis] * inward < -CLEARLY_IN) & (v_out[..., axis] * inward > CLEARLY_OUT)
 
 
 def possible(g: Geometry, p: np.ndarray, tracks: dict[str, Track], noise: float) -> np.ndarray:

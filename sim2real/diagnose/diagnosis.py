@@ -10,6 +10,7 @@ import numpy as np
 from sim2real.diagnose.account import account
 from sim2real.diagnose.agreement import Part, check_agreement, parts_of
 from sim2real.diagnose.apart import KEPT_APART, Launches, glides_of, keep_apart
+from sim2real.diagnose.contact_data import join as join_contacts
 from sim2real.diagnose.contacts import geometry
 from sim2real.diagnose.encoders import read_encoders
 from sim2real.diagnose.engine.explain import Explained, explain
@@ -22,7 +23,6 @@ from sim2real.diagnose.glide.problem import GlideProblem, States
 from sim2real.diagnose.illustrate import illustrated
 from sim2real.diagnose.impacts import Impact, find_impacts
 from sim2real.diagnose.mallet.data import Blows, blows
-from sim2real.diagnose.mallet.data import join as join_blows
 from sim2real.diagnose.mallet.problem import MalletProblem
 from sim2real.diagnose.pieces import Pieces, cut
 from sim2real.diagnose.problem import Problem
@@ -38,8 +38,7 @@ from sim2real.diagnose.wall.scatter import explain_bounces
 from sim2real.nominal import parameters
 from sim2real.recording import Recording
 
-FEWEST_LAUNCHES = 4
-FEWEST_RESIDUALS = 8
+FEWEST_LAUNCHES, FEWEST_RESIDUALS = 4, 8  # of all recordings together: with fewer, nothing is said of a regime
 TOO_LITTLE = "too little data"
 MORE_OF = {
     "glide": "launches of the puck, twenty or more in all directions and from slow to fast",
@@ -210,7 +209,7 @@ def _blows(recordings: Sequence[Recording], impacts: Sequence[list[Impact]]) -> 
     """The blows of the robot's mallet in all recordings that know where it was; None where there are none."""
     read = [(read_encoders(one), geometry(one), some) for one, some in zip(recordings, impacts, strict=True)]
     parts = [blows(some, encoders, g) for encoders, g, some in read if encoders is not None]
-    return join_blows(parts) if any(len(part) for part in parts) else None
+    return join_contacts(parts) if any(len(part) for part in parts) else None
 
 
 def _explain(problem: Problem, law: Mapping[str, float], proof: np.ndarray, tables: Sequence[Part], clear: bool = True):

@@ -9,11 +9,11 @@ import numpy as np
 from sim2real.diagnose.sensor import estimate_noise
 from sim2real.recording import Recording
 
-QUANTUM = 1e-5
-WINDOW = 0.025
-SAMPLES = 6
-LONGEST_HOLE = 0.05
-TUNING_WINDOWS = 24
+QUANTUM = 1e-5  # m, the least noise: that of places written in such steps
+WINDOW = 0.025  # s on either side of a blow
+SAMPLES = 6  # on either side at least, where they are rare
+LONGEST_HOLE = 0.05  # s without a sample, across which the path is not told
+TUNING_WINDOWS = 24  # of the path, by which its unrest is chosen
 JERKS = (1e1, 1e2, 1e3, 1e4, 1e5, 1e6)  # m^2/s^5, the unrests to choose from
 LATE = tuple(0.004 * k for k in range(8))  # s, by which a plan's switches may act late
 SWITCH = 80.0  # m/s^2, by which a switch of the voltage changes the acceleration

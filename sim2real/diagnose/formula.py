@@ -12,11 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import minimize
-from scipy.stats import t as student
 
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.finding import Estimate
 from sim2real.diagnose.forms import Form, Named
+from sim2real.diagnose.interval import reach_of_launches
 
 CHUNK = 60  # columns that are asked for at once
 REFINED = 5  # forms whose shape is fitted finely
@@ -118,7 +118,7 @@ class Search:
         named = found.form.named(found.shape, found.amplitude)
         values = {name: value for name, (value, _) in named.items()}
         spread, moved = self._spread(found.form, named)
-        near = student.ppf(0.975, max(len(self.rest.use) - 1, 2)) * np.sqrt(np.diag(spread))
+        near = reach_of_launches(len(self.rest.use)) * np.sqrt(np.diag(spread))
         estimates = {
             name: Estimate(value, value - float(half), value + float(half), unit)
             for (name, (value, unit)), half in zip(named.items(), near, strict=True)

@@ -11,8 +11,8 @@ from sim2real.diagnose.kinks import Side
 from sim2real.diagnose.path import Path
 from sim2real.diagnose.sensor import Noise
 
-SIDE_FRAMES = 12
-CLEAN_FRAMES = 5
+SIDE_FRAMES = 12  # beside a break, that tell the motion there
+CLEAN_FRAMES = 5  # two more than a parabola has numbers
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ def _meet(path: Path, noise: Noise, k: int, left: slice, right: slice, strength:
     return Event(k, when, place, a, b, strength)
 
 
-def explain(event: Event, path: Path, noise: Noise, g, lines, tracks) -> list[Hit]:
+def explain(event: Event, path: Path, g, lines, tracks) -> list[Hit]:
     """The event as hits: one; two in a corner; an unexplained one where nothing or more than one thing fits."""
     v_in, v_out = event.left.velocity, event.right.velocity
     dv = v_out - v_in

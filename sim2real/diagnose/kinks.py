@@ -12,14 +12,14 @@ import numpy as np
 
 from sim2real.diagnose.sensor import LONGEST_GAP, Noise
 
-SCALES = (4, 6, 12, 24)
-SURE = 6.5
-SURE_WHERE_EXPECTED = 5.0
-CURVATURE = 3.0
-PRIOR_DOF = 4.0
-LONG_WINDOW_TRAVEL = 0.06
-JUMP_AT_LEAST = 0.005
-SETTLE_FRAMES = 8
+SCALES = (4, 6, 12, 24)  # frames on either side of a gap, short ones first
+SURE = 6.5  # standard deviations of a kink that is a break anywhere
+SURE_WHERE_EXPECTED = 5.0  # the same where a contact is possible
+CURVATURE = 3.0  # m/s^2: the acceleration of a free puck is 0 give or take this
+PRIOR_DOF = 4.0  # frames, as many as which the known noise counts beside what a fit leaves
+LONG_WINDOW_TRAVEL = 0.06  # m on either side, up to which long windows judge where no contact is expected
+JUMP_AT_LEAST = 0.005  # m, beside the noise
+SETTLE_FRAMES = 8  # on either side of a break, that place it
 
 
 @dataclass(frozen=True)

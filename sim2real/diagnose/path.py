@@ -10,7 +10,7 @@ import numpy as np
 from sim2real.diagnose import kinks
 from sim2real.diagnose.sensor import Noise, estimate_noise, wild_frames
 
-LAUNCH_FRAMES = 5
+LAUNCH_FRAMES = 5  # fewer between two jumps are no motion of the puck but frames that went wrong
 
 
 @dataclass(frozen=True)

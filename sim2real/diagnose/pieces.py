@@ -14,15 +14,15 @@ from sim2real.diagnose.path import LAUNCH_FRAMES, Path, sense
 from sim2real.diagnose.sensor import Noise, held_frames
 from sim2real.recording import Recording
 
-GLIDE_FRAMES = 8
-ENDS_FRAMES = 24
-PUSHED = 0.4
+GLIDE_FRAMES = 8  # a shorter stretch is no glide
+ENDS_FRAMES = 24  # of a glide, that tell its velocity at an end
+PUSHED = 0.4  # m/s^2, more than which no free puck gains
 
 
 @dataclass(frozen=True)
 class Glide:
     """Free flight between events. `start`, `stop`: its frames are start … stop − 1 of the recording, of which `index`
-    are valid; `t` (n,) [s], `x`, `y` (n,) [m] are those. Entry and exit are fitted at the first and last of them.
+    are valid; `t` (n,) [s], `x`, `y` (n,) [m] are those. The entry is fitted at the first of them.
     """
 
     start: int
@@ -32,7 +32,6 @@ class Glide:
     x: np.ndarray
     y: np.ndarray
     entry: Side
-    exit: Side
 
 
 @dataclass(frozen=True)
@@ -77,7 +76,7 @@ def cut(recording: Recording) -> Pieces:
     v_in = np.array([event.left.velocity for event in events]).reshape(-1, 2)
     v_out = np.array([event.right.velocity for event in events]).reshape(-1, 2)
     lines = contacts.measured_lines(g, place, v_in, v_out)
-    hits = [hit for event in events for hit in explain(event, path, noise, g, lines, tracks)]
+    hits = [hit for event in events for hit in explain(event, path, g, lines, tracks)]
     glides, pushes = _glides(path, noise, strength > 0)
     hits = tuple(sorted((*hits, *pushes), key=lambda hit: hit.t))
     return Pieces(noise, held, wild, tuple(glides), hits, tuple(_launches(path)), lines)
@@ -100,7 +99,7 @@ def _glides(path: Path, noise: Noise, broken: np.ndarray) -> tuple[list[Glide], 
             v, std = (entry.velocity, last.velocity), sure / 4
             pushes.append(_push(t[0], p[0], v, std, (start, stop - 1)))
             continue
-        glides.append(Glide(start, stop, path.index[a:b], t, p[:, 0], p[:, 1], entry, last))
+        glides.append(Glide(start, stop, path.index[a:b], t, p[:, 0], p[:, 1], entry))
     return glides, pushes
 
 

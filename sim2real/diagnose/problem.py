@@ -8,6 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
+from puckpilot_env.parameters import make_records
 from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.engine.gram import Grams
 
@@ -80,6 +81,11 @@ class Problem(Protocol):
         all where they are None."""
         ...
 
-    def rows(self, law: Law) -> tuple[str, ...]:
-        """The parameters that a nonlinear fit of a listed law frees."""
-        ...
+
+def record_of(values: Mapping[str, float]) -> np.void:
+    """The simulator's record of `values` by name, the others at their defaults. Fits may step out of a range, so that
+    none is checked."""
+    records = make_records(1)
+    for name, value in values.items():
+        records[name] = value
+    return records[0]

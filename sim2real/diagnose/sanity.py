@@ -10,7 +10,7 @@ from sim2real.diagnose.clocks import leaps
 from sim2real.diagnose.stated import assumptions
 from sim2real.recording import POSITIONS, Recording, Stream
 
-LEAST_SECONDS = 5.0
+LEAST_SECONDS = 5.0  # in all recordings together
 STILL = 0.01  # m, within which nearly all positions of a resting puck lie
 STOPS_EARLY = 0.2  # of the recording's length, and at least STOPS_BY [s], by which a stream ends before the others
 STOPS_BY = 2.0

@@ -7,12 +7,13 @@ from itertools import pairwise
 
 import numpy as np
 
-GAUSS = 0.6745
-NOISE_FLOOR = 1e-5
-WILD_AT_LEAST = 0.002
+from sim2real.diagnose.robust import GAUSS
+
+NOISE_FLOOR = 1e-5  # m, the least noise
+WILD_AT_LEAST = 0.002  # m, that a wild frame is off beside WILD_SIGMAS of the noise
 WILD_SIGMAS = 8.0
-LONGEST_GAP = 0.1
-SLOW, FAST = 0.15, 0.6
+LONGEST_GAP = 0.1  # s without a frame, across which nothing is foretold
+SLOW, FAST = 0.15, 0.6  # m/s along an axis: slower frames tell the position's noise, faster ones the clock's
 
 
 @dataclass(frozen=True)

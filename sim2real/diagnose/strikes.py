@@ -11,11 +11,11 @@ from sim2real.diagnose.pieces import Pieces
 from sim2real.diagnose.sensor import Noise
 from sim2real.recording import Recording
 
-SIDE_TIME = 0.25
-SIDE_MOST = 36
-SIDE_LEAST = 4
+SIDE_TIME = 0.25  # s beside a hit, in which a puck that brakes little moves along a parabola
+SIDE_MOST = 36  # frames of them at most
+SIDE_LEAST = 4  # frames, one more than a parabola has numbers
 BRAKING = 1.5  # m/s^2: a puck's acceleration is 0 give or take this
-RECENTRED = 3
+RECENTRED = 3  # rounds: where the motions are taken depends on when they meet, and that on them
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,6 @@ from typing import Any
 import numpy as np
 
 PEER = (sys.executable, "-m", "sim2real.study.peer")
-GLIDE = ("table_tilt", "table_warp", "linear_drag", "friction_patch", "air_drift", "friction_anisotropy", "side_force")
 WINDOW, ORDER = 45, 3  # frames and degree of the smoother
 SLOW = 0.15  # m/s, below which a heading is mostly noise
 THRESHOLDS = np.geomspace(0.003, 1.0, 24)  # of the acceleration's rms

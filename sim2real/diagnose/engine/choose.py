@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.gram import Grams
 
 if TYPE_CHECKING:
     from sim2real.diagnose.problem import Units
 
-FOLDS = 10
+FOLDS = 10  # parts of the launches, each foretold by what the others say
 LEAST_FIT = 30.0  # drop of the loss (and 2 more a parameter, and for each e-fold of places) that is no chance
 LEAST_FORETOLD = 12.0  # drop of the held-out loss
 LEAST_ELSEWHERE = 2.0  # the same in all launches but the one that gains most
@@ -52,6 +53,12 @@ class Law:
     mechanism: str = "unlisted"
     each_launch: bool = False
     searched: int = 1
+
+    @property
+    def rows(self) -> tuple[str, ...]:
+        """The parameters that a nonlinear fit of a mechanism frees: where it had to be looked for, such as a place,
+        all of its effect's, else those whose columns it has."""
+        return EFFECTS[self.name].row_names if self.start else self.columns
 
 
 @dataclass(frozen=True)

@@ -6,14 +6,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import t as student
 
 from puckpilot_env.parameters import BY_NAME
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.finding import Estimate
+from sim2real.diagnose.interval import reach_of_launches
 from sim2real.diagnose.problem import Problem, Residuals
 
-ROUNDS = 40
+ROUNDS = 40  # at most; a fit ends when it has CONVERGED
 CONVERGED = 1e-3  # drop of the sum of squares, in units of what a residual has left, at which a fit ends
 HALVINGS = 3  # of a step that leads uphill, before it is bent downhill
 
@@ -50,7 +50,7 @@ class Fit:
     def reach(self, slopes: Mapping[str, float]) -> float:
         """Half the 95 % interval of a number that has these `slopes` by the parameters (none by the others)."""
         by = np.array([slopes.get(name, 0.0) for name in self.free])
-        return float(np.sqrt(by @ self.covariance @ by) * student.ppf(0.975, max(self.clusters - 1, 2)))
+        return float(np.sqrt(by @ self.covariance @ by) * reach_of_launches(self.clusters))
 
 
 def given(values: Mapping[str, float]) -> Fit:

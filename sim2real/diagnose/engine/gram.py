@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-TINY = 1e-10
-MOST_REWEIGHTED, SAME_WEIGHT = 8, 0.03
+TINY = 1e-10  # of the greatest eigenvalue; smaller ones are rounding
+MOST_REWEIGHTED, SAME_WEIGHT = 8, 0.03  # rounds, and the share of a weight by which the last may change it
 
 
 @dataclass(frozen=True)

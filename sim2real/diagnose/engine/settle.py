@@ -19,7 +19,7 @@ REMAINDER = 0.1  # share of what the baseline leaves that must remain to be wort
 MANY_ASTRAY = 0.25  # of the launches: more than accidents, such as touches that nobody saw, spoil
 NEAR, HALF_WAY = 0.3, 0.3  # the same beside listed laws, and as a share of what the baseline leaves
 STRAY = 6.0  # times the usual sum of squares: a launch in which something else happened
-MOST_STRAY = 0.1
+MOST_STRAY = 0.1  # of the launches, that may be left out
 SPOILT, OUTSHINES = 1.5, 30.0  # mean square residual of a typical launch, and times that, of one that spoils the rest
 LEAST_SIZE = 20.0  # sum of squares by which a law must stand out of the final fit
 FEW_ROUNDS = 4  # of a fit, to see which start leads farthest
@@ -67,7 +67,7 @@ def refit(problem: Problem, baseline: Fit, listed: Sequence[Law], screen: Column
     """The nonlinear fit of the baseline and the listed laws together, from each place at which one was looked for."""
     best = baseline
     for law in listed:
-        free = tuple(dict.fromkeys((*best.free, *problem.rows(law))))
+        free = tuple(dict.fromkeys((*best.free, *law.rows)))
         values = {**best.values, **law.start}
         if law.start:
             starts = [one.start for one in screen.listed if one.name == law.name]
@@ -92,7 +92,7 @@ def _size(problem: Problem, fitted: Fit, law: Law, use: np.ndarray) -> float:
     """How surely a law is there: the squares of its numbers by their covariance, or what the sum of squares grows by
     without them, if that is less. A nonlinear law may be sure though its numbers are not, such as a friction that
     always grips: of it, what the sum of squares grows by when all else is fitted without it."""
-    rows = [name for name in problem.rows(law) if name in fitted.free]
+    rows = [name for name in law.rows if name in fitted.free]
     off = {name: BY_NAME[name].default for name in rows}
     if law.start:
         others = [name for name in fitted.free if name not in rows]

@@ -14,7 +14,7 @@ from sim2real.diagnose.engine.noise import dispersion
 from sim2real.diagnose.finding import Twin
 from sim2real.diagnose.problem import Units
 
-DRAWS = 6
+DRAWS = 6  # of each kind of twin; each costs a search
 NULL, PERMUTED = "null", "permutation"
 
 

@@ -31,15 +31,15 @@ STARTS: dict[str, tuple[dict[str, float], ...]] = {
     "clock_drift": tuple({"encoder_clock": ppm} for ppm in (-1000.0, -300.0, 300.0, 1000.0)),
 }
 RIVALS = {"belt_compliance": "backlash", "backlash": "belt_compliance"}  # either gives between motor and mallet
-PLAIN = ("a2", "a3", "b2", "b3")
-FOLLOWED, ROUNDS = 2, 15
+PLAIN = ("a2", "a3", "b2", "b3")  # the baseline's numbers but those GUESSED
+FOLLOWED, ROUNDS = 2, 15  # starts of an effect that are fitted, and steps of each fit
 ONCE = 1  # round: no step, only the spread of all that is free
 SAMPLES = 3000  # for the fits of each effect; the chosen law is fitted anew to all
 STEPS = tuple(0.125 * k for k in range(-8, 9))  # ticks, about a delay found by derivatives, at which it is tried
 MOST = 3  # effects on top of each other
 LITTLE_LEFT = 1.1  # mean square in units of the noise, at which nothing more is looked for
 MUCH_LEFT = 2.0  # mean square at which the effects found must at least explain the share SHARE of what was left before
-SHARE = 0.9
+SHARE = 0.9  # of what was left before
 LEAST_SHARE = 0.3  # of what was left before, that the first effect must explain; one on top of others: SHARE
 SURE = 3.0  # standard deviations that an effect's size is from none
 
@@ -99,7 +99,7 @@ def candidates(problem: GantryProblem, values: Mapping[str, float]) -> list[Cand
 
 def stands(problem: GantryProblem, without: Fit, law: Fit, name: str) -> bool:
     """Whether an effect's fit `law` is inside its range, surely not at none, and better than chance would make it."""
-    rows = effect_rows(name)
+    rows = EFFECTS[name].row_names
     if set(law.bound) & set(rows):
         return False
     sizes = [abs(law.values[row] - BY_NAME[row].default) > SURE * _std(law, row) for row in rows]
@@ -110,7 +110,7 @@ def stands(problem: GantryProblem, without: Fit, law: Fit, name: str) -> bool:
 
 def best_fit(problem: GantryProblem, without: Staged, name: str) -> Staged:
     """The best fit of an effect on top of others, all of whose parameters stay free."""
-    rows = (*(row for row in without.plain.free if row not in problem.base), *effect_rows(name))
+    rows = (*(row for row in without.plain.free if row not in problem.base), *EFFECTS[name].row_names)
     starts = [{**without.plain.values, **start} for start in STARTS[name]]
     if len(starts) > FOLLOWED:
         starts.sort(key=lambda start: promise(problem, start, (*PLAIN, *rows)))
@@ -136,11 +136,6 @@ def _delay_in_steps(problem: GantryProblem, law: Fit) -> Fit:
         return law
     best = min(starts, key=lambda start: promise(problem, start, free))
     return fit(problem, fit(problem, best, free, problem.seen, ROUNDS).values, law.free, problem.seen, ONCE)
-
-
-def effect_rows(name: str) -> tuple[str, ...]:
-    """The parameters of an effect."""
-    return tuple(row.name for row in EFFECTS[name].rows.values())
 
 
 def _std(law: Fit, row: str) -> float:

@@ -15,13 +15,13 @@ from puckpilot_env.kernel import array_kernel
 from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.gantry.response import sampled_response
 from sim2real.diagnose.gantry.run import Run
-from sim2real.diagnose.glide.families import hats
+from sim2real.diagnose.piecewise import hats, spread_hats
 
 if TYPE_CHECKING:
     from sim2real.diagnose.gantry.problem import GantryProblem
 
-KNOTS, TIME_KNOTS = 8, 5
-HARMONICS = 3
+KNOTS, TIME_KNOTS = 8, 5  # of smooth laws by place, speed or volts, and by time
+HARMONICS = 3  # of the heading
 GRIP = 0.03  # m/s, above which friction that knows no speed is at its full
 MEMORIES = (0.03, 0.1, 0.3, 1.0)  # s
 INDEPENDENT = 0.03  # of the greatest direction of a family; what has less of its own is the baseline's
@@ -72,13 +72,13 @@ def _shapes(runs: tuple[Run, ...], axis: int) -> dict[str, np.ndarray]:
     """By name of a family, volts (n, k) on an axis through all runs; and what the baseline has, as "baseline"."""
     parts = [_signals(run, axis) for run in runs]
     t, place, v, a, u, load, angle, *memories = (np.concatenate(part) for part in zip(*parts, strict=True))
-    speeds, volts = _knotted(np.abs(v), KNOTS), np.hstack([_knotted(np.abs(u), KNOTS), _knotted(load, KNOTS)])
+    speeds, volts = spread_hats(np.abs(v), KNOTS), np.hstack([spread_hats(np.abs(u), KNOTS), spread_hats(load, KNOTS)])
     turns = np.column_stack([f(k * angle) for k in range(1, HARMONICS + 1) for f in (np.cos, np.sin)])
     times = hats(t, np.linspace(t.min(), t.max(), TIME_KNOTS))
     return {
         "baseline": np.column_stack([u, v, a]),
-        "force by place": _knotted(place, KNOTS),
-        "loss by place": _knotted(place, KNOTS) * v[:, None],
+        "force by place": spread_hats(place, KNOTS),
+        "loss by place": spread_hats(place, KNOTS) * v[:, None],
         "loss by speed": np.column_stack([speeds * v[:, None], np.tanh(v / GRIP)]),
         "pull by volts": volts * u[:, None],
         "loss by time": times * v[:, None],
@@ -94,10 +94,6 @@ def _signals(run: Run, axis: int) -> list[np.ndarray]:
     angle = np.arctan2(run.speed[:, 1], run.speed[:, 0])
     memories = [_faded(run.t, q, memory) for q in (u, v) for memory in MEMORIES]
     return [run.t, run.place[:, axis], v, np.gradient(v, run.t), u, load, angle, *memories]
-
-
-def _knotted(q: np.ndarray, knots: int) -> np.ndarray:
-    return hats(q, np.unique(np.quantile(q, np.linspace(0.0, 1.0, knots))))
 
 
 @array_kernel

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from puckpilot_env.parameters import BY_NAME
+from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.choose import Law
-from sim2real.diagnose.gantry.candidates import STARTS, effect_rows
+from sim2real.diagnose.gantry.candidates import STARTS
 from sim2real.diagnose.gantry.families import families
 from sim2real.diagnose.problem import Columns
 
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 def gantry_columns(problem: GantryProblem, values: Mapping[str, float], free: Sequence[str]) -> Columns:
     """Every column of a gantry problem at one law: its derivatives, the candidates, the families."""
-    rows = [row for name in STARTS for row in effect_rows(name)]
+    rows = [row for name in STARTS for row in EFFECTS[name].row_names]
     on = [row for row in rows if row in free or values.get(row, BY_NAME[row].default) != BY_NAME[row].default]
     off = [row for row in rows if row not in on]  # where a fit ended with them off, they stay so
     exact = problem.residuals(values, (*problem.base, *on), np.arange(problem.clusters))
@@ -31,7 +32,7 @@ def gantry_columns(problem: GantryProblem, values: Mapping[str, float], free: Se
     columns = [exact.jacobian, np.zeros((len(exact.r), len(off))), *(one.column[:, None] for one in found), shapes]
     grams = gram.make_grams(names, exact.r, np.concatenate(columns, axis=1), exact.cluster, problem.clusters)
     listed = [
-        Law(one.name, (one.label,), start={row: one.law.values[row] for row in (*problem.base, *effect_rows(one.name))})
-        for one in found
+        Law(one.name, (one.label,), start={row: one.law.values[row] for row in (*problem.base, *own)})
+        for one, own in ((one, EFFECTS[one.name].row_names) for one in found)
     ]
     return Columns(grams, listed, laws)

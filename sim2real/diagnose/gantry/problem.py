@@ -7,20 +7,18 @@ from itertools import pairwise
 
 import numpy as np
 
-from puckpilot_env.parameters import BY_NAME, make_records
-from puckpilot_env.physics.effects import EFFECTS
-from sim2real.diagnose.engine.choose import Law
+from puckpilot_env.parameters import BY_NAME
 from sim2real.diagnose.gantry.candidates import PLAIN, Candidate, candidates
 from sim2real.diagnose.gantry.laws import gantry_columns
 from sim2real.diagnose.gantry.run import Run, UnusableError, read_run
 from sim2real.diagnose.gantry.tick import find_tick
-from sim2real.diagnose.problem import Columns, Residuals, Units
+from sim2real.diagnose.problem import Columns, Residuals, Units, record_of
 from sim2real.recording import Recording
 
 GUESSED, GUESS = ("a1", "b1"), 0.2  # known beforehand to this share of the simulator's own: nearly a delay of the path
 TWINS = {"b1": "a1", "b2": "a2", "b3": "a3"}
 STEP = 1e-6  # of a parameter's size, for its derivative
-FAR = 1e6
+FAR = 1e6  # standard deviations: a law that no axis can have is worse than any other
 SMALLEST_SIZE = 1e-3  # of a parameter's range, where it is zero
 
 
@@ -120,16 +118,9 @@ class GantryProblem:
         cluster = np.concatenate([a + run.windows.cluster for a, run in zip(self.first, self.runs, strict=False)])
         return np.flatnonzero(np.isin(cluster, self.seen))
 
-    def rows(self, law: Law) -> tuple[str, ...]:
-        """See `Problem.rows`."""
-        return tuple(row.name for row in EFFECTS[law.name].rows.values())
-
     def record(self, values: Mapping[str, float]) -> np.void:
         """A record of all parameters under the law `values`."""
-        records = make_records(1)
-        for name, value in {**self._common, **values}.items():
-            records[name] = value
-        return records[0]
+        return record_of({**self._common, **values})
 
     def _path(self, p: np.void, late: float = 0.0) -> np.ndarray:
         r = np.concatenate([run.residuals(p, late)[:, 0] for run in self.runs])

@@ -13,7 +13,7 @@ import numpy as np
 from puckpilot_env.kernel import array_kernel, kernel
 from puckpilot_env.physics.decay import fade
 from puckpilot_env.physics.effects import backlash, belt_compliance
-from puckpilot_env.physics.mallet import axis_constants
+from puckpilot_env.physics.mallet import axis_coefficients, axis_constants
 
 MOST_LOOSE = 24  # switches in doubt within one window that get a column
 STARTS = 5  # columns of a start: rest, slow, fast, and two of the ringing
@@ -24,10 +24,8 @@ NOTHING_LEFT = 1e-7  # of a column, after the ones before it are taken out
 @kernel
 def axis_of(p, axis):
     """Constants of axis 0 (x) or 1 (y) and of its belt: those of `axis_constants`, then w [rad/s] and zeta."""
-    sign = -1.0 if axis == 0 else 1.0
-    slow_rate, fast_rate, rest_gain, slow_gain, fast_gain = axis_constants(
-        p.a1 + sign * p.b1, p.a2 + sign * p.b2, p.a3 + sign * p.b3, p.pulley_radius
-    )
+    c5, c6, c7 = axis_coefficients(p, axis)
+    slow_rate, fast_rate, rest_gain, slow_gain, fast_gain = axis_constants(c5, c6, c7, p.pulley_radius)
     return slow_rate, fast_rate, rest_gain, slow_gain, fast_gain, 2.0 * math.pi * p.belt_hz, p.belt_zeta
 
 

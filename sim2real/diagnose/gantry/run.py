@@ -9,10 +9,10 @@ import numpy as np
 from sim2real.diagnose.gantry.encoder import encoder_noise
 from sim2real.diagnose.gantry.orders import Orders, from_commands, from_drive
 from sim2real.diagnose.gantry.response import axis_residuals
-from sim2real.diagnose.gantry.windows import Windows, cut_windows
+from sim2real.diagnose.gantry.windows import WINDOW, Windows, cut_windows
 from sim2real.recording import Recording
 
-FEWEST_WINDOWS = 12
+FEWEST_WINDOWS = 12  # of WINDOW
 SMALLEST_TRAVEL = 0.01  # m of standard deviation
 ENOUGH_SAMPLES = 10_000  # of the encoders, evenly taken; more would cost time and not tell more
 LATEST = 0.05  # s, after which no order that was not recorded is still obeyed
@@ -97,7 +97,8 @@ def read_run(recording: Recording, supply: float, breaks: np.ndarray) -> Run:
     lost = np.unique(orders.unknown)
     windows = cut_windows(t, lost)
     if len(windows.begin) < FEWEST_WINDOWS:
-        raise UnusableError(f"mallet and orders overlap for {len(windows.begin) / 2:.1f} s, expected 6 s or more")
+        seconds, expected = WINDOW * len(windows.begin), WINDOW * FEWEST_WINDOWS
+        raise UnusableError(f"mallet and orders overlap for {seconds:.1f} s, expected {expected:g} s or more")
     if p.std(axis=0).max() < SMALLEST_TRAVEL:
         raise UnusableError("the mallet hardly moves")
     noise = encoder_noise(t, p)

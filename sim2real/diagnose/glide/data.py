@@ -14,7 +14,7 @@ from sim2real.diagnose.sensor import Noise
 
 SMOOTH_ORDER = 4  # a free glide is a polynomial of this order in time, to the sensor's noise
 SMOOTH_CHANCE = 1e-4  # chance at which a true glide is refused
-FEWEST_FRAMES = 12
+FEWEST_FRAMES = 12  # of a glide: its start takes four of 24 numbers
 HIDDEN = 0.003  # m, from a wall, post or mallet; nearer, a slow contact may hide
 LONGEST_CLUSTER = 6.0  # s; a longer launch counts as several
 SLOWEST = 0.02  # m/s; a slower puck is at rest and tells nothing

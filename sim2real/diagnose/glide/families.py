@@ -11,11 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from puckpilot_env.physics.effects.unlisted_force import HARMONICS, TIME_KNOTS, WAVES_X, WAVES_Y
+from sim2real.diagnose.piecewise import hats, memory_hats, spread_knots
 
 UNIT = 0.1  # m/s^2, what a coefficient of 1 stands for
 RIPPLES = (14, 8)  # of cosines along one axis alone
-SPEED_KNOTS, HISTORY_KNOTS = 8, 6
-LONGEST_MEMORY = 2.0  # s after a contact
+SPEED_KNOTS, HISTORY_KNOTS = 8, 6  # of forces that depend on the speed, and on the time since a contact
 SPIN_DECAY = 0.3  # 1/s, of a spin that is not seen
 SPIN = "side force by each launch's spin"
 
@@ -59,11 +59,6 @@ def ripples(motion: Motion, axis: int) -> np.ndarray:
     return np.stack([np.cos(np.pi * i * u) for i in range(RIPPLES[axis])], axis=1)
 
 
-def hats(x: np.ndarray, knots: np.ndarray) -> np.ndarray:
-    """Piecewise linear functions (n, knots) that are 1 at a knot and 0 at the others; constant beyond the ends."""
-    return np.stack([np.interp(x, knots, row) for row in np.eye(len(knots))], axis=1)
-
-
 def harmonics(motion: Motion) -> np.ndarray:
     """Sines and cosines (n, 2 HARMONICS) of multiples of the heading."""
     angle = np.arctan2(motion.velocity[:, 1], motion.velocity[:, 0])
@@ -82,7 +77,7 @@ def _axes(motion: Motion) -> tuple[np.ndarray, np.ndarray]:
 
 def speed_knots(motion: Motion) -> np.ndarray:
     """Speeds (k,) [m/s] between which a force by speed is straight."""
-    return np.unique(np.quantile(np.linalg.norm(motion.velocity, axis=1), np.linspace(0.0, 1.0, SPEED_KNOTS)))
+    return spread_knots(np.linalg.norm(motion.velocity, axis=1), SPEED_KNOTS)
 
 
 def time_knots(motion: Motion) -> np.ndarray:
@@ -99,9 +94,7 @@ def _moments(motion: Motion) -> np.ndarray:
 
 
 def _memory(motion: Motion) -> np.ndarray:
-    since = np.where(np.isfinite(motion.since), motion.since, np.inf)
-    knots = LONGEST_MEMORY * np.linspace(0.0, 1.0, HISTORY_KNOTS) ** 2
-    return hats(np.minimum(since, LONGEST_MEMORY), knots)[:, :-1]
+    return memory_hats(motion.since, HISTORY_KNOTS)
 
 
 def _spins(motion: Motion) -> np.ndarray:

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from sim2real.diagnose.glide.problem import GlideProblem
 
 PATCH_RADII = (0.05, 0.1, 0.15, 0.2, 0.3)  # m, at which a patch is looked for
-PATCHES_KEPT = 3
-CHUNK = 120
+PATCHES_KEPT = 3  # places that are offered; the law itself has one
+CHUNK = 120  # discs at a time: their columns for all frames must fit into memory
 FINER, MOVES = 2, (-1, 0, 1)  # rounds of looking nearby, and steps there
 SPINNING = "spin_side_force"
 

@@ -19,7 +19,7 @@ from sim2real.diagnose.glide.views import COORDINATES, View, listed_view
 from sim2real.diagnose.glide.windows import missing, motion, windows
 
 SHORT_SPAN = 0.3  # s of a window, where what happens soon after a contact matters
-LAW_BINS = 30
+LAW_BINS = 30  # of a law's curve, which has no noise
 
 
 def parting(problem: GlideProblem, found: Explained) -> Parting:
@@ -42,7 +42,7 @@ def parting(problem: GlideProblem, found: Explained) -> Parting:
 def listed_curve(problem: GlideProblem, found: Explained, mechanism: str) -> Curve:
     """What a listed mechanism adds, by what shows it best; the data freed of all else that was fitted."""
     values = dict(found.final.values)
-    rows = {row.name for row in EFFECTS[mechanism].rows.values()}
+    rows = EFFECTS[mechanism].row_names
     without = {**values, **{name: BY_NAME[name].default for name in rows}}
     free = [name for name in found.final.free if name in rows]
     some = windows(problem.data)

@@ -7,18 +7,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from puckpilot_env.parameters import BY_NAME, make_records
+from puckpilot_env.parameters import BY_NAME
 from puckpilot_env.physics.advance import PUCK
-from puckpilot_env.physics.effects import EFFECTS
-from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.engine.fit import Fit
 from sim2real.diagnose.glide.data import GlideData
 from sim2real.diagnose.glide.families import FAMILIES, Motion
 from sim2real.diagnose.glide.laws import glide_columns
 from sim2real.diagnose.glide.trace import bend, trace
-from sim2real.diagnose.problem import Columns, Residuals, Units
+from sim2real.diagnose.problem import Columns, Residuals, Units, record_of
 
-ROUNDS = 3
+ROUNDS = 3  # of Gauss-Newton at most, from a parabola's start
 STEP = np.array([1e-6, 1e-6, 1e-5, 1e-5])  # of a start: m, m/s
 
 
@@ -54,12 +52,6 @@ class GlideProblem:
     def columns(self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None) -> Columns:
         """See `Problem.columns`."""
         return glide_columns(self, values, free, use)
-
-    def rows(self, law: Law) -> tuple[str, ...]:
-        """See `Problem.rows`."""
-        if law.start:
-            return tuple(row.name for row in EFFECTS[law.name].rows.values())
-        return law.columns
 
     def motion(self, path: np.ndarray) -> Motion:
         """A path (n, 4) as the families of smooth forces see it."""
@@ -161,10 +153,7 @@ class GlideProblem:
         return drift
 
     def _record(self, values: Mapping[str, float]) -> np.void:
-        records = make_records(1)
-        for name, value in {**self._common, **values}.items():
-            records[name] = value
-        return records[0]
+        return record_of({**self._common, **values})
 
     def _trace(self, record: np.void, starts: np.ndarray, path: np.ndarray) -> None:
         trace(record, self.data.first, self.data.t, starts, self._pucks, path)

@@ -9,7 +9,7 @@ import numpy as np
 from puckpilot_env.physics.effects import unlisted_force
 from sim2real.diagnose.glide.families import RIPPLES, UNIT, Motion, speed_knots, time_knots
 
-ROWS = [row.name for row in unlisted_force.EFFECT.rows.values()]
+ROWS = unlisted_force.EFFECT.row_names
 
 
 def _as_they_are(motion: Motion, theta: np.ndarray) -> np.ndarray:

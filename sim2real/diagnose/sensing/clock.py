@@ -13,6 +13,7 @@ import numpy as np
 
 from sim2real.diagnose.contacts import Geometry
 from sim2real.diagnose.encoders import Encoders
+from sim2real.diagnose.robust import TAIL, t_weights, typical
 from sim2real.diagnose.strikes import Strike
 
 LONGEST = 0.12  # s
@@ -23,10 +24,9 @@ CHANCE = 0.05  # that a candidate is no blow of this mallet
 FARTHEST = 0.1  # m, the range over which such a candidate's gap would spread
 ALIGNED = 0.8  # cosine between the impulse and the line of centres
 NUISANCE = (0.0015, 0.0015, 0.0015, 0.004, 0.004, 0.004)  # of radii, offset x, y [m], scale x, y, shear: their spread
-TAIL = 4.0  # degrees of freedom of the gaps' errors
 SMOOTH = 0.004  # s
 TOUCHED = 0.02  # m: a larger gap is none
-LEAST = 4
+LEAST = 4  # blows that a fit needs
 
 
 @dataclass(frozen=True)
@@ -163,7 +163,7 @@ def fit(tables: list[Meetings], start: tuple[float, float], free: tuple[bool, bo
         if used.sum() < LEAST:
             return None
         std = np.sqrt(variance)
-        weight = (TAIL + 1) / (TAIL + (residual[used] / std[used]) ** 2) / variance[used]
+        weight = t_weights(residual[used] / std[used]) / variance[used]
         rest = jacobian[used].T @ (weight * residual[used])
         normal = (jacobian[used].T * weight) @ jacobian[used]
         rest[2:] += prior * theta[2:]
@@ -174,8 +174,7 @@ def fit(tables: list[Meetings], start: tuple[float, float], free: tuple[bool, bo
         if np.abs(step).max() < 1e-8:
             break
     freedom = int(used.sum()) - sum(free) - 1
-    scale = np.abs(residual[used] / std[used])
-    spread = max(1.0, float(np.median(scale)) / 0.6745) * np.sqrt(used.sum() / max(freedom, 1))
+    spread = typical(residual[used] / std[used]) * np.sqrt(used.sum() / max(freedom, 1))
     covariance = np.zeros((2, 2))
     covariance[np.ix_(kept[: sum(free)], kept[: sum(free)])] = inverse[: sum(free), : sum(free)]
     covariance *= spread**2 * (TAIL + 3) / (TAIL + 1)

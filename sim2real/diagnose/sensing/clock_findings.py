@@ -9,18 +9,18 @@ from scipy import stats
 
 from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.finding import Estimate, Finding, Proof, Rival
+from sim2real.diagnose.interval import reach
 from sim2real.diagnose.sensing.clock import EXACT, TOUCHED, Clock, Fit, Meetings, fit, search
-from sim2real.diagnose.sensing.measured import Measured, measured
+from sim2real.diagnose.sensing.measured import SURE, Measured, measured
 
 MODELS = {"none": (False, False), "camera_delay": (True, False), "clock_drift": (False, True), "both": (True, True)}
 DRIFT = EFFECTS["clock_drift"]
 FORMULAS = {"camera_delay": "a frame stamped t shows the encoders' time t - delay_s", "clock_drift": DRIFT.law}
-SURE = 1e-5
-REJECTED = 1e-3
+REJECTED = 1e-3  # chance at which one of the two errors alone is not enough
 LATE_AT_LEAST = 0.0005  # s: less is no more than the jitter of stamps
-BETTER = 0.9
-FOLDS = 5
-WORST = 12.0
+BETTER = 0.9  # times the gaps as recorded, that the corrected ones must be below in launches that no fit saw
+FOLDS = 5  # parts of the launches, for that
+WORST = 12.0  # standard deviations; a blow counts no more, however far off
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,7 @@ def _finding(name: str, named, best: Fit, fits, chance, full: Fit, sizes: Measur
     index = 0 if name == "camera_delay" else 1
     value = (best.clock.delay, best.clock.rate * 1e6)[index]
     error = float(np.sqrt(best.clock.covariance[index, index])) * (1.0, 1e6)[index]
-    reach = float(stats.t.ppf(0.975, best.freedom)) * error
+    half = reach(best.freedom) * error
     unit, label = (("s", "delay_s"), (DRIFT.rows["ppm"].unit, "ppm"))[index]
     without = _chance(fits[("camera_delay", "clock_drift")[1 - index]], full, 1) if len(named) == 2 else chance["none"]
     other = ("camera_delay", "clock_drift")[1 - index]
@@ -125,7 +125,7 @@ def _finding(name: str, named, best: Fit, fits, chance, full: Fit, sizes: Measur
         also_possible=() if unlike else (other,),
         depends_on=("time",) if index else (),
         formula=FORMULAS[name],
-        parameters={label: Estimate(value, value - reach, value + reach, unit)},
+        parameters={label: Estimate(value, value - half, value + half, unit)},
         p_value=max(without, 1e-300),
         before=sizes.before,
         after=sizes.after,

@@ -9,13 +9,12 @@ from scipy import stats
 
 from sim2real.diagnose.finding import Estimate, Finding, Proof
 from sim2real.diagnose.pieces import Pieces
-from sim2real.diagnose.sensing.measured import Measured, rms
+from sim2real.diagnose.sensing.measured import SURE, Measured, rms
 from sim2real.recording import Recording
 
 MOVED = 4.0  # in standard deviations of a position
 ROUNDING = 5e-5  # m: steps this small repeat by rounding
 RARE = 0.002  # a share that any camera may have
-SURE = 1e-5
 WORDS = "a frame repeats the position before it, with this probability"
 
 

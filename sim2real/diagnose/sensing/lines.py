@@ -6,15 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim2real.diagnose.contacts import WALLS, Geometry, nominal_lines, wall_axis
+from sim2real.diagnose.contacts import WALLS, Geometry, nominal_lines, turned_round, wall_axis
+from sim2real.diagnose.robust import t_weights, typical
 from sim2real.diagnose.strikes import Strike
 
 FARTHEST = 0.06  # of the table's size, from the nominal line
-SLANTS = np.linspace(-0.05, 0.05, 21)
+SLANTS = np.linspace(-0.05, 0.05, 21)  # rad, of a wall against the axes of the camera, at which it is looked for
 BAND = 0.006  # m, the width in which the touches of a wall lie
-LEAST = 4
+LEAST = 4  # touches: two more than a line has numbers
 SHARE = 0.4  # of the candidates that must lie in the band
-TAIL = 4.0
 
 
 @dataclass(frozen=True)
@@ -38,10 +38,10 @@ def lines(found: list[Strike], g: Geometry, skip=()) -> dict[str, Line]:
 
 
 def _line(wall: str, found: list[Strike], g: Geometry) -> Line | None:
-    axis, inward = wall_axis(wall)
+    axis, _ = wall_axis(wall)
     size, middle = ((g.length, g.width / 2), (g.width, g.length / 2))[axis]
     near = [s for s in found if abs(s.place[axis] - nominal_lines(g)[wall]) < FARTHEST * size]
-    near = [s for s in near if s.v_in[axis] * inward < -0.1 and s.v_out[axis] * inward > 0.05]
+    near = [s for s in near if turned_round(wall, s.v_in, s.v_out)]
     if len(near) < LEAST:
         return None
     place = np.array([s.place[axis] for s in near])
@@ -74,8 +74,8 @@ def _straight(along: np.ndarray, place: np.ndarray, std: np.ndarray) -> tuple[np
     z, inverse = np.zeros_like(place), np.zeros((2, 2))
     for _ in range(20):
         z = (place - basis @ values) / std
-        weight = (TAIL + 1) / (TAIL + z**2) / std**2
+        weight = t_weights(z) / std**2
         inverse = np.linalg.inv((basis.T * weight) @ basis)
         values = inverse @ (basis.T @ (weight * place))
-    spread = max(1.0, float(np.median(np.abs(z))) / 0.6745)
+    spread = typical(z)
     return values, inverse * spread**2 * len(place) / max(len(place) - 2, 1)

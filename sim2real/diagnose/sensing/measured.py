@@ -8,6 +8,8 @@ import numpy as np
 
 from sim2real.diagnose.finding import Proof
 
+SURE = 1e-5  # chance that the sensors have no such error, below which one is told
+
 
 @dataclass(frozen=True)
 class Measured:

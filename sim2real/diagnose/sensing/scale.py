@@ -15,17 +15,17 @@ from scipy import stats
 from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.contacts import Geometry, nominal_lines, wall_axis
 from sim2real.diagnose.finding import Estimate, Finding, Proof
+from sim2real.diagnose.interval import NORMAL_REACH
 from sim2real.diagnose.sensing.lines import Line, lines
-from sim2real.diagnose.sensing.measured import measured
+from sim2real.diagnose.sensing.measured import SURE, measured
 from sim2real.diagnose.strikes import Strike
 
 NAMES = ("scale_x", "scale_y", "shear")
 RADIUS, OFFSET, TURN = 0.001, 0.0005, 0.002  # m, m, rad: what a good calibration may be off by
 CUSHION = (0.0003, 0.0005)  # m and rad: how straight and true a wall is
-SURE = 1e-5  # chance of all three together, at which the map is wrong
 TOLD = 1e-3  # the same of one of them, once they are
-AT_LEAST = 0.001
-WRONG_SIZE = 0.022
+AT_LEAST = 0.001  # of a size; a smaller error is not told
+WRONG_SIZE = 0.022  # of a size; a larger error is that of the size stated, not of the camera
 KNOWN, ROUGHLY = 0.003, 0.01  # errors of a scale above which the lines do not tell it, or not even a wrong size
 FOLDS = 20  # nearly one launch at a time: a wall has few touches
 
@@ -59,9 +59,9 @@ def scale_account(found: list[Strike], g: Geometry, unseen: Sequence[Strike] = (
     if sizes is None or sizes.proof.after_m >= sizes.proof.before_m:
         return ScaleAccount(np.zeros(3), (), None)
     sizes = measured(*apart.T) or sizes
-    reach = 1.96 * std
+    half = NORMAL_REACH * std
     estimates = {
-        name: Estimate(float(values[k]), float(values[k] - reach[k]), float(values[k] + reach[k]), "1")
+        name: Estimate(float(values[k]), float(values[k] - half[k]), float(values[k] + half[k]), "1")
         for k, name in enumerate(NAMES)
         if told[k]
     }

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from puckpilot_env.physics.effects import EFFECTS
-from sim2real.diagnose.engine import gram
+from sim2real.diagnose.contact_laws import contact_columns
 from sim2real.diagnose.engine.choose import Law
-from sim2real.diagnose.glide.families import hats
+from sim2real.diagnose.piecewise import memory_hats, spread_hats
 from sim2real.diagnose.problem import Columns
 from sim2real.diagnose.wall.data import KINDS, Bounces
 
@@ -18,40 +18,15 @@ if TYPE_CHECKING:
     from sim2real.diagnose.wall.problem import WallProblem
 
 FRICTIONS = (0.04, 0.07, 0.1, 0.15, 0.2, 0.3, 0.5)  # at which friction with spin is looked for
-UNIT = 0.1  # of a restitution, what a coefficient of 1 stands for
-KNOTS = 5
-WAVES = 4
+KNOTS = 5  # of a smooth law
+WAVES = 4  # of cosines along each wall
 ONE_ROW_EACH = ("wall_to_wall_restitution", "speed_dependent_restitution")
-MEMORY = 2.0  # s after a contact
 
 
 def wall_columns(problem: WallProblem, values: Mapping[str, float], free: Sequence[str]) -> Columns:
     """Every column of a wall problem at one law."""
-    laws = _smooth_in_the_effect()
-    free = tuple(dict.fromkeys((*problem.base, *(name for law in laws for name in law.columns), *free)))
-    exact = problem.residuals(values, free, np.arange(problem.clusters))
-    names, blocks = list(free), [exact.jacobian]
-    now = problem.predicted(values)
-    spins, families = [], []
-    for mu in FRICTIONS if values.get("wall_mu", 0.0) == 0.0 else ():
-        law = Law("wall_friction_spin", (f"wall_mu@{mu}", f"wall_mu slope@{mu}"), start={"wall_mu": mu})
-        at, above = (problem.predicted({**values, "wall_mu": m}) for m in (mu, 1.2 * mu))
-        blocks.append(problem.allowing(values, now, -problem.whitened(np.stack([at - now, above - at], axis=2))))
-        names += law.columns
-        spins.append(law)
-    for name, (depends, shape) in FAMILIES.items():
-        for component, axis in (("restitution", 0), ("tangential ratio", 1)):
-            block = -problem.whitened(_impulses(problem.data, shape(problem.data), axis))
-            block = problem.allowing(values, now, block)
-            law = Law(
-                f"{component} by {name}", tuple(f"{component} {name} {k}" for k in range(block.shape[1])), depends
-            )
-            names += law.columns
-            blocks.append(block)
-            families.append(law)
-    unit = np.repeat(np.arange(len(problem.data)), 2)
-    grams = gram.make_grams(names, exact.r, np.concatenate(blocks, axis=1), unit, len(problem.data))
-    return Columns(grams, [*laws, *spins], families)
+    friction = ("wall_friction_spin", "wall_mu", FRICTIONS)
+    return contact_columns(problem, values, free, _smooth_in_the_effect(), friction, FAMILIES)
 
 
 def _smooth_in_the_effect() -> list[Law]:
@@ -61,30 +36,11 @@ def _smooth_in_the_effect() -> list[Law]:
     for name, effect in EFFECTS.items():
         if effect.regime not in ("wall", "corner") or name == "wall_friction_spin":
             continue
-        rows = [row.name for row in effect.rows.values()]
         if name in ONE_ROW_EACH:
-            found += [Law(name, (row,)) for row in rows]
+            found += [Law(name, (row,)) for row in effect.row_names]
         else:
-            found.append(Law(name, tuple(rows)))
+            found.append(Law(name, effect.row_names))
     return found
-
-
-def _impulses(data: Bounces, weights: np.ndarray, axis: int) -> np.ndarray:
-    """Velocities after (n, 2, k) that shares `weights` (n, k) of the normal (0) or tangential (1) speed before add."""
-    speed = data.closing if axis == 0 else data.split(data.before)[:, 1]
-    columns = np.zeros((len(data), 2, weights.shape[1]))
-    columns[:, axis] = UNIT * speed[:, None] * weights
-    return columns
-
-
-def _spread_hats(x: np.ndarray) -> np.ndarray:
-    """Piecewise linear functions (n, KNOTS) with knots at quantiles of x."""
-    return hats(x, np.unique(np.quantile(x, np.linspace(0.0, 1.0, KNOTS)))) if len(x) else np.zeros((0, KNOTS))
-
-
-def _angle(data: Bounces) -> np.ndarray:
-    normal, along = data.split(data.before).T
-    return np.arctan2(np.abs(along), -normal)
 
 
 def _along_walls(data: Bounces) -> np.ndarray:
@@ -98,15 +54,10 @@ def _along_walls(data: Bounces) -> np.ndarray:
     return np.stack(columns, axis=1)
 
 
-def _memory(data: Bounces) -> np.ndarray:
-    since = np.minimum(np.where(np.isfinite(data.since), data.since, MEMORY), MEMORY)
-    return hats(since, MEMORY * np.linspace(0.0, 1.0, KNOTS) ** 2)[:, :-1]
-
-
 FAMILIES: dict[str, tuple[str, Callable[[Bounces], np.ndarray]]] = {
-    "speed": ("speed", lambda d: _spread_hats(d.closing)),
-    "angle": ("heading", lambda d: _spread_hats(_angle(d))),
+    "speed": ("speed", lambda d: spread_hats(d.closing, KNOTS)),
+    "angle": ("heading", lambda d: spread_hats(d.angle, KNOTS)),
     "place": ("position", _along_walls),
-    "time": ("time", lambda d: _spread_hats(d.t)),
-    "time since a contact": ("history", _memory),
+    "time": ("time", lambda d: spread_hats(d.t, KNOTS)),
+    "time since a contact": ("history", lambda d: memory_hats(d.since, KNOTS)),
 }

@@ -10,12 +10,13 @@ import numpy as np
 from puckpilot_env.parameters import BY_NAME
 from puckpilot_env.physics import bounce
 from sim2real.diagnose.binned import binned, half_band, over
+from sim2real.diagnose.contact_laws import UNIT
 from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.engine.explain import Explained
 from sim2real.diagnose.finding import Curve, Parting
 from sim2real.diagnose.formula import Formula
 from sim2real.diagnose.wall.data import KINDS, Bounces
-from sim2real.diagnose.wall.laws import FAMILIES, UNIT
+from sim2real.diagnose.wall.laws import FAMILIES
 from sim2real.diagnose.wall.problem import WallProblem
 
 SLOWEST = 0.1  # m/s of a component; the share kept of a slower one is noise
@@ -67,7 +68,7 @@ def _listed_view(d: Bounces, mechanism: str) -> View:
     if mechanism == "corner_restitution":
         return View("post or wall", (d.kind == bounce.POST).astype(float), NORMAL, ("walls", "posts"))
     if mechanism == "tangential_restitution":
-        return View("tangential speed before [m/s]", np.abs(d.split(d.before)[:, 1]), TANGENT)
+        return View("tangential speed before [m/s]", np.abs(d.sliding), TANGENT)
     if mechanism == "wall_friction_spin":
         return View(*along["heading"], TANGENT)
     return View(*along["speed"], NORMAL)
@@ -76,10 +77,9 @@ def _listed_view(d: Bounces, mechanism: str) -> View:
 def coordinates(d: Bounces) -> dict[str, tuple[str, np.ndarray]]:
     """What a bounce may depend on, with labels; the place is the one along its wall."""
     ends = np.isin(d.kind, (KINDS["x0"], KINDS["x1"]))
-    normal, along = d.split(d.before).T
     return {
         "speed": ("normal speed before [m/s]", d.closing),
-        "heading": ("angle from the normal [°]", np.degrees(np.arctan2(np.abs(along), -normal))),
+        "heading": ("angle from the normal [°]", np.degrees(d.angle)),
         "position": ("place along its wall [m]", np.where(ends, d.place[:, 1], d.place[:, 0])),
         "time": ("time [s]", d.t),
         "history": ("time since the last contact [s]", d.since),
@@ -98,7 +98,7 @@ def _smooth(d: Bounces, law: Law) -> np.ndarray:
 
 def speeds(d: Bounces) -> np.ndarray:
     """Speeds (n, 2) before, towards the wall and along it [m/s]."""
-    return np.stack([d.closing, d.split(d.before)[:, 1]], axis=1)
+    return np.stack([d.closing, d.sliding], axis=1)
 
 
 def _std(problem: WallProblem) -> np.ndarray:

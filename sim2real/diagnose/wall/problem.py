@@ -7,19 +7,14 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from puckpilot_env.kernel import kernel
-from puckpilot_env.parameters import BY_NAME, make_records
 from puckpilot_env.physics import bounce
-from puckpilot_env.physics.advance import PUCK
-from puckpilot_env.physics.effects import EFFECTS
 from puckpilot_env.physics.rebound import rebound
-from sim2real.diagnose.engine.choose import Law
+from sim2real.diagnose.contact_problem import FLIGHT, STEP, ContactProblem
 from sim2real.diagnose.engine.noise import allowing_for
-from sim2real.diagnose.problem import Columns, Residuals, Units
+from sim2real.diagnose.problem import Columns
 from sim2real.diagnose.wall.data import Bounces
 from sim2real.diagnose.wall.laws import wall_columns
 
-FLIGHT = 0.1  # s; an error of a velocity is told as that of the place so much later
-STEP = 1e-5  # m/s
 SPIN_STEP = 1e-3  # rad/s
 UNKNOWN_SPIN, LAUNCH_SPIN = 30.0, 1.0  # rad/s, std of the spin after a contact that was not seen well, and of a launch
 
@@ -38,27 +33,23 @@ def _rebounds(p, kind, normal, t, chain, before, spin, pucks, after):
         after[i, 0], after[i, 1] = puck.vx, puck.vy
 
 
-class WallProblem:
-    """Bounces off walls and posts. Parameters that `values` leave out have their defaults."""
+class WallProblem(ContactProblem[Bounces]):
+    """Bounces off walls and posts: the velocity after each along the normal and the tangent."""
 
     regime = "wall"
     base: tuple[str, ...] = ("wall_restitution",)
     plain: tuple[str, ...] = base
+    each = 2
 
     def __init__(
         self, data: Bounces, clusters: int, common: Mapping[str, float], scatter: tuple[float, float] = (0.0, 0.0)
     ) -> None:
-        """`clusters`: how many launches the recording has; `common`: sizes of the table; `scatter`: std by which no two
-        bounces are alike, of the velocity after along the normal and the tangent, as shares of the closing speed."""
-        self.data, self.clusters, self.scatter, self._common = data, clusters, np.array(scatter), dict(common)
-        self._pucks = np.zeros(1, PUCK)
-        self.units = Units(data.cluster, np.full(len(data), 2.0))
-        self.freedom = 2.0 * np.bincount(data.cluster, minlength=clusters)
+        """`scatter`: std by which no two bounces are alike, of the velocity after along the normal and the tangent, as
+        shares of the closing speed. The rest as in `ContactProblem`."""
+        super().__init__(data, clusters, common)
+        self.scatter = np.array(scatter)
         self._covariance, by_before = self._noise(self._record({}))
-        value, vector = np.linalg.eigh(self._covariance)
-        self._whiten = vector @ (vector.transpose(0, 2, 1) / np.sqrt(np.maximum(value, 1e-12))[:, :, None])
-        drift = data.drift[:, 1] - by_before @ data.drift[:, 0]
-        self._drift = self.whitened(drift)
+        self._whiten_by(self._covariance, by_before)
         noise = np.trace(data.spread.sum(axis=1), axis1=1, axis2=2) + (self._scattered**2).sum(axis=1)
         self.noise_m = FLIGHT * float(np.sqrt(noise.mean() / 2)) if len(data) else 0.0
 
@@ -80,31 +71,17 @@ class WallProblem:
         """Length and width of the table [m]."""
         return self._common["length"], self._common["width"]
 
-    def residuals(self, values: Mapping[str, float], free: Sequence[str], clusters: np.ndarray) -> Residuals:
-        """See `Problem.residuals`: normal and tangential velocity after each bounce, seen less foretold."""
-        now = self.predicted(values)
-        columns = np.empty((len(self.data), 2, len(free)))
-        for k, name in enumerate(free):
-            row = BY_NAME[name]
-            at = values.get(name, row.default)
-            step = 1e-5 * (row.high - row.low) * (1.0 if at + 1e-5 * (row.high - row.low) < row.high else -1.0)
-            columns[:, :, k] = (self.predicted({**values, name: at + step}) - now) / step
-        r, jacobian = self.whitened(self.data.split(self.data.after) - now), -self.whitened(columns)
-        both = self.allowing(values, now, np.concatenate([r[:, None], jacobian], axis=1))
-        cluster = np.repeat(self.data.cluster, 2)
-        here = np.isin(cluster, clusters)
-        unit = np.repeat(np.arange(len(self.data)), 2)
-        return Residuals(both[here, 0], both[here, 1:], cluster[here], unit[here])
+    @property
+    def observed(self) -> np.ndarray:
+        """Velocity after (n, 2) [m/s] along the normal and the tangent."""
+        return self.data.split(self.data.after)
 
     def predicted(self, values: Mapping[str, float]) -> np.ndarray:
         """Velocity after (n, 2) [m/s] along the normal and the tangent, under a law."""
         return self.data.split(self._after(self._record(values), self.data.before))
 
     def allowing(self, values: Mapping[str, float], now: np.ndarray, rows: np.ndarray) -> np.ndarray:
-        """Residuals or columns (2n, k) with further noise: the glides' law, common to all bounces, and the spin.
-
-        now: what the law foretells, as `predicted` gives it.
-        """
+        """See `ContactProblem.allowing`."""
         rows, drift = (self._allowing_for_spin(values, now, each) for each in (rows, self._drift))
         return allowing_for(drift, rows)
 
@@ -133,25 +110,9 @@ class WallProblem:
             unknown |= d.lost
         return np.where(unknown, np.hypot(1.0, reach * self._whiten[:, 1, 1]), 1.0)
 
-    def whitened(self, velocities: np.ndarray) -> np.ndarray:
-        """Velocities (n, 2, …) in units of their noise, as rows (2n, …)."""
-        shape = velocities.shape
-        flat = velocities.reshape(len(self.data), 2, -1)
-        return np.einsum("nij,njk->nik", self._whiten, flat).reshape(2 * len(self.data), *shape[2:])
-
     def columns(self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None) -> Columns:
         """See `Problem.columns`."""
         return wall_columns(self, values, free)
-
-    def rows(self, law: Law) -> tuple[str, ...]:
-        """See `Problem.rows`."""
-        return tuple(row.name for row in EFFECTS[law.name].rows.values()) if law.start else law.columns
-
-    def _record(self, values: Mapping[str, float]) -> np.void:
-        records = make_records(1)
-        for name, value in {**self._common, **values}.items():
-            records[name] = value
-        return records[0]
 
     def _after(self, record: np.void, before: np.ndarray, spin: float = 0.0) -> np.ndarray:
         d = self.data
@@ -163,10 +124,9 @@ class WallProblem:
         """Covariance (n, 2, 2) of velocity after less foretold, at the law `record`; and how the foretold changes with
         the velocity before (n, 2, 2)."""
         d = self.data
-        axes = np.stack([d.normal, np.stack([-d.normal[:, 1], d.normal[:, 0]], axis=1)], axis=1)
         now = self._after(record, d.before)
         by = np.stack(
-            [d.split(self._after(record, d.before + STEP * axes[:, k]) - now) / STEP for k in range(2)], axis=2
+            [d.split(self._after(record, d.before + STEP * d.axes[:, k]) - now) / STEP for k in range(2)], axis=2
         )
         covariance = d.spread[:, 1] + by @ d.spread[:, 0] @ by.transpose(0, 2, 1)
         size = np.linalg.norm(d.before, axis=1) + np.linalg.norm(d.after, axis=1)

@@ -19,10 +19,10 @@ from sim2real.diagnose.wall.problem import WallProblem
 
 ROUGH = 4.0  # times the usual sum of squares of a typical bounce, beyond which noise alone is no explanation
 MOST = 2.0  # of the closing speed
-ROUNDS, SETTLED = 12, 0.002
+ROUNDS, SETTLED = 12, 0.002  # at most, and the change of a scatter at which they end
 AGAIN = 4  # times that laws are compared anew
-HALVINGS = 40
-MIDDLE = (float(chi2.median(1)), float(chi2.median(2)))
+HALVINGS = 40  # of the range, to 2e-12 of it
+MIDDLE = (float(chi2.median(1)), float(chi2.median(2)))  # median sum of squares of one component, of both
 
 
 def explain_bounces(

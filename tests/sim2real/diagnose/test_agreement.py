@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from puckpilot import main
-from sim2real.diagnose.agreement import FEWEST_LAUNCHES, check_agreement, parts_of
+from sim2real.diagnose.agreement import LAUNCHES_ALONE, check_agreement, parts_of
 from sim2real.diagnose.contacts import geometry
 from sim2real.diagnose.diagnosis import diagnose
 from sim2real.diagnose.glide.data import glide_data, join
@@ -98,7 +98,7 @@ def test_a_recording_too_small_for_a_law_is_held_against_the_other_s(recorded, t
     cuts = [glide_data(cut(one), geometry(one), {}) for one in recordings]
     problem = GlideProblem(join(cuts), values)
     parts = parts_of(problem.data, ["long", "short"])
-    assert len(parts[1].clusters) < FEWEST_LAUNCHES
+    assert len(parts[1].clusters) < LAUNCHES_ALONE
     with nullcontext() if agrees else pytest.raises(UndeterminedError, match="long and short disagree"):
         check_agreement(problem, {name: values[name] for name in problem.base}, parts)
 

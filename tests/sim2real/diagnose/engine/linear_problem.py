@@ -47,7 +47,3 @@ class LinearProblem:
         piece = np.repeat(np.arange(LAUNCHES * PIECES), EACH)
         grams = gram.make_grams(NAMES, exact.r, exact.jacobian, piece, LAUNCHES * PIECES)
         return Columns(grams, [Law("table_tilt", ("tilt_x", "tilt_y"))], [])
-
-    def rows(self, law: Law) -> tuple[str, ...]:
-        """See `Problem.rows`."""
-        return law.columns

@@ -31,9 +31,10 @@ def rough_wall(restitution, scatter: tuple[float, float], wrong: int = 0) -> Wal
     spread = np.tile(0.5 * NOISE**2 * np.eye(2), (COUNT, 2, 1, 1))
     t = np.arange(COUNT, dtype=float)
     data = Bounces(
-        np.full(COUNT, bounce.WALL_Y0), up, t, np.stack([rng.uniform(0.2, 1.8, COUNT), np.full(COUNT, 0.03)], axis=1),
-        before, after, spread, np.zeros((COUNT, 2, 2, 0)), np.zeros(COUNT), np.arange(COUNT), np.ones(COUNT, bool),
-        np.full(COUNT, np.nan), np.arange(COUNT) * LAUNCHES // COUNT,
+        kind=np.full(COUNT, bounce.WALL_Y0), normal=up, t=t, before=before, after=after, spread=spread,
+        place=np.stack([rng.uniform(0.2, 1.8, COUNT), np.full(COUNT, 0.03)], axis=1),
+        drift=np.zeros((COUNT, 2, 2, 0)), turn=np.zeros(COUNT), chain=np.arange(COUNT), lost=np.ones(COUNT, bool),
+        since=np.full(COUNT, np.nan), cluster=np.arange(COUNT) * LAUNCHES // COUNT,
     )  # fmt: skip
     return WallProblem(data, LAUNCHES, DEFAULTS)
 

@@ -1,0 +1,91 @@
+"""What bounces and blows have in common of all that they may lack: friction at a few sizes, and smooth laws of any
+shape, as columns of the residuals."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sim2real.diagnose.engine import gram
+from sim2real.diagnose.engine.choose import Law
+from sim2real.diagnose.problem import Columns
+
+if TYPE_CHECKING:
+    from sim2real.diagnose.contact_data import Contacts
+    from sim2real.diagnose.contact_problem import ContactProblem
+
+UNIT = 0.1  # of a restitution, what a coefficient of 1 stands for
+GROWTH = 1.2  # of a friction, between the two columns that show how its effect changes with its size
+
+Families = Mapping[str, tuple[str, Callable[[Any], np.ndarray]]]  # by name: what it depends on, and functions (n, k)
+
+
+@dataclass
+class _Found:
+    """Columns so far: their names, and blocks of them side by side."""
+
+    names: list[str]
+    blocks: list[np.ndarray] = field(default_factory=list)
+
+    def add(self, law: Law, block: np.ndarray) -> Law:
+        self.names += law.columns
+        self.blocks.append(block)
+        return law
+
+
+def contact_columns(
+    problem: ContactProblem,
+    values: Mapping[str, float],
+    free: Sequence[str],
+    smooth: Sequence[Law],
+    friction: tuple[str, str, Sequence[float]],
+    families: Families,
+    owner: str = "",
+) -> Columns:
+    """Every column of a problem at one law.
+
+    smooth: listed effects whose columns are derivatives; friction: its mechanism, its parameter, and sizes at which it
+    is looked for where there is none yet; owner: what stands before the name of a family.
+    """
+    free = tuple(dict.fromkeys((*problem.base, *(name for law in smooth for name in law.columns), *free)))
+    exact = problem.residuals(values, free, np.arange(problem.clusters))
+    found, now = _Found(list(free), [exact.jacobian]), problem.predicted(values)
+    gripping = _frictions(problem, values, now, friction, found)
+    laws = _families(problem, values, now, families, owner, found)
+    jacobian = np.concatenate(found.blocks, axis=1)
+    grams = gram.make_grams(found.names, exact.r, jacobian, problem.unit_of_rows, len(problem.data))
+    return Columns(grams, [*smooth, *gripping], laws)
+
+
+def _frictions(problem: ContactProblem, values, now: np.ndarray, friction, found: _Found) -> list[Law]:
+    mechanism, name, sizes = friction
+    laws = []
+    for mu in sizes if values.get(name, 0.0) == 0.0 else ():
+        law = Law(mechanism, (f"{name}@{mu}", f"{name} slope@{mu}"), start={name: mu})
+        at, above = (problem.predicted({**values, name: size}) for size in (mu, GROWTH * mu))
+        moved = -problem.whitened(np.stack([at - now, above - at], axis=2))
+        laws.append(found.add(law, problem.allowing(values, now, moved)))
+    return laws
+
+
+def _families(problem: ContactProblem, values, now: np.ndarray, families: Families, owner: str, found: _Found):
+    laws = []
+    for name, (depends, shape) in families.items():
+        for component, axis in (("restitution", 0), ("tangential ratio", 1)):
+            moved = -problem.whitened(_impulses(problem.data, shape(problem.data), axis, problem.each))
+            block = problem.allowing(values, now, moved)
+            label = f"{owner}{component} by {name}"
+            law = Law(label, tuple(f"{label} {k}" for k in range(block.shape[1])), depends)
+            laws.append(found.add(law, block))
+    return laws
+
+
+def _impulses(data: Contacts, weights: np.ndarray, axis: int, each: int) -> np.ndarray:
+    """Velocities (n, each, k) that shares `weights` (n, k) of the closing (0) or sliding (1) speed add."""
+    speed = data.closing if axis == 0 else data.sliding
+    columns = np.zeros((len(data), each, weights.shape[1]))
+    columns[:, axis] = UNIT * speed[:, None] * weights
+    return columns
