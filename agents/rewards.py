@@ -15,10 +15,10 @@ SIDES = np.array([1.0, -1.0])  # a player 0's x direction, and player 1's
 
 @dataclass(frozen=True)
 class Rewards:
-    """`rules` times the variant's reward, plus `goal` for a goal scored and minus `goal` for one against, plus shaping.
+    """`rules` times the variant's reward, `goal` for a goal scored, less `conceded` for one against, plus shaping.
 
     The variant's reward is not a zero-sum one: it pays for fast shots more than for goals. Who trains for winning adds
-    goals. Shaping adds `gamma` times the potential after a step, less the potential before it, which changes no optimal
+    goals; who wants attacks makes a goal worth more than what it costs. Shaping adds `gamma` times the potential after a step, less the potential before it, which changes no optimal
     play (Ng, Harada, Russell, ICML 1999); the potential is `place` times how far the puck is up the table, from -1 to
     1, plus `speed` times how fast it flies there, in units of 5 m/s, less `chase` times how far the mallet is from
     right behind a puck in the own half, in table lengths. It is 0 where an episode has ended.
@@ -26,6 +26,7 @@ class Rewards:
 
     rules: float = 1.0
     goal: float = 0.0
+    conceded: float = 0.0
     place: float = 0.0
     speed: float = 0.0
     chase: float = 0.0
@@ -41,7 +42,8 @@ class Rewards:
         self, rewards: NDArray[np.float32], scored: NDArray[np.int64], shaping: NDArray[np.float64]
     ) -> NDArray[np.float32]:
         """(n, 2) of the variant's rewards, of each player's goals in the step, and of the gain in potential."""
-        return (self.rules * rewards + self.goal * (scored - scored[:, ::-1]) + shaping).astype(np.float32)
+        goals = self.goal * scored - self.conceded * scored[:, ::-1]
+        return (self.rules * rewards + goals + shaping).astype(np.float32)
 
 
 def _ways(tables: Tables) -> NDArray[np.float64]:
