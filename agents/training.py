@@ -16,17 +16,17 @@ import numpy as np
 import torch
 
 from agents.checkpoint import load_checkpoint, restore_tables, save_checkpoint, tables_as_tensors
+from agents.exploit import against
 from agents.league import League, Member
 from agents.learner_env import LearnerEnv
 from agents.policy import Policy, PolicyPlayer, load_policy
-from agents.preset import Preset
+from agents.preset import Preset, read_preset
 from agents.run_folder import RunFolder
 from agents.runner import Iteration, SelfPlayRunner
 from agents.scaling import Reading, Scaling
 from agents.seating import Seating
 from baselines import make_player
 from baselines.player import Player, Seat
-from puckpilot_env.effects_file import Effects
 from puckpilot_env.tables import Tables
 
 Row = dict[str, Any]
@@ -34,20 +34,35 @@ Row = dict[str, Any]
 
 @dataclass(frozen=True)
 class Settings:
-    """What is trained. `effects`: the text of an effects file, or None."""
+    """What is trained. `effects`: an effects file or None; `against`: the one player that is met, else a league is."""
 
     variant: str
     seed: int
     threads: int
     preset: Preset
-    effects: Effects | None = None
+    effects: str | None = None
+    against: str | None = None
+
+    def as_dict(self) -> dict[str, Any]:
+        """As JSON can hold it."""
+        kept = {name: getattr(self, name) for name in ("variant", "seed", "threads", "effects", "against")}
+        return {**kept, "preset": self.preset.text}
+
+    @classmethod
+    def from_dict(cls, kept: Mapping[str, Any]) -> Settings:
+        """What `as_dict` gave. ValueError, in one line, for anything else."""
+        try:
+            return cls(**{**kept, "preset": read_preset(kept["preset"], "of the run")})
+        except (KeyError, TypeError) as error:
+            raise ValueError(f"these are no settings of a run: {error}") from None
 
 
 class Training:
-    """A run in `folder`; `resume` takes it up where its last checkpoint left it."""
+    """A run in `folder`, taken up where its last checkpoint left it, if there is one."""
 
-    def __init__(self, folder: RunFolder, settings: Settings, *, resume: bool = False) -> None:
-        preset = settings.preset
+    def __init__(self, folder: RunFolder, settings: Settings) -> None:
+        preset = against(settings.preset, settings.against) if settings.against else settings.preset
+        self.preset = preset
         torch.set_num_threads(settings.threads)
         torch.manual_seed(settings.seed)
         self.folder, self.settings = folder, settings
@@ -63,7 +78,7 @@ class Training:
         self.runner = SelfPlayRunner(self.env, preset)
         self.league = League([Member(name) for name in preset.anchors], preset.gate, preset.cap, preset.most)
         self.rows: list[Row] = []
-        if resume:
+        if folder.checkpoint.exists():
             self._resume()
         else:
             self._admit("self-0")
@@ -75,7 +90,7 @@ class Training:
 
     def round(self) -> Row:
         """One round, and its checkpoint; what came of it."""
-        preset, tally = self.settings.preset, self.env.tally
+        preset, tally = self.preset, self.env.tally
         chosen = self.league.choose(len(preset.earlier), self.rng)
         met = [*self.league.anchors, *chosen]
         self.env.seat(self._players(met), [member.share for member in met])
@@ -83,7 +98,7 @@ class Training:
         iterations = [self.runner.iterate() for _ in range(preset.round)]
         for member, points, games in zip(met, tally.points, tally.games, strict=True):
             member.note(points, games)
-        if self.league.wants_new(chosen):
+        if chosen and self.league.wants_new(chosen):
             self._admit(f"self-{len(self.rows) + 1}")
         self.rows.append(self._row(iterations))
         self._save()
@@ -108,7 +123,7 @@ class Training:
         self.league.admit(name, policy)
 
     def _row(self, iterations: list[Iteration]) -> Row:
-        preset = self.settings.preset
+        preset = self.preset
         before = self.rows[-1] if self.rows else {"steps": 0, "seconds": 0.0}
         spent = {part: sum(getattr(i, part) for i in iterations) for part in ("environment", "acting", "learning")}
         taken = self.env.num_envs * preset.steps * preset.round
@@ -119,8 +134,9 @@ class Training:
             "steps_per_s": round(taken / sum(spent.values())),
             **{part: round(seconds / sum(spent.values()), 3) for part, seconds in spent.items()},
             **{name: float(np.mean([i.losses[name] for i in iterations])) for name in iterations[0].losses},
-            "scale": float(self.runner.alg.get_policy().output_std.mean()),
+            "scale": float(self.runner.alg.get_policy().output_std.detach().mean()),
             "selves": len(self.league.earlier),
+            "rating": round(self.league.rating(), 1),
             **{f"points_{member.name}": round(member.share, 4) for member in self.league.anchors},
             **{f"wins_{member.name}": round(member.win_rate, 4) for member in self.league.anchors},
         }
@@ -150,7 +166,7 @@ class Training:
         self.rng.bit_generator.state = json.loads(kept["random"])
         restore_tables(self.tables, kept["tables"])
         self.rows = json.loads(kept["rows"])
-        self.runner.current_learning_iteration = len(self.rows) * self.settings.preset.round
+        self.runner.current_learning_iteration = len(self.rows) * self.preset.round
         league = self.league
         league.waited = kept["waited"]
         league.anchors = [_member(entry) for entry in kept["anchors"]]
