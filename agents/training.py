@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 import torch
 
+from agents import ranks
 from agents.checkpoint import load_checkpoint, restore_tables, save_checkpoint, tables_as_tensors
 from agents.exploit import against
 from agents.league import League, Member
@@ -29,6 +30,7 @@ from baselines import make_player
 from baselines.player import Player, Seat
 from puckpilot_env.tables import Tables
 
+RANKS_APART = 2**32  # between the seeds of processes that train together
 Row = dict[str, Any]
 
 
@@ -64,11 +66,12 @@ class Training:
         preset = against(settings.preset, settings.against) if settings.against else settings.preset
         self.preset = preset
         torch.set_num_threads(settings.threads)
-        torch.manual_seed(settings.seed)
+        seed = settings.seed + RANKS_APART * ranks.rank()
+        torch.manual_seed(seed)
         self.folder, self.settings = folder, settings
         self.rng = np.random.default_rng(settings.seed)
-        self.tables = Tables(settings.variant, preset.tables, seed=settings.seed, effects=settings.effects)
-        stagger(self.tables, self.rng)
+        self.tables = Tables(settings.variant, preset.tables, seed=seed, effects=settings.effects)
+        stagger(self.tables, np.random.default_rng((settings.seed, ranks.rank())))
         seating = Seating.of(preset.tables, [*preset.anchors.values(), *preset.earlier])
         names = [column.name for column in self.tables.observation_columns]
         reading = Reading.of(Scaling.from_tables(self.tables), names, names)
@@ -96,12 +99,13 @@ class Training:
         self.env.seat(self._players(met), [member.share for member in met])
         tally.clear()
         iterations = [self.runner.iterate() for _ in range(preset.round)]
-        for member, points, games in zip(met, tally.points, tally.games, strict=True):
+        for member, points, games in zip(met, ranks.added(tally.points), ranks.added(tally.games), strict=True):
             member.note(points, games)
         if chosen and self.league.wants_new(chosen):
             self._admit(f"self-{len(self.rows) + 1}")
         self.rows.append(self._row(iterations))
-        self._save()
+        if ranks.rank() == 0:
+            self._save()
         return self.rows[-1]
 
     def policy(self) -> Policy:
@@ -119,14 +123,15 @@ class Training:
 
     def _admit(self, name: str) -> None:
         policy = self.policy()
-        policy.save(self.folder.selves / f"{name}.npz")
+        if ranks.rank() == 0:
+            policy.save(self.folder.selves / f"{name}.npz")
         self.league.admit(name, policy)
 
     def _row(self, iterations: list[Iteration]) -> Row:
         preset = self.preset
         before = self.rows[-1] if self.rows else {"steps": 0, "seconds": 0.0}
         spent = {part: sum(getattr(i, part) for i in iterations) for part in ("environment", "acting", "learning")}
-        taken = self.env.num_envs * preset.steps * preset.round
+        taken = self.env.num_envs * preset.steps * preset.round * ranks.world()
         return {
             "round": len(self.rows) + 1,
             "steps": before["steps"] + taken,
@@ -162,9 +167,10 @@ class Training:
     def _resume(self) -> None:
         kept = load_checkpoint(self.folder.checkpoint)
         self.runner.alg.load(kept["learner"], None, True)
-        torch.set_rng_state(kept["torch_random"])
         self.rng.bit_generator.state = json.loads(kept["random"])
-        restore_tables(self.tables, kept["tables"])
+        if ranks.rank() == 0:  # the others' games begin anew
+            torch.set_rng_state(kept["torch_random"])
+            restore_tables(self.tables, kept["tables"])
         self.rows = json.loads(kept["rows"])
         self.runner.current_learning_iteration = len(self.rows) * self.preset.round
         league = self.league
@@ -196,5 +202,10 @@ def _member(entry: Mapping[str, Any], policy: Policy | None = None) -> Member:
 def train(training: Training, *, steps: float, seconds: float, tell: Callable[[Row], None]) -> None:
     """Rounds until `steps` steps are taken or `seconds` are over, whichever comes first."""
     begun = time.monotonic()
-    while training.steps < steps and time.monotonic() - begun < seconds:
+    while training.steps < steps and not _anyone(time.monotonic() - begun > seconds):
         tell(training.round())
+
+
+def _anyone(so: bool) -> bool:
+    """Whether it is so in any process: all must end after the same round."""
+    return bool(ranks.added(np.array([float(so)]))[0])

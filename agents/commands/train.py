@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import importlib.util
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -35,6 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """0: trained as long as was asked. Raises ValueError, in one line, for what cannot be trained."""
     need_torch()
+    from agents import ranks
     from agents.preset import find_preset
     from agents.run_folder import RunFolder
     from agents.training import Settings
@@ -44,15 +46,18 @@ def run(args: argparse.Namespace) -> int:
         if not getattr(args, name) > 0:
             raise ValueError(f"--{name} is {getattr(args, name):g}; expected more than 0")
     folder = RunFolder(args.out)
-    with folder.locked():
+    first = ranks.rank() == 0  # of several processes one writes
+    with folder.locked() if first else nullcontext():
         if args.resume:
             settings = Settings.from_dict(folder.settings())
         else:
             variant, preset = find_variant(args.variant).id, find_preset(args.preset)
             settings = Settings(variant, args.seed, args.threads, preset, args.effects)
-            folder.begin(settings.as_dict())
-        training = run_training(folder, settings, steps=args.steps, minutes=args.minutes)
-    print(f"{training.steps:,} steps; the player is {folder.policy}")
+            if first:
+                folder.begin(settings.as_dict())
+        training = run_training(folder, settings, steps=args.steps, minutes=args.minutes, quiet=not first)
+    if first:
+        print(f"{training.steps:,} steps; the player is {folder.policy}")
     return 0
 
 
@@ -69,16 +74,19 @@ def run_training(
     """Train in a folder that is this process's alone, going on from its checkpoint if there is one."""
     from torch.utils.tensorboard import SummaryWriter
 
+    from agents import ranks
     from agents.commands.live import Board
     from agents.runner import DivergedError
     from agents.training import Training, train
 
     training = Training(folder, settings)
-    with SummaryWriter(str(folder.path)) as curves, Board(quiet) as board:
+    with Board(quiet) as board:
+        curves = None if ranks.rank() else SummaryWriter(str(folder.path))
 
         def tell(row: dict[str, Any]) -> None:
-            for name, value in row.items():
-                curves.add_scalar(name, value, row["steps"])
+            if curves:
+                for name, value in row.items():
+                    curves.add_scalar(name, value, row["steps"])
             board.tell(row)
 
         try:
