@@ -27,6 +27,7 @@ ACTION_COLUMNS = (
 )
 LEAST_VOLTS, MOST_VOLTS = 0.3, 10.0  # report K.1
 MOST_TABLES, MOST_STEPS = 1_000_000, 1_000_000_000
+ROUNDING = 3e-7  # share of the action space's width by which float32 arithmetic of others may leave it; plans are safe
 SHORTEST_PERIOD, LONGEST_PERIOD = 1.0 / 120.0, 1.0  # s
 
 
@@ -95,6 +96,8 @@ class Tables:
         self.observation_columns = observation.columns(self._rules[0], self.nominal[0])
         self.observation_bounds = observation.space_bounds(self._rules[0], self.nominal[0])
         self.action_bounds = _action_bounds(self.nominal[0])
+        slack = ROUNDING * np.ptp(self.action_bounds, axis=0)
+        self._taken = self.action_bounds + np.stack([-slack, slack])
         shape = (tables, 2, len(self.observation_columns))
         self.observations = np.zeros(shape, np.float32)
         self.final_observations = np.zeros(shape, np.float32)
@@ -150,7 +153,7 @@ class Tables:
         actions = np.ascontiguousarray(real_numbers(actions, "the array of actions"), np.float32)
         if actions.shape != (len(self.states), 2, 4):
             raise ValueError(f"actions have shape {actions.shape}; expected {(len(self.states), 2, 4)}")
-        bad = batch.first_outside(actions, self.action_bounds)
+        bad = batch.first_outside(actions, self._taken)
         if bad >= 0:
             raise ValueError(self._describe_bad_action(actions, bad))
         if self._team is None:

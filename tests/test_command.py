@@ -19,7 +19,7 @@ OPTIONS = {
     "match": ["--games", "--video", "--variant", "--seed", "--threads", "--json"],
     "tournament": ["--games", "--out", "--variant", "--seed", "--threads", "--json"],
     "train": ["--preset", "--out", "--steps", "--minutes", "--resume", "--variant", "--effects", "--seed", "--threads"],
-    "evaluate": ["--games", "--against", "--variants", "--hampered", "--seed", "--json"],
+    "evaluate": ["--games", "--against", "--variants", "--hampered", "--seed", "--workers", "--cluster", "--json"],
     "exploit": ["--steps", "--out", "--preset", "--variant", "--games", "--seed", "--threads", "--json"],
     "export": ["--out"],
     "bench": ["--tables", "--threads", "--seconds", "--against", "--dicts", "--startup", "--json"],

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -25,6 +26,17 @@ TEXTS = {
 }
 
 
+@dataclass(frozen=True)
+class Game:
+    """One meeting: `games` paired games of `variant`."""
+
+    variant: str
+    player: str
+    opponent: str
+    games: int
+    seed: int
+
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
     parser.add_argument("policy", metavar="POLICY", help="a shipped policy's name, an .npz file, or any player's name")
@@ -33,6 +45,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--variants", nargs="+", default=list(VARIANTS), metavar="ID", help="only these variants")
     parser.add_argument("--hampered", default="interceptor", metavar="PLAYER", help="opponent of the camera runs")
     parser.add_argument("--seed", type=int, default=0, help="seed of all games (default 0)")
+    parser.add_argument("--workers", type=int, default=1, metavar="K", help="processes that play (default 1)")
+    parser.add_argument("--cluster", metavar="ADDRESS", help="play on a Ray cluster instead; `local` starts one here")
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of the tables")
 
 
@@ -44,12 +58,15 @@ def run(args: argparse.Namespace) -> int:
 
     if args.games < 2 or args.games % 2:
         raise ValueError(f"--games is {args.games}; expected an even number from 2 on: each start is played twice")
+    if args.workers < 1:
+        raise ValueError(f"--workers is {args.workers}; expected 1 or more")
     name = player_name(args.policy)
     opponents = args.against or player_names()
     for player in (name, args.hampered, *opponents):
         find_player(player)
     variants = [find_variant(variant).id for variant in args.variants]
-    meetings = _meet(name, opponents, variants, args.games, args.seed)
+    games = [Game(variant, name, other, args.games, args.seed) for variant in variants for other in opponents]
+    meetings = _meet(games, args)
     deployability = measure_deployability(name, args.hampered, max(args.games // 5, 2), args.seed)
     robustness = measure_robustness(name, args.hampered, args.games, args.seed)
     if args.json:
@@ -67,24 +84,30 @@ def player_name(policy: str) -> str:
     return f"policy:{policy}" if policy in policy_names() or policy.endswith(".npz") else policy
 
 
-def _meet(name: str, opponents: list[str], variants: list[str], games: int, seed: int) -> list[dict[str, Any]]:
+def _meet(games: list[Game], args: argparse.Namespace) -> list[dict[str, Any]]:
+    """A row a meeting, played side by side where that was asked for."""
+    from agents.fan_out import fan_out
     from baselines.commands.options import progress_bar
+
+    rows = []
+    with progress_bar("meetings") as progress:
+        for row in fan_out(meet, games, workers=args.workers, cluster=args.cluster):
+            rows.append(row)
+            progress(len(rows), len(games))
+    return rows
+
+
+def meet(game: Game) -> dict[str, Any]:
+    """One meeting: who won, with the share of decisive games and its interval."""
     from baselines.intervals import paired_win_rate
     from baselines.match import play
 
-    rows = []
-    for variant in variants:
-        for opponent in opponents:
-            with progress_bar(f"{name} against {opponent} in {variant}") as progress:
-                result = play(variant, name, opponent, games, seed, progress=progress)
-            rate = paired_win_rate(result.padded_results)
-            rows.append(
-                {
-                    "variant": variant, "opponent": opponent, "games": games, "wins": list(result.wins),
-                    "draws": result.draws, "goals": list(result.goals), "decisive_win_rate": rate.as_dict(),
-                }
-            )  # fmt: skip
-    return rows
+    result = play(game.variant, game.player, game.opponent, game.games, game.seed)
+    rate = paired_win_rate(result.padded_results)
+    return {
+        "variant": game.variant, "opponent": game.opponent, "games": game.games, "wins": list(result.wins),
+        "draws": result.draws, "goals": list(result.goals), "decisive_win_rate": rate.as_dict(),
+    }  # fmt: skip
 
 
 def _print(name: str, meetings: list[dict[str, Any]], deployability: Deployability, robustness: Robustness) -> None:

@@ -190,6 +190,19 @@ def test_bad_actions_change_nothing(variant, column, number, told):
     assert frames.tobytes() == tables.snapshot().frames.tobytes()
 
 
+@pytest.mark.parametrize("side", [0, 1])
+def test_actions_that_rounding_took_out_of_the_space_are_played_at_its_edge(side):
+    """As gymnasium's RescaleAction makes them, in float32."""
+    edge, beyond = (Tables("match-v0", 1, seed=2) for _ in range(2))
+    actions = np.broadcast_to(edge.action_bounds[side], (1, 2, 4)).astype(np.float32)
+    off = np.nextafter(actions, np.float32(-1e9 if side == 0 else 1e9))
+    assert not np.array_equal(actions, off)
+    for _ in range(5):
+        edge.step(actions)
+        beyond.step(off)
+    np.testing.assert_allclose(beyond.observations, edge.observations, atol=1e-5)
+
+
 @pytest.mark.parametrize("shape", [(4, 2), (4, 2, 3), (3, 2, 4), (2, 4, 4), (32,), ()])
 def test_wrong_shapes_change_nothing(shape):
     tables = Tables("match-v0", 4, seed=1)

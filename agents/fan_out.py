@@ -1,0 +1,48 @@
+"""Independent pieces of work side by side: in local processes, or on the machines of a Ray cluster."""
+
+from __future__ import annotations
+
+import logging
+import os
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from typing import TypeVar
+
+Job = TypeVar("Job")
+Result = TypeVar("Result")
+
+
+def fan_out(
+    work: Callable[[Job], Result], jobs: Sequence[Job], *, workers: int = 1, cluster: str | None = None
+) -> Iterator[Result]:
+    """Results of `work` on each of `jobs`, in their order, as they come.
+
+    With a `cluster`, the address of a Ray cluster ("local" starts one here), it decides how many run at once;
+    otherwise `workers` processes do, and one worker is this process. `work` must be a function of a module.
+    ValueError, in one line, where Ray is not installed or its cluster cannot be reached.
+    """
+    if cluster is not None:
+        yield from _on_ray(work, jobs, cluster)
+    elif workers == 1:
+        yield from map(work, jobs)
+    else:
+        with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+            yield from pool.map(work, jobs)
+
+
+def _on_ray(work: Callable[[Job], Result], jobs: Sequence[Job], cluster: str) -> Iterator[Result]:
+    os.environ.setdefault("RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO", "0")  # or it warns about GPUs that nobody asked for
+    try:
+        import ray
+    except ImportError:
+        raise ValueError("--cluster needs Ray; install it with: pip install 'puckpilot[cluster]'") from None
+    try:
+        ray.init(address=None if cluster == "local" else cluster, log_to_driver=False, logging_level=logging.ERROR)
+    except (ConnectionError, RuntimeError, ValueError) as error:
+        raise ValueError(f"no Ray cluster at {cluster}: {str(error).splitlines()[0]}") from None
+    try:
+        remote = ray.remote(work)
+        yield from (ray.get(one) for one in [remote.remote(job) for job in jobs])
+    finally:
+        ray.shutdown()
