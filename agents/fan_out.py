@@ -42,7 +42,7 @@ def _on_ray(work: Callable[[Job], Result], jobs: Sequence[Job], cluster: str) ->
     except (ConnectionError, RuntimeError, ValueError) as error:
         raise ValueError(f"no Ray cluster at {cluster}: {str(error).splitlines()[0]}") from None
     try:
-        remote = ray.remote(work)
+        remote = ray.remote(lambda job: work(job))  # Ray takes no function that was not written in Python
         yield from (ray.get(one) for one in [remote.remote(job) for job in jobs])
     finally:
         ray.shutdown()
