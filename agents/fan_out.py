@@ -42,7 +42,8 @@ def _on_ray(work: Callable[[Job], Result], jobs: Sequence[Job], cluster: str) ->
     except (ConnectionError, RuntimeError, ValueError) as error:
         raise ValueError(f"no Ray cluster at {cluster}: {str(error).splitlines()[0]}") from None
     try:
-        remote = ray.remote(lambda job: work(job))  # Ray takes no function that was not written in Python
+        # Ray takes no function that was not written in Python, and its stubs no generic one.
+        remote = ray.remote(lambda job: work(job))  # pyright: ignore[reportArgumentType] - see above
         yield from (ray.get(one) for one in [remote.remote(job) for job in jobs])
     finally:
         ray.shutdown()
