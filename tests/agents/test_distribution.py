@@ -145,5 +145,5 @@ def test_an_untrained_network_has_the_scale_that_was_asked_for() -> None:
 
 @pytest.mark.parametrize("scale", [0.0, -0.1, LEAST_SCALE, MOST_SCALE, 2.0, math.nan])
 def test_a_scale_out_of_bounds_is_refused(scale: float) -> None:
-    with pytest.raises(ValueError, match="init_scale is .*; expected a number between 0.001 and 0.5"):
+    with pytest.raises(ValueError, match=r"init_scale is .*; expected a number between 0\.001 and 0\.5"):
         TanhNormal(4, init_scale=scale)

@@ -40,7 +40,7 @@ def test_rows_of_another_order_or_type_and_no_rows() -> None:
     network = Network(weights, biases)
     inputs = np.random.default_rng(3).normal(size=(6, 10))
     np.testing.assert_allclose(network(inputs.T.astype(np.float32)), reference(weights, biases, inputs.T), atol=1e-5)
-    backwards = np.asfortranarray(inputs.T)[::-1]
+    backwards = np.asfortranarray(inputs.T.astype(np.float32))[::-1]
     np.testing.assert_allclose(network(backwards), reference(weights, biases, backwards), atol=1e-5)
     assert network(np.zeros((0, 6), np.float32)).shape == (0, 4)
 

@@ -45,7 +45,7 @@ def test_flipping_actions_is_playing_on_the_flipped_table() -> None:
     twin.restore(turned_left_right(tables))
     outputs = np.random.default_rng(8).uniform(-1.0, 1.0, (2 * len(tables), 4)).astype(np.float32)
     tables.step(scaling.action(outputs).reshape(-1, 2, 4))
-    twin.step(scaling.action(outputs * np.float32(ACTION_FLIP)).reshape(-1, 2, 4))
+    twin.step(scaling.action(outputs * np.array(ACTION_FLIP, np.float32)).reshape(-1, 2, 4))
     quiet = ~(tables.terminated | (tables.states["held"] == 0.0))  # neither ended nor placed anew
     assert quiet.sum() > 6
     np.testing.assert_allclose(observed(tables, turned_left_right(tables))[quiet], twin.observations[quiet], atol=1e-4)
