@@ -119,7 +119,7 @@ class Training:
             "steps_per_s": round(taken / sum(spent.values())),
             **{part: round(seconds / sum(spent.values()), 3) for part, seconds in spent.items()},
             **{name: float(np.mean([i.losses[name] for i in iterations])) for name in iterations[0].losses},
-            "scale": float(self.runner.alg.get_policy().output_std.mean()),
+            "scale": float(self.runner.alg.get_policy().output_std.detach().mean()),
             "selves": len(self.league.earlier),
             **{f"points_{member.name}": round(member.share, 4) for member in self.league.anchors},
             **{f"wins_{member.name}": round(member.win_rate, 4) for member in self.league.anchors},
@@ -145,6 +145,13 @@ class Training:
 
     def _resume(self) -> None:
         kept = load_checkpoint(self.folder.checkpoint)
+        try:
+            self._take_up(kept)
+        except (KeyError, IndexError, TypeError, AttributeError, RuntimeError) as error:  # torch says misfits many ways
+            words = f"{type(error).__name__}: {error}".splitlines()[0]
+            raise ValueError(f"the checkpoint {self.folder.checkpoint} does not fit this run ({words})") from None
+
+    def _take_up(self, kept: Mapping[str, Any]) -> None:
         self.runner.alg.load(kept["learner"], None, True)
         torch.set_rng_state(kept["torch_random"])
         self.rng.bit_generator.state = json.loads(kept["random"])
