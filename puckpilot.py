@@ -26,6 +26,8 @@ COMMANDS = {
     "tournament": ("baselines.commands.tournament", "all against all: payoff matrix and ratings"),
     "train": ("agents.commands.train", "train a player by self-play"),
     "evaluate": ("agents.commands.evaluate", "how good a player is, and whether it could play on a gantry"),
+    "exploit": ("agents.commands.exploit", "how exploitable a player is: a fresh learner meets it alone"),
+    "export": ("agents.commands.export", "write a policy as .npz or .onnx"),
     "bench": ("puckpilot_env.commands.bench", "how fast the simulator is here"),
     "compare": ("sim2real.compare", "where a recording of a table departs from the simulator"),
     "diagnose": ("sim2real.commands.diagnose", "which physics the simulator lacks, with proof on untouched data"),

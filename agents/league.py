@@ -12,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from agents.policy import Policy
+from baselines.payoff import Payoff
+from baselines.rating import fit_ratings
 
 FORGET = 0.8  # what a tally keeps from one round to the next
 DOUBT = 2.0  # points that a member is taken to have won, and lost, before it played
@@ -62,6 +64,17 @@ class League:
         weights = np.array([max((1.0 - member.share) ** 2, LEAST_CHANCE) for member in self.earlier])
         picked = rng.choice(len(self.earlier), size=seats, p=weights / weights.sum())
         return [self.earlier[index] for index in picked]
+
+    def rating(self) -> float:
+        """Elo of the learner among its anchors, by the games of late; their mean and its own together is 0."""
+        met = [member for member in self.anchors if member.games.sum() > 0.0]
+        if not met:
+            return 0.0
+        wins, draws = np.zeros((2, 1 + len(met), 1 + len(met)))
+        for k, member in enumerate(met, start=1):
+            wins[0, k], draws[0, k], wins[k, 0] = member.games
+        names = ("learner", *(member.name for member in met))
+        return fit_ratings(Payoff(names, wins, draws + draws.T)).elo[0]
 
     def wants_new(self, met: list[Member]) -> bool:
         """Whether the learner, having `met` these, should join its earlier selves."""

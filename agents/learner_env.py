@@ -76,12 +76,11 @@ class LearnerEnv(VecEnv):
         flat = tables.observations.reshape(self._actions.shape[0], -1)
         for block, player in zip(self.seating.blocks, self.opponents, strict=True):
             self._actions[block.rows] = player.act(flat[block.rows])
-        score, potential = tables.states["score"].copy(), self.rewards.potential(tables)
+        score, before = tables.states["score"].copy(), self.rewards.before(tables)
         tables.step(self._actions.reshape(len(tables), 2, 4))
         done = tables.terminated | tables.truncated
         scored = np.where(done[:, None], tables.states["last_score"], tables.states["score"]) - score
-        ahead = np.where(done[:, None], 0.0, self.gamma * self.rewards.potential(tables))
-        rewards = self.rewards.of(tables.rewards, scored, ahead - potential).reshape(-1)[self.seating.learners]
+        rewards = self.rewards.after(tables, before, scored, done, self.gamma).reshape(-1)[self.seating.learners]
         self.tally.add(scored, done, tables.states["winner"])
         self._tell_opponents(done)
         extras: dict[str, Any] = {}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -33,8 +34,18 @@ class Network:
     def __call__(self, inputs: Array) -> Array:
         """(n, outputs) float32 of (n, inputs)."""
         outputs = np.empty((len(inputs), self.sizes[-1]), np.float32)
-        _forward(self._flat, self._sizes, np.ascontiguousarray(inputs, np.float32), outputs, self._scratch)
+        _forward_all(self._flat, self._sizes, np.ascontiguousarray(inputs, np.float32), outputs, self._scratch)
         return outputs
+
+    def decide(self, observations: Array, index: NDArray[np.int64], reads: Array, acts: Array) -> Array:
+        """(n, outputs) float32 actions of (n, d) observations, in one compiled pass.
+
+        Input j is `(observation[index[j]] - reads[0, j]) / reads[1, j]`, 0 where `index[j]` is negative. Action k is
+        `acts[0, k] + acts[1, k] * tanh(output k)`, held between `acts[2, k]` and `acts[3, k]`.
+        """
+        actions = np.empty((len(observations), self.sizes[-1]), np.float32)
+        _decide(self._flat, self._sizes, observations, index, reads, acts, actions, self._scratch)
+        return actions
 
 
 def _sizes(weights: Sequence[Array], biases: Sequence[Array]) -> tuple[int, ...]:
@@ -57,24 +68,44 @@ def _add_scaled(out, scale, row):
 
 
 @kernel
-def _forward(flat, sizes, inputs, outputs, scratch):
-    """flat: transposed weights and biases of every layer; sizes: (layers + 1,); scratch: (2, widest)."""
-    layers = sizes.size - 1
+def _forward(flat, sizes, scratch):
+    """From the inputs in `scratch[0]` to the outputs; the row of `scratch` in which they are.
+
+    flat: transposed weights and biases of every layer; sizes: (layers + 1,); scratch: (2, widest).
+    """
+    at, here = 0, 0
+    for layer in range(sizes.size - 1):
+        fan_in, fan_out = sizes[layer], sizes[layer + 1]
+        biases = at + fan_in * fan_out
+        out = scratch[1 - here, :fan_out]
+        for k in range(fan_out):
+            out[k] = flat[biases + k]
+        for j in range(fan_in):
+            x = scratch[here, j]
+            if layer == 0 or not x <= 0.0:  # ReLU, where the numbers are used: half need no work; NaN goes on
+                _add_scaled(out, x, flat[at : at + fan_out])
+            at += fan_out
+        at, here = biases + fan_out, 1 - here
+    return here
+
+
+@kernel
+def _forward_all(flat, sizes, inputs, outputs, scratch):
     for row in range(inputs.shape[0]):
-        for j in range(sizes[0]):
+        for j in range(inputs.shape[1]):
             scratch[0, j] = inputs[row, j]
-        at, here = 0, 0
-        for layer in range(layers):
-            fan_in, fan_out = sizes[layer], sizes[layer + 1]
-            biases = at + fan_in * fan_out
-            out = scratch[1 - here, :fan_out]
-            for k in range(fan_out):
-                out[k] = flat[biases + k]
-            for j in range(fan_in):
-                x = scratch[here, j]
-                if layer == 0 or not x <= 0.0:  # ReLU, where the numbers are used: half need no work; NaN goes on
-                    _add_scaled(out, x, flat[at : at + fan_out])
-                at += fan_out
-            at, here = biases + fan_out, 1 - here
-        for k in range(sizes[layers]):
+        here = _forward(flat, sizes, scratch)
+        for k in range(outputs.shape[1]):
             outputs[row, k] = scratch[here, k]
+
+
+@kernel
+def _decide(flat, sizes, observations, index, reads, acts, actions, scratch):
+    for row in range(observations.shape[0]):
+        for j in range(index.size):
+            at = index[j]
+            scratch[0, j] = 0.0 if at < 0 else (observations[row, at] - reads[0, j]) / reads[1, j]
+        here = _forward(flat, sizes, scratch)
+        for k in range(actions.shape[1]):
+            wanted = acts[0, k] + acts[1, k] * math.tanh(scratch[here, k])
+            actions[row, k] = min(max(wanted, acts[2, k]), acts[3, k])

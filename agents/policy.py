@@ -96,12 +96,15 @@ class PolicyPlayer(Player):
     def __init__(self, policy: Policy, seat: Seat) -> None:
         self.seat = seat
         self.policy = policy
-        self._reading = Reading.of(policy.scaling, policy.columns, list(seat.columns))
+        scaling = policy.scaling
+        self._index = Reading.of(scaling, policy.columns, list(seat.columns)).index
+        self._reads = np.stack([scaling.centre, scaling.span])
+        middle, half = 0.5 * (scaling.low + scaling.high), 0.5 * (scaling.high - scaling.low)
+        self._acts = np.stack([middle, half, *seat.action_bounds]).astype(np.float32)
 
     def act(self, observation: NDArray[np.float32]) -> NDArray[np.float32]:
         """observation: (n, d) float32; returns (n, 4) float32 actions inside the seat's bounds."""
-        wanted = self._reading.scaling.action(np.tanh(self.policy.network(self._reading.seen(observation))))
-        return np.clip(wanted, self.seat.action_bounds[0], self.seat.action_bounds[1])
+        return self.policy.network.decide(observation, self._index, self._reads, self._acts)
 
 
 def policy_names() -> list[str]:

@@ -9,12 +9,12 @@ import time
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 import torch
 from rsl_rl.models import MLPModel
 from rsl_rl.runners import OnPolicyRunner
 from torch import nn
 
+from agents import ranks
 from agents.distribution import TanhNormal
 from agents.learner_env import POLICY, PRIVILEGED, LearnerEnv
 from agents.network import Network
@@ -52,6 +52,13 @@ class SelfPlayRunner(OnPolicyRunner):
         with contextlib.redirect_stdout(io.StringIO()):  # rsl-rl prints its networks
             super().__init__(env, _config(preset), log_dir=None, device=device)
         self.alg.train_mode()
+        if self.is_distributed:
+            self.alg.broadcast_parameters()
+
+    def _configure_multi_gpu(self) -> None:
+        self.cfg["multi_gpu"] = ranks.join(self.device)
+        self.is_distributed = ranks.world() > 1
+        self.gpu_world_size, self.gpu_global_rank = ranks.world(), ranks.rank()
 
     def iterate(self) -> Iteration:
         """Play `steps` steps on every table and learn from them. DivergedError where a loss is not finite."""
@@ -82,10 +89,6 @@ class SelfPlayRunner(OnPolicyRunner):
         reading = self.env.reading
         return Policy(Network(weights, biases), reading.scaling, tuple(self.env.columns), about)
 
-    def random_state(self) -> torch.Tensor:
-        """The state of everything random in here."""
-        return torch.get_rng_state()
-
 
 def _config(preset: Preset) -> dict[str, Any]:
     """A preset in rsl-rl's words."""
@@ -100,9 +103,3 @@ def _config(preset: Preset) -> dict[str, Any]:
         "critic": network,
         "algorithm": algorithm,
     }
-
-
-def seed_everything(seed: int) -> np.random.Generator:
-    """Seed torch, and make the league's random numbers."""
-    torch.manual_seed(seed)
-    return np.random.default_rng(seed)

@@ -15,45 +15,63 @@ from typing import Any
 import numpy as np
 import torch
 
+from agents import ranks
 from agents.checkpoint import load_checkpoint, restore_tables, save_checkpoint, tables_as_tensors
+from agents.exploit import against
 from agents.league import League, Member
 from agents.learner_env import LearnerEnv
 from agents.policy import Policy, PolicyPlayer, load_policy
-from agents.preset import Preset
+from agents.preset import Preset, read_preset
 from agents.run_folder import RunFolder
 from agents.runner import Iteration, SelfPlayRunner
 from agents.scaling import Reading, Scaling
 from agents.seating import Seating
 from baselines import make_player
 from baselines.player import Player, Seat
-from puckpilot_env.effects_file import Effects
 from puckpilot_env.tables import Tables
 
+RANKS_APART = 2**32  # between the seeds of processes that train together
 Row = dict[str, Any]
 
 
 @dataclass(frozen=True)
 class Settings:
-    """What is trained. `effects`: the text of an effects file, or None."""
+    """What is trained. `effects`: an effects file or None; `against`: the one player that is met, else a league is."""
 
     variant: str
     seed: int
     threads: int
     preset: Preset
-    effects: Effects | None = None
+    effects: str | None = None
+    against: str | None = None
+
+    def as_dict(self) -> dict[str, Any]:
+        """As JSON can hold it."""
+        kept = {name: getattr(self, name) for name in ("variant", "seed", "threads", "effects", "against")}
+        return {**kept, "preset": self.preset.text}
+
+    @classmethod
+    def from_dict(cls, kept: Mapping[str, Any]) -> Settings:
+        """What `as_dict` gave. ValueError, in one line, for anything else."""
+        try:
+            return cls(**{**kept, "preset": read_preset(kept["preset"], "of the run")})
+        except (KeyError, TypeError) as error:
+            raise ValueError(f"these are no settings of a run: {error}") from None
 
 
 class Training:
-    """A run in `folder`; `resume` takes it up where its last checkpoint left it."""
+    """A run in `folder`, taken up where its last checkpoint left it, if there is one."""
 
-    def __init__(self, folder: RunFolder, settings: Settings, *, resume: bool = False) -> None:
-        preset = settings.preset
+    def __init__(self, folder: RunFolder, settings: Settings) -> None:
+        preset = against(settings.preset, settings.against) if settings.against else settings.preset
+        self.preset = preset
         torch.set_num_threads(settings.threads)
-        torch.manual_seed(settings.seed)
+        seed = settings.seed + RANKS_APART * ranks.rank()
+        torch.manual_seed(seed)
         self.folder, self.settings = folder, settings
         self.rng = np.random.default_rng(settings.seed)
-        self.tables = Tables(settings.variant, preset.tables, seed=settings.seed, effects=settings.effects)
-        stagger(self.tables, self.rng)
+        self.tables = Tables(settings.variant, preset.tables, seed=seed, effects=settings.effects)
+        stagger(self.tables, np.random.default_rng((settings.seed, ranks.rank())))
         seating = Seating.of(preset.tables, [*preset.anchors.values(), *preset.earlier])
         names = [column.name for column in self.tables.observation_columns]
         reading = Reading.of(Scaling.from_tables(self.tables), names, names)
@@ -63,7 +81,7 @@ class Training:
         self.runner = SelfPlayRunner(self.env, preset)
         self.league = League([Member(name) for name in preset.anchors], preset.gate, preset.cap, preset.most)
         self.rows: list[Row] = []
-        if resume:
+        if folder.checkpoint.exists():
             self._resume()
         else:
             self._admit("self-0")
@@ -75,18 +93,19 @@ class Training:
 
     def round(self) -> Row:
         """One round, and its checkpoint; what came of it."""
-        preset, tally = self.settings.preset, self.env.tally
+        preset, tally = self.preset, self.env.tally
         chosen = self.league.choose(len(preset.earlier), self.rng)
         met = [*self.league.anchors, *chosen]
         self.env.seat(self._players(met), [member.share for member in met])
         tally.clear()
         iterations = [self.runner.iterate() for _ in range(preset.round)]
-        for member, points, games in zip(met, tally.points, tally.games, strict=True):
+        for member, points, games in zip(met, ranks.added(tally.points), ranks.added(tally.games), strict=True):
             member.note(points, games)
-        if self.league.wants_new(chosen):
+        if chosen and self.league.wants_new(chosen):
             self._admit(f"self-{len(self.rows) + 1}")
         self.rows.append(self._row(iterations))
-        self._save()
+        if ranks.rank() == 0:
+            self._save()
         return self.rows[-1]
 
     def policy(self) -> Policy:
@@ -104,14 +123,15 @@ class Training:
 
     def _admit(self, name: str) -> None:
         policy = self.policy()
-        policy.save(self.folder.selves / f"{name}.npz")
+        if ranks.rank() == 0:
+            policy.save(self.folder.selves / f"{name}.npz")
         self.league.admit(name, policy)
 
     def _row(self, iterations: list[Iteration]) -> Row:
-        preset = self.settings.preset
+        preset = self.preset
         before = self.rows[-1] if self.rows else {"steps": 0, "seconds": 0.0}
         spent = {part: sum(getattr(i, part) for i in iterations) for part in ("environment", "acting", "learning")}
-        taken = self.env.num_envs * preset.steps * preset.round
+        taken = self.env.num_envs * preset.steps * preset.round * ranks.world()
         return {
             "round": len(self.rows) + 1,
             "steps": before["steps"] + taken,
@@ -121,6 +141,7 @@ class Training:
             **{name: float(np.mean([i.losses[name] for i in iterations])) for name in iterations[0].losses},
             "scale": float(self.runner.alg.get_policy().output_std.detach().mean()),
             "selves": len(self.league.earlier),
+            "rating": round(self.league.rating(), 1),
             **{f"points_{member.name}": round(member.share, 4) for member in self.league.anchors},
             **{f"wins_{member.name}": round(member.win_rate, 4) for member in self.league.anchors},
         }
@@ -153,11 +174,12 @@ class Training:
 
     def _take_up(self, kept: Mapping[str, Any]) -> None:
         self.runner.alg.load(kept["learner"], None, True)
-        torch.set_rng_state(kept["torch_random"])
         self.rng.bit_generator.state = json.loads(kept["random"])
-        restore_tables(self.tables, kept["tables"])
+        if ranks.rank() == 0:  # the others' games begin anew
+            torch.set_rng_state(kept["torch_random"])
+            restore_tables(self.tables, kept["tables"])
         self.rows = json.loads(kept["rows"])
-        self.runner.current_learning_iteration = len(self.rows) * self.settings.preset.round
+        self.runner.current_learning_iteration = len(self.rows) * self.preset.round
         league = self.league
         league.waited = kept["waited"]
         league.anchors = [_member(entry) for entry in kept["anchors"]]
@@ -187,5 +209,10 @@ def _member(entry: Mapping[str, Any], policy: Policy | None = None) -> Member:
 def train(training: Training, *, steps: float, seconds: float, tell: Callable[[Row], None]) -> None:
     """Rounds until `steps` steps are taken or `seconds` are over, whichever comes first."""
     begun = time.monotonic()
-    while training.steps < steps and time.monotonic() - begun < seconds:
+    while training.steps < steps and not _anyone(time.monotonic() - begun > seconds):
         tell(training.round())
+
+
+def _anyone(so: bool) -> bool:
+    """Whether it is so in any process: all must end after the same round."""
+    return bool(ranks.added(np.array([float(so)]))[0])

@@ -20,6 +20,8 @@ OPTIONS = {
     "tournament": ["--games", "--out", "--variant", "--seed", "--threads", "--json"],
     "train": ["--preset", "--out", "--steps", "--minutes", "--resume", "--variant", "--effects", "--seed", "--threads"],
     "evaluate": ["--games", "--against", "--variants", "--hampered", "--seed", "--json"],
+    "exploit": ["--steps", "--out", "--preset", "--variant", "--games", "--seed", "--threads", "--json"],
+    "export": ["--out"],
     "bench": ["--tables", "--threads", "--seconds", "--against", "--dicts", "--startup", "--json"],
     "compare": ["--json", "--out"],
     "diagnose": ["--holdout", "--baseline", "--out", "--json"],

@@ -44,7 +44,7 @@ def run(args: argparse.Namespace) -> int:
 
     if args.games < 2 or args.games % 2:
         raise ValueError(f"--games is {args.games}; expected an even number from 2 on: each start is played twice")
-    name = _player_name(args.policy)
+    name = player_name(args.policy)
     opponents = args.against or player_names()
     for player in (name, args.hampered, *opponents):
         find_player(player)
@@ -60,7 +60,7 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _player_name(policy: str) -> str:
+def player_name(policy: str) -> str:
     """The name under which it plays: `champion` and files are policies, other names players."""
     from agents.policy import policy_names
 

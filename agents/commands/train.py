@@ -8,12 +8,14 @@ match policy:DIR/policy.npz interceptor`. `tensorboard --logdir DIR` draws its c
 from __future__ import annotations
 
 import argparse
+import importlib.util
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from agents.run_folder import RunFolder
-    from agents.training import Settings
+    from agents.training import Settings, Training
 
 FOREVER = 1e18
 
@@ -33,81 +35,64 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """0: trained as long as was asked. Raises ValueError, in one line, for what cannot be trained."""
-    try:
-        import rsl_rl  # noqa: F401 - asked for here, where a word can be said about it
-        import torch  # noqa: F401 - likewise
-    except ImportError:
-        raise ValueError("training needs torch and rsl-rl; install them: pip install 'puckpilot[train]'") from None
+    need_torch()
+    from agents import ranks
+    from agents.preset import find_preset
     from agents.run_folder import RunFolder
+    from agents.training import Settings
+    from puckpilot_env.variants import find_variant
 
     for name in ("steps", "minutes"):
         if not getattr(args, name) > 0:
             raise ValueError(f"--{name} is {getattr(args, name):g}; expected more than 0")
     folder = RunFolder(args.out)
-    with folder.locked():
-        settings = _kept(folder) if args.resume else _begun(folder, args)
-        return _train(folder, settings, args)
-
-
-def _begun(folder: RunFolder, args: argparse.Namespace) -> Settings:
-    from agents.preset import find_preset
-    from agents.training import Settings
-    from puckpilot_env.variants import find_variant
-
-    settings = Settings(find_variant(args.variant).id, args.seed, args.threads, find_preset(args.preset), args.effects)
-    kept = {"variant": settings.variant, "seed": args.seed, "threads": args.threads, "effects": args.effects}
-    folder.begin({**kept, "preset": settings.preset.text})
-    return settings
-
-
-def _kept(folder: RunFolder) -> Settings:
-    from agents.preset import read_preset
-    from agents.training import Settings
-
-    kept = folder.settings()
-    preset = read_preset(kept["preset"], str(folder.run))
-    return Settings(kept["variant"], kept["seed"], kept["threads"], preset, kept["effects"])
-
-
-def _train(folder: RunFolder, settings: Settings, args: argparse.Namespace) -> int:
-    from rich.console import Console
-    from torch.utils.tensorboard import SummaryWriter
-
-    from agents.training import Training, train
-
-    console = Console(highlight=False)
-    training = Training(folder, settings, resume=args.resume and folder.checkpoint.exists())
-    writer = SummaryWriter(str(folder.path))
-    shown: list[str] = []
-
-    def tell(row: dict[str, Any]) -> None:
-        for name, value in row.items():
-            writer.add_scalar(name, value, row["steps"])
-        if not shown:
-            shown.append(_heading(row))
-            console.print(shown[0])
-        console.print(_line(row))
-
-    try:
-        train(training, steps=args.steps, seconds=60.0 * args.minutes, tell=tell)
-    finally:
-        writer.close()
-    console.print(f"{training.steps:,} steps; the player is {folder.policy}")
+    first = ranks.rank() == 0  # of several processes one writes
+    with folder.locked() if first else nullcontext():
+        if args.resume:
+            settings = Settings.from_dict(folder.settings())
+        else:
+            variant, preset = find_variant(args.variant).id, find_preset(args.preset)
+            settings = Settings(variant, args.seed, args.threads, preset, args.effects)
+            if first:
+                folder.begin(settings.as_dict())
+        training = run_training(folder, settings, steps=args.steps, minutes=args.minutes, quiet=not first)
+    if first:
+        print(f"{training.steps:,} steps; the player is {folder.policy}")
     return 0
 
 
-def _anchors(row: dict[str, Any]) -> list[str]:
-    return [name.removeprefix("points_") for name in row if name.startswith("points_")]
+def need_torch() -> None:
+    """ValueError, in one line, where what training needs is not installed."""
+    missing = [name for name in ("torch", "rsl_rl", "tensordict") if importlib.util.find_spec(name) is None]
+    if missing:
+        raise ValueError(f"training needs {', '.join(missing)}; install it with: pip install 'puckpilot[train]'")
 
 
-def _heading(row: dict[str, Any]) -> str:
-    anchors = "".join(f"{name:>13}" for name in _anchors(row))
-    return f"{'round':>5} {'steps':>8} {'minutes':>7} {'steps/s':>8} {'selves':>6}   points won against{anchors}"
+def run_training(
+    folder: RunFolder, settings: Settings, *, steps: float, minutes: float = FOREVER, quiet: bool = False
+) -> Training:
+    """Train in a folder that is this process's alone, going on from its checkpoint if there is one."""
+    from torch.utils.tensorboard import SummaryWriter
 
+    from agents import ranks
+    from agents.commands.live import Board
+    from agents.runner import DivergedError
+    from agents.training import Training, train
 
-def _line(row: dict[str, Any]) -> str:
-    shares = "".join(f"{100 * row[f'points_{name}']:>11.0f} %" for name in _anchors(row))
-    return (
-        f"{row['round']:>5} {row['steps'] / 1e6:>6.1f} M {row['seconds'] / 60:>7.1f} {row['steps_per_s']:>8,} "
-        f"{row['selves']:>6}   {'':18}{shares}"
-    )
+    training = Training(folder, settings)
+    with Board(quiet) as board:
+        curves = None if ranks.rank() else SummaryWriter(str(folder.path))
+
+        def tell(row: dict[str, Any]) -> None:
+            if curves:
+                for name, value in row.items():
+                    curves.add_scalar(name, value, row["steps"])
+            board.tell(row)
+
+        try:
+            train(training, steps=steps, seconds=60.0 * minutes, tell=tell)
+        except DivergedError as error:
+            raise ValueError(
+                f"the losses are no numbers any more ({error}); {folder.checkpoint} is as it was"
+            ) from None
+    return training

@@ -8,6 +8,7 @@ players meet on the mended simulator.
 from __future__ import annotations
 
 import argparse
+import hashlib
 import json
 from pathlib import Path
 
@@ -56,12 +57,21 @@ def run(args: argparse.Namespace) -> int:
 
 def _refuse_twice(folders: list[Path]) -> None:
     """ValueError for a folder that is given twice: what a fit saw proves nothing."""
-    seen: dict[Path, Path] = {}
+    seen: dict[str, Path] = {}
     for folder in folders:
-        place = folder.resolve()
-        if place in seen:
-            raise ValueError(f"{folder} is given twice; give each recording once, for the fit or as --holdout")
-        seen[place] = folder
+        same = seen.setdefault(_digest(folder), folder)
+        if same is not folder:
+            copy = "" if same.resolve() == folder.resolve() else f" (it holds the same as {same})"
+            raise ValueError(f"{folder} is given twice{copy}; give each recording once, for the fit or as --holdout")
+
+
+def _digest(folder: Path) -> str:
+    """Of what the tables of a recording hold; its place, where there are none."""
+    tables = sorted(folder.glob("*.csv"))
+    digest = hashlib.sha256()
+    for path in tables:
+        digest.update(path.name.encode() + path.read_bytes())
+    return digest.hexdigest() if tables else str(folder.resolve())
 
 
 def _bar():

@@ -10,7 +10,7 @@ import numpy as np
 from puckpilot_env.parameters import BY_NAME
 from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.engine import gram
-from sim2real.diagnose.engine.choose import Law, Model
+from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.engine.explain import Explained
 from sim2real.diagnose.engine.fit import Fit, fit, soft_loss
 from sim2real.diagnose.engine.rivals import chance, compare
@@ -28,12 +28,13 @@ LEAST_WORSE = 4.0  # growth of the sum of squares of untouched launches, in unit
 def account(problem: Problem, found: Explained, use: np.ndarray, proof: np.ndarray) -> Account:
     """What a regime says: `found` by the engine on the clusters `use`, proved on the clusters `proof`.
 
-    The proof chooses nothing, but it may silence: laws that foretell untouched launches worse than no law are not told.
+    The proof chooses nothing, but it may silence: what foretells untouched launches no better than nothing is not told.
     """
-    before = _squares(problem, found.baseline, proof)
-    refuted = _refuted(problem, found, proof)
-    after = before if refuted else _left(problem, found, proof)
-    findings = () if refuted else _findings(problem, found, use, proof, after)
+    before, after = _squares(problem, found.baseline, proof), _left(problem, found, proof)
+    refuted = _refuted(problem, found, proof, before, after)
+    findings, unborne = ((), found.model.laws) if refuted else _findings(problem, found, use, proof, after)
+    refuted = refuted or bool(unborne and not findings)
+    after = before if refuted else after
     freedom = max(float(problem.freedom[proof].sum()), 1.0)
     rms = [problem.noise_m * float(np.sqrt(squares / freedom)) for squares in (before, after)]
     lost = found.lost or refuted
@@ -45,20 +46,23 @@ def account(problem: Problem, found: Explained, use: np.ndarray, proof: np.ndarr
         Proof(rms[0], rms[1], problem.noise_m, len(proof)),
         undetermined=LOST if lost else "",
         next_recording=_next(findings) or _once_more(found),
-        doubt=_doubt(found),
+        doubt=_doubt(found, unborne),
         lost=lost,
     )
 
 
-def _refuted(problem: Problem, found: Explained, proof: np.ndarray) -> bool:
-    """Whether the clusters `proof` speak against the law, softly; of numbers for each launch they can say nothing."""
+def _refuted(problem: Problem, found: Explained, proof: np.ndarray, plain: float, mended: float) -> bool:
+    """Whether the clusters `proof` speak against the law: the squares that are left of them, `plain` without it and
+    `mended` with it, do not fall, or those of their better part grow. Of numbers for each launch they say nothing."""
     if not found.model.laws or any(law.each_launch for law in found.model.laws):
         return False
+    if mended >= plain:
+        return True
     before, _ = soft_loss(problem, problem.residuals(found.baseline.values, (), proof))
     after, _ = soft_loss(problem, problem.residuals(found.law.values, (), proof))
     if found.unlisted is not None:
         parts = problem.units.of(proof)
-        with_it, without = (_family_losses(found, theta, parts) for theta in (found.theta, 0.0 * found.theta))
+        with_it, without = (found.losses(theta, parts) for theta in (found.theta, 0.0 * found.theta))
         freedom = problem.units.freedom[parts]
         after += float((gram.soft(with_it, freedom) - gram.soft(without, freedom)).sum())
     return after > before + LEAST_WORSE * found.dispersion
@@ -66,20 +70,23 @@ def _refuted(problem: Problem, found: Explained, proof: np.ndarray) -> bool:
 
 def _findings(
     problem: Problem, found: Explained, use: np.ndarray, proof: np.ndarray, after: float
-) -> tuple[Finding, ...]:
+) -> tuple[tuple[Finding, ...], tuple[Law, ...]]:
     """All findings, with the squares `after` that all of them leave of the clusters `proof`; those first that most gets
-    lost without."""
+    lost without. And the laws without which no more would be left: untouched launches do not bear them out."""
     if not found.model.laws:
-        return ()
+        return (), ()
     freedom = max(float(problem.freedom[proof].sum()), 1.0)
     without = [(law, _squares(problem, _fit_without(problem, found, law, use), proof)) for law in found.model.laws]
     controls = twins(found.screen.grams, problem.units, found.model, found.screen.listed, use, proof)
-    findings = []
+    findings, unborne = [], []
     for law, before in sorted(without, key=lambda one: -one[1]):
+        if before <= after and not law.each_launch:
+            unborne.append(law)
+            continue
         rms = (float(np.sqrt(squares / freedom)) for squares in (before, after))
         told = _unlisted(problem, found, law, *rms) if law.family else _listed(found, law, *rms)
         findings.append(replace(told, twins=controls))
-    return tuple(findings)
+    return tuple(findings), tuple(unborne)
 
 
 def _fit_without(problem: Problem, found: Explained, law: Law, use: np.ndarray) -> Fit:
@@ -104,14 +111,7 @@ def _left(problem: Problem, found: Explained, proof: np.ndarray) -> float:
     """Sum of squares that the final law leaves of the clusters `proof`."""
     if found.unlisted is None:
         return _squares(problem, found.law, proof)
-    return float(_family_losses(found, found.theta, problem.units.of(proof)).sum())
-
-
-def _family_losses(found: Explained, theta: np.ndarray, parts: np.ndarray) -> np.ndarray:
-    """Sums of squares (parts,) that coefficients of the family, and steps of the listed numbers, leave of units."""
-    assert found.unlisted is not None
-    index, _ = Model(found.law.free, (found.unlisted,), (1.0,)).columns(found.columns.grams)
-    return gram.losses(found.columns.grams, index, theta, parts)
+    return float(found.losses(found.theta, problem.units.of(proof)).sum())
 
 
 def _listed(found: Explained, law: Law, before: float, after: float) -> Finding:
@@ -144,7 +144,10 @@ def _sizes(found: Explained, law: Law) -> Mapping[str, Estimate]:
     }
 
 
-def _doubt(found: Explained) -> str:
+def _doubt(found: Explained, unborne: Sequence[Law]) -> str:
+    if unborne:
+        names = " and ".join(law.name for law in unborne)
+        return f"{names} would fit, but does not foretell untouched launches any better"
     if found.doubtful is None:
         return ""
     return f"{found.doubtful.name} would fit, but what asks for it is in too few launches to tell it from an accident"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -94,7 +94,9 @@ class Diagnosis:
     def remarks(self) -> list[str]:
         """What should be known beside the verdict, a sentence each."""
         untold = [f"{each.regime}: undetermined, {each.undetermined}" for each in self.untold]
-        return [*self.notes, *untold, *(f"{each.regime}: {each.doubt}" for each in self.accounts if each.doubt)]
+        doubts = [f"{each.regime}: {each.doubt}" for each in self.accounts if each.doubt]
+        left = [f"{each.regime}: {each.unexplained}" for each in self.accounts if each.unexplained]
+        return [*self.notes, *untold, *doubts, *left]
 
     @property
     def proof(self) -> Proof | None:
@@ -209,7 +211,8 @@ def _blows(recordings: Sequence[Recording], impacts: Sequence[list[Impact]]) -> 
     """The blows of the robot's mallet in all recordings that know where it was; None where there are none."""
     read = [(read_encoders(one), geometry(one), some) for one, some in zip(recordings, impacts, strict=True)]
     parts = [blows(some, encoders, g) for encoders, g, some in read if encoders is not None]
-    return join_contacts(parts) if any(len(part) for part in parts) else None
+    parts = [part for part in parts if len(part)]
+    return join_contacts(parts) if parts else None
 
 
 def _explain(problem: Problem, law: Mapping[str, float], proof: np.ndarray, tables: Sequence[Part], clear: bool = True):
@@ -224,7 +227,10 @@ def _explain(problem: Problem, law: Mapping[str, float], proof: np.ndarray, tabl
         problem, found = explain_bounces(problem, shipped, use, clear)
     else:
         found = explain(problem, shipped, use, clear)
-    return found, illustrated(problem, found, account(problem, found, use, apart), use)
+    told = account(problem, found, use, apart)
+    if told.lost and not told.next_recording:
+        told = replace(told, next_recording=f"record more {MORE_OF[problem.regime]}")
+    return found, illustrated(problem, found, told, use)
 
 
 def _too_little(regime: str) -> Account:

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+MUCH = 3.0  # times the noise, and what is left is worth a word
+
 
 @dataclass(frozen=True)
 class Estimate:
@@ -152,3 +154,11 @@ class Account:
     parting: Parting | None = None
     doubt: str = ""
     lost: bool = False
+
+    @property
+    def unexplained(self) -> str:
+        """How much more than noise is left of untouched pieces by what is told, in words; "" where hardly any is."""
+        if self.undetermined or self.proof is None or self.proof.after_m < MUCH * self.proof.floor_m:
+            return ""
+        times = self.proof.after_m / self.proof.floor_m
+        return f"{1e3 * self.proof.after_m:.2g} mm of untouched pieces stay unexplained, {times:.2g} times the noise"

@@ -55,6 +55,12 @@ class Explained:
         n = len(self.law.free)
         return replace(self.law, values=values, covariance=self.theta_covariance[:n, :n])
 
+    def losses(self, theta: np.ndarray, parts: np.ndarray) -> np.ndarray:
+        """Sums of squares (parts,) that coefficients of the family, and steps of the listed numbers, leave of units."""
+        assert self.unlisted is not None
+        index, _ = Model(self.law.free, (self.unlisted,), (1.0,)).columns(self.columns.grams)
+        return gram.losses(self.columns.grams, index, theta, parts)
+
     def switched(self) -> Mapping[str, float]:
         """The simulator's parameters that switch the smooth law on; empty where it has no place for it."""
         if self.unlisted is None:

@@ -73,7 +73,7 @@ def _off(t: np.ndarray, p: np.ndarray, pieces: Pieces, row, before, after) -> tu
 
 def held_finding(counts: list[Repeats], apart: np.ndarray) -> tuple[Finding | None, Proof | None]:
     """The finding `held_frames`, by all launches but those kept `apart`; in these, how far frames are off their
-    neighbours' way with the repeats and without. None where repeats are rare."""
+    neighbours' way with the repeats and without. None where repeats are rare, or do no harm there."""
     held, launch, miss, std = (
         np.concatenate([getattr(each, name) for each in counts]) for name in ("held", "launch", "miss", "std")
     )
@@ -85,7 +85,8 @@ def held_finding(counts: list[Repeats], apart: np.ndarray) -> tuple[Finding | No
     interval = stats.binomtest(repeated, n).proportion_ci(0.95, "wilson")
     proved = _with_and_without(held[unseen], miss[unseen], std[unseen], launch[unseen])
     sizes = proved or _with_and_without(held, miss, std, launch)
-    assert sizes is not None
+    if sizes is None or sizes.after >= sizes.before:
+        return None, None
     finding = Finding(
         regime="sensing",
         mechanism="held_frames",

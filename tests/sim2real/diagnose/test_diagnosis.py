@@ -96,6 +96,15 @@ def test_a_folder_given_twice_proves_nothing(words, tmp_path, monkeypatch, capsy
     assert "is given twice" in error and error.count("\n") == 1
 
 
+def test_a_copy_of_a_recording_proves_nothing(tmp_path, capsys):
+    for name in ("a", "copy"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "frames.csv").write_text("t,puck_x,puck_y\n0,1,0.5\n")
+    words = [str(tmp_path / "a"), "--holdout", str(tmp_path / "copy"), "--out", str(tmp_path / "out")]
+    assert main(["diagnose", *words]) == 2
+    assert f"is given twice (it holds the same as {tmp_path / 'a'})" in capsys.readouterr().err
+
+
 def test_the_clock_s_zero_does_not_matter(tmp_path):
     """Stamps of a day's clock, as many loggers write them: the same delay of the camera as with stamps from zero."""
     make_recording(tmp_path / "rally", Law(camera_delay=0.03), "rally", 1, 20.0, dt=1e-4)
