@@ -45,6 +45,20 @@ def test_rows_of_another_order_or_type_and_no_rows() -> None:
     assert network(np.zeros((0, 6), np.float32)).shape == (0, 4)
 
 
+def test_a_decision_is_the_pass_between_reading_and_acting() -> None:
+    weights, biases = layers([5, 16, 4])
+    rng = np.random.default_rng(6)
+    index = np.array([2, -1, 0, 6, 5])
+    reads = np.stack([rng.normal(size=5), rng.uniform(0.5, 3.0, 5)]).astype(np.float32)
+    acts = np.array([[0.5, 0.5, 5.0, 5.0], [0.45, 0.4, 4.8, 9.0], [0.3, 0.05, 0.3, 0.3], [0.6, 0.95, 10.0, 7.0]])
+    observations = rng.normal(0.0, 2.0, (200, 7)).astype(np.float32)
+    shown = np.where(index < 0, 0.0, (observations[:, index].astype(np.float64) - reads[0]) / reads[1])
+    wanted = acts[0] + acts[1] * np.tanh(reference(weights, biases, shown))
+    found = Network(weights, biases).decide(observations, index, reads, acts.astype(np.float32))
+    np.testing.assert_allclose(found, np.clip(wanted, acts[2], acts[3]), atol=5e-5)
+    assert (wanted[:, 0] > 0.6).any() and (wanted[:, 3] > 7.0).any()
+
+
 def test_answers_of_one_call_stay_after_the_next() -> None:
     network = Network(*layers([2, 5, 3]))
     first = network(np.ones((4, 2), np.float32))

@@ -58,8 +58,8 @@ def training(
     """A new training in the folder, or the one that is there."""
     folder, settings = RunFolder(path), Settings(variant, 5, 1, preset or tiny())
     if not resume:
-        folder.begin({"variant": variant, "seed": 5, "threads": 1, "effects": None, "preset": settings.preset.text})
-    return Training(folder, settings, resume=resume)
+        folder.begin(settings.as_dict())
+    return Training(folder, settings)
 
 
 def curve(path: Path) -> list[dict[str, str]]:
