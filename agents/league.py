@@ -1,7 +1,7 @@
 """Who the learner plays besides itself: its earlier selves, and fixed anchors (scripts, specialists).
 
-Earlier selves sit more often the more they still win: a self that always loses teaches nothing (prioritized fictitious
-self-play, Vinyals et al., Nature 575, 2019).
+Who still wins is met more often: an opponent that always loses teaches nothing (prioritized fictitious self-play,
+Vinyals et al., Nature 575, 2019). Anchors have a few tables of their own besides, to measure the learner by.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from baselines.rating import fit_ratings
 
 FORGET = 0.8  # what a tally keeps from one round to the next
 DOUBT = 2.0  # points that a member is taken to have won, and lost, before it played
-LEAST_CHANCE = 0.02  # weight of a self that never wins, so that it is still met now and then
+LEAST_CHANCE = 0.01  # weight of one that never wins, so that it is still met now and then
 
 
-@dataclass
+@dataclass(eq=False)
 class Member:
     """An opponent: a script's name, or a policy. `points`: the learner's and its own, of late; `games`: likewise
     games that the learner won, drew and lost."""
@@ -60,10 +60,14 @@ class League:
     waited: int = 0
 
     def choose(self, seats: int, rng: np.random.Generator) -> list[Member]:
-        """`seats` earlier selves for a round, some perhaps twice."""
-        weights = np.array([max((1.0 - member.share) ** 2, LEAST_CHANCE) for member in self.earlier])
-        picked = rng.choice(len(self.earlier), size=seats, p=weights / weights.sum())
-        return [self.earlier[index] for index in picked]
+        """Who sits at `seats` blocks in a round, some perhaps at two: half of them earlier selves, on average."""
+        groups = [np.array([max((1.0 - one.share) ** 2, LEAST_CHANCE) for one in some]) for some in self._groups()]
+        chances = np.concatenate([weights / weights.sum() / len(groups) for weights in groups])
+        members = [one for some in self._groups() for one in some]
+        return [members[index] for index in rng.choice(len(members), size=seats, p=chances)]
+
+    def _groups(self) -> list[list[Member]]:
+        return [some for some in (self.earlier, self.anchors) if some]
 
     def rating(self) -> float:
         """Elo of the learner among its anchors, by the games of late; their mean and its own together is 0."""
@@ -79,7 +83,8 @@ class League:
     def wants_new(self, met: list[Member]) -> bool:
         """Whether the learner, having `met` these, should join its earlier selves."""
         self.waited += 1
-        return self.waited >= self.cap or min((member.share for member in met), default=1.0) >= self.gate
+        shares = [member.share for member in met if member in self.earlier]
+        return self.waited >= self.cap or (bool(shares) and min(shares) >= self.gate)
 
     def admit(self, name: str, policy: Policy) -> None:
         """A new self joins; of too many the one that loses most leaves."""
