@@ -48,16 +48,22 @@ def test_where_no_game_was_decided_there_is_no_win_rate() -> None:
     assert math.isnan(noted.win_rate)
 
 
-def test_a_self_that_still_wins_sits_more_often() -> None:
-    chosen = league(member("strong", 0.0, 36.0), member("even", 0.0, 0.0), member("weak", 76.0, 0.0)).choose(
-        40_000, np.random.default_rng(1)
-    )
-    counts = {name: sum(one.name == name for one in chosen) / 40_000 for name in ("strong", "even", "weak")}
+def test_who_still_wins_sits_more_often_and_half_are_earlier_selves() -> None:
+    whole = league(member("strong", 0.0, 36.0), member("even", 0.0, 0.0), member("weak", 76.0, 0.0))
+    whole.anchors.append(Member("goalie", points=np.array([0.0, 36.0])))
+    chosen = whole.choose(40_000, np.random.default_rng(1))
     # the squares of 1 - 0.05, 1 - 0.5, and of 1 - 0.975, for which 0.02 stands in
-    weights = {"strong": 0.9025, "even": 0.25, "weak": 0.02}
-    total = sum(weights.values())
-    for name, weight in weights.items():
-        assert counts[name] == pytest.approx(weight / total, abs=0.01), name
+    selves = {"strong": 0.9025, "even": 0.25, "weak": 0.02}
+    anchors = {"still": 0.25, "goalie": 0.9025}
+    for group in (selves, anchors):
+        for name, weight in group.items():
+            share = sum(one.name == name for one in chosen) / 40_000
+            assert share == pytest.approx(0.5 * weight / sum(group.values()), abs=0.01), name
+
+
+def test_without_anchors_all_who_sit_are_earlier_selves() -> None:
+    alone = League([], 0.6, 4, 3, [member("a", 1.0, 4.0)])
+    assert [one.name for one in alone.choose(3, np.random.default_rng(1))] == ["a"] * 3
 
 
 def test_the_same_random_numbers_choose_the_same_selves() -> None:
@@ -67,12 +73,26 @@ def test_the_same_random_numbers_choose_the_same_selves() -> None:
 
 
 def test_a_new_self_joins_past_the_gate_or_after_the_cap() -> None:
-    beaten, unbeaten = member("a", 20.0, 0.0), member("b", 0.0, 20.0)
-    assert league().wants_new([beaten])
-    waiting = league()
+    beaten, unbeaten, anchor = member("a", 20.0, 0.0), member("b", 0.0, 20.0), member("still", 0.0, 20.0)
+    assert league(beaten, unbeaten).wants_new([beaten])
+    assert league(beaten, unbeaten).wants_new([beaten, anchor])  # anchors need not be beaten
+    assert not league(beaten, unbeaten).wants_new([anchor])
+    waiting = league(beaten, unbeaten)
     assert [waiting.wants_new([beaten, unbeaten]) for _ in range(4)] == [False, False, False, True]
     waiting.admit("new", POLICY)
     assert not waiting.wants_new([unbeaten])  # the count begins anew
+
+
+def rating(*games: tuple[float, float, float]) -> float:
+    anchors = [Member(f"anchor {k}", games=np.array(some)) for k, some in enumerate(games)]
+    return League(anchors, 0.6, 4, 3).rating()
+
+
+def test_the_rating_is_the_learner_s_among_its_anchors() -> None:
+    assert rating() == rating((0.0, 0.0, 0.0)) == 0.0
+    assert rating((5.0, 2.0, 5.0)) == pytest.approx(0.0, abs=1e-6)
+    assert rating((9.0, 0.0, 1.0)) == pytest.approx(-rating((1.0, 0.0, 9.0))) != 0.0
+    assert rating((9.0, 0.0, 1.0)) > rating((6.0, 0.0, 4.0)) > 0.0 > rating((0.0, 5.0, 5.0))
 
 
 def test_of_too_many_the_one_that_loses_most_leaves_but_not_the_new_one() -> None:
