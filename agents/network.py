@@ -82,7 +82,7 @@ def _forward(flat, sizes, scratch):
             out[k] = flat[biases + k]
         for j in range(fan_in):
             x = scratch[here, j]
-            if layer == 0 or x > 0.0:  # ReLU, where the numbers are used: half of them need no work
+            if layer == 0 or not x <= 0.0:  # ReLU, where the numbers are used: half need no work; NaN goes on
                 _add_scaled(out, x, flat[at : at + fan_out])
             at += fan_out
         at, here = biases + fan_out, 1 - here

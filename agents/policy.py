@@ -21,6 +21,7 @@ from puckpilot_env.whole_file import write_whole
 FORMAT = "puckpilot-policy-1"
 SHIPPED = Path(__file__).parent / "policies"  # a file there is a policy, and its name is the policy's name
 OUTPUTS = 4  # medians of target x, y and voltages x, y, before tanh
+MOST_BYTES = 1 << 28  # of all arrays; a network of eight layers of 2048 is half of it
 SCALINGS = ("centre", "span", "flip", "low", "high")
 
 
@@ -49,12 +50,11 @@ class Policy:
 def load_policy(path: Path) -> Policy:
     """The policy of a file. ValueError, in one line, for a file that is not one, is cut short, or does not fit."""
     try:
-        with np.load(path, allow_pickle=False) as file:
-            arrays = {name: file[name] for name in file.files}
+        arrays = _arrays(path)
         head = json.loads(str(arrays["head"]))
     except FileNotFoundError:
         raise ValueError(f"no policy at {path}") from None
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+    except Exception as error:  # a broken file breaks its readers in many ways: zlib's, zipfile's, numpy's, json's
         raise ValueError(f"{path} is no policy, or is cut short ({type(error).__name__})") from None
     if not isinstance(head, dict) or head.get("format") != FORMAT:
         raise ValueError(f"{path} is not of the format {FORMAT}")
@@ -62,6 +62,15 @@ def load_policy(path: Path) -> Policy:
         return _built(arrays, head)
     except (KeyError, TypeError, ValueError) as error:
         raise ValueError(f"{path} does not fit together: {error}") from None
+
+
+def _arrays(path: Path) -> dict[str, NDArray[Any]]:
+    """The arrays of an npz by name; a few bytes that unfold to more than memory holds are refused first."""
+    with zipfile.ZipFile(path) as members:
+        if sum(member.file_size for member in members.infolist()) > MOST_BYTES:
+            raise ValueError(f"it unfolds to more than {MOST_BYTES} bytes")
+    with np.load(path, allow_pickle=False) as file:
+        return {name: file[name] for name in file.files}
 
 
 def _built(arrays: dict[str, NDArray[Any]], head: dict[str, Any]) -> Policy:
@@ -74,6 +83,8 @@ def _built(arrays: dict[str, NDArray[Any]], head: dict[str, Any]) -> Policy:
         numbers = getattr(scaling, name)
         if numbers.shape != (size,) or not np.isfinite(numbers).all():
             raise ValueError(f"{name} has shape {numbers.shape}; expected ({size},) finite numbers")
+    if not (scaling.span > 0.0).all():
+        raise ValueError("span holds numbers that are not above 0")
     if network.sizes[0] != len(columns) or network.sizes[-1] != OUTPUTS:
         raise ValueError(f"a network of {network.sizes} for {len(columns)} columns and {OUTPUTS} outputs")
     return Policy(network, scaling, columns, dict(head["about"]))

@@ -11,6 +11,7 @@ from agents.rewards import Rewards
 
 FOLDER = Path(__file__).parent / "presets"
 FLIPS = ("rows", "augment", "none")
+COUNTS = ("tables", "steps", "round", "cap", "most")
 
 
 @dataclass(frozen=True)
@@ -63,4 +64,16 @@ def read_preset(text: str, name: str) -> Preset:
         raise ValueError(f"preset {name}: {error}") from None
     if preset.flip not in FLIPS:
         raise ValueError(f"preset {name}: flip is {preset.flip!r}; expected one of {', '.join(FLIPS)}")
+    if "gamma" not in preset.ppo:
+        raise ValueError(f"preset {name}: [ppo] has no gamma, by which shaping and returns are discounted")
+    _check_counts(preset, name)
     return preset
+
+
+def _check_counts(preset: Preset, name: str) -> None:
+    named = [(count, getattr(preset, count)) for count in COUNTS]
+    named += [(part, size) for part in ("hidden", "earlier") for size in getattr(preset, part)]
+    named += list(preset.anchors.items())
+    for what, count in named:
+        if type(count) is not int or count < 1:
+            raise ValueError(f"preset {name}: {what} is {count!r}; expected a whole number from 1 on")

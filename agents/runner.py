@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import inspect
 import io
 import math
 import time
@@ -10,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import torch
+from rsl_rl.algorithms import PPO
 from rsl_rl.models import MLPModel
 from rsl_rl.runners import OnPolicyRunner
 from torch import nn
@@ -92,6 +94,7 @@ class SelfPlayRunner(OnPolicyRunner):
 
 def _config(preset: Preset) -> dict[str, Any]:
     """A preset in rsl-rl's words."""
+    _check(preset)
     network = {"class_name": MLPModel, "hidden_dims": list(preset.hidden), "activation": "relu"}
     algorithm: dict[str, Any] = {"class_name": FinalStatePPO, **preset.ppo}
     if preset.flip == "augment":
@@ -103,3 +106,14 @@ def _config(preset: Preset) -> dict[str, Any]:
         "critic": network,
         "algorithm": algorithm,
     }
+
+
+def _check(preset: Preset) -> None:
+    """ValueError, in one line, for names that rsl-rl or this file does not know."""
+    known = list(inspect.signature(PPO.__init__).parameters)[4:]  # after self, actor, critic, storage
+    for name, value, names in (
+        ("distribution", preset.distribution, DISTRIBUTIONS),
+        *(("ppo", k, known) for k in preset.ppo),
+    ):
+        if value not in names:
+            raise ValueError(f"the preset's {name} has '{value}'; known: {', '.join(names)}")

@@ -166,6 +166,13 @@ class Training:
 
     def _resume(self) -> None:
         kept = load_checkpoint(self.folder.checkpoint)
+        try:
+            self._take_up(kept)
+        except (KeyError, IndexError, TypeError, AttributeError, RuntimeError) as error:  # torch says misfits many ways
+            words = f"{type(error).__name__}: {error}".splitlines()[0]
+            raise ValueError(f"the checkpoint {self.folder.checkpoint} does not fit this run ({words})") from None
+
+    def _take_up(self, kept: Mapping[str, Any]) -> None:
         self.runner.alg.load(kept["learner"], None, True)
         self.rng.bit_generator.state = json.loads(kept["random"])
         if ranks.rank() == 0:  # the others' games begin anew

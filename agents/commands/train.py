@@ -45,6 +45,8 @@ def run(args: argparse.Namespace) -> int:
     for name in ("steps", "minutes"):
         if not getattr(args, name) > 0:
             raise ValueError(f"--{name} is {getattr(args, name):g}; expected more than 0")
+    if args.threads < 1:
+        raise ValueError(f"--threads is {args.threads}; expected a whole number from 1 on")
     folder = RunFolder(args.out)
     first = ranks.rank() == 0  # of several processes one writes
     with folder.locked() if first else nullcontext():

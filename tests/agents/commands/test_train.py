@@ -1,0 +1,141 @@
+"""`puckpilot train` as it is called: what it leaves in its folder, and what it refuses in one line."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from puckpilot import main
+
+TINY = """
+tables = 4
+steps = 2
+round = 1
+flip = "rows"
+[network]
+hidden = [8]
+distribution = "TanhNormal"
+[ppo]
+num_learning_epochs = 1
+num_mini_batches = 1
+gamma = 0.95
+[rewards]
+goal = 1.0
+[league]
+anchors = { still = 1 }
+earlier = [1]
+gate = 0.9
+cap = 2
+most = 2
+"""
+EACH = (2 * 2 + 2) * 2  # steps of a round: two tables of self-play with two learners, two with one
+
+
+@pytest.fixture
+def preset(tmp_path: Path) -> Path:
+    path = tmp_path / "tiny.toml"
+    path.write_text(TINY)
+    return path
+
+
+def test_a_run_trains_so_many_steps_and_goes_on(
+    preset: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["train", "--out", str(tmp_path / "run")]
+    assert main([*words, "--preset", str(preset), "--steps", str(2 * EACH)]) == 0
+    assert f"{2 * EACH:,} steps; the player is" in " ".join(capsys.readouterr().out.split())
+    names = {path.name for path in (tmp_path / "run").iterdir()}
+    assert {"run.json", "checkpoint.pt", "curve.csv", "policy.npz", "selves"} <= names
+    assert any(name.startswith("events.") for name in names)  # tensorboard's
+    assert json.loads((tmp_path / "run" / "run.json").read_text())["preset"] == TINY
+    preset.unlink()  # a run knows its own settings
+    assert main([*words, "--resume", "--steps", str(3 * EACH)]) == 0
+    assert len((tmp_path / "run" / "curve.csv").read_text().splitlines()) == 1 + 3
+    player = f"policy:{tmp_path / 'run' / 'policy.npz'}"
+    assert main(["match", player, "still", "--games", "2", "--variant", "defence-v0"]) == 0
+
+
+def refused(capsys: pytest.CaptureFixture[str], *words: str) -> str:
+    capsys.readouterr()
+    assert main(["train", *words]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("puckpilot train: ") and said.count("\n") == 1 and len(said) < 400
+    return said
+
+
+def test_a_folder_that_holds_a_run_is_refused_without_resume(
+    preset: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["--out", str(tmp_path / "run"), "--preset", str(preset), "--steps", "1"]
+    assert main(["train", *words]) == 0
+    before = {path.name: path.read_bytes() for path in (tmp_path / "run").iterdir() if path.is_file()}
+    assert "holds a run already; --resume goes on with it" in refused(capsys, *words)
+    assert before == {path.name: path.read_bytes() for path in (tmp_path / "run").iterdir() if path.is_file()}
+
+
+def test_resuming_needs_a_run_that_can_be_read(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    run = tmp_path / "run"
+    assert "no run in" in refused(capsys, "--resume", "--out", str(run))
+    for text, words in (("{", "is not JSON"), ("[]", "is not of the format"), ('{"format": "x"}', "is not of the")):
+        (run / "run.json").write_text(text)
+        assert words in refused(capsys, "--resume", "--out", str(run))
+    (run / "run.json").write_text('{"format": "puckpilot-run-1", "variant": "match-v0"}')
+    refused(capsys, "--resume", "--out", str(run))
+
+
+OPTIONS = {
+    "steps 0": ["--steps", "0"],
+    "steps no number": ["--steps", "nan"],
+    "minutes negative": ["--minutes", "-1"],
+    "no such preset": ["--preset", "nobody"],
+    "no such variant": ["--variant", "chess-v0"],
+    "seed negative": ["--seed", "-1"],
+    "threads 0": ["--threads", "0"],
+    "threads negative": ["--threads", "-2"],
+    "no such effects": ["--effects", "no/such/file.toml"],
+}
+
+
+@pytest.mark.parametrize("wrong", OPTIONS)
+def test_options_that_cannot_be_are_refused(
+    wrong: str, preset: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = ["--out", str(tmp_path / "run")]
+    refused(capsys, "--preset", str(preset), *OPTIONS[wrong], *out)
+    assert main(["train", "--preset", str(preset), "--steps", "1", *out]) == 0  # the folder is still free
+
+
+CHANGES = {
+    "no TOML": ("gate = 0.9", "gate = "),
+    "no section": ("[rewards]\ngoal = 1.0", ""),
+    "no entry": ("cap = 2", ""),
+    "unknown entry": ("cap = 2", "cap = 2\ncup = 3"),
+    "unknown reward": ("goal = 1.0", "gaol = 1.0"),
+    "unknown flip": ('flip = "rows"', 'flip = "columns"'),
+    "unknown distribution": ('"TanhNormal"', '"Cauchy"'),
+    "unknown player": ("still = 1", "stil = 1"),
+    "unknown part of PPO": ("gamma = 0.95", "gamma = 0.95\nlambda = 0.5"),
+    "no gamma": ("gamma = 0.95", ""),
+    "tables that do not suffice": ("earlier = [1]", "earlier = [9]"),
+    "tables no number": ("tables = 4", 'tables = "many"'),
+    "steps no number": ("steps = 2", 'steps = "two"'),
+    "steps 0": ("steps = 2", "steps = 0"),
+    "round 0": ("round = 1", "round = 0"),
+    "hidden words": ("hidden = [8]", 'hidden = ["8"]'),
+    "a section that is a number": ("[network]", "league = 3\n[network]"),
+}
+
+
+@pytest.mark.parametrize("wrong", CHANGES)
+def test_presets_that_cannot_be_are_refused(
+    wrong: str, preset: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    before, after = CHANGES[wrong]
+    assert before in TINY
+    preset.write_text(TINY.replace(before, after))
+    out = ["--out", str(tmp_path / "run"), "--preset", str(preset), "--steps", "1"]
+    refused(capsys, *out)
+    preset.write_text(TINY)
+    assert main(["train", *out]) == 0  # the folder is still free

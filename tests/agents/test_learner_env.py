@@ -1,0 +1,198 @@
+"""The learner's environment, held against a twin of its tables that is stepped by hand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import torch
+from numpy.typing import NDArray
+from turned import observed, turned_left_right
+
+from agents.learner_env import POLICY, PRIVILEGED, LearnerEnv
+from agents.ppo import CUT, FINAL
+from agents.rewards import Rewards
+from agents.scaling import Reading, Scaling
+from agents.seating import Seating
+from baselines.player import Player, Seat
+from puckpilot_env.tables import Tables
+
+N = 9  # tables 0 to 3 self-play, 4 to 5 against one, 6 to 8 against another
+SIZES = [2, 3]
+# by hand: the learner's rows in the order of its batch, and each opponent's (at even tables it sits on the right)
+LEARNERS = [(0, 0), (0, 1), (1, 0), (1, 1), (2, 0), (2, 1), (3, 0), (3, 1), (4, 0), (5, 1), (6, 0), (7, 1), (8, 0)]
+OPPONENTS = [[(4, 1), (5, 0)], [(6, 1), (7, 0), (8, 1)]]
+FLIPPED = (2, 3, 6, 7)  # every other pair of tables
+QUIET = Rewards(rules=1.0)
+
+
+class Recorder(Player):
+    """Notes what it sees and which games begin anew; plays actions that nobody else plays."""
+
+    def __init__(self, seat: Seat, number: int) -> None:
+        super().__init__(seat)
+        self.seen: list[NDArray[np.float32]] = []
+        self.begun: list[NDArray[np.bool_]] = []
+        self.played: list[NDArray[np.float32]] = []
+        self.rng = np.random.default_rng(number)
+
+    def reset(self, mask: NDArray[np.bool_]) -> None:
+        self.begun.append(mask.copy())
+
+    def act(self, observation: NDArray[np.float32]) -> NDArray[np.float32]:
+        self.seen.append(observation.copy())
+        low, high = self.seat.action_bounds
+        self.played.append(self.rng.uniform(low, high, (len(observation), 4)).astype(np.float32).clip(low, high))
+        return self.played[-1]
+
+
+def made(
+    variant: str = "match-v0", flip: bool = False, rewards: Rewards = QUIET, **options
+) -> tuple[LearnerEnv, list[Recorder]]:
+    tables = Tables(variant, N, seed=6, **options)
+    names = [column.name for column in tables.observation_columns]
+    reading = Reading.of(Scaling.from_tables(tables), names, names)
+    env = LearnerEnv(tables, Seating.of(N, SIZES), reading, rewards, gamma=0.9, flip=flip)
+    seat = Seat.from_tables(tables)
+    opponents = [Recorder(seat, number) for number in range(2)]
+    env.seat(opponents, [0.75, 0.1])
+    return env, opponents
+
+
+def rows(numbers: NDArray, seats: list[tuple[int, int]]) -> NDArray:
+    return np.stack([numbers[table, player] for table, player in seats])
+
+
+def outputs(seed: int) -> torch.Tensor:
+    return torch.from_numpy(np.random.default_rng(seed).uniform(-1.0, 1.0, (len(LEARNERS), 4)).astype(np.float32))
+
+
+def joint(tables: Tables, own: torch.Tensor, opponents: list[Recorder], flipped: tuple[int, ...] = ()) -> NDArray:
+    """(N, 2, 4) of what everybody last played, put where they sit, by hand."""
+    low, high = tables.action_bounds.astype(np.float64)
+    actions = np.zeros((N, 2, 4))
+    for (table, player), output in zip(LEARNERS, own.double().numpy(), strict=True):
+        action = low + (output + 1.0) / 2.0 * (high - low)
+        if table in flipped:
+            action[1] = float(tables.nominal["width"][0]) - action[1]
+        actions[table, player] = action
+    for seats, opponent in zip(OPPONENTS, opponents, strict=True):
+        for (table, player), action in zip(seats, opponent.played[-1], strict=True):
+            actions[table, player] = action
+    return actions.astype(np.float32).clip(*tables.action_bounds)
+
+
+def test_everybody_sees_and_plays_his_own_seat() -> None:
+    env, opponents = made()
+    twin = Tables("match-v0", N, seed=6)
+    for step in range(6):
+        before = twin.observations.copy()
+        own = outputs(step)
+        seen, rewards, dones, extras = env.step(own)
+        for seats, opponent in zip(OPPONENTS, opponents, strict=True):
+            np.testing.assert_allclose(opponent.seen[-1], rows(before, seats), atol=2e-4)
+        twin.step(joint(twin, own, opponents))
+        np.testing.assert_allclose(env.tables.observations, twin.observations, atol=2e-4)
+        expected = rows(twin.observations, LEARNERS)
+        scaling = env.reading.scaling
+        np.testing.assert_allclose(seen[POLICY].numpy() * scaling.span + scaling.centre, expected, rtol=1e-4, atol=1e-3)
+        np.testing.assert_allclose(rewards.numpy(), rows(twin.rewards, LEARNERS), atol=1e-4)
+        assert not dones.any() and dones.shape == rewards.shape == (len(LEARNERS),) and not extras
+
+
+def test_a_flipped_table_is_seen_and_played_in_the_mirror() -> None:
+    env, opponents = made(flip=True)
+    twin = Tables("match-v0", N, seed=6)
+    for step in range(5):
+        own = outputs(step)
+        seen = env.step(own)[0][POLICY].numpy()
+        twin.step(joint(twin, own, opponents, FLIPPED))
+        mirror = observed(twin, turned_left_right(twin))
+        shown = [(mirror if table in FLIPPED else twin.observations)[table, player] for table, player in LEARNERS]
+        scaling = env.reading.scaling
+        np.testing.assert_allclose(seen * scaling.span + scaling.centre, np.stack(shown), rtol=1e-4, atol=1e-3)
+        np.testing.assert_allclose(env.tables.observations, twin.observations, atol=2e-4)
+    changed = np.abs(mirror - twin.observations)[list(FLIPPED)].max()
+    assert changed > 0.1
+    for seats, opponent in zip(OPPONENTS, opponents, strict=True):  # nobody else looks into a mirror
+        assert (opponent.seen[0] == rows(Tables("match-v0", N, seed=6).observations, seats)).all()
+
+
+def test_the_critic_is_told_how_the_learner_fares_against_whom() -> None:
+    env, _ = made()
+    told = env.get_observations()[PRIVILEGED].numpy()
+    np.testing.assert_allclose(told[:, 0], [0.0] * 8 + [0.5] * 2 + [-0.8] * 3, atol=1e-6)
+
+
+def test_a_cut_episode_s_last_observation_is_kept_not_the_next_one_s_first() -> None:
+    """Tables end at different steps; the twin does not begin anew, so that what it sees last stays."""
+    env, opponents = made("defence-v0", max_cycles=4, flip=True)
+    twin = Tables("defence-v0", N, seed=6, max_cycles=4, autoreset=False)
+    env.tables.states["steps"][4:] = twin.states["steps"][4:] = [0, 1, 2, 2, 2]
+    ended, cuts = np.zeros(N, np.bool_), 0
+    for step in range(4):
+        own = outputs(step)
+        _, _, dones, extras = env.step(own)
+        twin.step(joint(twin, own, opponents, FLIPPED))
+        now = (twin.terminated | twin.truncated) & ~ended
+        cut = [seat for seat in LEARNERS if twin.truncated[seat[0]] and not ended[seat[0]]]
+        first = [seat for seat in LEARNERS if not ended[seat[0]]]
+        here = [LEARNERS.index(seat) for seat in first]
+        assert dones.numpy()[here].tolist() == [int(now[table]) for table, _ in first]
+        if cut:
+            at = extras[CUT].numpy()
+            assert [at[LEARNERS.index(seat)] for seat in first] == [seat in cut for seat in first]
+            assert len(extras[FINAL]) == at.sum() and extras[FINAL][PRIVILEGED].shape == (at.sum(), 1)
+            kept = {LEARNERS[row]: i for i, row in enumerate(np.flatnonzero(at))}
+            mirror, scaling = observed(twin, turned_left_right(twin)), env.reading.scaling
+            for table, player in cut:
+                final = extras[FINAL][POLICY][kept[table, player]].numpy() * scaling.span + scaling.centre
+                shown = (mirror if table in FLIPPED else twin.observations)[table, player]
+                np.testing.assert_allclose(final, shown, rtol=1e-4, atol=1e-3)
+                assert np.abs(env.tables.observations[table, player] - twin.observations[table, player]).max() > 0.05
+        cuts += len(cut)
+        ended |= now
+    assert cuts > 6
+
+
+def test_an_opponent_is_told_which_of_its_games_begin_anew() -> None:
+    env, opponents = made("defence-v0", max_cycles=3)
+    env.tables.states["steps"][:] = [2, 2, 2, 2, 2, 0, 0, 2, 0]
+    env.step(outputs(0))
+    assert [one.begun[0].all() and len(one.begun[0]) == size for one, size in zip(opponents, SIZES, strict=True)]
+    assert [one.begun[-1].tolist() for one in opponents] == [[True, False], [False, True, False]]
+
+
+@pytest.mark.parametrize("scorer", [0, 1])
+def test_a_goal_is_good_for_who_scored_it(scorer: int) -> None:
+    """A fast puck right before the other's goal, on a table of either kind; rewards are goals alone."""
+    env, _ = made(rewards=Rewards(rules=0.0, goal=1.0))
+    tables = env.tables
+    for table in (1, 4, 7):
+        puck = tables.states["puck"][table : table + 1]
+        puck["x"], puck["y"] = (1.9, 0.5) if scorer == 0 else (0.1, 0.5)
+        puck["vx"], puck["vy"] = (9.0, 0.0) if scorer == 0 else (-9.0, 0.0)
+        for player, x in ((0, 0.4), (1, 1.6)):
+            mallet = tables.states["mallets"][table : table + 1, player]
+            mallet["x"]["rest"], mallet["y"]["rest"] = x, 0.1
+    rewards = env.step(torch.full((len(LEARNERS), 4), -0.5))[1].numpy()
+    found = dict(zip(LEARNERS, rewards.tolist(), strict=True))
+    sign = 1.0 if scorer == 0 else -1.0
+    assert {seat: reward for seat, reward in found.items() if reward} == {
+        (1, 0): sign, (1, 1): -sign, (4, 0): sign, (7, 1): -sign,
+    }  # fmt: skip
+    points = [[1.0, 0.0], [0.0, 1.0]] if scorer == 0 else [[0.0, 1.0], [1.0, 0.0]]  # 4 is in block 0, 7 in block 1
+    assert env.tally.points.tolist() == points
+
+
+def test_the_goal_that_ends_a_match_counts_and_so_does_the_match() -> None:
+    env, _ = made(rewards=Rewards(rules=0.0, goal=2.0))
+    tables = env.tables
+    tables.states["score"][7] = [2, 6]  # the learner sits on the right
+    puck, mallets = tables.states["puck"][7:8], tables.states["mallets"][7:8]
+    puck["x"], puck["y"], puck["vx"], puck["vy"] = 0.1, 0.5, -9.0, 0.0
+    mallets["x"]["rest"], mallets["y"]["rest"] = [0.4, 1.6], 0.1
+    _, rewards, dones, extras = env.step(torch.full((len(LEARNERS), 4), -0.5))
+    at = LEARNERS.index((7, 1))
+    assert (float(rewards[at]), int(dones[at]), int(dones.sum())) == (2.0, 1, 1) and not extras
+    assert env.tally.points[1].tolist() == [1.0, 0.0] and env.tally.games.tolist() == [[0, 0, 0], [1, 0, 0]]
+    assert tables.states["score"][7].tolist() == [0, 0]

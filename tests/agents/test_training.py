@@ -1,0 +1,132 @@
+"""Runs that stop, are killed, or break, and go on as if nothing had happened, or say why not."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from tiny import TINY, curve, files, tiny, training
+
+from agents import checkpoint as checkpoint_module
+from agents.runner import DivergedError
+from agents.training import Training
+from puckpilot import main
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def arrays(path: Path) -> dict[str, np.ndarray]:
+    with np.load(path) as file:
+        return {name: file[name] for name in file.files}
+
+
+def same_policies(one: Path, other: Path) -> bool:
+    a, b = arrays(one), arrays(other)
+    return list(a) == list(b) and all((a[name] == b[name]).all() for name in a)
+
+
+def test_a_resumed_run_takes_the_very_same_path(tmp_path: Path) -> None:
+    unbroken = training(tmp_path / "a")
+    for _ in range(4):
+        unbroken.round()
+    training(tmp_path / "b").round()
+    for _ in range(3):
+        training(tmp_path / "b", resume=True).round()
+    rows = curve(tmp_path / "a")
+    assert rows == curve(tmp_path / "b") and [row["round"] for row in rows] == ["1", "2", "3", "4"]
+    assert len({row["value"] for row in rows}) == 4  # something is learned
+    assert same_policies(tmp_path / "a" / "policy.npz", tmp_path / "b" / "policy.npz")
+    names = [path.name for path in sorted((tmp_path / "a" / "selves").iterdir())]
+    assert names == [path.name for path in sorted((tmp_path / "b" / "selves").iterdir())] and len(names) > 2
+    assert all(same_policies(tmp_path / "a" / "selves" / n, tmp_path / "b" / "selves" / n) for n in names)
+
+
+def test_another_seed_takes_another_path(tmp_path: Path) -> None:
+    one = training(tmp_path / "a")
+    other = Training(one.folder, type(one.settings)("match-v0", 6, 1, tiny()))
+    assert one.round()["value"] != other.round()["value"]
+
+
+def test_steps_are_counted_over_the_learner_s_seats(tmp_path: Path) -> None:
+    run = training(tmp_path)
+    run.round()
+    # 4 tables of self-play with two learners each, 8 with one; 4 steps, 2 updates
+    assert run.round()["steps"] == 2 * (4 * 2 + 8) * 4 * 2 == run.steps
+
+
+def test_a_killed_run_goes_on_and_two_at_once_do_not(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    preset = tmp_path / "tiny.toml"
+    preset.write_text(TINY.replace("steps = 4", "steps = 64"))
+    words = ["train", "--preset", str(preset), "--seed", "5", "--out", str(tmp_path / "a")]
+    code = "import sys; from puckpilot import main; sys.exit(main())"
+    child = subprocess.Popen([sys.executable, "-c", code, *words], cwd=ROOT, stdout=subprocess.DEVNULL)
+    try:
+        until = time.monotonic() + 120.0
+        while not (tmp_path / "a" / "checkpoint.pt").exists():
+            assert child.poll() is None and time.monotonic() < until
+            time.sleep(0.02)
+        assert main(["train", "--resume", "--out", str(tmp_path / "a")]) == 2
+        assert capsys.readouterr().err == f"puckpilot train: {tmp_path / 'a'} is in use by another run\n"
+    finally:
+        child.kill()
+        child.wait()
+    done = len(curve(tmp_path / "a"))
+    each = 16 * 64 * 2  # steps of a round
+    assert main(["train", "--resume", "--steps", str((done + 2) * each), "--out", str(tmp_path / "a")]) == 0
+    whole = training(tmp_path / "b", preset=tiny(steps=64))
+    for _ in range(len(curve(tmp_path / "a"))):
+        whole.round()
+    assert curve(tmp_path / "a") == curve(tmp_path / "b") and len(whole.rows) >= done + 2
+    assert same_policies(tmp_path / "a" / "policy.npz", tmp_path / "b" / "policy.npz")
+
+
+def test_a_full_disk_leaves_the_last_checkpoint_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    run = training(tmp_path / "a")
+    run.round()
+    before = (tmp_path / "a" / "checkpoint.pt").read_bytes()
+    with monkeypatch.context() as patch:
+
+        def full(contents: object, draft: Path) -> None:
+            Path(draft).write_bytes(b"half")
+            raise OSError(28, "No space left on device", str(draft))
+
+        patch.setattr(checkpoint_module.torch, "save", full)
+        with pytest.raises(OSError, match="No space"):
+            run.round()
+    assert (tmp_path / "a" / "checkpoint.pt").read_bytes() == before
+    assert not [name for name in files(tmp_path / "a") if ".tmp" in name]
+    training(tmp_path / "a", resume=True).round()
+    whole = training(tmp_path / "b")
+    for _ in range(2):
+        whole.round()
+    assert curve(tmp_path / "a") == curve(tmp_path / "b")
+
+
+def test_a_reward_that_is_no_number_ends_the_run_and_harms_no_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run = training(tmp_path)
+    run.round()
+    before, honest = files(tmp_path), run.env.step
+
+    def broken(actions: torch.Tensor):
+        seen, rewards, dones, extras = honest(actions)
+        rewards[3] = math.nan
+        return seen, rewards, dones, extras
+
+    monkeypatch.setattr(run.env, "step", broken)
+    with pytest.raises(DivergedError):
+        run.round()
+    assert files(tmp_path) == before
+
+
+def test_games_are_spread_over_their_length(tmp_path: Path) -> None:
+    tables = training(tmp_path, preset=tiny(tables=60)).tables
+    assert tables.states["time"] == pytest.approx(tables.states["steps"] * 0.1)
+    assert tables.states["time"].min() < 30.0 and 150.0 < tables.states["time"].max() < 180.0
