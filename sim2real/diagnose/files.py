@@ -10,6 +10,7 @@ from typing import Any
 from puckpilot_env.parameters import BY_NAME, EFFECT_ROWS, TABLE
 from puckpilot_env.physics.effects import EFFECTS
 from puckpilot_env.whole_file import write_text_whole
+from sim2real.diagnose.asked import PLAIN, Asked
 from sim2real.diagnose.diagnosis import Diagnosis
 from sim2real.diagnose.finding import Curve, Estimate, Finding
 
@@ -99,14 +100,14 @@ def _name(one: Finding) -> str:
     return f"{depends}: {_why_not(one)}" if _why_not(one) else depends
 
 
-def write(diagnosis: Diagnosis, folder: Path) -> list[Path]:
+def write(diagnosis: Diagnosis, folder: Path, asked: Asked = PLAIN) -> list[Path]:
     """Write all files into `folder`, each whole or not at all; returns their places."""
     from sim2real.diagnose.report.page import page
 
     folder.mkdir(parents=True, exist_ok=True)
     texts = {
         "diagnosis.json": json.dumps(as_dict(diagnosis), indent=1, allow_nan=False) + "\n",
-        "report.html": page(diagnosis),
+        "report.html": page(diagnosis, asked),
         "effects.toml": effects_toml(diagnosis),
     }
     return [write_text_whole(folder / name, text) for name, text in texts.items()]

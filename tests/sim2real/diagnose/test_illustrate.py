@@ -1,14 +1,21 @@
 """What a diagnosis shows of an independent table: curves that follow the true law, and formulas that say it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from sim2real.diagnose.account import account
 from sim2real.diagnose.diagnosis import Diagnosis, diagnose
+from sim2real.diagnose.engine.choose import Law as Tried
+from sim2real.diagnose.engine.explain import explain
+from sim2real.diagnose.illustrate import illustrated
 from sim2real.diagnose.report.page import page
 from sim2real.recording import read_recording
 from tests.reality.camera import Camera
 from tests.reality.law import Law
 from tests.reality.record import make_recording
+from tests.sim2real.diagnose.engine.linear_problem import LAUNCHES, SHIPPED, LinearProblem
 
 CAMERA = Camera(noise=0.0006, rate=120.0)
 
@@ -61,3 +68,23 @@ def test_walls_that_tire_get_a_slope(tmp_path):
     assert one.parameters["slope"].value == pytest.approx(-0.003, rel=0.02)
     assert "both components" in one.formula
     assert float(one.formula.split("wall_restitution ")[1]) == pytest.approx(0.85, abs=0.001)
+
+
+class _Nameless(LinearProblem):
+    """What the linear problem lacks has no name in it: it is a family's."""
+
+    def columns(self, values, free, use):
+        found = super().columns(values, free, use)
+        return replace(found, listed=[], families=[Tried("push by place", ("tilt_x", "tilt_y"), "position")])
+
+
+def test_launches_are_shown_under_the_law_that_was_found_smooth_part_and_all():
+    problem, launches = _Nameless({"tilt_x": 0.02, "tilt_y": -0.03}), np.arange(LAUNCHES)
+    use, apart = launches[launches % 4 > 0], launches[launches % 4 == 0]
+    found = explain(problem, SHIPPED, use)
+    told = illustrated(problem, found, account(problem, found, use, apart), use)
+    assert [one.mechanism for one in told.findings] == ["unlisted"]
+    assert told.parting is not None and told.proof is not None
+    for shown, proved in ((told.parting.before, told.proof.before_m), (told.parting.after, told.proof.after_m)):
+        assert np.sqrt(np.mean(shown[apart] ** 2)) == pytest.approx(proved / problem.noise_m, rel=1e-6)
+    assert told.parting.after.mean() < 1.1 < told.parting.before.mean()
