@@ -75,7 +75,8 @@ def _curve(one: Finding) -> str:
     )
     caption = (
         "The law with its 95 % band, and what the recording shows once all else that was fitted is taken off: means "
-        "of whole stretches of motion, ±2 standard errors."
+        "of whole stretches of motion, ±2 standard errors. What the axis does not show is held fixed, or the mean is "
+        "taken over it; where the law depends on too much for that, what was seen is drawn against what it foretells."
     )
     return words.picture(curve_picture(curve, alt), caption, "curve")
 
