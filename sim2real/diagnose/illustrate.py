@@ -15,6 +15,7 @@ from sim2real.diagnose.formula import Formula
 from sim2real.diagnose.glide import picture as glides
 from sim2real.diagnose.glide.problem import GlideProblem
 from sim2real.diagnose.glide.readable import readable as glide_formula
+from sim2real.diagnose.plain_words import piece
 from sim2real.diagnose.problem import Problem
 from sim2real.diagnose.wall import picture as bounces
 from sim2real.diagnose.wall.problem import WallProblem
@@ -67,7 +68,7 @@ def _by_launch(problem: Problem, found: Explained) -> Parting:
     after = _squares(problem, found.law.values) if found.unlisted is None else _squares_of_family(problem, found)
     sizes = [np.sqrt(np.maximum(some[live], 0.0) / problem.freedom[live])[:, None] for some in (before, after)]
     std = 1.0 / np.sqrt(2.0 * problem.freedom[live])[:, None]
-    by = {"launch, in order of time": live.astype(float)}
+    by = {f"{piece(problem.regime)}, in order of time": live.astype(float)}
     return Parting("rms residual", "times the noise", ("rms",), sizes[0], sizes[1], std, by)
 
 

@@ -15,6 +15,7 @@ FAULTS = {  # of the camera that are parameters of the simulator and no effects
 }
 TO_THE_NOISE = 1.3  # times what the noise alone leaves, up to which residuals are called noise
 LEAST_P = 1e-300  # no chance is told to be smaller
+LAUNCH = ("launch", "launches")
 PIECES = {"gantry": ("stretch of some seconds", "stretches of some seconds")}
 
 
@@ -71,10 +72,15 @@ def left_over(many: float) -> str:
     return f"{many:.2g} times what noise alone makes is left"
 
 
+def piece(regime: str) -> str:
+    """What a regime's recording is cut into, for fits and for the proof."""
+    return PIECES.get(regime, LAUNCH)[0]
+
+
 def pieces(account: Account) -> str:
     """How many untouched pieces a regime was tried on."""
     assert account.proof is not None
-    return counted(account.proof.pieces, *PIECES.get(account.regime, ("launch", "launches")))
+    return counted(account.proof.pieces, *PIECES.get(account.regime, LAUNCH))
 
 
 def times_noise(proof: Proof | None) -> float | None:

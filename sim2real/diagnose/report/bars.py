@@ -10,10 +10,14 @@ ROOM = 110  # for the numbers beside the bars
 NOISE = "what the sensor's noise alone leaves"
 
 
-def proof_bars(proof: Proof, title: str, found: bool) -> str:
-    """Bars of the rms [mm] on untouched pieces: under the refitted baseline, with the law if one was `found`, and what
+LAWS = ("refitted baseline", "with the law")
+FAULTS = ("as recorded", "corrected")
+
+
+def proof_bars(proof: Proof, title: str, found: bool, names: tuple[str, str] = LAWS) -> str:
+    """Bars of the rms [mm] on untouched pieces, before and, if something was `found`, after, by these `names`; and what
     the sensor's noise alone leaves."""
-    rows = [("refitted baseline", proof.before_m, "#D55E00"), ("with the law", proof.after_m, "#0072B2"),
+    rows = [(names[0], proof.before_m, "#D55E00"), (names[1], proof.after_m, "#0072B2"),
             (NOISE, proof.floor_m, "#767676")]  # fmt: skip
     if not found:
         del rows[1]

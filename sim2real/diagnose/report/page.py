@@ -94,12 +94,10 @@ def _sizes(each: Account) -> tuple[str, ...]:
 def _next(diagnosis: Diagnosis) -> str:
     open_ones = [diagnosis.remedy, *(one.next_recording for one in diagnosis.accounts)]
     body = _list((one for one in open_ones if one), "next")
-    for each in diagnosis.accounts:
-        many = times_noise(each.proof)
-        if each.findings and many and many > TO_THE_NOISE:
-            body += words.paragraph(
-                f"What is named does not explain all of the {text(each.regime)}: {left_over(many)}."
-            )
+    named = {each.regime: times_noise(each.proof) for each in diagnosis.accounts if each.findings}
+    more = [f"in the {name} {left_over(many)}" for name, many in named.items() if many and many > TO_THE_NOISE]
+    if more:
+        body += words.paragraph(text(f"What is named does not explain all: {'; '.join(more)}."))
     if not body:
         body = words.paragraph(OPEN if diagnosis.verdict == "undetermined" else ALWAYS)
     return words.section("next", "What to do next", body)

@@ -7,10 +7,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from sim2real.diagnose.asked import Asked
-from sim2real.diagnose.finding import Account, Parting
+from sim2real.diagnose.finding import Account, Parting, Proof
 from sim2real.diagnose.plain_words import TO_THE_NOISE, left_over, pieces, times_noise, with_gist
 from sim2real.diagnose.report import words
-from sim2real.diagnose.report.bars import proof_bars
+from sim2real.diagnose.report.bars import FAULTS, LAWS, proof_bars
 from sim2real.diagnose.report.draw import map_pictures, parting_pictures, unchanged
 from sim2real.diagnose.report.words import number, text
 from sim2real.diagnose.untested import NO_PATH
@@ -25,12 +25,20 @@ def regime_section(one: Account, asked: Asked, missing: Mapping[str, str]) -> st
     if one.baseline:
         body += _baseline(one, asked)
     if one.proof is not None and one.proof.pieces:
-        title = f"Held-out residuals, {one.regime}"
-        body += f"<h3>Proof on untouched data</h3><p>Rms residual on {pieces(one)} that no fit saw.</p>"
-        body += proof_bars(one.proof, title, bool(one.findings))
+        body += _proof(one, one.proof)
     if one.parting is not None and len(one.parting.before) >= FEWEST:
         body += _parting(one.parting)
     return words.section(f"regime-{one.regime}", f"Regime: {text(one.regime)}", body)
+
+
+def _proof(one: Account, proof: Proof) -> str:
+    title, found = f"Held-out residuals, {one.regime}", bool(one.findings)
+    said = f"Rms residual on {pieces(one)} that no fit saw."
+    if one.regime == "sensing":
+        said = f"Rms of all that the faults make wrong, together and in metres, on {pieces(one)} that no fit saw; "
+        said += "each finding tells of its own, in units of each miss's error."
+    bars = proof_bars(proof, title, found, FAULTS if one.regime == "sensing" else LAWS)
+    return f"<h3>Proof on untouched data</h3>{words.paragraph(text(said))}{bars}"
 
 
 def _baseline(one: Account, asked: Asked) -> str:

@@ -185,6 +185,18 @@ def test_numbers_stand_beside_those_that_they_replace():
     assert "The simulator with your baseline explains" in read.text and "as shipped" not in read.text
 
 
+def test_faults_of_the_sensors_are_undone_and_not_refitted():
+    late = replace(TILT, regime="sensing", mechanism="camera_delay", formula="t - delay_s", curve=None, rivals=())
+    faults = Account("sensing", (late,), {}, False, Proof(0.004, 0.002, 0.001, 3))
+    read = Reader(page(Diagnosis((faults,), sights=(SIGHT,))))
+    section = read.text.split("Regime: sensing")[1]
+    assert "The sensors err: camera_delay (the camera's frames are stamped late)." in section
+    picture = next(one for tag, one in read.tags if tag == "svg" and "sensing" in (one.get("aria-label") or ""))
+    assert "as recorded 4 mm, corrected 2 mm" in (picture["aria-label"] or "")
+    assert "The camera's frames are stamped late: each shows the table as it was" in read.text
+    assert "What is named does not explain all: in the sensing 2 times" in read.text
+
+
 def test_weights_of_shapes_are_folded_and_their_law_is_said():
     numbers = {f"c{k}": Estimate(0.1 * k, 0.0, 1.0, "1") for k in range(14)}
     law = replace(
