@@ -20,34 +20,54 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from puckpilot_env.parameters import checked, refuse_not_simulated
+from puckpilot_env.parameters import BY_NAME, EFFECT_ROWS, checked, refuse_not_simulated
 from puckpilot_env.physics.effects import EFFECTS
 
 FORMAT = "puckpilot-effects/1"
-Effects = Mapping[str, Mapping[str, float]] | str | PathLike[str]  # {effect: {short name: value}}, or a file
+NOT_SWITCHED = "# not in the simulator:"  # begins a line of a file on what was found and cannot be switched on
+FEW = 4  # numbers of an effect that are told one by one
+Effects = Mapping[str, Any] | str | PathLike[str]  # {effect: {short name: value}}, a file, or what a file holds
 
 
 def effect_values(effects: Effects | None) -> dict[str, float]:
     """Parameters by the simulator's names [SI units] of a table with these effects; empty for None.
 
-    Raises ValueError, in one line, for a file or a name that cannot be read, a value out of its range, or an effect
-    that no table can be given.
+    A mapping may also be what `tomllib` makes of such a file. Raises ValueError, in one line, for a file or a name that
+    cannot be read, a value out of its range, or an effect that no table can be given.
     """
     if effects is None:
         return {}
     if isinstance(effects, Mapping):
-        return _by_name(effects, "effects")
+        return _read(effects) if "format" in effects else _by_name(effects, "effects")
     path = Path(effects)
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
-        return _read(content)
+        return _read(tomllib.loads(path.read_text(encoding="utf-8")))
     except OSError as error:
         raise ValueError(f"cannot read effects from '{path}': {error.strerror or error}") from None
     except ValueError as error:  # of TOML and of text among them
         raise ValueError(f"{path}: {' '.join(str(error).split())}") from None
 
 
-def _read(content: dict[str, Any]) -> dict[str, float]:
+def described(path: str | PathLike[str]) -> list[str]:
+    """What a file switches on, a line each: the effects, the baseline's numbers, and what it holds beyond a table.
+
+    Raises ValueError as `effect_values` does.
+    """
+    values = effect_values(path)
+    lines = []
+    for name, effect in EFFECTS.items():
+        numbers = {key: values[row.name] for key, row in effect.rows.items() if row.name in values}
+        if any(value != effect.rows[key].default for key, value in numbers.items()):
+            told = ", ".join(f"{key} {value:.4g}" for key, value in numbers.items())
+            lines.append(f"effect on: {name} ({told if len(numbers) <= FEW else f'{len(numbers)} numbers'})")
+    plain = [f"{name} {value:.4g}" for name, value in values.items() if BY_NAME[name] not in EFFECT_ROWS]
+    lines += [f"in place of the defaults: {', '.join(plain)}"] if plain else []
+    text = Path(path).read_text(encoding="utf-8").splitlines()
+    lines += [f"not switched on:{line.removeprefix(NOT_SWITCHED)}" for line in text if line.startswith(NOT_SWITCHED)]
+    return lines or ["no effect is on"]
+
+
+def _read(content: Mapping[str, Any]) -> dict[str, float]:
     if content.get("format") != FORMAT:
         raise ValueError(f"format is {content.get('format')!r}; expected {FORMAT!r}")
     _refuse_unknown(content, ("format", "parameters", "effects"), "entry")

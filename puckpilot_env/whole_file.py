@@ -29,3 +29,16 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> Path:
 def write_text_whole(path: Path, text: str) -> Path:
     """`write_whole` of a text, in UTF-8."""
     return write_whole(path, lambda draft: draft.write_text(text, encoding="utf-8"))
+
+
+def check_folder(folder: Path) -> None:
+    """Make `folder` and see that files can be put there, before any work is done. ValueError, in one line, if not."""
+    if folder.exists() and not folder.is_dir():
+        raise ValueError(f"cannot write to '{folder}': it is a file; give a folder")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        draft = draft_of(folder / "check")
+        draft.touch()
+        draft.unlink()
+    except OSError as error:
+        raise ValueError(f"cannot write to '{folder}': {error.strerror or error}; name another folder") from None

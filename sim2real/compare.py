@@ -5,7 +5,7 @@ where there are any, mallet.csv and commands.csv. It is cut into pieces, and eac
 
 - glide: the puck slides freely. Its start is fitted to its first part; the error is what follows, seen less predicted.
 - wall, mallet: a hit. The velocity after it is predicted from the one before. The ratio kept is what share of the speed
-  along (normal) or across (tangential) the line of contact was left; the simulator's own are printed beside.
+  along (normal) or across (tangential) the line of contact was left; beside it stands the simulator's own.
 - rms in units of noise: 1 is what the camera's noise alone explains; the noise is estimated from the recording.
 - held: frames that repeat the one before; wild: positions that jump and come back; launch: an unbroken run of play.
 - unexplained: a change of motion where nothing known was near, an unseen hand for example.
@@ -86,15 +86,17 @@ def print_summary(summary: dict[str, Any]) -> None:
     if not summary["sensor"]["seen"]:
         console.print(f"where they part most: {summary['part_most']}")
         return
-    table = Table("piece", "what", "median", "90 % range", "count", title_justify="left")
+    table = Table("piece", "what", "median", "90 % range", "simulator", "count", title_justify="left")
     for kind, rows in ROWS.items():
         part = summary[kind]
         if not part["pieces"]:
-            table.add_row(kind, "none that could be compared", "", "", "0")
+            table.add_row(kind, "none that could be compared", "", "", "", "0")
             continue
         for k, (key, words, unit) in enumerate(rows):
             count = str(part["pieces"]) if k == 0 else ""
-            table.add_row(kind if k == 0 else "", words, *_cells(part[key], unit), count)
+            own = summary["kept_by_simulator"].get(kind, {}).get(key)
+            cells = (*_cells(part[key], unit), "" if own is None else f"{own:.2f}")
+            table.add_row(kind if k == 0 else "", words, *cells, count)
         table.add_section()
     console.print(table)
     for row in summary["glide"].get("growth", []):

@@ -15,6 +15,7 @@ from sim2real.diagnose.sensor import Noise
 FITTED_PART = 0.4
 FEWEST_FRAMES = 24
 SLOWEST = 0.05
+UNEXPLAINED = "unexplained events"
 
 
 @dataclass(frozen=True)
@@ -71,7 +72,7 @@ def compare_pieces(pieces: Pieces, values: dict[str, float]) -> Comparison:
     walls, mallets = [], []
     for hit in pieces.hits:
         if hit.kind not in ("wall", "mallet"):
-            name = "unexplained events" if hit.kind == "unexplained" else "goal post hits, not compared"
+            name = UNEXPLAINED if hit.kind == "unexplained" else "goal post hits, not compared"
             unusable["other"][name] += 1
         elif not hit.clean:
             unusable[hit.kind]["too few frames beside another event"] += 1

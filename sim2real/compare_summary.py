@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
-from sim2real.compare_predict import Comparison, GlideError, HitError
+from sim2real.compare_predict import UNEXPLAINED, Comparison, GlideError, HitError
 from sim2real.diagnose.pieces import Pieces
 from sim2real.diagnose.sanity import notes
 from sim2real.recording import Recording
 
 GROWTH = (0.1, 0.2, 0.5, 1.0, 2.0)
 AGREES = 1.5
+FEW = 10  # pieces, of fewer of which a median tells little
+MANY = 0.25  # share of all changes of motion that may be unexplained
 
 
 def summarize(recording: Recording, pieces: Pieces, found: Comparison, values: dict[str, float]) -> dict[str, Any]:
@@ -20,8 +23,12 @@ def summarize(recording: Recording, pieces: Pieces, found: Comparison, values: d
     seen = 0 if recording.frames is None else int(np.isfinite(recording.frames["puck_x"]).sum())
     summary = {
         "recording": recording.name,
-        "notes": list(notes([recording])),
+        "notes": [*notes([recording]), *_remarks(recording, seen, found)],
         "parameters": {name: values[name] for name in ("friction", "drag", "wall_restitution", "mallet_restitution")},
+        "kept_by_simulator": {
+            "wall": dict.fromkeys(("restitution_normal", "restitution_tangential"), values["wall_restitution"]),
+            "mallet": {"restitution_normal": values["mallet_restitution"], "restitution_tangential": 1.0},
+        },
         "sensor": {
             "frames": 0 if recording.frames is None else recording.frames.rows,
             "seen": seen,
@@ -37,6 +44,24 @@ def summarize(recording: Recording, pieces: Pieces, found: Comparison, values: d
         "unusable": {kind: dict(reasons) for kind, reasons in found.unusable.items() if reasons},
     }
     return summary | {"part_most": _part_most(summary)}
+
+
+def _remarks(recording: Recording, seen: int, found: Comparison) -> Iterator[str]:
+    """What should be known of the numbers, a sentence each."""
+    if not seen:
+        if recording.mallet is not None and recording.mallet.rows:
+            yield "the gantry alone was recorded: puckpilot diagnose says whether the simulator's gantry moves so"
+        return
+    counts = {"glide": len(found.glides), "wall": len(found.walls), "mallet": len(found.mallets)}
+    few = [f"{count} of {kind}" for kind, count in counts.items() if 0 < count < FEW]
+    if few:
+        yield f"medians of fewer than {FEW} pieces tell little ({', '.join(few)}); record longer"
+    lost = found.unusable["other"][UNEXPLAINED]
+    if lost > MANY * (counts["wall"] + counts["mallet"] + lost):
+        yield (
+            f"{lost} of {counts['wall'] + counts['mallet'] + lost} changes of motion are unexplained: were there hands "
+            "or things on the table, or are its stated sizes wrong?"
+        )
 
 
 def range_of(values: np.ndarray) -> dict[str, float] | None:

@@ -6,6 +6,7 @@ import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 
+from puckpilot_env.effects_file import FORMAT as EFFECTS_FORMAT
 from puckpilot_env.parameters import TABLE, checked
 from sim2real.recording import Recording
 
@@ -30,11 +31,22 @@ def parameters(recording: Recording, shipped: Mapping[str, float] | None = None)
 
 
 def read_baseline(path: Path) -> dict[str, float]:
-    """Parameters by name from a TOML file of lines like `friction = 0.1`. ValueError, in one line, if it is none."""
+    """Parameters by name from a TOML file of lines like `friction = 0.1`, or of a diagnosis's effects.toml that holds
+    no effects. ValueError, in one line, if it is neither."""
     try:
         found = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ValueError(f"cannot read the baseline '{path}': {error.strerror or error}") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise ValueError(f"{path}: not a TOML file ({error}); expected lines like 'friction = 0.1'") from error
+    if found.get("format") == EFFECTS_FORMAT:
+        if found.get("effects"):
+            names = ", ".join(found["effects"])
+            raise ValueError(
+                f"{path} holds effects ({names}), which diagnose looks for by itself: give --baseline a file of its "
+                f"[parameters] alone; to play with it, puckpilot match A B --effects {path}"
+            )
+        found = found.get("parameters", {})
     try:
         return {name: checked(name, value) for name, value in found.items()}
     except ValueError as error:

@@ -7,7 +7,7 @@ import json
 import sys
 from typing import TYPE_CHECKING
 
-from baselines.commands.options import add_options, parse_values, progress_bar
+from baselines.commands.options import add_options, parse_values, print_effects, progress_bar
 
 if TYPE_CHECKING:
     from baselines.intervals import Estimate
@@ -37,6 +37,7 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print(json.dumps(_as_dict(args, result, rate), indent=2))
     else:
+        print_effects(args.effects)
         _print(args, result, rate)
     if filmed:
         print(filmed, file=sys.stderr if args.json else sys.stdout)

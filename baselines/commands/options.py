@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 
 from baselines.match import Progress
+from puckpilot_env.effects_file import described
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -31,6 +32,12 @@ def parse_values(settings: Iterable[str]) -> dict[str, float]:
         except ValueError:
             raise ValueError(f"--set {setting}: expected NAME=NUMBER, as in friction=0.2") from None
     return values
+
+
+def print_effects(file: str | None) -> None:
+    """Say what the file of --effects switches on; nothing where there is none."""
+    for line in described(file) if file else ():
+        print(line)
 
 
 @contextmanager

@@ -27,31 +27,33 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """0: diagnosed, whatever the verdict. Raises ValueError or OSError, in one line, where it cannot."""
+    from puckpilot_env.whole_file import check_folder
+    from sim2real.diagnose.asked import Asked
     from sim2real.diagnose.diagnosis import diagnose
     from sim2real.diagnose.files import as_dict, write
     from sim2real.nominal import read_baseline
     from sim2real.recording import read_recording
 
-    if args.out.exists() and not args.out.is_dir():
-        raise ValueError(f"cannot write to {str(args.out)!r}: it is a file; give a folder")
     _refuse_twice([*args.recordings, *args.holdout])
     shipped = read_baseline(args.baseline) if args.baseline else {}
     with _bar() as bar:
         task = bar.add_task("reading", total=1.0)
         recordings, heldout = ([read_recording(path) for path in paths] for paths in (args.recordings, args.holdout))
+        asked = Asked(tuple(one.name for one in (*recordings, *heldout)), shipped)
+        check_folder(args.out)
 
         def progress(stage: str, share: float) -> None:
             bar.update(task, description=stage, completed=share)
 
         diagnosis = diagnose(recordings, heldout, shipped, progress)
         progress("writing", 0.95)
-        written = write(diagnosis, args.out)
+        written = write(diagnosis, args.out, asked)
     if args.json:
         print(json.dumps(as_dict(diagnosis), indent=1, allow_nan=False))
     else:
         from sim2real.diagnose.summary import summary
 
-        print("\n".join(summary(diagnosis, written)))
+        print("\n".join(summary(diagnosis, written, asked)))
     return 0
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import json
 import shlex
+import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -35,7 +36,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """0: the study is done; 1: it is, and a bar was missed. Raises ValueError, in one line, for what cannot be run."""
+    """0: the study is done; 1: it is, and a bar was missed or a case has no diagnosis. Raises ValueError, in one line,
+    for what cannot be run."""
     from sim2real.study.making import Plan
     from sim2real.study.run import run_study
 
@@ -46,6 +48,8 @@ def run(args: argparse.Namespace) -> int:
         raise ValueError(f"--seed is {args.seed}; expected 0 or more")
     plan = Plan(args.cases, args.seed, args.seconds, args.only, args.mechanism)
     tool = shlex.split(args.tool) if args.tool else None
+    if tool and shutil.which(tool[0]) is None:
+        raise ValueError(f"--tool {tool[0]}: there is no such program; give one that is called as puckpilot is")
     study = run_study(plan, args.out, args.workers, tool, args.holdout, args.peer)
     if args.json:
         print(json.dumps(study.as_dict(), indent=1))
@@ -53,7 +57,8 @@ def run(args: argparse.Namespace) -> int:
         _print(study, args.out)
         if args.peer and not study.peer_scores:
             print("PySINDy was asked nothing: no case is of a gliding puck alone")
-    return int(any(figure.reached is False for figure in study.figures))
+    failed = any(score.verdict == "failed" for score in study.scores)
+    return int(failed or any(figure.reached is False for figure in study.figures))
 
 
 def _print(study: Study, folder: Path) -> None:
@@ -101,8 +106,10 @@ def _bar(figure: Any) -> str:
 
 def _outcome(figure: Any) -> str:
     """Whether a figure reaches its bar, and whether its interval leaves a doubt; nothing where there is no bar."""
-    if figure.reached is None or not _bar(figure):
+    if not _bar(figure) or figure.value is None:
         return ""
+    if figure.too_few:
+        return "too few cases"
     return ("reached" if figure.reached else "MISSED") + ("" if figure.sure else ", not sure")
 
 
@@ -121,7 +128,6 @@ def _confusion(study: Study) -> Any:
     """What is off the diagonal, row by row; the picture shows the whole."""
     from rich.table import Table
 
-    table = _plain_table(Table, "taken for something else (rows truth, columns what was said)")
     confusion = study.confusion
     wrong = [
         (row, said, count)
@@ -130,6 +136,10 @@ def _confusion(study: Study) -> Any:
         if count and said != row
     ]
     columns = [column for column in confusion.columns if any(said == column for _, said, _ in wrong)]
+    if columns == ["undetermined"]:
+        table = _plain_table(Table, "said to be undetermined")
+    else:
+        table = _plain_table(Table, "taken for something else (rows truth, columns what was said)")
     table.add_column("truth", no_wrap=True)
     for column in columns:
         table.add_column(column, justify="right", no_wrap=True)

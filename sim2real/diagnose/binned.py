@@ -9,6 +9,8 @@ import numpy as np
 from sim2real.diagnose.interval import NORMAL_REACH
 
 FEWEST = 4  # pieces of a bin
+DRAWN = 80  # places at which a smooth law is drawn
+ROUGH, SEEN = 0.15, 0.1  # share of a law's own spread, and of the data's errors, by which neighbours of one law differ
 
 
 @dataclass(frozen=True)
@@ -43,6 +45,27 @@ def over(members: np.ndarray, x: np.ndarray, y: np.ndarray, std: np.ndarray) -> 
     rows = [_mean(x[here], y[here], std[here]) for here in members]
     place, mean, error = (np.array(column) for column in zip(*rows, strict=True)) if rows else [np.zeros(0)] * 3
     return Binned(place, mean, error, members)
+
+
+def is_rough(x: np.ndarray, y: np.ndarray, std: np.ndarray) -> bool:
+    """Whether a law `y` (n,), of which the data have errors `std` (n,), is no curve over `x` (n,): it depends on more,
+    and neighbours along `x` differ."""
+    in_order = y[np.argsort(x, kind="stable")]
+    if len(in_order) < 2:
+        return False
+    differ = float(np.sqrt(np.mean(np.diff(in_order) ** 2) / 2.0))
+    return differ > ROUGH * float(in_order.std()) and differ > SEEN * float(np.median(std))
+
+
+def singles(x: np.ndarray) -> np.ndarray:
+    """Bins (b, n) bool of one piece each, of up to DRAWN pieces from the least `x` (n,) to the greatest, evenly."""
+    order = np.argsort(x, kind="stable")
+    order = order[np.isfinite(x[order])]
+    if not len(order):
+        return np.zeros((0, len(x)), bool)
+    even = np.linspace(x[order[0]], x[order[-1]], DRAWN)
+    at = order[np.unique(np.clip(np.searchsorted(x[order], even), 0, len(order) - 1))]
+    return np.arange(len(x)) == at[:, None]
 
 
 def half_band(bins: Binned, std: np.ndarray, columns: np.ndarray, spread: np.ndarray) -> np.ndarray:

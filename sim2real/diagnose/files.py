@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from puckpilot_env.effects_file import FORMAT as EFFECTS_FORMAT
+from puckpilot_env.effects_file import NOT_SWITCHED
 from puckpilot_env.parameters import BY_NAME, EFFECT_ROWS, TABLE
-from puckpilot_env.physics.effects import EFFECTS
+from puckpilot_env.physics.effects import EFFECTS, MODULES
 from puckpilot_env.whole_file import write_text_whole
+from sim2real.diagnose.asked import PLAIN, Asked
 from sim2real.diagnose.diagnosis import Diagnosis
 from sim2real.diagnose.finding import Curve, Estimate, Finding
 
 FORMAT = "puckpilot-diagnosis/1"
-EFFECTS_FORMAT = "puckpilot-effects/1"
 
 
 def as_dict(diagnosis: Diagnosis) -> dict[str, Any]:
@@ -80,9 +83,19 @@ def effects_toml(diagnosis: Diagnosis) -> str:
     for name, effect in EFFECTS.items():
         taken = {} if effect.not_simulated else effect.rows
         numbers = [f"{key} = {near[row.name]!r}" for key, row in taken.items() if row.name in near]
-        lines += ["", f"[effects.{name}]", *numbers] if numbers else []
-    lines += [f"# not in the simulator: {_name(one)}" for one in diagnosis.findings if not _simulated(one)]
+        lines += ["", *_comments(name, near), f"[effects.{name}]", *numbers] if numbers else []
+    lines += [f"{NOT_SWITCHED} {_name(one)}" for one in diagnosis.findings if not _simulated(one)]
     return "\n".join(lines) + "\n"
+
+
+def _comments(name: str, values: Mapping[str, float]) -> list[str]:
+    """What the numbers of an effect mean."""
+    if name != "unlisted_force":
+        return [f"# {EFFECTS[name].law}"]
+    kind = f"{values[EFFECTS[name].rows['kind'].name]:.0f}"
+    table = [[cell.strip() for cell in line.split("|")] for line in (MODULES[name].__doc__ or "").splitlines()]
+    meaning = next(row[2:4] for row in table if len(row) > 3 and kind in row[1].split(", "))
+    return [f"# a force that has no name: {meaning[0]}; its numbers c00, c01, ...: {meaning[1]}"]
 
 
 def _simulated(one: Finding) -> bool:
@@ -99,14 +112,14 @@ def _name(one: Finding) -> str:
     return f"{depends}: {_why_not(one)}" if _why_not(one) else depends
 
 
-def write(diagnosis: Diagnosis, folder: Path) -> list[Path]:
+def write(diagnosis: Diagnosis, folder: Path, asked: Asked = PLAIN) -> list[Path]:
     """Write all files into `folder`, each whole or not at all; returns their places."""
     from sim2real.diagnose.report.page import page
 
     folder.mkdir(parents=True, exist_ok=True)
     texts = {
         "diagnosis.json": json.dumps(as_dict(diagnosis), indent=1, allow_nan=False) + "\n",
-        "report.html": page(diagnosis),
+        "report.html": page(diagnosis, asked),
         "effects.toml": effects_toml(diagnosis),
     }
     return [write_text_whole(folder / name, text) for name, text in texts.items()]

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from puckpilot_env.parameters import BY_NAME
+from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.explain import Explained
 from sim2real.diagnose.finding import Account, Finding, Parting
 from sim2real.diagnose.formula import Formula
 from sim2real.diagnose.glide import picture as glides
 from sim2real.diagnose.glide.problem import GlideProblem
 from sim2real.diagnose.glide.readable import readable as glide_formula
+from sim2real.diagnose.plain_words import piece
 from sim2real.diagnose.problem import Problem
 from sim2real.diagnose.wall import picture as bounces
 from sim2real.diagnose.wall.problem import WallProblem
@@ -66,13 +69,25 @@ def _said(problem: Problem, found: Explained, formula: Formula, use: np.ndarray)
 
 def _by_launch(problem: Problem, found: Explained) -> Parting:
     """The rms residual of each launch, for a regime of which nothing finer is drawn."""
-    every = np.arange(problem.clusters)
     live = np.flatnonzero(problem.freedom > 0)
-    sizes = []
-    for values in (found.baseline.values, found.final.values):
-        left = problem.residuals(values, (), every)
-        squares = np.bincount(left.cluster, left.r**2, problem.clusters)[live]
-        sizes.append(np.sqrt(squares / problem.freedom[live])[:, None])
+    before = _squares(problem, found.baseline.values)
+    after = _squares(problem, found.law.values) if found.unlisted is None else _squares_of_family(problem, found)
+    sizes = [np.sqrt(np.maximum(some[live], 0.0) / problem.freedom[live])[:, None] for some in (before, after)]
     std = 1.0 / np.sqrt(2.0 * problem.freedom[live])[:, None]
-    by = {"launch, in order of time": live.astype(float)}
-    return Parting("rms residual", "units of the sensor's noise", ("rms",), sizes[0], sizes[1], std, by)
+    by = {f"{piece(problem.regime)}, in order of time": live.astype(float)}
+    return Parting("rms residual", "times the noise", ("rms",), sizes[0], sizes[1], std, by)
+
+
+def _squares(problem: Problem, values: Mapping[str, float]) -> np.ndarray:
+    """Sums of squares (clusters,) that a law of parameters leaves of each launch."""
+    left = problem.residuals(values, (), np.arange(problem.clusters))
+    return np.bincount(left.cluster, left.r**2, problem.clusters)
+
+
+def _squares_of_family(problem: Problem, found: Explained) -> np.ndarray:
+    """Sums of squares (clusters,) that the final law leaves of each launch, its smooth part and all."""
+    assert found.unlisted is not None
+    grams = found.columns.grams
+    columns = grams.columns((*found.law.free, *found.unlisted.columns))
+    left = gram.losses(grams, columns, found.theta, np.arange(grams.clusters))
+    return np.bincount(problem.units.cluster, left, problem.clusters)

@@ -5,46 +5,84 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from sim2real.diagnose.asked import PLAIN, Asked
 from sim2real.diagnose.diagnosis import Diagnosis
 from sim2real.diagnose.finding import Account, Estimate, Finding
+from sim2real.diagnose.plain_words import (
+    TO_THE_NOISE,
+    are_weights,
+    clause,
+    counted,
+    digits_of,
+    left_over,
+    times_noise,
+    unit_words,
+    with_gist,
+)
 
 MOST_LINES = 10
-SENTENCES = {
-    "agrees": "The simulator as shipped explains this recording to the noise of its sensors.",
-    "parameters_only": "The simulator's law explains this recording, with other numbers than shipped.",
-    "undetermined": "This recording cannot tell whether physics is missing",
-}
 
 
-def sentence(diagnosis: Diagnosis) -> str:
+def sentence(diagnosis: Diagnosis, asked: Asked = PLAIN) -> str:
     """The verdict in one sentence."""
     if diagnosis.verdict == "missing_physics":
-        names = " and ".join(dict.fromkeys(_name(one) for one in diagnosis.findings))
-        return f"The simulator lacks {names}."
+        return _lacking(diagnosis.findings)
     if diagnosis.verdict == "undetermined":
         reasons = [diagnosis.reason, *(each.undetermined for each in diagnosis.accounts)]
-        return f"{SENTENCES['undetermined']}: {next((r for r in reasons if r), 'nothing in it tells')}."
+        why = next((r for r in reasons if r), "nothing in it tells")
+        return f"{_capital(asked.these)} cannot tell whether physics is missing: {why}."
     untold = " and ".join(each.regime for each in diagnosis.untold)
-    return SENTENCES[diagnosis.verdict] + (f" (Of the {untold} it cannot tell.)" if untold else "")
+    return _explained(diagnosis, asked) + (f" (Of the {untold} it cannot tell.)" if untold else "")
+
+
+def _explained(diagnosis: Diagnosis, asked: Asked) -> str:
+    """That nothing is missing, and the regimes in which more than noise is left all the same."""
+    left = {each.regime: times_noise(each.proof) for each in diagnosis.accounts}
+    more = [f"in the {regime} {left_over(many)}" for regime, many in left.items() if many and many > TO_THE_NOISE]
+    if diagnosis.verdict == "parameters_only":
+        said = f"The simulator's law explains {asked.these}, with other numbers than {_own(asked)}"
+    else:
+        said = f"{asked.simulator} explains {asked.these}{'' if more else ' to the noise of the sensors'}"
+    return f"{said}, but {' and '.join(more)}." if more else f"{said}."
+
+
+def _own(asked: Asked) -> str:
+    return "your baseline's" if asked.baseline else "shipped"
+
+
+def _lacking(findings: Sequence[Finding]) -> str:
+    """All that is missing; faults of the sensors last, for they are no physics of the table."""
+    faults = [f"{clause(one.mechanism)} ({one.mechanism})" for one in findings if one.regime == "sensing"]
+    names = list(dict.fromkeys(_name(one) for one in findings if one.regime != "sensing"))
+    parts = [*faults]
+    if len(names) > 1:
+        listed = ", ".join(f"({k}) {name}" for k, name in enumerate(names, 1))
+        parts.insert(0, f"the simulator lacks {len(names)} things: {listed}")
+    elif names:
+        parts.insert(0, f"the simulator lacks {names[0]}")
+    return _capital("; ".join(parts)) + "."
 
 
 def _name(one: Finding) -> str:
     if one.mechanism == "unlisted":
-        return f"something unlisted in the {one.regime} that depends on {' and '.join(one.depends_on)}"
-    also = f" (or {', '.join(one.also_possible)})" if one.also_possible else ""
-    return f"{one.mechanism}{also}"
+        depends = " and ".join(one.depends_on)
+        return f"something unlisted in the {one.regime}" + (f" that depends on {depends}" if depends else "")
+    also = f" or, which cannot be told from it, {' or '.join(one.also_possible)}" if one.also_possible else ""
+    return with_gist(one.mechanism) + also
 
 
-def summary(diagnosis: Diagnosis, written: Sequence[Path]) -> list[str]:
+def summary(diagnosis: Diagnosis, written: Sequence[Path], asked: Asked = PLAIN) -> list[str]:
     """At most MOST_LINES lines: the verdict, each finding, the baseline's numbers, the proof, the files."""
-    lines = [sentence(diagnosis)]
+    lines = [sentence(diagnosis, asked)]
     lines += [f"  {one.mechanism}: {_numbers(one)}" for one in diagnosis.findings[:3]]
     lines += [_baseline(each) for each in diagnosis.accounts if each.baseline]
     proof = diagnosis.proof
     if proof is not None:
+        found = f"{1e3 * proof.after_m:.2f} mm with the law, " if diagnosis.findings else ""
+        tried = counted(proof.pieces, "untouched piece", "untouched pieces")
         lines.append(
-            f"  held out: {1e3 * proof.before_m:.2f} mm before, {1e3 * proof.after_m:.2f} mm after, "
-            f"{1e3 * proof.floor_m:.2f} mm is the sensors' noise ({proof.pieces} launches)"
+            f"  held out: {1e3 * proof.before_m:.2f} mm with the refitted baseline, {found}"
+            f"{1e3 * proof.floor_m:.2f} mm is what the sensors' noise alone leaves ({tried})"
         )
     if diagnosis.next_recording:
         lines.append(f"  next: {diagnosis.next_recording}")
@@ -53,8 +91,11 @@ def summary(diagnosis: Diagnosis, written: Sequence[Path]) -> list[str]:
 
 
 def _numbers(one: Finding) -> str:
+    if one.parameters and are_weights(one.parameters):
+        return f"{one.formula}; its {len(one.parameters)} numbers are in diagnosis.json"
     shown = list(one.parameters.items())[:3]
-    return f"{one.formula}; " + ", ".join(f"{name} {_interval(value)}" for name, value in shown)
+    more = f" and {len(one.parameters) - 3} more" if len(one.parameters) > 3 else ""
+    return f"{one.formula}; " + ", ".join(f"{name} {_interval(value)}" for name, value in shown) + more
 
 
 def _baseline(each: Account) -> str:
@@ -62,5 +103,9 @@ def _baseline(each: Account) -> str:
 
 
 def _interval(one: Estimate) -> str:
-    unit = "" if one.unit == "1" else f" {one.unit}"
-    return f"{one.value:.4g} [{one.low:.4g}, {one.high:.4g}]{unit}"
+    value, low, high = digits_of(one)
+    return f"{value} [{low}, {high}] {unit_words(one.unit)}".rstrip()
+
+
+def _capital(words: str) -> str:
+    return words[:1].upper() + words[1:]

@@ -10,6 +10,7 @@ import numpy as np
 
 from sim2real.study.scoring import SILENT, Score
 
+FEWEST = 5  # cases or numbers, with fewer of which a bar is neither reached nor missed
 LONG = 60.0  # s of a recording, from which on the stricter bar for one effect holds
 
 
@@ -27,13 +28,18 @@ class Figure:
 
     @property
     def reached(self) -> bool | None:
-        """Whether it does; None where there was nothing to measure."""
-        return None if self.value is None else self._within(self.value)
+        """Whether it does; None where there was too little to measure."""
+        return None if self.value is None or self.too_few else self._within(self.value)
+
+    @property
+    def too_few(self) -> bool:
+        """Whether something was measured, but so little that its value is an accident."""
+        return 0 < self.count < FEWEST
 
     @property
     def sure(self) -> bool | None:
-        """Whether the whole interval says the same as the value; None where there was nothing to measure."""
-        if self.value is None:
+        """Whether the whole interval says the same as the value; None where there was too little to measure."""
+        if self.value is None or self.too_few:
             return None
         if self._within(self.value):
             return self._within(self.low) and self._within(self.high)

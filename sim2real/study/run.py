@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -49,7 +50,9 @@ def run_study(
     from baselines.commands.options import progress_bar
     from sim2real.study.peer import PEER, can_be_asked
 
-    _claim(folder, plan, tool, heldout)
+    note = _claim(folder, plan, tool, heldout)
+    if note:
+        print(note, file=sys.stderr)
     with progress_bar("cases made") as progress:
         labels = make_cases(plan, folder, workers, progress)
     with progress_bar("cases diagnosed") as progress:
@@ -74,9 +77,10 @@ def run_study(
     return study
 
 
-def _claim(folder: Path, plan: Plan, tool: Sequence[str] | None, heldout: bool) -> None:
-    """Write down what the folder holds; ValueError where it holds something else. More cases of a study are welcome."""
-    note = folder / "plan.json"
+def _claim(folder: Path, plan: Plan, tool: Sequence[str] | None, heldout: bool) -> str:
+    """Write down what the folder holds; ValueError where it holds something else. Another number of cases of the same
+    study is welcome; what that does to the files there is returned in a line, "" where nothing."""
+    note, told = folder / "plan.json", ""
     wanted = {**plan.as_dict(), "tool": tool, "heldout": heldout, "code": code_version(ROOT)}
     if note.exists():
         there = json.loads(note.read_text())
@@ -84,5 +88,9 @@ def _claim(folder: Path, plan: Plan, tool: Sequence[str] | None, heldout: bool) 
         if other:
             parts = ", ".join(f"{name} {there.get(name)}" for name in other)
             raise ValueError(f"{folder} holds another study ({parts}); name another folder with --out")
+        before = there.get("cases")
+        if before != plan.cases and (folder / "study.json").exists():
+            told = f"{folder} holds this study with {before} cases: study.json and confusion.png will tell {plan.cases}"
     folder.mkdir(parents=True, exist_ok=True)
     write_text_whole(note, json.dumps(wanted) + "\n")
+    return told

@@ -55,6 +55,22 @@ def test_match_in_words(capsys) -> None:
     assert any(line.split()[:2] == ["still", str(result.wins[1])] for line in words.splitlines() if line.strip())
 
 
+@pytest.mark.parametrize(
+    "module, words", [(match, ["still", "random"]), (tournament, ["still", "random", "--out", "o"])]
+)
+def test_what_a_file_switches_on_is_said(module, words, tmp_path: Path, capsys, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "effects.toml"
+    file.write_text(
+        'format = "puckpilot-effects/1"\n[effects.table_tilt]\ntilt_x = 0.02\n# not in the simulator: clock_drift\n'
+    )
+    call(module, *words, "--games", "2", "--effects", str(file), *DRILL)
+    told = capsys.readouterr().out
+    assert "effect on: table_tilt (tilt_x 0.02)" in told and "not switched on: clock_drift" in told
+    call(module, *words, "--games", "2", "--effects", str(file), "--json", *DRILL)
+    json.loads(capsys.readouterr().out)
+
+
 def test_a_match_without_a_decision_claims_nothing(capsys) -> None:
     assert call(match, "still", "still", "--games", "2", "--variant", "match-v0") == 0
     assert "No game of 2 was decisive" in capsys.readouterr().out

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import tomllib
 from pathlib import Path
 
 import pytest
 
-from puckpilot_env.effects_file import effect_values
+from puckpilot_env.effects_file import described, effect_values
 
 GOOD = """
 format = "puckpilot-effects/1"
@@ -36,6 +37,23 @@ def test_a_file_comes_to_the_simulator_s_names(tmp_path: Path) -> None:
 def test_a_mapping_does_too() -> None:
     assert effect_values({"friction_patch": {"x": 1, "extra": -0.1}}) == {"patch_x": 1.0, "patch_extra": -0.1}
     assert effect_values({}) == effect_values(None) == {}
+
+
+def test_what_a_toml_reader_makes_of_a_file_does_too() -> None:
+    assert effect_values(tomllib.loads(GOOD)) == {"friction": 0.09, "tilt_x": 0.02, "wall_mu": 0.11}
+    with pytest.raises(ValueError, match=r"^format is 'other'; expected"):
+        effect_values({**tomllib.loads(GOOD), "format": "other"})
+
+
+def test_a_file_is_told_in_lines(tmp_path: Path) -> None:
+    text = GOOD + "\n[effects.side_force]\ncoefficient = 0.0\n# not in the simulator: clock_drift of the sensing\n"
+    assert described(write(tmp_path, text)) == [
+        "effect on: table_tilt (tilt_x 0.02)",
+        "effect on: wall_friction_spin (mu 0.11)",
+        "in place of the defaults: friction 0.09",
+        "not switched on: clock_drift of the sensing",
+    ]
+    assert described(write(tmp_path, 'format = "puckpilot-effects/1"')) == ["no effect is on"]
 
 
 @pytest.mark.parametrize(

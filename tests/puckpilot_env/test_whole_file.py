@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from puckpilot_env.video import VideoWriter
-from puckpilot_env.whole_file import write_text_whole, write_whole
+from puckpilot_env.whole_file import check_folder, write_text_whole, write_whole
 
 ROOT = Path(__file__).resolve().parents[2]
 FILM = ["match", "still", "still", "--games", "2", "--variant", "match-v0", "--video"]
@@ -85,3 +85,8 @@ def test_what_a_killed_film_left_goes_with_the_next(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="no frames"), VideoWriter(tmp_path / "a.mp4"):
         pass
     assert not list(tmp_path.iterdir())
+
+
+def test_a_folder_is_made_and_left_empty(tmp_path):
+    check_folder(tmp_path / "a" / "b")
+    assert list((tmp_path / "a" / "b").iterdir()) == []

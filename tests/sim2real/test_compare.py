@@ -1,6 +1,8 @@
 """`compare`: right numbers on paths that the simulator would make, and one line of words when it cannot."""
 
 import json
+from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +10,9 @@ import pytest
 
 from puckpilot import main
 from puckpilot_env.physics import bounce, contact, glide
+from sim2real.compare import print_summary
 from sim2real.compare_predict import compare_pieces, predict_glide
+from sim2real.compare_summary import summarize
 from sim2real.diagnose.pieces import cut
 from sim2real.diagnose.sensor import Noise
 from sim2real.nominal import parameters
@@ -118,7 +122,33 @@ def test_a_gantry_alone_is_nothing_to_compare_and_no_crash(tmp_path, capsys):
     t = np.arange(5) / 100
     write_recording(tmp_path / "g", Recording("g", META, mallet=Stream({"t": t, "mallet_x": t, "mallet_y": t})))
     assert command(str(tmp_path / "g"), "--out", str(tmp_path)) == 0
-    assert "where they part most: nowhere that can be told" in capsys.readouterr().out
+    told = capsys.readouterr().out
+    assert "where they part most: nowhere that can be told" in told and "puckpilot diagnose says" in told
+
+
+def test_numbers_that_tell_little_are_said_to(tmp_path):
+    pieces = cut(recording := glides(0.1, 0.1, count=2))
+    values = parameters(recording)
+    found = compare_pieces(pieces, values)
+    few = summarize(recording, pieces, found, values)["notes"][-1]
+    assert few.startswith("medians of fewer than 10 pieces tell little (2 of glide)")
+    lost = {**found.unusable, "other": Counter({"unexplained events": 7})}
+    notes = summarize(recording, pieces, replace(found, unusable=lost), values)["notes"]
+    assert notes[-1].startswith("7 of 7 changes of motion are unexplained")
+
+
+def test_the_simulator_s_own_ratios_stand_beside_those_seen(capsys):
+    kept = {"median": 0.5, "low": 0.4, "high": 0.6}
+    part = dict.fromkeys(("error_mps", "restitution_normal", "restitution_tangential", "times_noise"), kept)
+    recording = glides(0.1, 0.1, count=2)
+    pieces, values = cut(recording), parameters(recording) | {"wall_restitution": 0.77, "mallet_restitution": 0.66}
+    summary = summarize(recording, pieces, compare_pieces(pieces, values), values)
+    print_summary({**summary, "wall": {"pieces": 20, **part}, "mallet": {"pieces": 20, **part}, "picture": ""})
+    rows = [line.replace("│", " ").split() for line in capsys.readouterr().out.splitlines()]
+    shown = [row[-1] for row in rows if row[:1] != ["where"] and "ratio" in row]
+    assert shown == ["0.77", "0.77", "0.66", "1.00"]
+    before, after, normal = np.array([-1.0, 0.5]), np.array([0.66, 0.5]), (1.0, 0.0)
+    assert contact.reflect(*before, 0.0, 0.0, *normal, 0.66) == pytest.approx(tuple(after))  # what that says
 
 
 @pytest.mark.parametrize("name", ["practice/null", "practice/tilt", "practice/sag", "ubc/play_a", "ubc/noise_a"])

@@ -1,4 +1,4 @@
-"""The air film under the puck: a drag in proportion to the speed."""
+"""The air film drags at the puck: a force in proportion to the speed."""
 
 from __future__ import annotations
 

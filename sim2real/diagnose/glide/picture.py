@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from puckpilot_env.parameters import BY_NAME
 from puckpilot_env.physics.effects import EFFECTS
-from sim2real.diagnose.binned import Binned, binned, half_band, over
+from sim2real.diagnose.binned import DRAWN, Binned, binned, half_band, over
 from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.engine.explain import Explained
 from sim2real.diagnose.finding import Curve, Parting
 from sim2real.diagnose.formula import Formula
 from sim2real.diagnose.glide.families import FAMILIES, Motion
+from sim2real.diagnose.glide.forces import accelerations
 from sim2real.diagnose.glide.problem import GlideProblem
-from sim2real.diagnose.glide.views import COORDINATES, View, listed_view
+from sim2real.diagnose.glide.views import COORDINATES, View, listed_view, varied
 from sim2real.diagnose.glide.windows import missing, motion, windows
+from sim2real.diagnose.interval import NORMAL_REACH
 
 SHORT_SPAN = 0.3  # s of a window, where what happens soon after a contact matters
 LAW_BINS = 30  # of a law's curve, which has no noise
@@ -40,25 +43,31 @@ def parting(problem: GlideProblem, found: Explained) -> Parting:
 
 
 def listed_curve(problem: GlideProblem, found: Explained, mechanism: str) -> Curve:
-    """What a listed mechanism adds, by what shows it best; the data freed of all else that was fitted."""
+    """What a listed mechanism adds, by what shows it best, all else that it depends on held fixed; the data are as far
+    off that as they are off the whole law."""
     values = dict(found.final.values)
-    rows = EFFECTS[mechanism].row_names
-    without = {**values, **{name: BY_NAME[name].default for name in rows}}
-    free = [name for name in found.final.free if name in rows]
+    free = [name for name in found.final.free if name in EFFECTS[mechanism].row_names]
     some = windows(problem.data)
     seen, look = motion(problem, some, values), listed_view(mechanism, values)
-    smooth = _smooth_force(problem, found)
-    rest, left = (missing(problem, some, each, smooth) for each in (without, values))
+    left = look.of(seen, missing(problem, some, values, _smooth_force(problem, found)))
+    x, std = look.coordinate(seen), np.hypot(*(look.direction(seen) * some.std).T)
+    points = binned(x, left, std)
     index = [found.final.free.index(name) for name in free]
     spread = found.final.covariance[np.ix_(index, index)]
-    slopes = []
-    for name, size in zip(free, np.sqrt(np.diag(spread)), strict=True):
-        more = missing(problem, some, {**values, name: _aside(name, values[name], size)}, smooth)
-        slopes.append(look.of(seen, left - more) / (_aside(name, values[name], size) - values[name]))
-    columns = np.stack(slopes, axis=1) if slopes else np.zeros((len(left), 0))
-    x, std = look.coordinate(seen), np.hypot(*(look.direction(seen) * some.std).T)
-    law = binned(x, look.of(seen, rest - left), std, LAW_BINS)
-    return _curve(look, law, half_band(law, std, columns, spread), binned(x, look.of(seen, rest), std))
+
+    def added(to: np.ndarray, law: Mapping[str, float]) -> np.ndarray:
+        at = varied(mechanism, values, seen, to)
+        plain = {**values, **{name: BY_NAME[name].default for name in EFFECTS[mechanism].row_names}}
+        return look.of(at, accelerations(law, at) - accelerations(plain, at))
+
+    grid = np.linspace(float(x.min()), float(x.max()), DRAWN)
+    law, slopes = added(grid, values), np.zeros((DRAWN, len(free)))
+    for k, (name, size) in enumerate(zip(free, np.sqrt(np.diag(spread)), strict=True)):
+        aside = _aside(name, values[name], size)
+        slopes[:, k] = (added(grid, {**values, name: aside}) - law) / (aside - values[name])
+    half = NORMAL_REACH * np.sqrt(np.maximum(np.einsum("gi,ij,gj->g", slopes, spread, slopes), 0.0))
+    drawn = replace(points, y=points.y + added(points.x, values))
+    return _curve(look, replace(points, x=grid, y=law), half, drawn)
 
 
 def smooth_curve(problem: GlideProblem, found: Explained, law: Law, formula: Formula, looks: list[View]) -> Curve:

@@ -93,7 +93,35 @@ def listed_view(mechanism: str, values: Mapping[str, float]) -> View:
     if mechanism == "friction_patch":
         x, y = float(values["patch_x"]), float(values["patch_y"])
         return View("distance from the middle of the patch [m]", distance(x, y), *DIRECTIONS["along"])
+    return view(*_names(mechanism, values))
+
+
+def _names(mechanism: str, values: Mapping[str, float]) -> tuple[str, str]:
     if mechanism == "table_warp":
         axis = "x" if abs(values["warp_xx"]) > abs(values["warp_yy"]) else "y"
-        return view(axis, axis)
-    return view(*LISTED[mechanism])
+        return axis, axis
+    return LISTED[mechanism]
+
+
+def varied(mechanism: str, values: Mapping[str, float], usual: Motion, x: np.ndarray) -> Motion:
+    """Motions (n,) that have `x` (n,) as the coordinate of the mechanism's view, and are one in all else: at the
+    table's middle, along its x, with the median of the speeds and times of `usual`."""
+    n = len(x)
+    place, velocity = np.tile(0.5 * usual.size, (n, 1)), np.tile([float(np.median(speed(usual))), 0.0], (n, 1))
+    t = np.full(n, float(np.median(usual.t)))
+    if mechanism == "friction_patch":
+        place = np.stack([values["patch_x"] + x, np.full(n, values["patch_y"])], axis=1)
+    else:
+        match _names(mechanism, values)[0]:
+            case "x":
+                place[:, 0] = x
+            case "y":
+                place[:, 1] = x
+            case "speed":
+                velocity[:, 0] = x
+            case "heading":
+                velocity = velocity[:, :1] * np.stack([np.cos(np.radians(x)), np.sin(np.radians(x))], axis=1)
+            case "time":
+                t = x
+    never = np.full(n, np.nan)
+    return Motion(t, place, velocity, never, never, never, usual.size)

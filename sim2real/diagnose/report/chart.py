@@ -117,8 +117,16 @@ class Chart:
         middle = (TOP + bottom) / 2
         found.append(f'<path d="M{LEFT} {TOP}V{bottom}H{right}" fill="none" stroke="{INK}"/>')
         found.append(f'<text x="{(LEFT + right) / 2}" y="{self.height - 5}" text-anchor="middle">{text(self.x)}</text>')
-        found.append(f'<text transform="translate(11 {middle}) rotate(-90)" text-anchor="middle">{text(self.y)}</text>')
+        for k, line in enumerate(self._y_lines()):
+            place = f'transform="translate({11 + 12 * k} {middle}) rotate(-90)" text-anchor="middle"'
+            found.append(f"<text {place}>{text(line)}</text>")
         return "".join(found)
+
+    def _y_lines(self) -> list[str]:
+        """The label of the upright axis, its unit on a line of its own where both are too long for one."""
+        room = self.height - BOTTOM + TOP
+        name, bracket, unit = self.y.partition(" [")
+        return [name, f"[{unit}"] if bracket and LETTER * len(self.y) > room else [self.y]
 
     def _x_ticks(self) -> list[tuple[float, str]]:
         if self.ticks:

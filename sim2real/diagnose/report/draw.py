@@ -11,6 +11,8 @@ from sim2real.diagnose.report.words import number
 
 SURE = 2.0  # standard errors that an error bar shows, and from which an arrow is coloured
 CELLS = 10  # of the map, along the table
+MOST_ARROWS = 0.9  # share of the arrows that are drawn in full, the longest of them a cell long
+LONGEST = 2.0  # cells, at which longer ones are cut
 FEWEST = 3  # pieces of a cell
 SAME = 0.02  # of the noise, by which before and after may differ and be one
 
@@ -76,17 +78,17 @@ def _parting_chart(parting: Parting, label: str, component: int) -> str:
 
 
 def map_pictures(parting: Parting) -> dict[str, tuple[str, float]]:
-    """Mean missing vectors by place on the table, before and after, to one scale: picture and longest vector."""
+    """Mean missing vectors by place on the table, before and after, to one scale: picture, and what is a cell long."""
     both = {"before": parting.before, "after": parting.after}
     if unchanged(parting):
         both = {"refitted": parting.after}
     found = {name: arrows(parting, values) for name, values in both.items()}
-    sizes = {name: float(np.hypot(*some[1].T).max(initial=0.0)) for name, some in found.items()}
-    scale = max(sizes.values()) or 1.0
-    return {name: (_map(parting, name, some, scale, sizes[name]), sizes[name]) for name, some in found.items()}
+    sizes = np.concatenate([np.hypot(*some[1].T) for some in found.values()])
+    scale = (float(np.quantile(sizes, MOST_ARROWS)) if len(sizes) else 0.0) or 1.0
+    return {name: (_map(parting, name, some, scale), scale) for name, some in found.items()}
 
 
-def _map(parting: Parting, name: str, found, scale: float, longest: float) -> str:
+def _map(parting: Parting, name: str, found, scale: float) -> str:
     assert parting.size is not None
     length, width = parting.size
     edge = 0.05 * width
@@ -94,8 +96,17 @@ def _map(parting: Parting, name: str, found, scale: float, longest: float) -> st
     chart.line([0, length, length, 0, 0], [0, 0, width, width, 0], INK, thick=1.0)
     for place, vector, sure in zip(*found, strict=True):
         colour = (BEFORE if name == "before" else AFTER) if sure else FAINT
-        chart.arrow(place, vector / scale * length / CELLS, colour)
-    return chart.svg(f"map of the table, {name}: mean {parting.what} by place, up to {number(longest)} {parting.unit}")
+        chart.arrow(place, _within(place, vector / scale * length / CELLS, parting.size), colour)
+    most = f"most below {number(scale)} {parting.unit}"
+    return chart.svg(f"map of the table, {name}: mean {parting.what} by place, {most}")
+
+
+def _within(place: np.ndarray, arrow: np.ndarray, size: tuple[float, float]) -> np.ndarray:
+    """An arrow, cut where it would leave the table or be longer than LONGEST cells."""
+    room = np.where(arrow > 0.0, np.array(size) - place, place)
+    share = room / np.maximum(np.abs(arrow), 1e-12)
+    longest = LONGEST * size[0] / CELLS / max(float(np.hypot(*arrow)), 1e-12)
+    return arrow * float(np.clip(min(longest, *share), 0.0, 1.0))
 
 
 def arrows(parting: Parting, values: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

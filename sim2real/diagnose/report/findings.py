@@ -2,39 +2,45 @@
 
 from __future__ import annotations
 
-from puckpilot_env.physics.effects import EFFECTS, MODULES
+from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.engine.twins import NULL, PERMUTED
 from sim2real.diagnose.finding import Finding, Rival
+from sim2real.diagnose.plain_words import are_weights, chance, explained
 from sim2real.diagnose.report import words
 from sim2real.diagnose.report.draw import curve_picture
+from sim2real.diagnose.report.shapes import shape_in_words
 from sim2real.diagnose.report.words import number, text
 
 SHOWN = 5  # rivals before the rest is folded away
-TWINS = {
-    NULL: "null twin: the fitted baseline, and the sensor's noise",
-    PERMUTED: "permutation twin: the recording, with signs drawn piece by piece",
-}
+TWINS = {NULL: "null twin", PERMUTED: "permutation twin"}
+WORSE = ((0.0, "no worse"), (9.0, "a tie"), (30.0, "a little"), (100.0, "clearly"), (1000.0, "far"))
+HOPELESS = "hopelessly"
 
 
 def finding_section(one: Finding, index: int) -> str:
     """All that is known of one finding."""
     title = f"{index}. {text(one.mechanism)}, in the regime {text(one.regime)}"
     body = words.paragraph(text(_law_in_words(one))) + f'<code class="law">{text(one.formula)}</code>'
-    body += words.paragraph(_where(one)) + _ambiguous(one)
-    if one.parameters:
-        body += words.estimates("Parameters", one.parameters.items())
+    body += words.paragraph(_where(one)) + _ambiguous(one) + _parameters(one)
     body += _curve(one) + _proof(one) + _twins(one) + _rivals(one.rivals)
     return words.section(f"finding-{index}", title, body)
 
 
 def _law_in_words(one: Finding) -> str:
     depends = f"It depends on {' and '.join(one.depends_on)}." if one.depends_on else ""
-    if one.mechanism in MODULES:
-        first = (MODULES[one.mechanism].__doc__ or "").strip().split("\n\n")[0]
-        return f"{' '.join(first.split())} {depends}"
+    told = explained(one.mechanism)
     if one.mechanism == "unlisted":
-        return f"No mechanism that the simulator knows explains this. {depends}"
-    return depends
+        told = "No mechanism that the simulator knows explains this."
+    return " ".join(part for part in (told, depends, shape_in_words(one.formula)) if part)
+
+
+def _parameters(one: Finding) -> str:
+    if not one.parameters:
+        return ""
+    table = words.estimates("Parameters", one.parameters.items())
+    if are_weights(one.parameters):
+        return words.folded(f"{len(one.parameters)} numbers, the weights of the law's shapes; in diagnosis.json", table)
+    return table
 
 
 def _where(one: Finding) -> str:
@@ -69,15 +75,21 @@ def _curve(one: Finding) -> str:
     )
     caption = (
         "The law with its 95 % band, and what the recording shows once all else that was fitted is taken off: means "
-        "of whole stretches of motion, ±2 standard errors."
+        "of whole stretches of motion, ±2 standard errors. What the axis does not show is held fixed, or the mean is "
+        "taken over it; where the law depends on too much for that, what was seen is drawn against what it foretells."
     )
     return words.picture(curve_picture(curve, alt), caption, "curve")
 
 
 def _proof(one: Finding) -> str:
+    fall = f"from {number(one.before)} without this law to {number(one.after)} with all that was found"
+    if one.regime == "sensing":
+        what = "what this fault makes wrong, each miss in units of its own error, falls"
+    else:
+        what = f"residuals of the {text(one.regime)}, in units of what noise alone leaves, fall"
     return words.paragraph(
-        f"On launches that no fit saw, residuals of the regime fall from {number(one.before)} to "
-        f"{number(one.after)} times the sensor's noise. Chance that noise alone gains as much: p = {one.p_value:.1e}."
+        f"On launches that no fit saw, {what} {fall}. Chance that noise alone gains as much: "
+        f"{text(chance(one.p_value))}."
     )
 
 
@@ -89,21 +101,29 @@ def _twins(one: Finding) -> str:
         [TWINS[name], number(twin.before), number(twin.after), f"in {twin.named} of {twin.of}"]
         for name, twin in one.twins.items()
     ]
-    note = (
-        "The same laws and the same search where nothing is to be found: rms residuals of untouched launches in units "
-        "of the noise, and whether the search names something"
+    note = "The same laws and the same search in twins: what is left of untouched launches, in units of the noise"
+    table = words.table(note, ("data", "without the law", "with it", "the search names something"), rows, (1, 2, 3))
+    return table + words.paragraph(
+        "A null twin is the simulator with its refitted numbers and fresh noise; a permutation twin is the recording's "
+        "own misses, each glide's or bounce's with a sign drawn by lot. Neither holds a law: the law should gain "
+        "nothing there, and the search should name nothing. One name among six is an accident that happens; more of "
+        "them speak against the name found in the recording."
     )
-    return words.table(note, ("data", "before", "after", "named"), rows, (1, 2, 3))
 
 
 def _rivals(rivals: tuple[Rival, ...]) -> str:
     if not rivals:
         return ""
-    rows = [[text(one.mechanism), number(one.loss), text(one.reason)] for one in rivals]
-    head = ("rival", "worse by", "why it lost")
+    rows = [[text(one.mechanism), number(one.loss), how_much(one.loss), text(one.reason)] for one in rivals]
+    head = ("rival", "worse by", "that is", "why it lost")
     note = "Rivals, by how much worse they foretell unseen pieces (sum of squares in units of the noise)"
     first = words.table(note, head, rows[:SHOWN], (1,))
     if len(rows) <= SHOWN:
         return first
     rest = words.table("Further rivals", head, rows[SHOWN:], (1,))
-    return f"{first}<details><summary>{len(rows) - SHOWN} more rivals</summary>{rest}</details>"
+    return first + words.folded(f"{len(rows) - SHOWN} more rivals", rest)
+
+
+def how_much(loss: float) -> str:
+    """How much worse a rival is, in words: noise alone makes differences of some units."""
+    return next((said for most, said in WORSE if loss < most), HOPELESS)

@@ -2,33 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterable
 
+from sim2real.diagnose.asked import PLAIN, Asked
 from sim2real.diagnose.diagnosis import Diagnosis
-from sim2real.diagnose.finding import Proof, Sight
+from sim2real.diagnose.finding import Account
+from sim2real.diagnose.plain_words import TO_THE_NOISE, left_over, times_noise
 from sim2real.diagnose.report import words
 from sim2real.diagnose.report.bars import proof_bars
 from sim2real.diagnose.report.findings import finding_section
+from sim2real.diagnose.report.glossary import glossary
 from sim2real.diagnose.report.regimes import regime_section
+from sim2real.diagnose.report.sensor import sensor_section
 from sim2real.diagnose.report.style import CSS
 from sim2real.diagnose.report.words import number, text
 from sim2real.diagnose.summary import sentence
+from sim2real.diagnose.untested import untested
 
-ALWAYS = "Nothing further is needed to name what this recording shows; record again to see whether it lasts."
+ALWAYS = "Nothing further is needed to name what was recorded; record again to see whether it lasts."
+OPEN = "No single recording is known to settle it: more launches, all over the table and at all speeds, tell more."
 
 
-def page(diagnosis: Diagnosis) -> str:
+def page(diagnosis: Diagnosis, asked: Asked = PLAIN) -> str:
     """The diagnosis as one HTML page that needs nothing beside itself."""
-    said = sentence(diagnosis)
-    names = ", ".join(text(one.recording) for one in diagnosis.sights)
+    said = sentence(diagnosis, asked)
+    missing = untested(diagnosis)
     parts = [
         f'<header><p class="verdict">Diagnosis: {text(diagnosis.verdict.replace("_", " "))}</p>'
-        f"<h1>{text(said)}</h1><p>Recordings: {names or 'none'}</p></header>",
-        _overview(diagnosis),
+        f"<h1>{text(said)}</h1>{_names(diagnosis, asked)}{glossary() if diagnosis.accounts else ''}</header>",
+        _overview(diagnosis, missing),
         *(finding_section(one, k) for k, one in enumerate(diagnosis.findings, 1)),
         _next(diagnosis),
-        *(regime_section(each) for each in diagnosis.accounts),
-        _sensor(diagnosis.sights),
+        *(regime_section(each, asked, missing) for each in diagnosis.accounts),
+        sensor_section(diagnosis),
     ]
     return (
         '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
@@ -37,75 +43,66 @@ def page(diagnosis: Diagnosis) -> str:
     )
 
 
-def _overview(diagnosis: Diagnosis) -> str:
-    rows = [
-        [
-            f'<a href="#regime-{text(each.regime)}">{text(each.regime)}</a>',
-            text(", ".join(one.mechanism for one in each.findings) or _silent(each.undetermined)),
-            *_sizes(each.proof),
-        ]
-        for each in diagnosis.accounts
-    ]
+def _names(diagnosis: Diagnosis, asked: Asked) -> str:
+    names = asked.recordings or [one.recording for one in diagnosis.sights]
+    what = "Recordings" if len(names) > 1 else "Recording"
+    return words.paragraph(f"{what}: {', '.join(map(text, names))}" if names else "")
+
+
+def _overview(diagnosis: Diagnosis, missing: dict[str, str]) -> str:
+    rows = [_row(each, missing) for each in diagnosis.accounts]
+    there = {each.regime for each in diagnosis.accounts}
+    rows += [[text(name), _not_tested(why), *NO_SIZES] for name, why in missing.items() if name not in there]
     body = ""
-    if rows:
-        head = ("regime", "missing", "before", "after", "launches")
-        caption = "Residuals of untouched launches, rms in units of the sensor's noise (1 is perfect)"
+    if diagnosis.reason:
+        body += words.paragraph(f"Nothing can be said: {text(diagnosis.reason)}.") + _list(diagnosis.notes)
+    if diagnosis.accounts:
+        head = ("regime", "missing", "refitted baseline", "with the law", "tried on")
+        caption = "What is left of untouched launches, in units of what the sensor's noise alone leaves (1 is perfect)"
         body += words.table(caption, head, rows, (2, 3, 4))
     if diagnosis.proof is not None:
-        body += "<p>Over the regimes that lack something, or over all where none does:</p>"
-        body += proof_bars(diagnosis.proof, "Held-out residuals")
-    if diagnosis.reason:
-        body += words.paragraph(f"Nothing can be said: {text(diagnosis.reason)}.")
+        found = bool(diagnosis.findings)
+        over = "Over the regimes that lack something:" if found else "Over all regimes:"
+        body += words.paragraph(over) + proof_bars(diagnosis.proof, "Held-out residuals", found)
     return words.section("overview", "How far simulator and recording are apart", body)
 
 
-def _silent(undetermined: str) -> str:
-    return f"undetermined: {undetermined}" if undetermined else "nothing"
+NO_SIZES = ("–", "–", "–")
 
 
-def _sizes(proof: Proof | None) -> list[str]:
-    if proof is None or not proof.floor_m:
-        return ["–", "–", "–"]
-    return [number(proof.before_m / proof.floor_m), number(proof.after_m / proof.floor_m), str(proof.pieces)]
+def _row(each: Account, missing: dict[str, str]) -> list[str]:
+    link = f'<a href="#regime-{text(each.regime)}">{text(each.regime)}</a>'
+    if each.regime in missing:
+        return [link, _not_tested(missing[each.regime]), *NO_SIZES]
+    names = ", ".join(one.mechanism for one in each.findings)
+    said = f"undetermined: {each.undetermined}" if each.undetermined else "nothing"
+    return [link, text(names or said), *_sizes(each)]
+
+
+def _not_tested(why: str) -> str:
+    return text(f"not tested: {why}")
+
+
+def _sizes(each: Account) -> tuple[str, ...]:
+    after = times_noise(each.proof)
+    if after is None or each.proof is None:
+        return NO_SIZES
+    before = number(each.proof.before_m / each.proof.floor_m)
+    return before, number(after) if each.findings else "–", str(each.proof.pieces)
 
 
 def _next(diagnosis: Diagnosis) -> str:
-    open_ones = [one.next_recording for one in diagnosis.accounts if one.next_recording]
-    items = "".join(f"<li>{text(one)}</li>" for one in dict.fromkeys(open_ones))
-    if not items and diagnosis.verdict == "undetermined":
-        items = "<li>a longer recording: a minute or more of the puck in motion, all over the table</li>"
-    body = f'<ul class="next">{items}</ul>' if items else words.paragraph(ALWAYS)
-    return words.section("next", "What to record next", body)
+    open_ones = [diagnosis.remedy, *(one.next_recording for one in diagnosis.accounts)]
+    body = _list((one for one in open_ones if one), "next")
+    named = {each.regime: times_noise(each.proof) for each in diagnosis.accounts if each.findings}
+    more = [f"in the {name} {left_over(many)}" for name, many in named.items() if many and many > TO_THE_NOISE]
+    if more:
+        body += words.paragraph(text(f"What is named does not explain all: {'; '.join(more)}."))
+    if not body:
+        body = words.paragraph(OPEN if diagnosis.verdict == "undetermined" else ALWAYS)
+    return words.section("next", "What to do next", body)
 
 
-def _sensor(sights: tuple[Sight, ...]) -> str:
-    """A column a recording: two or three are usual, and many rows fit any screen."""
-    rows = [[name, *(of(one) for one in sights)] for name, of in SENSOR.items()]
-    head = ("", *(text(one.recording) for one in sights))
-    notes = "".join(f"<li>{text(one.recording)}: {text(note)}</li>" for one in sights for note in one.notes)
-    body = words.table("As told by the recordings themselves", head, rows, range(1, len(head))) if sights else ""
-    return words.section("sensor", "The sensor", body + (f"<ul>{notes}</ul>" if notes else ""))
-
-
-def _share(of: float) -> str:
-    return f"{100.0 * of:.2f} %"
-
-
-def _seen(one: Sight, shown: str) -> str:
-    """What only a camera that saw something can have."""
-    return shown if one.frames else "–"
-
-
-SENSOR: dict[str, Callable[[Sight], str]] = {
-    "duration [s]": lambda one: number(one.seconds),
-    "frames": lambda one: str(one.frames),
-    "noise of a position [mm]": lambda one: _seen(one, number(1e3 * one.noise_m)),
-    "noise of the clock [ms]": lambda one: _seen(one, number(1e3 * one.clock_s)),
-    "frames without the puck": lambda one: _seen(one, _share(one.dropped)),
-    "frames held": lambda one: _seen(one, _share(one.held)),
-    "frames wrong": lambda one: _seen(one, _share(one.wild)),
-    "launches": lambda one: str(one.launches),
-    "glides": lambda one: str(one.glides),
-    "hits": lambda one: str(one.hits),
-    "unexplained events": lambda one: str(one.unexplained),
-}
+def _list(items: Iterable[str], kind: str = "") -> str:
+    lines = "".join(f"<li>{text(one)}</li>" for one in dict.fromkeys(items))
+    return f'<ul class="{kind}">{lines}</ul>' if lines else ""

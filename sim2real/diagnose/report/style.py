@@ -10,6 +10,9 @@ h2 { font-size: 1.25rem; margin: 2rem 0 0.5rem; border-top: 2px solid var(--ink)
 h3 { font-size: 1.05rem; margin: 1.2rem 0 0.3rem; }
 .verdict { color: var(--soft); margin: 0; text-transform: uppercase; letter-spacing: 0.05em; font-size: 0.85rem; }
 ul.next { border-left: 4px solid var(--after); padding: 0.1rem 0.8rem 0.1rem 1.8rem; background: #f2f7fb; }
+dl.glossary { display: grid; grid-template-columns: max-content 1fr; gap: 0 0.8rem; margin: 0.4rem 0;
+  font-size: 0.9rem; color: var(--soft); }
+dl.glossary dt { font-weight: 600; } dl.glossary dd { margin: 0; }
 .open { border-left: 4px solid var(--before); padding: 0.1rem 0.8rem; background: #fdf5ef; }
 code.law { display: block; background: #f5f5f5; padding: 0.5rem 0.8rem; margin: 0.4rem 0; white-space: pre-wrap; }
 .scroll { overflow-x: auto; }

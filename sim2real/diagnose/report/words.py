@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from html import escape
 
 from sim2real.diagnose.finding import Estimate
+from sim2real.diagnose.plain_words import digits_of, unit_words
 
 
 def text(words: object) -> str:
@@ -18,14 +19,10 @@ def number(value: float) -> str:
     return f"{value:.4g}"
 
 
-def unit(of: str) -> str:
-    """A unit as print has it; nothing for a pure number."""
-    return "" if of == "1" else text(of.replace("^2", "²"))
-
-
 def estimate_cells(name: str, one: Estimate) -> list[str]:
-    """The cells of a row: name, value, unit, 95 % interval."""
-    return [text(name), number(one.value), f"{number(one.low)} … {number(one.high)}", unit(one.unit)]
+    """The cells of a row: name, value, 95 % interval, unit."""
+    value, low, high = digits_of(one)
+    return [text(name), value, f"{low} … {high}", text(unit_words(one.unit))]
 
 
 def table(caption: str, head: Sequence[str], rows: Iterable[Sequence[str]], numeric: Sequence[int] = ()) -> str:
@@ -48,6 +45,11 @@ def estimates(caption: str, some: Iterable[tuple[str, Estimate]]) -> str:
     """A table of fitted numbers."""
     rows = [estimate_cells(name, one) for name, one in some]
     return table(caption, ("parameter", "value", "95 % interval", "unit"), rows, (1, 2))
+
+
+def folded(summary: str, body: str) -> str:
+    """What is shown when one asks for it."""
+    return f"<details><summary>{summary}</summary>{body}</details>"
 
 
 def picture(svg: str, caption: str, kind: str = "") -> str:

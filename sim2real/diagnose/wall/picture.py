@@ -9,7 +9,7 @@ import numpy as np
 
 from puckpilot_env.parameters import BY_NAME
 from puckpilot_env.physics import bounce
-from sim2real.diagnose.binned import binned, half_band, over
+from sim2real.diagnose.binned import binned, half_band, is_rough, over, singles
 from sim2real.diagnose.contact_laws import UNIT
 from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.engine.explain import Explained
@@ -50,7 +50,8 @@ def parting(problem: WallProblem, found: Explained) -> Parting:
 
 
 def listed_curve(problem: WallProblem, found: Explained, mechanism: str) -> Curve:
-    """What is kept of the speed under the final law and in the data, by the coordinate that shows the mechanism."""
+    """What is kept of the speed under the final law and in the data, by the coordinate that shows the mechanism; what
+    is seen against what the law foretells, where that depends on more."""
     view = _listed_view(problem.data, mechanism)
     return _curve(problem, found, view)
 
@@ -124,10 +125,14 @@ def _curve(problem: WallProblem, found: Explained, view: View, formula: Formula 
     law, columns, spread = _kept(problem, found, at, safe)
     seen, std = d.split(d.after)[:, at] / safe, _std(problem)[:, at] / np.abs(safe)
     x, rows = view.coordinate[use], np.flatnonzero(use)
+    rough = not view.ticks and is_rough(x, law[rows], std[rows])
+    x_label, y_label = view.label, KEPT[at]
+    if rough and formula is None:  # a law of more than one thing is no curve over any
+        x, x_label, y_label = law[rows], f"{KEPT[at]}, by the law", f"{KEPT[at]}, as seen"
     points = binned(x, seen[rows], std[rows])
     if view.ticks:
         points = over(np.array([x == k for k in range(len(view.ticks)) if (x == k).any()]), x, seen[rows], std[rows])
-    shape = over(points.members, x, law[rows], std[rows])
+    shape = over(points.members if rough or view.ticks else singles(x), x, law[rows], std[rows])
     half = half_band(shape, std[rows], columns[rows], spread)
     said = None
     if formula is not None:
@@ -135,9 +140,9 @@ def _curve(problem: WallProblem, found: Explained, view: View, formula: Formula 
         beside = {name: found.final.values[name] + float(by) for name, by in moved}
         plain = problem.predicted({**found.final.values, **beside})[:, at]
         with_it = (plain + formula.form.field(formula.values)[:, at]) / safe
-        said = over(points.members, x, with_it[rows], std[rows]).y
+        said = over(shape.members, x, with_it[rows], std[rows]).y
     return Curve(
-        view.label, KEPT[at], shape.x, shape.y, shape.y - half, shape.y + half, points.x, points.y, points.error,
+        x_label, y_label, shape.x, shape.y, shape.y - half, shape.y + half, points.x, points.y, points.error,
         view.ticks, said,
     )  # fmt: skip
 

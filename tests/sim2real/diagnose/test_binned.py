@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sim2real.diagnose.binned import binned, half_band, over
+from sim2real.diagnose.binned import binned, half_band, is_rough, over, singles
 
 
 def test_bins_hold_equally_many_and_their_means_are_right():
@@ -40,3 +40,19 @@ def test_the_band_is_that_of_the_coefficients():
     bins = over(np.array([x == 0.0, x == 1.0]), x, x, np.ones(4))
     half = half_band(bins, np.ones(4), np.stack([np.ones(4), x], axis=1), np.diag([0.04, 0.09]))
     assert half == pytest.approx(1.96 * np.sqrt([0.04, 0.13]))
+
+
+def test_a_law_of_more_than_the_axis_shows_is_rough():
+    rng = np.random.default_rng(1)
+    x, other, std = rng.uniform(0.0, 1.0, 200), rng.uniform(0.0, 1.0, 200), np.full(200, 0.05)
+    assert not is_rough(x, np.sin(3.0 * x), std)
+    assert not is_rough(x, np.full(200, 0.8) + 1e-9 * other, std)  # a constant, but for rounding
+    assert is_rough(x, np.sin(3.0 * x) + other, std)
+
+
+def test_single_pieces_are_spread_over_the_axis():
+    x = np.concatenate([np.linspace(0.0, 0.1, 500), [np.nan, 1.0, 0.55]])
+    some = singles(x)
+    assert (some.sum(axis=1) == 1).all()
+    at = x[some.argmax(axis=1)]
+    assert (at[0], at[-1]) == (0.0, 1.0) and (np.diff(at) > 0.0).all() and len(at) < 30

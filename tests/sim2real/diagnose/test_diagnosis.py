@@ -87,6 +87,16 @@ def test_what_is_no_recording_gets_one_line(words, told, tmp_path, capsys):
     assert not (tmp_path / "out").exists()
 
 
+def test_a_place_that_cannot_be_written_to_is_told_before_the_work(tmp_path, capsys, monkeypatch):
+    make_recording(tmp_path / "table", Law(), "launches", 3, 3.0, camera=NOISE)
+    (tmp_path / "file").write_text("")
+    monkeypatch.setattr("sim2real.diagnose.diagnosis.diagnose", lambda *_: pytest.fail("diagnosed"))
+    for place in (tmp_path / "file", tmp_path / "file" / "below", Path("/proc/none")):
+        assert main(["diagnose", str(tmp_path / "table"), "--out", str(place)]) == 2
+        error = capsys.readouterr().err
+        assert f"cannot write to '{place}'" in error and error.count("\n") == 1
+
+
 @pytest.mark.parametrize("words", [["a", "../here/a"], ["a", "--holdout", "a"]])
 def test_a_folder_given_twice_proves_nothing(words, tmp_path, monkeypatch, capsys):
     (tmp_path / "here" / "a").mkdir(parents=True)

@@ -54,6 +54,14 @@ def test_two_findings_of_one_effect_make_one_table(tmp_path):
     assert _taken(tmp_path, *walls) == {"restitution_x0": 0.05, "restitution_y1": -0.03}
 
 
+def test_numbers_say_what_they_are_of(tmp_path):
+    force = {"unlisted_kind": 6.0, **{f"unlisted_{k:02}": 0.01 for k in range(14)}}
+    _taken(tmp_path, dataclasses.replace(PLAIN, regime="glide", mechanism="unlisted", values=force))
+    said = (tmp_path / "effects.toml").read_text().splitlines()
+    at = said.index("[effects.unlisted_force]")
+    assert said[at - 1].startswith("# a force that has no name: brake by x alone, by y alone; its numbers c00")
+
+
 def test_what_has_no_place_in_the_simulator_is_named(tmp_path):
     drift = dataclasses.replace(PLAIN, mechanism="clock_drift", depends_on=("time",), values={})
     assert _taken(tmp_path, drift) == {}

@@ -176,6 +176,13 @@ def test_a_bar_is_surely_reached_or_missed_where_the_whole_interval_says_so():
     assert share("x", [], 0.5).sure is None
 
 
+def test_a_few_cases_reach_and_miss_nothing():
+    four, five = (share("x", [False] * n, least=0.9) for n in (4, 5))
+    assert (four.reached, four.sure, four.too_few) == (None, None, True)
+    assert (five.reached, five.too_few) == (False, False)
+    assert not share("x", [], 0.5).too_few
+
+
 def made() -> list[Score]:
     right = answer(finding("table_tilt"))
     return [

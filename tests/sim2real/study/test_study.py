@@ -7,10 +7,12 @@ import json
 import shlex
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from sim2real.commands import study
+from sim2real.study.confusion import Confusion
 from sim2real.study.making import Plan, make_cases
 
 SCRIPT = """
@@ -60,7 +62,9 @@ def test_a_study_asks_blindly_scores_and_goes_on_where_it_stopped(tmp_path: Path
     assert (out / "confusion.png").stat().st_size > 5000
     with pytest.raises(ValueError, match=r"another study \(mechanism None\)"):
         call(*words, "--mechanism", "table_tilt")
+    capsys.readouterr()
     call("--cases", "4", *words[2:], "--json")  # more of the same is welcome
+    assert "holds this study with 3 cases: study.json and confusion.png will tell 4" in capsys.readouterr().err
     assert len(log.read_text().splitlines()) == 6
     plan = json.loads((out / "plan.json").read_text())
     (out / "plan.json").write_text(json.dumps({**plan, "code": "older"}))
@@ -77,7 +81,17 @@ def test_a_study_of_one_kind_counts_silence_as_right(tmp_path: Path, capsys: pyt
     assert figures["false alarms where nothing is missing"]["count"] == 2
     call(*words)
     alarms = next(line for line in capsys.readouterr().out.splitlines() if "false alarms" in line)
-    assert alarms.rstrip().endswith("reached, not sure")  # none of two
+    assert alarms.rstrip().endswith("too few cases")  # none of two
+
+
+@pytest.mark.parametrize(
+    "said, title",
+    [("undetermined", "said to be undetermined"), ("side_force", "taken for something else (rows truth, columns")],
+)
+def test_silence_is_no_mistaken_name(said: str, title: str):
+    counts = Confusion(("table_tilt",), (said, "table_tilt"), ((2, 3),))
+    told = study._confusion(SimpleNamespace(confusion=counts))  # pyright: ignore[reportArgumentType] - all it reads
+    assert told.title.startswith(title)
 
 
 def test_what_cannot_be_studied_is_said_in_one_line(tmp_path: Path):
@@ -85,5 +99,8 @@ def test_what_cannot_be_studied_is_said_in_one_line(tmp_path: Path):
         make_cases(Plan(1, 0, 2.0), tmp_path, 1, lambda done, total: None, root=tmp_path)
     with pytest.raises(ValueError, match=r"unknown mechanism 'gremlins'"):
         call("--cases", "1", "--out", str(tmp_path / "out"), "--mechanism", "gremlins")
+    with pytest.raises(ValueError, match=r"--tool nosuchtool: there is no such program"):
+        call("--cases", "1", "--out", str(tmp_path / "none"), "--tool", "nosuchtool -v")
+    assert not (tmp_path / "none").exists()
     with pytest.raises(ValueError, match=r"--cases is 0"):
         call("--cases", "0", "--out", str(tmp_path / "out"))

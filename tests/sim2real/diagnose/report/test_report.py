@@ -7,9 +7,13 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
+from sim2real.diagnose.asked import Asked
 from sim2real.diagnose.diagnosis import Diagnosis
 from sim2real.diagnose.files import as_dict, write
 from sim2real.diagnose.finding import Account, Curve, Estimate, Finding, Parting, Proof, Rival, Sight
+from sim2real.diagnose.report.chart import Chart
+from sim2real.diagnose.report.draw import map_pictures
+from sim2real.diagnose.report.findings import how_much
 from sim2real.diagnose.report.page import page
 
 VOID = {"meta", "br", "img", "link", "input", "hr"}
@@ -96,8 +100,11 @@ def test_every_verdict_has_its_page(verdict):
 
 
 def test_a_diagnosis_of_nothing_says_why():
-    read = Reader(page(Diagnosis((), "the puck never moves")))
-    assert "the puck never moves" in read.text and "What to record next" in read.text
+    nothing = Diagnosis((), "a and b disagree as two tables do", "diagnose each recording by itself", ("b: <old>",))
+    read = Reader(page(nothing, Asked(("a", "b"))))
+    assert "These recordings cannot tell whether physics is missing: a and b disagree as two tables do." in read.text
+    assert nothing.remedy in read.text and "b: <old>" in read.text and "Recordings: a, b" in read.text
+    assert read.sections == ["overview", "next"]
 
 
 @pytest.mark.parametrize("verdict", DIAGNOSES)
@@ -132,7 +139,7 @@ def test_the_numbers_are_those_of_the_diagnosis():
             assert f"{one[key]:.4g}" in text
     for key in ("before_m", "after_m", "floor_m"):
         assert f"{1e3 * words['heldout'][key]:.4g} mm" in text
-    assert f"from {words['findings'][0]['heldout']['before']:.4g} to" in text
+    assert f"from {words['findings'][0]['heldout']['before']:.4g} without this law to" in text
     assert "push by time" in text and "explains 99 %" in text
 
 
@@ -150,7 +157,74 @@ def test_the_sensor_is_told_by_recording():
     blind = replace(SIGHT, recording="blind", frames=0)
     read = Reader(page(replace(DIAGNOSES["agrees"], sights=(SIGHT, blind))))
     assert "noise of a position [mm] 0.61 –" in read.text
-    assert "frames without the puck 1.20 % –" in read.text and "frames 7380 0" in read.text
+    assert "frames without the puck 1.20 % –" in read.text and "camera no camera" in read.text
+    assert "launches 12 –" in read.text
+
+
+def test_what_was_not_recorded_is_not_tested():
+    """No word of agreement on a regime of which the recording shows nothing."""
+    blind = replace(SIGHT, frames=0)
+    gantry = Account("gantry", (), {}, True, Proof(0.004, 0.002, 0.001, 1))
+    read = Reader(page(Diagnosis((Account("sensing", (), {}, True, None), gantry), sights=(blind,))))
+    assert "Not tested: no camera frame shows a puck (frames.csv)." in read.text
+    assert "to the noise" not in read.text and "Yet, 2 times what noise alone makes is left." in read.text
+    assert "Rms residual on 1 stretch of some seconds" in read.text and "No camera: nothing but the gantry" in read.text
+    assert [row in read.text for row in ("wall not tested", "gantry not tested")] == [True, False]
+    seen = Reader(page(Diagnosis((Account("sensing", (), {}, True, None), _glide(shipped=True)), sights=(SIGHT,))))
+    assert "Not tested: the camera's delay and clock, since the robot's mallet was not recorded" in seen.text
+    assert "gantry not tested: the robot's mallet was not recorded (mallet.csv)" in seen.text
+
+
+def test_numbers_stand_beside_those_that_they_replace():
+    for baseline, told in (({}, "parameter shipped fitted"), ({"friction": 0.31}, "parameter your baseline fitted")):
+        read = Reader(page(DIAGNOSES["parameters_only"], Asked(("a",), baseline)))
+        assert told in read.text
+        shown = baseline.get("friction", 0.125)
+        assert f"friction {shown} 0.1251 0.125 … 0.1252 m/s²" in read.text
+    read = Reader(page(DIAGNOSES["agrees"], Asked(("a",), {"friction": 0.31})))
+    assert "The simulator with your baseline explains" in read.text and "as shipped" not in read.text
+
+
+def test_faults_of_the_sensors_are_undone_and_not_refitted():
+    late = replace(TILT, regime="sensing", mechanism="camera_delay", formula="t - delay_s", curve=None, rivals=())
+    faults = Account("sensing", (late,), {}, False, Proof(0.004, 0.002, 0.001, 3))
+    read = Reader(page(Diagnosis((faults,), sights=(SIGHT,))))
+    section = read.text.split("Regime: sensing")[1]
+    assert "The sensors err: camera_delay (the camera's frames are stamped late)." in section
+    picture = next(one for tag, one in read.tags if tag == "svg" and "sensing" in (one.get("aria-label") or ""))
+    assert "as recorded 4 mm, corrected 2 mm" in (picture["aria-label"] or "")
+    assert "The camera's frames are stamped late: each shows the table as it was" in read.text
+    assert "What is named does not explain all: in the sensing 2 times" in read.text
+
+
+def test_weights_of_shapes_are_folded_and_their_law_is_said():
+    numbers = {f"c{k}": Estimate(0.1 * k, 0.0, 1.0, "1") for k in range(14)}
+    law = replace(
+        TILT, regime="gantry", mechanism="unlisted", formula="pull by history", parameters=numbers, curve=None
+    )
+    read = Reader(page(Diagnosis((replace(_glide((law,)), regime="gantry"),), sights=(SIGHT,))))
+    assert "whose size is a smooth curve of the volts and the speed of the last second" in read.text
+    assert "14 numbers, the weights of the law's shapes" in read.text
+
+
+def test_no_chance_is_said_to_be_the_least_that_a_number_can_hold():
+    read = Reader(page(Diagnosis((_glide((replace(TILT, p_value=1e-300),)),), sights=(SIGHT,))))
+    assert "p < 1e-300" in read.text and "= 1.0e-300" not in read.text
+
+
+@pytest.mark.parametrize("loss, said", [(5.0, "a tie"), (20.0, "a little"), (400.0, "far"), (2.6e4, "hopelessly")])
+def test_how_much_worse_a_rival_is(loss, said):
+    assert how_much(loss) == said
+
+
+def test_maps_have_one_scale_and_no_arrow_leaves_the_table():
+    parting = _parting(400)
+    parting.before[:3] = 5.0  # some far off all others
+    maps = map_pictures(parting)
+    assert len({scale for _, scale in maps.values()}) == 1
+    x, y = np.array(re.findall(r"L([\d.]+) ([\d.]+)M", maps["before"][0]), float).T  # the tips
+    (a, b), (c, d) = Chart((-0.05, -0.05), (2.05, 1.05), "", "", 460, square=True).at([0.0, 2.0], [0.0, 1.0])
+    assert x.min() >= a - 0.1 and x.max() <= c + 0.1 and y.max() <= b + 0.1 and y.min() >= d - 0.1
 
 
 def test_what_is_ambiguous_is_said():

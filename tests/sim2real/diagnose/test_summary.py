@@ -1,0 +1,68 @@
+"""The verdict in a sentence, and a diagnosis in ten lines."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from sim2real.diagnose.asked import Asked
+from sim2real.diagnose.diagnosis import Diagnosis
+from sim2real.diagnose.finding import Account, Estimate, Finding, Proof
+from sim2real.diagnose.summary import sentence, summary
+
+TILT = Finding("glide", "table_tilt", (), ("heading",), "a", {"x": Estimate(1.0, 0.9, 1.1, "V s^3")}, 1e-9, 5.0, 1.0)
+RUB = replace(TILT, regime="wall", mechanism="wall_friction_spin", p_value=1e-8)
+LAW = replace(TILT, mechanism="unlisted", depends_on=("position",), p_value=1e-7)
+LATE = replace(TILT, regime="sensing", mechanism="camera_delay", p_value=1e-30)
+HELD = replace(LATE, mechanism="held_frames", p_value=1e-20)
+
+
+def _found(*findings: Finding) -> Diagnosis:
+    return Diagnosis((Account("glide", findings, {}, False, Proof(0.01, 0.001, 0.001, 1)),))
+
+
+@pytest.mark.parametrize(
+    "findings, said",
+    [
+        ((TILT,), "The simulator lacks table_tilt (the table is not level)."),
+        (
+            (TILT, RUB, LAW),
+            "The simulator lacks 3 things: (1) table_tilt (the table is not level), (2) wall_friction_spin "
+            "(walls rub), (3) something unlisted in the glide that depends on position.",
+        ),
+        (
+            (LATE, HELD),
+            "The camera's frames are stamped late (camera_delay); the camera repeats itself (held_frames).",
+        ),
+        (
+            (LATE, TILT),
+            "The simulator lacks table_tilt (the table is not level); the camera's frames are stamped late "
+            "(camera_delay).",
+        ),
+        (
+            (replace(TILT, also_possible=("table_warp",)),),
+            "The simulator lacks table_tilt (the table is not level) or, which cannot be told from it, table_warp.",
+        ),
+    ],
+)
+def test_what_is_missing_is_listed_in_plain_words(findings, said):
+    assert sentence(_found(*findings)) == said
+
+
+def test_agreement_is_to_the_noise_only_where_noise_alone_is_left():
+    wall = Account("wall", (), {}, True, Proof(0.004, 0.0021, 0.001, 3))
+    glide = replace(wall, regime="glide", proof=Proof(0.001, 0.001, 0.001, 3))
+    assert sentence(Diagnosis((glide,))) == (
+        "The simulator as shipped explains this recording to the noise of the sensors."
+    )
+    left = sentence(Diagnosis((glide, wall)), Asked(("a", "b"), {"friction": 0.1}))
+    assert left == (
+        "The simulator with your baseline explains these recordings, but in the wall 2.1 times what noise alone makes "
+        "is left."
+    )
+
+
+def test_ten_lines_count_and_give_units_as_print_has_them():
+    lines = summary(_found(TILT), [Path("a")])
+    assert any("1 [0.9, 1.1] V s³" in line for line in lines)
+    assert any(line.endswith("(1 untouched piece)") for line in lines)
