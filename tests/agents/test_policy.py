@@ -125,9 +125,11 @@ def test_a_file_with_a_flipped_byte_is_refused_or_plays(saved: Path) -> None:
     assert refused > 0.5 * len(whole) / 37
 
 
-def test_no_file_and_a_folder_are_refused(tmp_path: Path) -> None:
+def test_no_file_a_folder_and_a_bare_array_are_refused(tmp_path: Path) -> None:
     assert "no policy at" in refusal(tmp_path / "none.npz")
     refusal(tmp_path)
+    np.save(tmp_path / "a.npy", np.ones(3))
+    refusal(tmp_path / "a.npy")
 
 
 @pytest.mark.parametrize("form", ["npz", "npy", "bare"])
@@ -149,12 +151,6 @@ def test_a_pickle_is_refused_and_does_not_run(tmp_path: Path, form: str) -> None
         loaded = np.load(path, allow_pickle=True)
         _ = loaded["head"] if form == "npz" else loaded
     assert mark.exists()  # it would have run
-
-
-def test_a_bare_array_is_refused(tmp_path: Path) -> None:
-    with (tmp_path / "a.npz").open("wb") as file:
-        np.save(file, np.ones(3))
-    refusal(tmp_path / "a.npz")
 
 
 def test_an_array_that_claims_to_be_vast_is_refused(saved: Path) -> None:
