@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from puckpilot_env.kernel import kernel
 
 Array = NDArray[np.float32]
+SQUASHES = ("tanh", "clip")  # what brings outputs into -1 to 1
 
 
 class Network:
@@ -37,14 +38,16 @@ class Network:
         _forward_all(self._flat, self._sizes, np.ascontiguousarray(inputs, np.float32), outputs, self._scratch)
         return outputs
 
-    def decide(self, observations: Array, index: NDArray[np.int64], reads: Array, acts: Array) -> Array:
+    def decide(
+        self, observations: Array, index: NDArray[np.int64], reads: Array, acts: Array, squash: str = "tanh"
+    ) -> Array:
         """(n, outputs) float32 actions of (n, d) observations, in one compiled pass.
 
         Input j is `(observation[index[j]] - reads[0, j]) / reads[1, j]`, 0 where `index[j]` is negative. Action k is
-        `acts[0, k] + acts[1, k] * tanh(output k)`, held between `acts[2, k]` and `acts[3, k]`.
+        `acts[0, k] + acts[1, k] * squashed(output k)`, held between `acts[2, k]` and `acts[3, k]`.
         """
         actions = np.empty((len(observations), self.sizes[-1]), np.float32)
-        _decide(self._flat, self._sizes, observations, index, reads, acts, actions, self._scratch)
+        _decide(self._flat, self._sizes, observations, index, reads, acts, squash == "tanh", actions, self._scratch)
         return actions
 
 
@@ -100,12 +103,13 @@ def _forward_all(flat, sizes, inputs, outputs, scratch):
 
 
 @kernel
-def _decide(flat, sizes, observations, index, reads, acts, actions, scratch):
+def _decide(flat, sizes, observations, index, reads, acts, through_tanh, actions, scratch):
     for row in range(observations.shape[0]):
         for j in range(index.size):
             at = index[j]
             scratch[0, j] = 0.0 if at < 0 else (observations[row, at] - reads[0, j]) / reads[1, j]
         here = _forward(flat, sizes, scratch)
         for k in range(actions.shape[1]):
-            wanted = acts[0, k] + acts[1, k] * math.tanh(scratch[here, k])
+            output = scratch[here, k]
+            wanted = acts[0, k] + acts[1, k] * (math.tanh(output) if through_tanh else output)
             actions[row, k] = min(max(wanted, acts[2, k]), acts[3, k])

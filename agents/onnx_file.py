@@ -38,7 +38,10 @@ def write_onnx(policy: Policy, path: Path) -> Path:
         add("Gemm", weights, biases, transB=1)
         if number < len(layers) - 1:
             add("Relu")
-    add("Tanh")
+    if policy.squash == "tanh":
+        add("Tanh")
+    else:
+        add("Clip", np.array(-1.0), np.array(1.0))
     add("Mul", 0.5 * (scaling.high - scaling.low))
     add("Add", 0.5 * (scaling.high + scaling.low))
     nodes[-1].output[0] = "action"

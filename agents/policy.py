@@ -13,14 +13,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from agents.network import Network
+from agents.network import SQUASHES, Network
 from agents.scaling import Reading, Scaling
 from baselines.player import Player, Seat
 from puckpilot_env.whole_file import write_whole
 
 FORMAT = "puckpilot-policy-1"
 SHIPPED = Path(__file__).parent / "policies"  # a file there is a policy, and its name is the policy's name
-OUTPUTS = 4  # medians of target x, y and voltages x, y, before tanh
+OUTPUTS = 4  # of target x, y and voltages x, y, before they are squashed
 MOST_BYTES = 1 << 28  # of all arrays; a network of eight layers of 2048 is half of it
 SCALINGS = ("centre", "span", "flip", "low", "high")
 
@@ -29,6 +29,7 @@ SCALINGS = ("centre", "span", "flip", "low", "high")
 class Policy:
     """A network, and how it reads and acts.
 
+    - `squash`: how outputs become actions in -1 to 1, a name of `network.SQUASHES`.
     - `columns`: names of the observation's columns that it was made for; it plays where others are shown too.
     - `about`: what made it, as JSON can hold it: variant, command, seed, steps ...
     """
@@ -37,13 +38,14 @@ class Policy:
     scaling: Scaling
     columns: tuple[str, ...]
     about: dict[str, Any]
+    squash: str = "tanh"
 
     def save(self, path: Path) -> Path:
         """Write it to `path`, whole or not at all."""
         arrays: dict[str, Any] = {name: getattr(self.scaling, name) for name in SCALINGS}
         for layer, (w, b) in enumerate(zip(self.network.weights, self.network.biases, strict=True)):
             arrays[f"weights_{layer}"], arrays[f"biases_{layer}"] = w, b
-        head = json.dumps({"format": FORMAT, "columns": self.columns, "about": self.about})
+        head = json.dumps({"format": FORMAT, "columns": self.columns, "about": self.about, "squash": self.squash})
         return write_whole(path, lambda draft: np.savez(draft, head=np.array(head), **arrays))
 
 
@@ -87,7 +89,9 @@ def _built(arrays: dict[str, NDArray[Any]], head: dict[str, Any]) -> Policy:
         raise ValueError("span holds numbers that are not above 0")
     if network.sizes[0] != len(columns) or network.sizes[-1] != OUTPUTS:
         raise ValueError(f"a network of {network.sizes} for {len(columns)} columns and {OUTPUTS} outputs")
-    return Policy(network, scaling, columns, dict(head["about"]))
+    if head["squash"] not in SQUASHES:
+        raise ValueError(f"squash is {head['squash']!r}; known: {', '.join(SQUASHES)}")
+    return Policy(network, scaling, columns, dict(head["about"]), head["squash"])
 
 
 class PolicyPlayer(Player):
@@ -104,7 +108,8 @@ class PolicyPlayer(Player):
 
     def act(self, observation: NDArray[np.float32]) -> NDArray[np.float32]:
         """observation: (n, d) float32; returns (n, 4) float32 actions inside the seat's bounds."""
-        return self.policy.network.decide(observation, self._index, self._reads, self._acts)
+        policy = self.policy
+        return policy.network.decide(observation, self._index, self._reads, self._acts, policy.squash)
 
 
 def policy_names() -> list[str]:

@@ -35,7 +35,7 @@ class Rewards:
     Shaping adds `gamma` times the potential after a step, less the potential before it, which changes no optimal play
     (Ng, Harada, Russell, ICML 1999). The potential is `place` times how far the puck is up the table, from -1 to 1,
     plus `speed` times how fast it flies there, less `chase` times how far the mallet is from right behind a puck in
-    the own half, in table lengths. It is 0 where an episode has ended.
+    the own half, in table lengths. It is 0 where an episode has ended. The step in which one was cut short is left out.
     """
 
     rules: float = 1.0
@@ -54,6 +54,7 @@ class Rewards:
     ) -> NDArray[np.float32]:
         """(n, 2) of a step in which each player `scored` (n, 2) goals, and on tables `done` (n,) an episode ended."""
         shaping = gamma * np.where(done[:, None], 0.0, self._potential(tables)) - before.potential
+        shaping[tables.truncated] = 0.0  # where it was cut is known to no one any more
         goals = self.goal * (scored - scored[:, ::-1])
         moved_on = done | (scored.sum(axis=1) > 0)  # the puck was put elsewhere
         crossed = np.where(moved_on, 0, _beyond(tables).astype(int) - before.beyond)

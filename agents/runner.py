@@ -24,10 +24,10 @@ from agents.policy import OUTPUTS, Policy
 from agents.ppo import FinalStatePPO
 from agents.preset import Preset
 
-DISTRIBUTIONS: dict[str, dict[str, Any]] = {
-    "TanhNormal": {"class_name": TanhNormal},
-    "Gaussian": {"class_name": "GaussianDistribution", "init_std": 0.5, "std_type": "log"},
-    "Beta": {"class_name": "BetaDistribution"},
+# In rsl-rl's words, and how a player without exploration brings the network's outputs into -1 to 1.
+DISTRIBUTIONS: dict[str, tuple[dict[str, Any], str]] = {
+    "TanhNormal": ({"class_name": TanhNormal}, "tanh"),
+    "Gaussian": ({"class_name": "GaussianDistribution", "init_std": 0.5, "std_type": "log"}, "clip"),
 }
 
 
@@ -53,6 +53,7 @@ class SelfPlayRunner(OnPolicyRunner):
     def __init__(self, env: LearnerEnv, preset: Preset, device: str = "cpu") -> None:
         with contextlib.redirect_stdout(io.StringIO()):  # rsl-rl prints its networks
             super().__init__(env, _config(preset), log_dir=None, device=device)
+        self._distribution = preset.distribution
         self.alg.train_mode()
         if self.is_distributed:
             self.alg.broadcast_parameters()
@@ -89,7 +90,8 @@ class SelfPlayRunner(OnPolicyRunner):
         biases = [layer.bias.detach().cpu().numpy().copy() for layer in layers]
         weights[-1], biases[-1] = weights[-1][:OUTPUTS], biases[-1][:OUTPUTS]
         reading = self.env.reading
-        return Policy(Network(weights, biases), reading.scaling, tuple(self.env.columns), about)
+        squash = DISTRIBUTIONS[self._distribution][1]
+        return Policy(Network(weights, biases), reading.scaling, tuple(self.env.columns), about, squash)
 
 
 def _config(preset: Preset) -> dict[str, Any]:
@@ -102,7 +104,7 @@ def _config(preset: Preset) -> dict[str, Any]:
     return {
         "num_steps_per_env": preset.steps,
         "obs_groups": {"actor": [POLICY], "critic": [POLICY, PRIVILEGED]},
-        "actor": {**network, "distribution_cfg": dict(DISTRIBUTIONS[preset.distribution])},
+        "actor": {**network, "distribution_cfg": dict(DISTRIBUTIONS[preset.distribution][0])},
         "critic": network,
         "algorithm": algorithm,
     }

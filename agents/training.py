@@ -36,13 +36,14 @@ Row = dict[str, Any]
 
 @dataclass(frozen=True)
 class Settings:
-    """What is trained. `effects`: an effects file or None; `against`: the one player that is met, else a league is."""
+    """What is trained. `effects`: parameters of an effects file, or None; `against`: the one player that is met, else
+    a league is."""
 
     variant: str
     seed: int
     threads: int
     preset: Preset
-    effects: str | None = None
+    effects: Mapping[str, float] | None = None
     against: str | None = None
 
     def as_dict(self) -> dict[str, Any]:
@@ -70,7 +71,7 @@ class Training:
         torch.manual_seed(seed)
         self.folder, self.settings = folder, settings
         self.rng = np.random.default_rng(settings.seed)
-        self.tables = Tables(settings.variant, preset.tables, seed=seed, effects=settings.effects)
+        self.tables = Tables(settings.variant, preset.tables, seed=seed, parameters=settings.effects)
         stagger(self.tables, np.random.default_rng((settings.seed, ranks.rank())))
         seating = Seating.of(preset.tables, [*preset.anchors.values(), *preset.earlier])
         names = [column.name for column in self.tables.observation_columns]
@@ -99,8 +100,10 @@ class Training:
         self.env.seat(self._players(met), [member.share for member in met])
         tally.clear()
         iterations = [self.runner.iterate() for _ in range(preset.round)]
-        for member, points, games in zip(met, ranks.added(tally.points), ranks.added(tally.games), strict=True):
-            member.note(points, games)
+        points, games = ranks.added(tally.points), ranks.added(tally.games)
+        for member in dict.fromkeys(met):
+            here = [block for block, one in enumerate(met) if one is member]
+            member.note(points[here].sum(axis=0), games[here].sum(axis=0))
         if chosen and self.league.wants_new(chosen):
             self._admit(f"self-{len(self.rows) + 1}")
         self.rows.append(self._row(iterations))

@@ -40,6 +40,7 @@ def run(args: argparse.Namespace) -> int:
     from agents.preset import find_preset
     from agents.run_folder import RunFolder
     from agents.training import Settings
+    from puckpilot_env.effects_file import effect_values
     from puckpilot_env.variants import find_variant
 
     for name in ("steps", "minutes"):
@@ -54,7 +55,8 @@ def run(args: argparse.Namespace) -> int:
             settings = Settings.from_dict(folder.settings())
         else:
             variant, preset = find_variant(args.variant).id, find_preset(args.preset)
-            settings = Settings(variant, args.seed, args.threads, preset, args.effects)
+            effects = effect_values(args.effects) if args.effects else None
+            settings = Settings(variant, args.seed, args.threads, preset, effects)
             if first:
                 folder.begin(settings.as_dict())
         training = run_training(folder, settings, steps=args.steps, minutes=args.minutes, quiet=not first)

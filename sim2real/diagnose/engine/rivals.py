@@ -29,16 +29,20 @@ def compare(chooser: Chooser, model: Model, law: Law, screen: Columns) -> tuple[
         if loss < AMBIGUOUS and not other.family and not law.family and chooser.passes(gain):
             also.append(other.name)
         if other.name not in rivals or loss < rivals[other.name].loss:
-            rivals[other.name] = Rival(
-                other.name, loss, _why(gain, loss, float(chooser.foretold(without).sum() - best.sum()))
-            )
+            whole = float(chooser.foretold(without).sum() - best.sum())
+            more = len(other.columns) - len(law.columns)
+            rivals[other.name] = Rival(other.name, loss, _why(gain, loss, whole, more))
     ordered = sorted(rivals.values(), key=lambda rival: rival.loss)
     return tuple(dict.fromkeys(also)), tuple(ordered)
 
 
-def _why(gain: Gain, loss: float, whole: float) -> str:
+def _why(gain: Gain, loss: float, whole: float, more: int) -> str:
+    """Why a rival lost by `loss` of the `whole` that the winner foretells better; it has `more` numbers."""
     if gain.total <= 0.0:
         return "foretells held-out pieces no better than the baseline"
     if loss < AMBIGUOUS:
         return "as good: this recording cannot tell the two apart"
-    return f"explains {100 * max(1.0 - loss / whole, 0.0):.0f} % of what the winner does"
+    share = max(1.0 - loss / whole, 0.0)
+    if share > 0.995:
+        return f"nearly as good, with {more} more numbers" if more > 0 else "nearly as good, but surely a little worse"
+    return f"explains {100 * share:.0f} % of what the winner does"
