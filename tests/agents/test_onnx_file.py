@@ -27,7 +27,8 @@ def test_the_model_acts_as_the_player_does(squash, tmp_path):
     network = Network(layers, [rng.normal(size=b).astype(np.float32) for b in sizes[1:]])
     policy = Policy(network, Scaling.from_tables(tables), columns, {}, squash)
     path = write_onnx(policy, tmp_path / "player.onnx")
-    actions = np.asarray(ReferenceEvaluator(str(path)).run(None, {"observation": tables.observations[:, 0].copy()})[0])
+    given = {"observation": tables.observations[:, 0].copy()}
+    (actions,) = np.asarray(ReferenceEvaluator(str(path)).run(None, given))
     played = PolicyPlayer(policy, Seat.from_tables(tables)).act(tables.observations[:, 0])
     np.testing.assert_allclose(actions, played, atol=1e-4)
     assert np.ptp(played, axis=0).min() > 0.01
