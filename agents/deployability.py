@@ -14,6 +14,7 @@ from dataclasses import asdict, dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from agents.gantry_load import peak_accelerations
 from baselines.intervals import Estimate, paired_win_rate
 from baselines.match import Contestant, play
 from baselines.player import Player, Seat
@@ -35,7 +36,7 @@ class Deployability:
 
     - `wall_margin_m`: 1st percentile of the way from the mallet's rim to the nearest wall of its own half.
     - `voltage_share`, `voltage_most`: mean and greatest share of the most voltage that it may ask for.
-    - `acceleration_m_s2`: 99th percentile of the change of the mallet's velocity between decisions, by their period.
+    - `acceleration_m_s2`: 99th percentile over decisions of the greatest acceleration until the next one.
     - `jitter_m`: mean change of the commanded place between decisions.
     - `decision_us`: median time of one decision at one table.
     """
@@ -80,12 +81,14 @@ class _Watched:
     def __init__(self) -> None:
         self.actions: list[NDArray[np.float32]] = []
         self.places: list[NDArray[np.float32]] = []
+        self.peaks: list[NDArray[np.float64]] = []
         self.tables: Tables | None = None
 
     def see(self, tables: Tables, actions: NDArray[np.float32]) -> None:
         self.tables = tables
         self.actions.append(actions[:, 0].copy())
-        self.places.append(tables.observations[:, 0, :4].copy())  # the mallet's place and velocity by the encoders
+        self.places.append(tables.observations[:, 0, :2].copy())  # of the mallet
+        self.peaks.append(peak_accelerations(tables, actions))
 
     def summary(self, player: Contestant) -> Deployability:
         assert self.tables is not None  # a game has at least one step
@@ -94,12 +97,11 @@ class _Watched:
         x, y = places[..., 0], places[..., 1]
         edges = np.stack([x, p["length"] / 2 - x, y, p["width"] - y]).min(axis=0) - p["mallet_radius"]
         volts = actions[..., 2:] / self.tables.action_bounds[1, 2:]
-        speeds = np.diff(places[..., 2:], axis=0) / self.tables.variant.period
         return Deployability(
             wall_margin_m=float(np.percentile(edges, 1)),
             voltage_share=float(volts.mean()),
             voltage_most=float(volts.max()),
-            acceleration_m_s2=float(np.percentile(np.hypot(speeds[..., 0], speeds[..., 1]), 99)),
+            acceleration_m_s2=float(np.percentile(self.peaks, 99)),
             jitter_m=float(np.linalg.norm(np.diff(actions[..., :2], axis=0), axis=-1).mean()),
             decision_us=decision_time(player) * 1e6,
         )

@@ -20,7 +20,7 @@ TEXTS = {
     "wall_margin_m": ("nearest to an edge of its half, 1st percentile", "{:.3f} m"),
     "voltage_share": ("voltage asked for, mean share of the most", "{:.2f}"),
     "voltage_most": ("voltage asked for, greatest share", "{:.2f}"),
-    "acceleration_m_s2": ("acceleration between decisions, 99th percentile", "{:.1f} m/s2"),
+    "acceleration_m_s2": ("greatest acceleration of a decision, 99th percentile", "{:.1f} m/s2"),
     "jitter_m": ("change of the commanded place between decisions", "{:.3f} m"),
     "decision_us": ("one decision at one table, median", "{:.1f} us"),
 }
