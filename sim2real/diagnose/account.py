@@ -15,13 +15,14 @@ from sim2real.diagnose.engine.explain import Explained
 from sim2real.diagnose.engine.fit import Fit, fit, soft_loss
 from sim2real.diagnose.engine.rivals import chance, compare
 from sim2real.diagnose.engine.twins import twins
-from sim2real.diagnose.finding import Account, Estimate, Finding, Proof
+from sim2real.diagnose.finding import Account, Estimate, Finding, Proof, explained
 from sim2real.diagnose.interval import reach_of_launches
 from sim2real.diagnose.labels import labelled
 from sim2real.diagnose.problem import Problem
 from sim2real.diagnose.where import whereabouts
 
 LOST = "something is missing, but these data do not tell what"
+BORNE = 0.1  # of what untouched launches have beyond noise, that a law must explain to be told
 LEAST_WORSE = 4.0  # growth of the sum of squares of untouched launches, in units of what it scatters by
 
 
@@ -80,10 +81,10 @@ def _findings(
     controls = twins(found.screen.grams, problem.units, found.model, found.screen.listed, use, proof)
     findings, unborne = [], []
     for law, before in sorted(without, key=lambda one: -one[1]):
-        if before <= after and not law.each_launch:
+        rms = [float(np.sqrt(squares / freedom)) for squares in (before, after)]
+        if not law.each_launch and (before <= after or explained(*rms) < BORNE):
             unborne.append(law)
             continue
-        rms = (float(np.sqrt(squares / freedom)) for squares in (before, after))
         told = _unlisted(problem, found, law, *rms) if law.family else _listed(found, law, *rms)
         findings.append(replace(told, twins=controls))
     return tuple(findings), tuple(unborne)

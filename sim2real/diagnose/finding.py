@@ -11,6 +11,12 @@ import numpy as np
 MUCH = 3.0  # times the noise, and what is left is worth a word
 
 
+def explained(before: float, after: float) -> float:
+    """Share of what residuals of rms `before`, in units of the noise, have beyond noise, that is gone `after`; 0 where
+    they are noise."""
+    return (before**2 - after**2) / (before**2 - 1.0) if before > 1.0 else 0.0
+
+
 @dataclass(frozen=True)
 class Estimate:
     """A fitted number with its 95 % interval."""
