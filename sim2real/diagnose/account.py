@@ -23,6 +23,7 @@ from sim2real.diagnose.where import whereabouts
 
 LOST = "something is missing, but these data do not tell what"
 BORNE = 0.1  # of what untouched launches have beyond noise, that a law must explain to be told
+FELT = 16.0  # the same difference of two laws' squares, below which it is chance that says which is better
 LEAST_WORSE = 4.0  # growth of the sum of squares of untouched launches, in units of what it scatters by
 
 
@@ -54,8 +55,11 @@ def account(problem: Problem, found: Explained, use: np.ndarray, proof: np.ndarr
 
 def _refuted(problem: Problem, found: Explained, proof: np.ndarray, plain: float, mended: float) -> bool:
     """Whether the clusters `proof` speak against the law: the squares that are left of them, `plain` without it and
-    `mended` with it, do not fall, or those of their better part grow. Of numbers for each launch they say nothing."""
+    `mended` with it, do not fall, or those of their better part grow. Of numbers for each launch they say nothing, and
+    nothing where they hardly feel the law."""
     if not found.model.laws or any(law.each_launch for law in found.model.laws):
+        return False
+    if found.unlisted is None and _felt(problem, found.baseline, found.law, proof) < FELT * found.dispersion:
         return False
     if mended >= plain:
         return True
@@ -77,17 +81,29 @@ def _findings(
     if not found.model.laws:
         return (), ()
     freedom = max(float(problem.freedom[proof].sum()), 1.0)
-    without = [(law, _squares(problem, _fit_without(problem, found, law, use), proof)) for law in found.model.laws]
+    others = [(law, _fit_without(problem, found, law, use)) for law in found.model.laws]
+    without = [(law, _squares(problem, fitted, proof)) for law, fitted in others]
+    silent = [
+        law for law, fitted in others
+        if law.each_launch
+        or (found.unlisted is None and _felt(problem, fitted, found.law, proof) < FELT * found.dispersion)
+    ]  # fmt: skip
     controls = twins(found.screen.grams, problem.units, found.model, found.screen.listed, use, proof)
     findings, unborne = [], []
     for law, before in sorted(without, key=lambda one: -one[1]):
         rms = [float(np.sqrt(squares / freedom)) for squares in (before, after)]
-        if not law.each_launch and (before <= after or explained(*rms) < BORNE):
+        if law not in silent and (before <= after or explained(*rms) < BORNE):
             unborne.append(law)
             continue
         told = _unlisted(problem, found, law, *rms) if law.family else _listed(found, law, *rms)
         findings.append(replace(told, twins=controls))
     return tuple(findings), tuple(unborne)
+
+
+def _felt(problem: Problem, one: Fit, other: Fit, clusters: np.ndarray) -> float:
+    """Squares of what two laws foretell differently of the clusters, in units of the noise."""
+    left, right = (problem.residuals(law.values, (), clusters).r for law in (one, other))
+    return float(np.sum((left - right) ** 2))
 
 
 def _fit_without(problem: Problem, found: Explained, law: Law, use: np.ndarray) -> Fit:

@@ -24,7 +24,7 @@ class LinearProblem:
 
     def __init__(self, truth: Mapping[str, float | np.ndarray], noise: float = 1.0, seed: int = 0) -> None:
         rng = np.random.default_rng(seed)
-        self.clusters = LAUNCHES
+        self.clusters, self.truth = LAUNCHES, truth
         self.launch = np.repeat(np.arange(LAUNCHES), PIECES * EACH)
         self.felt = FELT * rng.normal(size=(len(self.launch), len(NAMES)))
         self.seen = noise * rng.normal(size=len(self.launch))
@@ -33,6 +33,14 @@ class LinearProblem:
             self.seen += of_launch[self.launch] * self.felt[:, k]
         self.units = Units(np.repeat(np.arange(LAUNCHES), PIECES), np.full(LAUNCHES * PIECES, float(EACH)))
         self.freedom = np.full(LAUNCHES, float(PIECES * EACH))
+
+    def feel_nothing(self, launches: np.ndarray, names: Sequence[str]) -> None:
+        """Let these parameters do nothing to these launches."""
+        here = np.isin(self.launch, launches)
+        for name in names:
+            k = NAMES.index(name)
+            self.seen[here] -= self.truth[name] * self.felt[here, k]
+            self.felt[here, k] = 0.0
 
     def residuals(self, values: Mapping[str, float], free: Sequence[str], clusters: np.ndarray) -> Residuals:
         """See `Problem.residuals`."""

@@ -65,6 +65,17 @@ def test_a_law_that_hardly_helps_untouched_launches_is_not_told(there):
     assert [one.mechanism for one in helped.findings] == ["table_tilt"]
 
 
+def test_a_proof_that_does_not_feel_a_law_says_nothing_against_it():
+    """Launches kept apart on which a tilt pushes nothing: their noise alone says which is better, by a hair."""
+    verdicts = []
+    for seed in range(4):
+        problem = LinearProblem(TILT, seed=seed)
+        problem.feel_nothing(PROOF, ("tilt_x", "tilt_y"))
+        found = account(problem, explain(problem, SHIPPED, USE), USE, PROOF)
+        verdicts.append([one.mechanism for one in found.findings])
+    assert verdicts == 4 * [["table_tilt"]]
+
+
 @pytest.mark.parametrize("after, told", [(1.0, []), (2.9, []), (30.0, ["wall: 30 mm of untouched pieces stay"])])
 def test_what_stays_unexplained_is_told(after, told):
     wall = Account("wall", (), {}, False, Proof(0.05, 1e-3 * after, 1e-3, 9))
