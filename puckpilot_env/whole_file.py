@@ -32,12 +32,13 @@ def write_text_whole(path: Path, text: str) -> Path:
 
 
 def check_folder(folder: Path) -> None:
-    """Make `folder` and see that files can be put there, before any work is done. ValueError, in one line, if not."""
-    if folder.exists() and not folder.is_dir():
-        raise ValueError(f"cannot write to '{folder}': it is a file; give a folder")
+    """See that files can be put into `folder`, which may have to be made, before any work is done; nothing is left.
+    ValueError, in one line, if not."""
+    there = next(place for place in (folder.absolute(), *folder.absolute().parents) if place.exists())
+    if not there.is_dir():
+        raise ValueError(f"cannot write to '{folder}': {there} is a file; give a folder")
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        draft = draft_of(folder / "check")
+        draft = draft_of(there / "check")
         draft.touch()
         draft.unlink()
     except OSError as error:

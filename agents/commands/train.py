@@ -99,4 +99,7 @@ def run_training(
             raise ValueError(
                 f"the losses are no numbers any more ({error}); {folder.checkpoint} is as it was"
             ) from None
+        finally:
+            if curves:
+                curves.close()
     return training

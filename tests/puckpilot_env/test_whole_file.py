@@ -87,6 +87,14 @@ def test_what_a_killed_film_left_goes_with_the_next(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
-def test_a_folder_is_made_and_left_empty(tmp_path):
+def test_a_folder_is_looked_at_and_nothing_is_left(tmp_path):
     check_folder(tmp_path / "a" / "b")
-    assert list((tmp_path / "a" / "b").iterdir()) == []
+    check_folder(tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("place", ["file", "file/a/b"])
+def test_a_file_is_no_folder(place, tmp_path):
+    (tmp_path / "file").touch()
+    with pytest.raises(ValueError, match="file is a file; give a folder"):
+        check_folder(tmp_path / place)
