@@ -26,7 +26,8 @@ CUSHION = (0.0003, 0.0005)  # m and rad: how straight and true a wall is
 TOLD = 1e-3  # the same of one of them, once they are
 AT_LEAST = 0.001  # of a size; a smaller error is not told
 WRONG_SIZE = 0.022  # of a size; a larger error is that of the size stated, not of the camera
-STRETCHED = 0.75  # of what the lines are off by beyond noise, that a map must explain: a stretch explains them all
+STRETCHED = 0.75  # of what the lines are off by beyond noise, that a map must explain unless it is beyond doubt:
+BEYOND_DOUBT = 1e-12  # a stretch explains nearly all, but a few touches that are none may hide that
 KNOWN, ROUGHLY = 0.003, 0.01  # errors of a scale above which the lines do not tell it, or not even a wrong size
 FOLDS = 20  # nearly one launch at a time: a wall has few touches
 
@@ -57,7 +58,8 @@ def scale_account(found: list[Strike], g: Geometry, unseen: Sequence[Strike] = (
     kept = np.where(told, values, 0.0)
     apart = _distances(lines(list(unseen), g), kept, {s.launch for s in unseen}, g)
     sizes = measured(*np.concatenate([apart, _foretold(found, g)]).T)
-    if sizes is None or explained(sizes.before, sizes.after) < STRETCHED:
+    share = 0.0 if sizes is None else explained(sizes.before, sizes.after)
+    if sizes is None or share <= 0.0 or (share < STRETCHED and chance > BEYOND_DOUBT):
         return ScaleAccount(np.zeros(3), (), None)
     sizes = measured(*apart.T) or sizes
     half = NORMAL_REACH * std
