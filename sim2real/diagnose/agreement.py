@@ -1,14 +1,20 @@
-"""Whether recordings of one call are of one table: the law that each asks for by itself, tried on the others."""
+"""Whether recordings of one call are of one table: one set of numbers for both, or better one for each (Chow, 1960)?
+
+Asked of every law that the recordings ask for, alone or together, so that physics that is missing in both, or that
+happened in one by chance, is not taken for another table.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import permutations
+from itertools import combinations
 
 import numpy as np
 
+from puckpilot_env.parameters import BY_NAME
 from sim2real.diagnose.engine import gram
+from sim2real.diagnose.engine.choose import Model
 from sim2real.diagnose.engine.explain import Explained, explain
 from sim2real.diagnose.engine.fit import Fit, fit
 from sim2real.diagnose.glide.data import GlideData
@@ -18,10 +24,11 @@ from sim2real.diagnose.sanity import two_tables
 LAUNCHES_ALONE, RESIDUALS_ALONE = 6, 24  # with fewer, a recording cannot ask for a law by itself
 APART = 8.0  # standard deviations between two fits of one number
 RELATIVE = 0.1  # of its size, which one table may change by from one day to the next
-HARM = 30.0  # growth of a sum of squares that noise does not make
-WORSE_SMALL = 2.0  # times what the noise leaves, under a law found elsewhere
-WORSE = 1.1  # times the sum of squares without a law, with it
-WORSE_SMOOTH = 1.5  # the same, softly, of a smooth law, which says little of places where its own recording has no puck
+HARM = 30.0  # by which one set of numbers leaves more, in units of what two leave of a residual
+WORSE = 1.1  # times what no law leaves of a recording, with the law of another
+WORSE_SMOOTH = 1.5  # times what a smooth law with coefficients of its own leaves of a recording
+QUIET = 1.3  # mean square residual, in units of the noise, of a recording that a law explains
+STRANGE = 2.0  # the same, of one that it does not, whatever its numbers
 
 
 @dataclass(frozen=True)
@@ -38,109 +45,104 @@ def parts_of(data: GlideData, names: Sequence[str]) -> list[Part]:
 
 
 def check_agreement(problem: Problem, shipped: Mapping[str, float], parts: Sequence[Part]) -> None:
-    """Raise `UndeterminedError` if what recordings ask for, each by itself, cannot be one table.
+    """Raise `UndeterminedError` if what recordings ask for cannot be one table.
 
-    `shipped`: the simulator's own numbers, by name. A law that one recording asks for may not harm another, and its
-    numbers may not be others there. A recording too small to ask for a law may not be worse than noise under that of
-    another, or of all together where each is small.
+    `shipped`: the simulator's own numbers, by name.
     """
     live = np.flatnonzero(problem.freedom > 0)
     parts = [Part(part.name, np.intersect1d(part.clusters, live)) for part in parts]
     parts = [part for part in parts if len(part.clusters)]
     if len(parts) < 2:
         return
-    small = [part for part in parts if not _enough(problem, part.clusters)]
-    parts = [part for part in parts if _enough(problem, part.clusters)]
-    alone = [explain(problem, shipped, part.clusters) for part in parts]
-    _check_small(problem, small, alone, [part.name for part in parts], shipped)
-    for one, other in permutations(range(len(parts)), 2):
-        law, there = alone[one].law, parts[other].clusters
-        whole = alone[one].unlisted is None  # numbers beside a smooth law stand for the places that it was fitted at
-        told = _numbers_apart(law, fit(problem, law.values, law.free, there)) if whole else None
-        if told:
-            name, a, b = told
-            why = f"{name} is {a:.3g} in the one and {b:.3g} in the other"
-            raise two_tables(parts[one].name, parts[other].name, why)
-        harm = _losses_under(problem, alone[one], alone[other], there)
-        worse = WORSE if whole else WORSE_SMOOTH
-        if harm[0] > worse * harm[1] and harm[0] - harm[1] > HARM * alone[other].dispersion:
-            why = f"what the {problem.regime} of the one asks for makes the other's worse"
-            raise two_tables(parts[one].name, parts[other].name, why)
+    asking = [part.clusters for part in parts if _enough(problem, part.clusters)]
+    if len(asking) < len(parts):
+        together = np.concatenate([part.clusters for part in parts])
+        asking += [together] if _enough(problem, together) else []
+    for clusters in asking:
+        found = explain(problem, shipped, clusters)
+        for one, other in combinations(parts, 2):
+            why = _apart_smoothly(problem, found, one, other) if found.unlisted else _apart(problem, found, one, other)
+            if why:
+                raise two_tables(one.name, other.name, why)
+        for part in parts:
+            why = _strange(problem, found, clusters, part)
+            if why:
+                asker = next((one.name for one in parts if np.array_equal(one.clusters, clusters)), "the others")
+                raise two_tables(asker, part.name, why)
 
 
 def _enough(problem: Problem, clusters: np.ndarray) -> bool:
     return len(clusters) >= LAUNCHES_ALONE and problem.freedom[clusters].sum() >= RESIDUALS_ALONE
 
 
-def _check_small(
-    problem: Problem,
-    small: Sequence[Part],
-    alone: Sequence[Explained],
-    names: Sequence[str],
-    shipped: Mapping[str, float],
-) -> None:
-    """Raise `UndeterminedError` if one of the parts `small` fits none of the laws `alone`, of recordings `names`."""
-    if not small:
-        return
-    if not alone:
-        together = np.concatenate([part.clusters for part in small])
-        if not _enough(problem, together):
-            return
-        alone, names = [explain(problem, shipped, together)], ["the others"]
-    for part in small:
-        freedom = float(problem.freedom[part.clusters].sum())
-        excess = [
-            _loss_as_foretold(problem, law, part.clusters) / law.dispersion - WORSE_SMALL * freedom for law in alone
-        ]
-        if min(excess) > HARM:
-            name = names[int(np.argmin(excess))]
-            raise two_tables(name, part.name, f"the {problem.regime} of the one foretells the other's badly")
+def _apart(problem: Problem, found: Explained, one: Part, other: Part) -> str | None:
+    """What a law's numbers in two recordings differ by, if they surely do."""
+    free = found.law.free
+    both = fit(problem, found.law.values, free, np.concatenate([one.clusters, other.clusters]))
+    each = [fit(problem, both.values, free, part.clusters) for part in (one, other)]
+    left = sum(some.loss for some in each)
+    freedom = sum(problem.freedom[part.clusters].sum() for part in (one, other)) - 2 * len(free)
+    if both.loss - left < HARM * max(left / max(freedom, 1.0), 1.0):
+        return None
+    return _numbers_apart(*each)
 
 
-def _loss_as_foretold(problem: Problem, found: Explained, clusters: np.ndarray) -> float:
-    """Soft loss of `clusters` under a law found elsewhere, nothing refitted."""
-    if found.unlisted is None:
-        left = problem.residuals(found.law.values, (), clusters)
-        loss = np.bincount(left.cluster, left.r**2, problem.clusters)
-    else:
-        grams, units = found.columns.grams, problem.units.of(clusters)
-        columns = grams.columns((*found.law.free, *found.unlisted.columns))
-        left = gram.losses(grams, columns, found.theta, units)
-        loss = np.bincount(problem.units.cluster[units], left, problem.clusters)
-    return float(gram.soft(loss[clusters], problem.freedom[clusters]).sum())
-
-
-def _numbers_apart(one: Fit, other: Fit) -> tuple[str, float, float] | None:
-    """The number that two fits disagree on most, and its values, if they surely do."""
+def _numbers_apart(one: Fit, other: Fit) -> str | None:
+    """The number that two fits disagree on most, if they surely do."""
     worst, told = APART, None
     for k, name in enumerate(one.free):
         a, b = float(one.values[name]), float(other.values[name])
-        spread = float(np.sqrt(one.covariance[k, k] + other.covariance[k, k]))
-        apart = abs(a - b) / max(spread, 1e-12)
+        apart = abs(a - b) / max(float(np.sqrt(one.covariance[k, k] + other.covariance[k, k])), 1e-12)
         if apart > worst and abs(a - b) > RELATIVE * max(abs(a), abs(b)):
-            worst, told = apart, (name, a, b)
+            worst, told = apart, f"{name} is {a:.3g} in the one and {b:.3g} in the other"
     return told
 
 
-def _losses_under(problem: Problem, found: Explained, own: Explained, clusters: np.ndarray) -> tuple[float, float]:
-    """Losses of `clusters` under the effects found elsewhere and without them, with the baseline's numbers refitted.
-
-    own: what was found in the clusters themselves.
-    """
-    if found.unlisted is None:
-        return fit(problem, found.law.values, problem.base, clusters).loss, own.baseline.loss
-    theta = found.theta[-len(found.unlisted.columns) :]
-    columns = found.columns.grams.columns((*problem.base, *found.unlisted.columns))
-    return _smooth_loss(problem, found, columns, theta, clusters), _smooth_loss(
-        problem, found, columns, np.zeros_like(theta), clusters
-    )
+def _apart_smoothly(problem: Problem, found: Explained, one: Part, other: Part) -> str | None:
+    """The same for a smooth law beside the others: its coefficients have no meaning by themselves."""
+    both = _losses(problem, found, np.concatenate([one.clusters, other.clusters]))
+    each = _losses(problem, found, one.clusters) + _losses(problem, found, other.clusters)
+    for part in (one, other):
+        shared, own = both[part.clusters].sum(), each[part.clusters].sum()
+        if shared - own > HARM * found.dispersion and shared > WORSE_SMOOTH * own:
+            return f"what the {problem.regime} of the one asks for makes the other's worse"
+    return None
 
 
-def _smooth_loss(problem: Problem, found: Explained, columns: np.ndarray, theta: np.ndarray, clusters) -> float:
-    """Soft loss of `clusters` under the coefficients `theta` of a family, the last of `columns`; the rest refitted."""
-    grams, units, base = found.columns.grams, problem.units.of(clusters), len(problem.base)
-    g = grams.g[np.ix_(units, columns, columns)].sum(axis=0)
-    b = grams.b[np.ix_(units, columns)].sum(axis=0)
-    whole = np.concatenate([np.zeros(base), theta])
-    whole[:base] = gram.solve_normal(g[:base, :base], -(b[:base] + g[:base, base:] @ theta))
-    return float(gram.soft(gram.losses(grams, columns, whole, units), problem.units.freedom[units]).sum())
+def _strange(problem: Problem, found: Explained, clusters: np.ndarray, part: Part) -> str | None:
+    """What a recording shows of another table, if the law that explains `clusters` does worse there than none, or
+    explains them to the noise but has no numbers that do so there."""
+    if _harms(problem, found, part.clusters):
+        return f"what the {problem.regime} of the one asks for makes the other's worse"
+    quiet = _own_loss(problem, found, clusters) < QUIET * problem.freedom[clusters].sum()
+    if quiet and _own_loss(problem, found, part.clusters) > STRANGE * problem.freedom[part.clusters].sum() + HARM:
+        return f"the {problem.regime} of the one foretells the other's badly"
+    return None
+
+
+def _harms(problem: Problem, found: Explained, clusters: np.ndarray) -> bool:
+    """Whether the listed laws found elsewhere leave more of `clusters` than none, the baseline's numbers refitted."""
+    if not found.listed:
+        return False
+    none = {**found.law.values, **{row: BY_NAME[row].default for law in found.listed for row in law.rows}}
+    worse, plain = (fit(problem, values, problem.base, clusters).loss for values in (found.law.values, none))
+    return worse > WORSE * plain and worse - plain > HARM * found.dispersion
+
+
+def _own_loss(problem: Problem, found: Explained, clusters: np.ndarray) -> float:
+    """Soft loss that a law leaves of `clusters` with numbers of their own."""
+    if found.unlisted:
+        return float(_losses(problem, found, clusters).sum())
+    return fit(problem, found.law.values, found.law.free, clusters).loss
+
+
+def _losses(problem: Problem, found: Explained, clusters: np.ndarray) -> np.ndarray:
+    """Soft losses (all clusters,) of `clusters` under a smooth law fitted to them; zeros elsewhere."""
+    assert found.unlisted is not None
+    spread = found.model.spreads[found.model.laws.index(found.unlisted)]
+    grams, units = found.columns.grams, problem.units.of(clusters)
+    index, ridge = Model(found.law.free, (found.unlisted,), (spread,)).columns(grams)
+    freedom = problem.units.freedom[units]
+    theta = gram.solve_softly(grams, index, units, freedom, ridge)
+    left = gram.soft(gram.losses(grams, index, theta, units), freedom)
+    return np.bincount(problem.units.cluster[units], left, problem.clusters)

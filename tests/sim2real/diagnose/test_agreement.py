@@ -18,6 +18,7 @@ from sim2real.diagnose.sanity import UndeterminedError
 from sim2real.nominal import parameters
 from sim2real.recording import read_recording
 from tests.reality.camera import Camera
+from tests.reality.cases import draw_case
 from tests.reality.law import Law
 from tests.reality.record import make_recording
 
@@ -88,6 +89,22 @@ def test_a_held_out_recording_of_another_table_names_nothing(recorded):
 def test_two_recordings_of_one_table_agree(recorded, name, mechanism):
     found = _diagnosis([recorded(name), recorded(f"{name} again")])
     assert [one.mechanism for one in found.findings] == [mechanism]
+
+
+@pytest.mark.parametrize(
+    "number, missing", [(0, "side_force"), (1, "mallet_give"), (35, "wall_to_wall_restitution"), (38, "scale_error")]
+)
+def test_what_is_missing_in_both_is_no_other_table(tmp_path, number, missing):
+    """Half a minute and a quarter of one table each; what is missing may show more in the one, or be of each launch."""
+    case = draw_case(54, number, "one", None)
+    assert case.truth["mechanisms"] == [missing]
+    for seed, (name, seconds) in enumerate((("long", 30.0), ("short", 15.0))):
+        make_recording(
+            tmp_path / name, case.law, case.scenario, seed, seconds, case.camera,
+            encoder_noise=case.encoder_noise, hand=case.hand, dt=1e-4,
+        )  # fmt: skip
+    found = _diagnosis([tmp_path / "long"], [tmp_path / "short"])
+    assert "two tables" not in (found.reason or "")
 
 
 @pytest.mark.parametrize("name, agrees", [("plain", True), ("tilted", False)])
