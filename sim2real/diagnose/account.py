@@ -15,7 +15,7 @@ from sim2real.diagnose.engine.explain import Explained
 from sim2real.diagnose.engine.fit import Fit, fit, soft_loss
 from sim2real.diagnose.engine.rivals import chance, compare
 from sim2real.diagnose.engine.twins import twins
-from sim2real.diagnose.finding import Account, Estimate, Finding, Proof, explained
+from sim2real.diagnose.finding import MUCH, Account, Estimate, Finding, Proof, explained
 from sim2real.diagnose.interval import reach_of_launches
 from sim2real.diagnose.labels import labelled
 from sim2real.diagnose.problem import Problem
@@ -39,7 +39,8 @@ def account(problem: Problem, found: Explained, use: np.ndarray, proof: np.ndarr
     after = before if refuted else after
     freedom = max(float(problem.freedom[proof].sum()), 1.0)
     rms = [problem.noise_m * float(np.sqrt(squares / freedom)) for squares in (before, after)]
-    lost = found.lost or refuted
+    unseen = not findings and rms[1] > MUCH * problem.noise_m  # it happened in the untouched launches alone
+    lost = found.lost or refuted or unseen or found.doubtful is not None
     return Account(
         problem.regime,
         findings,

@@ -9,10 +9,11 @@ import numpy as np
 
 from sim2real.diagnose.contacts import geometry, mallet_tracks
 from sim2real.diagnose.glide.data import GlideData, glide_data
+from sim2real.diagnose.impacts import glide_before
 from sim2real.diagnose.pieces import Pieces
 from sim2real.recording import Recording
 
-KEPT_APART = 4  # every so manieth launch serves the proof alone
+KEPT_APART = 4  # every so manieth launch, about, serves the proof alone
 
 
 @dataclass(frozen=True)
@@ -42,8 +43,9 @@ class Launches:
 
 
 def keep_apart(recordings: Sequence[Recording], pieces: Sequence[Pieces], heldout: int) -> Launches:
-    """The launches of the last `heldout` recordings, or every KEPT_APART-th where there are none."""
-    of_row, first = [], [0]
+    """The launches of the last `heldout` recordings or, where there are none, about every KEPT_APART-th, among them
+    some that meet walls and some that meet the robot's mallet, if any do."""
+    of_row, first, met = [], [0], []
     for recording, some in zip(recordings, pieces, strict=True):
         part = glides_of(recording, some)
         _, opening = np.unique(part.cluster, return_index=True)
@@ -51,9 +53,40 @@ def keep_apart(recordings: Sequence[Recording], pieces: Sequence[Pieces], heldou
         frames = 0 if recording.frames is None else recording.frames.rows
         of_row.append(first[-1] + np.maximum(np.searchsorted(begun, np.arange(frames), side="right") - 1, 0))
         first.append(first[-1] + max(part.clusters, 1))
-    numbers = np.arange(first[-1])
-    apart = numbers[first[len(recordings) - heldout] :] if heldout else numbers[KEPT_APART - 1 :: KEPT_APART]
-    return Launches(tuple(of_row), apart, bool(heldout))
+        met.append(_met(some, part))
+    if heldout:
+        return Launches(tuple(of_row), np.arange(first[len(recordings) - heldout], first[-1]), True)
+    return Launches(tuple(of_row), _chosen(np.concatenate(met)), False)
+
+
+def _met(pieces: Pieces, part: GlideData) -> np.ndarray:
+    """How many hits of walls and of the robot's mallet each launch (launches, 2) has between two glides."""
+    met = np.zeros((max(part.clusters, 1), 2), int)
+    begin, finish = part.t[part.first[:-1]], part.t[part.first[1:] - 1]
+    for k, hit in enumerate(pieces.hits):
+        before = glide_before(pieces, begin, finish, k)
+        if before is not None and (hit.kind == "wall" or hit.where == "robot"):
+            met[part.cluster[before + 1], int(hit.where == "robot")] += 1
+    return met
+
+
+def _chosen(met: np.ndarray) -> np.ndarray:
+    """Every KEPT_APART-th of the launches that `met` (launches, kinds) so many; where none of them met a kind, one that
+    did takes the place of one that is not missed."""
+    apart = list(range(KEPT_APART - 1, len(met), KEPT_APART))
+    for kind in range(met.shape[1]):
+        others = [k for k in np.flatnonzero(met[:, kind]) if k not in apart]
+        if not apart or not others or met[apart, kind].any():
+            continue
+        spare = min(apart, key=lambda k: _missed(met, [one for one in apart if one != k], k))
+        apart[apart.index(spare)] = others[len(others) // 2]
+    return np.array(sorted(apart), int)
+
+
+def _missed(met: np.ndarray, rest: list[int], k: int) -> tuple[int, int]:
+    """How many kinds launch `k` alone has met of those kept apart, `rest` beside it; and how many hits it has."""
+    alone = (met[k] > 0) & ~met[rest].any(axis=0)
+    return int(alone.sum()), int(met[k].sum())
 
 
 def glides_of(recording: Recording, pieces: Pieces) -> GlideData:

@@ -59,16 +59,10 @@ def find_impacts(pieces: Pieces, problem: GlideProblem, states: States, recordin
     begin, finish = data.t[data.first[here]], data.t[data.first[here + 1] - 1]
     found: list[Impact] = []
     for k, hit in enumerate(pieces.hits):
-        before = int(np.searchsorted(begin, hit.t)) - 1
+        before = glide_before(pieces, begin, finish, k)
+        if before is None:
+            continue
         after = before + 1
-        if before < 0 or after >= len(here) or hit.t < finish[before] - 0.01:
-            continue
-        if (
-            hit.t - finish[before] > FARTHEST
-            or begin[after] - hit.t > FARTHEST
-            or _others(pieces, k, finish[before], begin[after])
-        ):
-            continue
         left = _carry(motion[before, 1], spread[before, 1], drift[before, 1], hit.t - finish[before])
         right = _carry(motion[after, 0], spread[after, 0], drift[after, 0], hit.t - begin[after])
         cluster = int(data.cluster[here[after]])
@@ -80,6 +74,18 @@ def find_impacts(pieces: Pieces, problem: GlideProblem, states: States, recordin
             chain, lost = int(here[after]), _touched_before(pieces, hit)
         found.append(Impact(hit, cluster, left, right, chain, lost, since, after))
     return found
+
+
+def glide_before(pieces: Pieces, begin: np.ndarray, finish: np.ndarray, k: int) -> int | None:
+    """The glide that leads to hit `k` of `pieces`, of glides from `begin` to `finish` (n,) [s]; None for a hit without
+    one right before and another right after it."""
+    hit = pieces.hits[k]
+    before = int(np.searchsorted(begin, hit.t)) - 1
+    after = before + 1
+    if before < 0 or after >= len(begin) or hit.t < finish[before] - 0.01:
+        return None
+    near = hit.t - finish[before] <= FARTHEST and begin[after] - hit.t <= FARTHEST
+    return before if near and not _others(pieces, k, finish[before], begin[after]) else None
 
 
 def _touched_before(pieces: Pieces, hit: Hit) -> bool:

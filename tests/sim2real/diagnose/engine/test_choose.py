@@ -50,16 +50,27 @@ def test_two_laws_are_both_chosen_though_they_look_alike():
     assert all(set(_chosen(_grams({"tilt": 0.5, "drag": -0.4}, seed))) == {"tilt", "drag"} for seed in range(10))
 
 
-def test_what_one_launch_alone_asks_for_is_doubted():
-    crossed = np.repeat(EVERY == 5, PIECES * EACH)  # a patch that a single launch crosses
+@pytest.mark.parametrize(
+    "sizes, told",
+    [
+        ({5: 1.5}, "doubtful"),
+        ({5: 1.5, 9: 1.4}, "sure"),
+        ({5: 1.5, 9: -1.4}, "nothing"),
+        ({5: 1.5, 9: 0.3}, "doubtful"),
+    ],
+)
+def test_what_a_launch_asks_for_is_doubted_unless_another_says_the_same(sizes, told):
+    size = np.zeros(LAUNCHES)  # a patch that one or two launches cross; accidents agree on no size
+    size[list(sizes)] = list(sizes.values())
+    rows = np.repeat(size, PIECES * EACH)
     rng = np.random.default_rng(1)
-    jacobian = rng.normal(size=(len(crossed), 2)) * np.stack([np.ones(len(crossed)), crossed], axis=1)
-    r = rng.normal(size=len(crossed)) - 1.5 * jacobian[:, 1]
+    jacobian = rng.normal(size=(len(rows), 2)) * np.stack([np.ones(len(rows)), rows != 0.0], axis=1)
+    r = rng.normal(size=len(rows)) - rows * jacobian[:, 1]
     pieces = np.repeat(np.arange(LAUNCHES * PIECES), EACH)
     grams = gram.make_grams(("base", "patch"), r, jacobian, pieces, LAUNCHES * PIECES)
     chooser = Chooser(grams, UNITS, EVERY)
     gain = chooser.gain(BASE, LAWS[2])
-    assert chooser.doubtful(gain) and not chooser.passes(gain)
+    assert (chooser.passes(gain), chooser.doubtful(gain)) == (told == "sure", told == "doubtful")
 
 
 def test_a_law_of_other_sign_in_every_other_launch_is_refused():
