@@ -40,7 +40,7 @@ def account(problem: Problem, found: Explained, use: np.ndarray, proof: np.ndarr
     freedom = max(float(problem.freedom[proof].sum()), 1.0)
     rms = [problem.noise_m * float(np.sqrt(squares / freedom)) for squares in (before, after)]
     unseen = not findings and rms[1] > MUCH * problem.noise_m  # it happened in the untouched launches alone
-    lost = found.lost or refuted or unseen or found.doubtful is not None
+    lost = found.lost or refuted or unseen or (found.doubtful is not None and not findings)
     return Account(
         problem.regime,
         findings,

@@ -25,9 +25,9 @@ MOSTLY = 2.0 / 3.0  # of what a family alone explains; listed laws that explain 
 @dataclass(frozen=True)
 class Explained:
     """What the engine found. `law`: the final fit, of the baseline and the listed laws `listed`; `unlisted` and its
-    coefficients `theta` are a family on top of it. `doubtful`: what too few launches ask for, where nothing was found;
-    `lost`: whether something is missing that no law surely explains. `columns` are those of the final law; `model` was
-    chosen by `chooser` in those of `screen`."""
+    coefficients `theta` are a family on top of it. `doubtful`: what too few launches ask for beside it; `lost`: whether
+    something is missing that no law surely explains. `columns` are those of the final law; `model` was chosen by
+    `chooser` in those of `screen`."""
 
     baseline: Fit
     law: Fit
@@ -97,7 +97,7 @@ def explain(
     return Explained(
         baseline, law, as_shipped(problem, shipped, baseline, use, beyond), beyond, kept,
         unlisted, theta, spread, columns, screen, chooser, model,
-        _doubtful(chooser, gains) if clear and not model.laws else None,
+        _doubtful(chooser, _beside(chooser, model, screen) if model.laws else gains) if clear else None,
         clear and not model.laws and far_off(problem, baseline, law, use),
     )  # fmt: skip
 
@@ -117,6 +117,12 @@ def _completed(
         return model
     smooth = _likeliest(chooser, Model(problem.base), screen)
     return smooth if smooth is not None and _explained(chooser, smooth) > HALF * _explained(chooser, model) else model
+
+
+def _beside(chooser: Chooser, model: Model, screen: Columns) -> list[Gain]:
+    """What each listed law would add to a model that has others."""
+    taken = {law.name for law in model.laws}
+    return [chooser.gain(model, law) for law in screen.listed if law.name not in taken]
 
 
 def _doubtful(chooser: Chooser, gains: Sequence[Gain]) -> Law | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from sim2real.diagnose.glide.problem import GlideProblem
 
 PATCH_RADII = (0.05, 0.1, 0.15, 0.2, 0.3)  # m, at which a patch is looked for
-PATCHES_KEPT = 3  # places that are offered; the law itself has one
+PATCHES_KEPT = 2  # places that are offered, of either search; the law itself has one
 CHUNK = 120  # discs at a time: their columns for all frames must fit into memory
 FINER, MOVES = 2, (-1, 0, 1)  # rounds of looking nearby, and steps there
 SPINNING = "spin_side_force"
@@ -73,25 +74,42 @@ def _patches(
     motion: Motion, columns: Force, exact: Residuals, base: int, seen: np.ndarray
 ) -> tuple[list[Law], np.ndarray]:
     """The discs of other friction that explain most of the residuals that are `seen` (n,) bool, one at a time, beside
-    the first `base` parameters; with their columns for all residuals."""
-    frame = np.linalg.qr(exact.jacobian[seen, :base])[0]
-    rest = exact.r[seen] - frame @ (frame.T @ exact.r[seen])
+    the first `base` parameters, and beside all, where those outshine a disc; with their columns for all residuals."""
+    rests = [_Rest.of(exact.r[seen], exact.jacobian[seen, :known]) for known in (base, exact.jacobian.shape[1])]
 
     def gains(discs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         block = columns(_inside(motion, discs))
-        alone = block[seen] - frame @ (frame.T @ block[seen])
-        size = np.einsum("ik,ik->k", alone, alone)
-        return np.where(size > 1e-9, (alone.T @ rest) ** 2 / np.maximum(size, 1e-9), 0.0), block / UNIT
+        return np.stack([rest.gains(block[seen]) for rest in rests]), block / UNIT
 
     grid = _discs(motion.size)
-    score = np.concatenate([gains(grid[k : k + CHUNK])[0] for k in range(0, len(grid), CHUNK)])
-    best = grid[np.argsort(-score)[:PATCHES_KEPT]]
+    score = np.concatenate([gains(grid[k : k + CHUNK])[0] for k in range(0, len(grid), CHUNK)], axis=1)
+    order = np.argsort(-score, axis=1)[:, :PATCHES_KEPT]
+    best, beside = grid[order.ravel()], np.repeat(np.arange(len(rests)), PATCHES_KEPT)
     for finer in range(1, FINER + 1):
         for k, disc in enumerate(best):
             near = _near(disc, 0.5**finer)
-            best[k] = near[np.argmax(gains(near)[0])]
+            best[k] = near[np.argmax(gains(near)[0][beside[k]])]
     laws = [_patch(f"patch_extra@{k}", disc, len(grid)) for k, disc in enumerate(best)]
     return laws, gains(best)[1]
+
+
+@dataclass(frozen=True)
+class _Rest:
+    """Residuals less what known columns explain, whose space has the orthonormal columns `frame`."""
+
+    frame: np.ndarray
+    r: np.ndarray
+
+    @classmethod
+    def of(cls, r: np.ndarray, known: np.ndarray) -> _Rest:
+        frame = np.linalg.qr(known / np.maximum(np.linalg.norm(known, axis=0), 1e-300))[0]
+        return cls(frame, r - frame @ (frame.T @ r))
+
+    def gains(self, block: np.ndarray) -> np.ndarray:
+        """What each column (n, k) explains of the rest beside the known ones."""
+        alone = block - self.frame @ (self.frame.T @ block)
+        size = np.einsum("ik,ik->k", alone, alone)
+        return np.where(size > 1e-9, (alone.T @ self.r) ** 2 / np.maximum(size, 1e-9), 0.0)
 
 
 def _near(disc: np.ndarray, share: float) -> np.ndarray:
