@@ -9,6 +9,7 @@ import numpy as np
 
 from puckpilot_env.parameters import BY_NAME
 from puckpilot_env.physics.effects import EFFECTS
+from sim2real.diagnose.advice import advice
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.engine.explain import Explained
@@ -48,7 +49,7 @@ def account(problem: Problem, found: Explained, use: np.ndarray, proof: np.ndarr
         found.shipped and not findings and not lost,
         Proof(rms[0], rms[1], problem.noise_m, len(proof)),
         undetermined=LOST if lost else "",
-        next_recording=_next(findings) or _once_more(found),
+        next_recording=advice(problem, found, findings, use),
         doubt=_doubt(found, unborne),
         lost=lost,
     )
@@ -169,18 +170,3 @@ def _doubt(found: Explained, unborne: Sequence[Law]) -> str:
     if found.doubtful is None:
         return ""
     return f"{found.doubtful.name} would fit, but what asks for it is in too few launches to tell it from an accident"
-
-
-def _once_more(found: Explained) -> str:
-    if found.doubtful is None:
-        return ""
-    return f"to make sure of {found.doubtful.name}, record {EFFECTS[found.doubtful.name].excited_by}"
-
-
-def _next(findings: Sequence[Finding]) -> str:
-    unclear = [one for one in findings if one.also_possible]
-    if not unclear:
-        return ""
-    one = unclear[0]
-    names = " from ".join((one.mechanism, " or ".join(one.also_possible)))
-    return f"to tell {names}, record {EFFECTS[one.mechanism].excited_by}"

@@ -79,7 +79,7 @@ def _chosen(met: np.ndarray) -> np.ndarray:
         if not apart or not others or met[apart, kind].any():
             continue
         spare = min(apart, key=lambda k: _missed(met, [one for one in apart if one != k], k))
-        apart[apart.index(spare)] = others[len(others) // 2]
+        apart[apart.index(spare)] = int(others[len(others) // 2])
     return np.array(sorted(apart), int)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from puckpilot_env.parameters import BY_NAME
 from puckpilot_env.physics.advance import PUCK
-from sim2real.diagnose.contact_data import C
+from sim2real.diagnose.contact_data import C, Contacts
 from sim2real.diagnose.problem import Residuals, Units, record_of
 
 FLIGHT = 0.1  # s; an error of a velocity is told as that of the place so much later
@@ -25,12 +25,13 @@ class ContactProblem(ABC, Generic[C]):
 
     base: tuple[str, ...]
     each: int
+    units_called: str
 
     def __init__(self, data: C, clusters: int, common: Mapping[str, float]) -> None:
         """`clusters`: how many launches the recordings have; `common`: sizes of the table, and the glides' law."""
         self.data, self.clusters, self._common = data, clusters, dict(common)
         self._pucks = np.zeros(1, PUCK)
-        self.units = Units(data.cluster, np.full(len(data), float(self.each)))
+        self.units = Units(data.cluster, np.full(len(data), float(self.each)), self.units_called, _kinds(data))
         self.freedom = self.each * np.bincount(data.cluster, minlength=clusters).astype(float)
 
     def _whiten_by(self, covariance: np.ndarray, by_before: np.ndarray) -> None:
@@ -87,3 +88,11 @@ class ContactProblem(ABC, Generic[C]):
 
     def _record(self, values: Mapping[str, float]) -> np.void:
         return record_of({**self._common, **values})
+
+
+def _kinds(data: Contacts) -> dict[str, np.ndarray]:
+    """Slow and fast contacts, steep and flat ones: the halves of those there are."""
+    if not len(data):
+        return {}
+    fast, flat = (size > np.median(size) for size in (data.closing, data.angle))
+    return {"slow": ~fast, "fast": fast, "steep": ~flat, "flat": flat}

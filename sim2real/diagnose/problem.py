@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
@@ -29,11 +29,14 @@ class Residuals:
 
 @dataclass(frozen=True)
 class Units:
-    """The smallest parts of a regime that can be foretold on their own, such as glides or bounces: the `cluster` (u,)
-    of each, and how many of its residuals are left free by its nuisances, `freedom` (u,)."""
+    """The smallest parts of a regime that can be foretold on their own, such as glides or bounces, by `name`: the
+    `cluster` (u,) of each, and how many of its residuals are left free by its nuisances, `freedom` (u,). `kinds`:
+    which (u,) bool are of a kind that one can record more of."""
 
     cluster: np.ndarray
     freedom: np.ndarray
+    name: str = "pieces"
+    kinds: Mapping[str, np.ndarray] = field(default_factory=dict)
 
     def of(self, clusters: np.ndarray) -> np.ndarray:
         """Indices of the units in these clusters that have residuals to compare."""

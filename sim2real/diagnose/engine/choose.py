@@ -97,6 +97,11 @@ class Model:
         return Model(self.base, tuple(one for one, _ in kept), tuple(spread for _, spread in kept))
 
     @property
+    def names(self) -> tuple[str, ...]:
+        """The names of all columns, each once."""
+        return tuple(dict.fromkeys((*self.base, *(name for law in self.laws for name in law.columns))))
+
+    @property
     def key(self) -> tuple[Any, ...]:
         """What tells it from others."""
         return (self.base, tuple(law.columns for law in self.laws), self.spreads)

@@ -45,7 +45,7 @@ class GlideProblem:
         self._common = dict(values)
         self._starts = _first_guess(data)
         self._pucks = np.zeros(1, PUCK)
-        self.units = Units(data.cluster, 2.0 * np.diff(data.first) - 4.0)
+        self.units = Units(data.cluster, 2.0 * np.diff(data.first) - 4.0, "glides", _kinds(self._starts[:, 2:]))
         self.freedom = np.bincount(data.cluster, self.units.freedom, data.clusters)
         self.noise_m = float(np.sqrt(np.mean(data.std**2)))
 
@@ -175,6 +175,13 @@ class GlideProblem:
                 break
         self._trace(record, self._starts, path)
         return path, by_start
+
+
+def _kinds(velocity: np.ndarray) -> dict[str, np.ndarray]:
+    """Slow and fast glides, by the median of their speeds at the start; those along the table and across it."""
+    speed = np.hypot(*velocity.T)
+    fast, along = speed > np.median(speed), np.abs(velocity[:, 0]) > np.abs(velocity[:, 1])
+    return {"slow": ~fast, "fast": fast, "lengthwise": along, "crosswise": ~along}
 
 
 def _first_guess(data: GlideData) -> np.ndarray:

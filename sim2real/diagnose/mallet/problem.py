@@ -41,6 +41,7 @@ class MalletProblem(ContactProblem[Blows]):
     base: tuple[str, ...] = ("mallet_restitution",)
     plain: tuple[str, ...] = base
     each = 3
+    units_called = "blows"
 
     def __init__(self, data: Blows, clusters: int, common: Mapping[str, float]) -> None:
         """See `ContactProblem`."""

@@ -40,6 +40,7 @@ class WallProblem(ContactProblem[Bounces]):
     base: tuple[str, ...] = ("wall_restitution",)
     plain: tuple[str, ...] = base
     each = 2
+    units_called = "bounces"
 
     def __init__(
         self, data: Bounces, clusters: int, common: Mapping[str, float], scatter: tuple[float, float] = (0.0, 0.0)
