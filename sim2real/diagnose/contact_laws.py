@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 UNIT = 0.1  # of a restitution, what a coefficient of 1 stands for
 GROWTH = 1.2  # of a friction, between the two columns that show how its effect changes with its size
 
+# What a smooth law acts on: the speed along the normal (0), along the tangent (1), or, as the baseline's e, on both.
+COMPONENTS = {"restitution": (0,), "tangential ratio": (1,), "share kept": (0, 1)}
+
 Families = Mapping[str, tuple[str, Callable[[Any], np.ndarray]]]  # by name: what it depends on, and functions (n, k)
 
 
@@ -74,8 +77,8 @@ def _frictions(problem: ContactProblem, values, now: np.ndarray, friction, found
 def _families(problem: ContactProblem, values, now: np.ndarray, families: Families, owner: str, found: _Found):
     laws = []
     for name, (depends, shape) in families.items():
-        for component, axis in (("restitution", 0), ("tangential ratio", 1)):
-            moved = -problem.whitened(_impulses(problem.data, shape(problem.data), axis, problem.each))
+        for component, axes in COMPONENTS.items():
+            moved = -problem.whitened(_impulses(problem.data, shape(problem.data), axes, problem.each))
             block = problem.allowing(values, now, moved)
             label = f"{owner}{component} by {name}"
             law = Law(label, tuple(f"{label} {k}" for k in range(block.shape[1])), depends)
@@ -83,9 +86,15 @@ def _families(problem: ContactProblem, values, now: np.ndarray, families: Famili
     return laws
 
 
-def _impulses(data: Contacts, weights: np.ndarray, axis: int, each: int) -> np.ndarray:
+def acted_on(law: Law) -> tuple[int, ...]:
+    """The components that a smooth law acts on, as in COMPONENTS."""
+    what = law.name.split(" by ", 1)[0]
+    return next(axes for name, axes in COMPONENTS.items() if what.endswith(name))
+
+
+def _impulses(data: Contacts, weights: np.ndarray, axes: Sequence[int], each: int) -> np.ndarray:
     """Velocities (n, each, k) that shares `weights` (n, k) of the closing (0) or sliding (1) speed add."""
-    speed = data.closing if axis == 0 else data.sliding
     columns = np.zeros((len(data), each, weights.shape[1]))
-    columns[:, axis] = UNIT * speed[:, None] * weights
+    for axis in axes:
+        columns[:, axis] = UNIT * (data.closing, data.sliding)[axis][:, None] * weights
     return columns

@@ -39,6 +39,7 @@ from sim2real.nominal import parameters
 from sim2real.recording import Recording
 
 FEWEST_LAUNCHES, FEWEST_RESIDUALS = 4, 8  # of all recordings together: with fewer, nothing is said of a regime
+TOO_ROUGH = "it rests on the glides, whose law is not known well enough"
 TOO_LITTLE = "too little data"
 MORE_OF = {
     "glide": "launches of the puck, twenty or more in all directions and from slow to fast",
@@ -175,11 +176,11 @@ def _puck(data: Cut, sights: Sequence[Sight], values: dict[str, float], progress
     progress("bounces", 0.6)
     impacts = [find_impacts(pieces, glides, states, k) for k, pieces in enumerate(data.pieces)]
     hits = bounces([hit for some in impacts for hit in some], geometry(data.recordings[0]))
-    yield _explain(WallProblem(hits, glides.clusters, law), law, proof, tables, clear)[1]
+    yield judged(_explain(WallProblem(hits, glides.clusters, law), law, proof, tables, clear)[1], clear)
     progress("blows", 0.75)
     struck = _blows(data.recordings, impacts)
     if struck is not None:
-        yield _explain(MalletProblem(struck, glides.clusters, law), law, proof, tables, clear)[1]
+        yield judged(_explain(MalletProblem(struck, glides.clusters, law), law, proof, tables, clear)[1], clear)
 
 
 def _gantry(data: Cut, values: dict[str, float], progress: Progress) -> list[Account]:
@@ -231,6 +232,14 @@ def _explain(problem: Problem, law: Mapping[str, float], proof: np.ndarray, tabl
     if told.lost and not told.next_recording:
         told = replace(told, next_recording=f"record more {MORE_OF[problem.regime]}")
     return found, illustrated(problem, found, told, use)
+
+
+def judged(told: Account, clear: bool) -> Account:
+    """An account of contacts, but nothing is told by it that leaves much unexplained where the glides' law, by which
+    contacts are told, is not a `clear` one."""
+    if clear or not told.unexplained:
+        return told
+    return replace(told, findings=(), undetermined=TOO_ROUGH)
 
 
 def _too_little(regime: str) -> Account:

@@ -10,6 +10,7 @@ WHAT = {
     "pull": "more or less pull of the motors than their volts have",
     "restitution": "another restitution",
     "tangential ratio": "another share kept of the speed along the contact",
+    "share kept": "another share kept of the speed, against the wall or mallet and along it",
     "side force": "a force across the velocity",
 }
 BY = {

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from puckpilot_env.physics.effects import EFFECTS
-from sim2real.diagnose.contact_laws import contact_columns
+from sim2real.diagnose.contact_laws import UNIT, contact_columns
 from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.piecewise import memory_hats, spread_hats
 from sim2real.diagnose.problem import Columns
@@ -61,3 +61,8 @@ FAMILIES: dict[str, tuple[str, Callable[[Bounces], np.ndarray]]] = {
     "time": ("time", lambda d: spread_hats(d.t, KNOTS)),
     "time since a contact": ("history", lambda d: memory_hats(d.since, KNOTS)),
 }
+
+
+def shares(data: Bounces, law: Law) -> np.ndarray:
+    """What the coefficients of a smooth law add (n, k) to the share of a speed that each bounce keeps."""
+    return UNIT * FAMILIES[law.name.split(" by ", 1)[1]][1](data)

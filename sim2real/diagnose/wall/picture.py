@@ -10,13 +10,12 @@ import numpy as np
 from puckpilot_env.parameters import BY_NAME
 from puckpilot_env.physics import bounce
 from sim2real.diagnose.binned import binned, half_band, is_rough, over, singles
-from sim2real.diagnose.contact_laws import UNIT
-from sim2real.diagnose.engine.choose import Law
+from sim2real.diagnose.contact_laws import acted_on
 from sim2real.diagnose.engine.explain import Explained
 from sim2real.diagnose.finding import Curve, Parting
 from sim2real.diagnose.formula import Formula
 from sim2real.diagnose.wall.data import KINDS, Bounces
-from sim2real.diagnose.wall.laws import FAMILIES
+from sim2real.diagnose.wall.laws import shares
 from sim2real.diagnose.wall.problem import WallProblem
 
 SLOWEST = 0.1  # m/s of a component; the share kept of a slower one is noise
@@ -40,8 +39,8 @@ def parting(problem: WallProblem, found: Explained) -> Parting:
     d, std = problem.data, _std(problem)
     before, after = (_misses(problem, values) * std for values in (found.baseline.values, found.final.values))
     if found.unlisted is not None:
-        component, weights = acted_on(found.unlisted), _smooth(d, found.unlisted)
-        after[:, component] -= speeds(d)[:, component] * (weights @ found.theta[-weights.shape[1] :])
+        components, weights = list(acted_on(found.unlisted)), shares(d, found.unlisted)
+        after[:, components] -= speeds(d)[:, components] * (weights @ found.theta[-weights.shape[1] :])[:, None]
     by = {label: column for label, column in coordinates(d).values()}
     return Parting(
         "velocity after the bounce", "m/s", ("normal", "along the wall"), before, after, std, by,
@@ -85,16 +84,6 @@ def coordinates(d: Bounces) -> dict[str, tuple[str, np.ndarray]]:
         "time": ("time [s]", d.t),
         "history": ("time since the last contact [s]", d.since),
     }
-
-
-def acted_on(law: Law) -> int:
-    """The component that a smooth law acts on."""
-    return NORMAL if law.name.startswith("restitution") else TANGENT
-
-
-def _smooth(d: Bounces, law: Law) -> np.ndarray:
-    """The shares (n, k) that the coefficients of a smooth law add to what is kept."""
-    return UNIT * FAMILIES[law.name.split(" by ", 1)[1]][1](d)
 
 
 def speeds(d: Bounces) -> np.ndarray:
@@ -160,6 +149,6 @@ def _kept(problem: WallProblem, found: Explained, at: int, speeds: np.ndarray):
     columns = np.stack(slopes, axis=1)
     if found.unlisted is None:
         return plain, columns, spread
-    weights = _smooth(problem.data, found.unlisted) * float(at == acted_on(found.unlisted))
+    weights = shares(problem.data, found.unlisted) * float(at in acted_on(found.unlisted))
     smooth = weights @ found.theta[-weights.shape[1] :]
     return plain + smooth, np.concatenate([columns, weights], axis=1), found.theta_covariance

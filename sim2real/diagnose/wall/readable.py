@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from sim2real.diagnose.contact_laws import acted_on
 from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.engine.explain import Explained
 from sim2real.diagnose.forms import Axis, Direction, Form, form, profiles
 from sim2real.diagnose.formula import Formula, Rest, find_formula
 from sim2real.diagnose.wall.data import KINDS
-from sim2real.diagnose.wall.picture import NORMAL, View, acted_on, coordinates, speeds
+from sim2real.diagnose.wall.picture import NORMAL, View, coordinates, speeds
 from sim2real.diagnose.wall.problem import WallProblem
 
 NAMES = {"speed": ("v_n", "m/s"), "heading": ("angle", "deg"), "position": ("s", "m"), "time": ("t", "s"),
@@ -21,7 +22,7 @@ FEWEST = 12  # bounces of a wall that may have a law of its own
 
 def readable(problem: WallProblem, found: Explained, law: Law, use: np.ndarray) -> tuple[Formula, View]:
     """The formula of an unlisted law of the bounces, fitted to the clusters `use`; and the view that shows it."""
-    d, component = problem.data, acted_on(law)
+    d, component = problem.data, acted_on(law)[0]
     label, values = coordinates(d)[law.family]
     walls = {"": np.ones(len(d), bool)}
     if law.family == "position":

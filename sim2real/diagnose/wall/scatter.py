@@ -13,8 +13,10 @@ from collections.abc import Mapping
 import numpy as np
 from scipy.stats import chi2
 
+from sim2real.diagnose.contact_laws import acted_on
 from sim2real.diagnose.engine.explain import Explained, explain
 from sim2real.diagnose.engine.fit import fit
+from sim2real.diagnose.wall.laws import shares
 from sim2real.diagnose.wall.problem import WallProblem
 
 ROUGH = 4.0  # times the usual sum of squares of a typical bounce, beyond which noise alone is no explanation
@@ -36,7 +38,10 @@ def explain_bounces(
     anew = found
     for _ in range(AGAIN):
         anew = explain(rough, shipped, use, clear, beyond=1.0)
-        finer = _settled(problem, anew.law.values, anew.law.free, use)
+        if anew.unlisted is None:
+            finer = _settled(problem, anew.law.values, anew.law.free, use)
+        else:
+            finer = problem.scattering(_scatter(problem, _foretold(problem, anew), use))
         if np.all(np.abs(finer.scatter - rough.scatter) < SETTLED):
             break
         rough = finer
@@ -55,18 +60,30 @@ def _settled(problem: WallProblem, values: Mapping[str, float], free, use: np.nd
     rough = problem.scattering((1.0, 1.0))
     for _ in range(ROUNDS):
         values = fit(rough, values, free, use).values
-        finer = problem.scattering(_scatter(problem, values, use))
+        finer = problem.scattering(_scatter(problem, problem.predicted(values), use))
         if np.all(np.abs(finer.scatter - rough.scatter) < SETTLED):
             return finer
         rough = finer
     return rough
 
 
-def _scatter(problem: WallProblem, values: Mapping[str, float], use: np.ndarray) -> tuple[float, float]:
-    """The scatter of both components at which the median squared residual is what it should be."""
+def _foretold(problem: WallProblem, found: Explained) -> np.ndarray:
+    """Velocities after (n, 2) that a law with a smooth one on top foretells."""
+    d = problem.data
+    after = problem.predicted(found.final.values)
+    if found.unlisted is not None:
+        components, weights = list(acted_on(found.unlisted)), shares(d, found.unlisted)
+        going = np.stack([d.closing, d.sliding], axis=1)[:, components]
+        after[:, components] += going * (weights @ found.theta[-weights.shape[1] :])[:, None]
+    return after
+
+
+def _scatter(problem: WallProblem, foretold: np.ndarray, use: np.ndarray) -> tuple[float, float]:
+    """The scatter of both components at which the median square of what differs from `foretold` (n, 2) is what it
+    should be."""
     d = problem.data
     here = np.isin(d.cluster, use)
-    square = (d.split(d.after) - problem.predicted(values))[here] ** 2
+    square = (d.split(d.after) - foretold)[here] ** 2
     sensed, closing = problem.sensed[here], d.closing[here]
 
     def one(axis: int) -> float:

@@ -8,7 +8,8 @@ import pytest
 
 from puckpilot import main
 from puckpilot_env.effects_file import effect_values
-from sim2real.diagnose.diagnosis import diagnose
+from sim2real.diagnose.diagnosis import diagnose, judged
+from sim2real.diagnose.finding import Account, Finding, Proof
 from sim2real.diagnose.summary import summary
 from sim2real.recording import Stream, read_recording
 from tests.reality.camera import Camera
@@ -134,3 +135,20 @@ def test_labelled_practice(name):
     assert [one.mechanism for one in found.findings] == truth["mechanisms"]
     if truth["depends"]:
         assert list(found.findings[0].depends_on) == truth["depends"]
+
+
+@pytest.mark.parametrize("clear, left, told", [(True, 4.0, True), (False, 4.0, False), (False, 1.5, True)])
+def test_bounces_are_not_told_by_glides_whose_law_is_rough(clear, left, told):
+    law = Finding("wall", "wall_to_wall_restitution", (), ("position",), "e", {}, 1e-9, 0.006, left * 1e-3, {}, {})
+    whole = Account("wall", (law,), {}, False, Proof(0.006, left * 1e-3, 0.001, 5))
+    found = judged(whole, clear)
+    assert bool(found.findings) == told == (not found.undetermined)
+
+
+def test_walls_that_bounce_worse_and_worse_are_told_though_no_effect_is_named_so(tmp_path):
+    """Both components change, as the baseline's restitution has it."""
+    found = _diagnosis(tmp_path / "warming", Law(wall_warming=-0.003, wall_restitution=0.85))
+    (law,) = found.findings
+    assert (law.regime, law.mechanism, law.depends_on) == ("wall", "unlisted", ("time",))
+    assert "both components" in law.formula
+    assert law.parameters["slope"].low < -0.003 < law.parameters["slope"].high
