@@ -14,8 +14,10 @@ import torch
 from tiny import TINY, curve, files, tiny, training
 
 from agents import checkpoint as checkpoint_module
+from agents.policy import PolicyPlayer
 from agents.runner import DivergedError
 from agents.training import Training
+from baselines.player import Seat
 from puckpilot import main
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -45,6 +47,21 @@ def test_a_resumed_run_takes_the_very_same_path(tmp_path: Path) -> None:
     names = [path.name for path in sorted((tmp_path / "a" / "selves").iterdir())]
     assert names == [path.name for path in sorted((tmp_path / "b" / "selves").iterdir())] and len(names) > 2
     assert all(same_policies(tmp_path / "a" / "selves" / n, tmp_path / "b" / "selves" / n) for n in names)
+
+
+@pytest.mark.parametrize("variant", ["puckpilot/match-v0", "puckpilot/match-randomized-v0"])
+def test_what_learns_is_what_plays(tmp_path: Path, variant: str) -> None:
+    """Torch's mean, scaled in numpy as in learning, and the compiled player that a file holds do the same."""
+    run = training(tmp_path, preset=tiny(flip="none"), variant=variant)
+    run.round()
+    player = PolicyPlayer(run.policy(), Seat.from_tables(run.tables))
+    rows = run.env.seating.learners
+    observed = run.tables.observations.reshape(2 * len(run.tables), -1)[rows]
+    with torch.inference_mode():
+        outputs = run.runner.alg.get_policy()(run.env.get_observations()).numpy()
+    assert np.abs(outputs).max() <= 1.0 and np.ptp(outputs, axis=0).min() > 0.0
+    learned = run.env.reading.scaling.action(outputs)
+    np.testing.assert_allclose(player.act(observed), learned, rtol=1e-4, atol=1e-5)
 
 
 def test_another_seed_takes_another_path(tmp_path: Path) -> None:
