@@ -32,6 +32,7 @@ from sim2real.diagnose.sensing.account import sense
 from sim2real.diagnose.sensing.agreement import check_sensing
 from sim2real.diagnose.sight import sight
 from sim2real.diagnose.stated import together
+from sim2real.diagnose.stretch import without_stretch
 from sim2real.diagnose.wall.data import bounces
 from sim2real.diagnose.wall.problem import WallProblem
 from sim2real.diagnose.wall.scatter import explain_bounces
@@ -151,7 +152,8 @@ def _accounts(
     values = parameters(recordings[0], shipped)
     sights = tuple(sight(one, pieces) for one, pieces in zip(data.recordings, data.pieces, strict=True))
     gantry = _gantry(data, values, progress)
-    return (sensed.account, *_puck(data, sights, values, progress), *gantry), sights
+    puck = _puck(data, sights, values, progress)
+    return (sensed.account, *(without_stretch(each, sensed.account) for each in puck), *gantry), sights
 
 
 def _puck(data: Cut, sights: Sequence[Sight], values: dict[str, float], progress: Progress) -> Iterator[Account]:
