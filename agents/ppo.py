@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from rsl_rl.algorithms import PPO
@@ -28,3 +29,10 @@ class FinalStatePPO(PPO):
             rewards = rewards.clone()
             rewards[cut.bool()] += self.gamma * self.critic(final).squeeze(-1)
         super().process_env_step(obs, rewards, dones, extras)
+
+    def hold(self, numbers: Mapping[str, float]) -> None:
+        """Learn with these of its own numbers from now on, by rsl-rl's names."""
+        for name, number in numbers.items():
+            setattr(self, name, number)
+        for group in self.optimizer.param_groups:
+            group["lr"] = self.learning_rate

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,16 @@ from agents.rewards import Rewards
 FOLDER = Path(__file__).parent / "presets"
 FLIPS = ("rows", "augment", "none")
 COUNTS = ("tables", "steps", "round", "cap", "most")
+CHANGEABLE = ("learning_rate", "gamma", "lam", "clip_param", "entropy_coef")
+
+
+@dataclass(frozen=True)
+class Change:
+    """What holds from `from_steps` steps of the learner on: some numbers of CHANGEABLE, and of the rewards."""
+
+    from_steps: int
+    ppo: dict[str, float]
+    rewards: dict[str, float]
 
 
 @dataclass(frozen=True)
@@ -32,6 +42,16 @@ class Preset:
     gate: float
     cap: int
     most: int
+    later: tuple[Change, ...] = ()
+
+    def at(self, steps: int) -> Preset:
+        """What holds after so many steps."""
+        due = [change for change in self.later if change.from_steps <= steps]
+        ppo, rewards = dict(self.ppo), self.rewards
+        for change in sorted(due, key=lambda one: one.from_steps):
+            ppo |= change.ppo
+            rewards = replace(rewards, **change.rewards)
+        return replace(self, ppo=ppo, rewards=rewards)
 
 
 def preset_names() -> list[str]:
@@ -54,13 +74,15 @@ def read_preset(text: str, name: str) -> Preset:
     try:
         raw = tomllib.loads(text)
         network, league = raw.pop("network"), raw.pop("league")
+        later = tuple(_change(entry) for entry in raw.pop("later", []))
         ppo, rewards = raw.pop("ppo"), Rewards(**raw.pop("rewards"))
         preset = Preset(
-            text=text, ppo=ppo, rewards=rewards, **raw,
+            text=text, ppo=ppo, rewards=rewards, later=later, **raw,
             hidden=tuple(network.pop("hidden")), **network,
             earlier=tuple(league.pop("earlier")), **league,
         )  # fmt: skip
-    except (tomllib.TOMLDecodeError, KeyError, TypeError) as error:
+        preset.at(max((change.from_steps for change in later), default=0))  # its rewards are known ones
+    except (KeyError, TypeError, ValueError) as error:  # a text that is no TOML is a ValueError too
         raise ValueError(f"preset {name}: {error}") from None
     if preset.flip not in FLIPS:
         raise ValueError(f"preset {name}: flip is {preset.flip!r}; expected one of {', '.join(FLIPS)}")
@@ -70,10 +92,20 @@ def read_preset(text: str, name: str) -> Preset:
     return preset
 
 
+def _change(entry: dict[str, Any]) -> Change:
+    ppo, rewards = dict(entry.pop("ppo", {})), dict(entry.pop("rewards", {}))
+    unknown = [name for name in ppo if name not in CHANGEABLE]
+    if unknown:
+        raise TypeError(f"[[later]] changes {', '.join(unknown)}; what may change is {', '.join(CHANGEABLE)}")
+    numbers = [{name: float(number) for name, number in some.items()} for some in (ppo, rewards)]
+    return Change(ppo=numbers[0], rewards=numbers[1], **entry)
+
+
 def _check_counts(preset: Preset, name: str) -> None:
     named = [(count, getattr(preset, count)) for count in COUNTS]
     named += [(part, size) for part in ("hidden", "earlier") for size in getattr(preset, part)]
     named += list(preset.anchors.items())
+    named += [("[[later]] from_steps", change.from_steps) for change in preset.later]
     for what, count in named:
         if type(count) is not int or count < 1:
             raise ValueError(f"preset {name}: {what} is {count!r}; expected a whole number from 1 on")

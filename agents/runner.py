@@ -49,6 +49,7 @@ class SelfPlayRunner(OnPolicyRunner):
     """Collects and learns, one update a call. `env` is the runner's environment, with opponents seated."""
 
     env: LearnerEnv
+    alg: FinalStatePPO
 
     def __init__(self, env: LearnerEnv, preset: Preset, device: str = "cpu") -> None:
         with contextlib.redirect_stdout(io.StringIO()):  # rsl-rl prints its networks

@@ -21,7 +21,7 @@ from agents.exploit import against
 from agents.league import League, Member
 from agents.learner_env import LearnerEnv
 from agents.policy import Policy, PolicyPlayer, load_policy
-from agents.preset import Preset, read_preset
+from agents.preset import CHANGEABLE, Preset, read_preset
 from agents.run_folder import RunFolder
 from agents.runner import Iteration, SelfPlayRunner
 from agents.scaling import Reading, Scaling
@@ -84,6 +84,7 @@ class Training:
         self.rows: list[Row] = []
         if folder.checkpoint.exists():
             self._resume()
+            self._hold(self.steps)
         else:
             self._admit("self-0")
 
@@ -106,7 +107,9 @@ class Training:
             member.note(points[here].sum(axis=0), games[here].sum(axis=0))
         if chosen and self.league.wants_new(chosen):
             self._admit(f"self-{len(self.rows) + 1}")
+        before = self.steps
         self.rows.append(self._row(iterations))
+        self._hold(before)
         if ranks.rank() == 0:
             self._save()
         return self.rows[-1]
@@ -115,6 +118,15 @@ class Training:
         """What has been learned so far."""
         about = {"variant": self.settings.variant, "seed": self.settings.seed, "steps": self.steps}
         return self.runner.policy(about)
+
+    def _hold(self, before: int) -> None:
+        """Let hold what the preset has for now. The learning rate is changed only if that is new since `before` steps:
+        a schedule may have moved it, and a checkpoint keeps it."""
+        now = self.preset.at(self.steps)
+        self.env.rewards, self.env.gamma = now.rewards, now.ppo["gamma"]
+        fresh = self.preset.at(before).ppo.get("learning_rate") != now.ppo.get("learning_rate")
+        names = [name for name in CHANGEABLE if name in now.ppo and (fresh or name != "learning_rate")]
+        self.runner.alg.hold({name: now.ppo[name] for name in names})
 
     def _players(self, met: list[Member]) -> list[Player]:
         seat = Seat.from_tables(self.tables)

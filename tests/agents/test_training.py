@@ -15,6 +15,7 @@ from tiny import TINY, curve, files, tiny, training
 
 from agents import checkpoint as checkpoint_module
 from agents.policy import PolicyPlayer
+from agents.preset import read_preset
 from agents.runner import DivergedError
 from agents.training import Training
 from baselines.player import Seat
@@ -62,6 +63,34 @@ def test_what_learns_is_what_plays(tmp_path: Path, variant: str) -> None:
     assert np.abs(outputs).max() <= 1.0 and np.ptp(outputs, axis=0).min() > 0.0
     learned = run.env.reading.scaling.action(outputs)
     np.testing.assert_allclose(player.act(observed), learned, rtol=1e-4, atol=1e-5)
+
+
+LATER = """
+[[later]]
+from_steps = 300
+ppo = { gamma = 0.8, entropy_coef = 0.0 }
+rewards = { goal = 3.0 }
+
+[[later]]
+from_steps = 200
+ppo = { learning_rate = 1e-5, gamma = 0.9 }
+"""
+
+
+def test_a_preset_s_numbers_change_when_it_says_so(tmp_path: Path) -> None:
+    """128 steps a round; a schedule keeps what it makes of the learning rate, and a run that is taken up holds all."""
+    preset = read_preset(TINY.replace("adaptive", "fixed") + LATER, "later")
+    held = []
+    for taken_up in (False, True, True, True):
+        run = training(tmp_path, preset=preset, resume=taken_up)
+        run.round()
+        alg, env = run.runner.alg, run.env
+        rates = {group["lr"] for group in alg.optimizer.param_groups}
+        held.append((*rates, alg.learning_rate, alg.gamma, env.gamma, env.rewards.goal, alg.entropy_coef))
+    first, second, third, fourth = held
+    assert first == (1e-3, 1e-3, 0.95, 0.95, 1.0, first[-1]) and first[-1] > 0.0
+    assert second == (1e-5, 1e-5, 0.9, 0.9, 1.0, first[-1])
+    assert third == fourth == (1e-5, 1e-5, 0.8, 0.8, 3.0, 0.0)
 
 
 def test_another_seed_takes_another_path(tmp_path: Path) -> None:

@@ -124,6 +124,10 @@ CHANGES = {
     "steps 0": ("steps = 2", "steps = 0"),
     "round 0": ("round = 1", "round = 0"),
     "hidden words": ("hidden = [8]", 'hidden = ["8"]'),
+    "an unknown change": ("[rewards]", "[[later]]\nfrom_steps = 9\nppo = { epochs = 1 }\n[rewards]"),
+    "a change of no reward": ("[rewards]", "[[later]]\nfrom_steps = 9\nrewards = { gaol = 1.0 }\n[rewards]"),
+    "a change by words": ("[rewards]", "[[later]]\nfrom_steps = 9\nrewards = { goal = 'much' }\n[rewards]"),
+    "a change at no step": ("[rewards]", "[[later]]\nppo = { gamma = 0.9 }\n[rewards]"),
     "a section that is a number": ("[network]", "league = 3\n[network]"),
 }
 
