@@ -83,7 +83,7 @@ class ContactProblem(ABC, Generic[C]):
     def whitened(self, velocities: np.ndarray) -> np.ndarray:
         """Velocities (n, each, …) in units of their noise, as rows (each n, …)."""
         shape = velocities.shape
-        flat = velocities.reshape(len(self.data), self.each, -1)
+        flat = velocities.reshape(len(self.data), self.each, int(np.prod(shape[2:])))  # there may be none
         return np.einsum("nij,njk->nik", self._whiten, flat).reshape(self.each * len(self.data), *shape[2:])
 
     def _record(self, values: Mapping[str, float]) -> np.void:
