@@ -25,6 +25,7 @@ from sim2real.diagnose.where import whereabouts
 LOST = "something is missing, but these data do not tell what"
 BORNE = 0.1  # of what untouched launches have beyond noise, that a law must explain to be told
 FELT = 16.0  # the same difference of two laws' squares, below which it is chance that says which is better
+SLACK = 0.2  # of what a law that is proved already should explain of untouched launches, by which they may be worse
 LEAST_WORSE = 4.0  # growth of the sum of squares of untouched launches, in units of what it scatters by
 
 
@@ -63,7 +64,8 @@ def _refuted(problem: Problem, found: Explained, proof: np.ndarray, plain: float
         return False
     if found.unlisted is None and _felt(problem, found.baseline, found.law, proof) < FELT * found.dispersion:
         return False
-    if mended >= plain:
+    slack = _slack(problem, found, proof)
+    if mended >= plain + slack:
         return True
     before, _ = soft_loss(problem, problem.residuals(found.baseline.values, (), proof))
     after, _ = soft_loss(problem, problem.residuals(found.law.values, (), proof))
@@ -72,7 +74,15 @@ def _refuted(problem: Problem, found: Explained, proof: np.ndarray, plain: float
         with_it, without = (found.losses(theta, parts) for theta in (found.theta, 0.0 * found.theta))
         freedom = problem.units.freedom[parts]
         after += float((gram.soft(with_it, freedom) - gram.soft(without, freedom)).sum())
-    return after > before + LEAST_WORSE * found.dispersion
+    return after > before + LEAST_WORSE * found.dispersion + slack
+
+
+def _slack(problem: Problem, found: Explained, proof: np.ndarray) -> float:
+    """By how much the squares of the clusters `proof` may grow under a law that the launches of the fit prove by
+    themselves, each foretold by the others: a share of what it should have explained."""
+    units = found.chooser.use
+    expected = found.chooser.proved(found.model) * found.dispersion
+    return SLACK * expected * float(problem.freedom[proof].sum() / problem.units.freedom[units].sum())
 
 
 def _findings(
@@ -85,9 +95,10 @@ def _findings(
     freedom = max(float(problem.freedom[proof].sum()), 1.0)
     others = [(law, _fit_without(problem, found, law, use)) for law in found.model.laws]
     without = [(law, _squares(problem, fitted, proof)) for law, fitted in others]
+    sure = found.chooser.proved(found.model) > 0.0  # then the proof need not feel it
     silent = [
         law for law, fitted in others
-        if law.each_launch
+        if law.each_launch or (sure and law.family)
         or (found.unlisted is None and _felt(problem, fitted, found.law, proof) < FELT * found.dispersion)
     ]  # fmt: skip
     controls = twins(found.screen.grams, problem.units, found.model, found.screen.listed, use, proof)

@@ -24,6 +24,7 @@ RESAMPLED, UNSURE = 400, 0.02  # draws of launches, and the share of them in whi
 UNKNOWN = 4.0  # sum of squares a column, below which half of the launches does not tell a sign
 LEAST_SHARE = 0.05  # of what all laws together explain, or, where they explain far more than the noise,
 NOTICEABLE = 0.05  # of the noise's own sum of squares, that a law must explain to be needed
+MOST = 0.5  # of what is beyond noise, that laws which other launches prove explain
 AMBIGUOUS = 9.0  # held-out losses nearer than this do not tell two laws apart
 LOOSE = 0.1  # ridge of a nonlinear law's coefficients, of which 1 is the law as it is looked for
 SPREADS = (0.03, 0.3, 3.0)  # tried for the coefficients of a family
@@ -187,20 +188,32 @@ class Chooser:
         if float(np.quantile(self._resampled @ gain.foretold, UNSURE)) > 0.0:
             return True
         two = np.argsort(gain.foretold)[-2:]
-        return float(gain.foretold[two].min()) > LEAST_FIT and bool(self._of_others(gain, two).min() > LEAST_FIT)
+        if float(gain.foretold[two].min()) <= LEAST_FIT:
+            return False
+        more = gain.beside.plus(gain.law, gain.spread)
+        return bool((self.left_out(gain.beside)[two] - self.left_out(more)[two]).min() > LEAST_FIT)
 
-    def _of_others(self, gain: Gain, launches: np.ndarray) -> np.ndarray:
-        """What a law gains in each of these `launches` when fitted to all others."""
-        gained = []
-        for launch in launches:
-            out, left = self._launch == launch, []
-            for model in (gain.beside, gain.beside.plus(gain.law, gain.spread)):
-                columns, ridge = model.columns(self.grams)
-                theta = gram.solve_softly(self.grams, columns, self.use[~out], self._freedom[~out], ridge)
-                loss = gram.losses(self.grams, columns, theta, self.use[out])
-                left.append(float(gram.soft(loss, self._freedom[out]).sum()) / self.dispersion)
-            gained.append(left[0] - left[1])
-        return np.array(gained)
+    def left_out(self, model: Model) -> np.ndarray:
+        """Loss of each launch, foretold by the model fitted to all other launches."""
+        return self._once("left out", model, self._left_out)
+
+    def _left_out(self, model: Model) -> np.ndarray:
+        columns, ridge = model.columns(self.grams)
+        left = np.zeros(len(self.use))
+        for out in (self._launch == launch for launch in range(self._launches)):
+            theta = gram.solve_softly(self.grams, columns, self.use[~out], self._freedom[~out], ridge)
+            left[out] = gram.losses(self.grams, columns, theta, self.use[out])
+        return np.bincount(self._launch, gram.soft(left, self._freedom)) / self.dispersion
+
+    def proved(self, model: Model) -> float:
+        """The drop of the loss that laws bring to launches which their fit did not see, where these alone prove them:
+        it is most of what the baseline leaves beyond noise, no small thing, and not the doing of few. Else 0."""
+        noise = float(self._freedom.sum()) / self.dispersion
+        plain = self.left_out(Model(model.base))
+        gained = plain - self.left_out(model)
+        enough = max(MOST * (float(plain.sum()) - noise), NOTICEABLE * noise)
+        steady = float(np.quantile(self._resampled @ gained, UNSURE)) > 0.0
+        return float(gained.sum()) if steady and gained.sum() > enough else 0.0
 
     @staticmethod
     def _by_chance(law: Law) -> float:

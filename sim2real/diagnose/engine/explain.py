@@ -19,6 +19,7 @@ MOST_LISTED = 4
 PER_COEFFICIENT = 7.0  # residuals, below which a smooth law would follow the noise
 REMAINDER = 0.1  # share of what the listed laws foretell better that a law on top of them must add
 HALF = 0.5  # of what listed laws explain that leave much; a family that explains as much is nearer to the truth
+FEW = 2  # listed laws that one table may have; more of them, needless beside a family, only stood in for it
 MOSTLY = 2.0 / 3.0  # of what a family alone explains; listed laws that explain as much are no stand-ins
 
 
@@ -157,7 +158,8 @@ def _with_remainder(chooser: Chooser, model: Model, rest: Gain | None, screen: C
     alone = _likeliest(chooser, Model(model.base), screen)
     if alone is None:
         return both
-    if model.laws and _explained(chooser, model) > MOSTLY * _explained(chooser, alone):
+    stood_in = len(model.laws) > FEW and all(one.family for one in both.laws)
+    if model.laws and not stood_in and _explained(chooser, model) > MOSTLY * _explained(chooser, alone):
         return model.plus(rest.law, rest.spread)
     worse = _explained(chooser, both) - _explained(chooser, alone)
     return alone if worse < max(LEAST_FORETOLD, LEAST_SHARE * _explained(chooser, both)) else both

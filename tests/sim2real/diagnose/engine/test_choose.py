@@ -73,6 +73,17 @@ def test_what_a_launch_asks_for_is_doubted_unless_another_says_the_same(sizes, t
     assert (chooser.passes(gain), chooser.doubtful(gain)) == (told == "sure", told == "doubtful")
 
 
+@pytest.mark.parametrize(
+    "size, proved", [(0.0, False), (0.1, False), (0.5, True), (np.where(EVERY == 5, 2.0, 0.0), False)]
+)
+def test_launches_prove_a_law_that_explains_most_of_each_other(size, proved):
+    chooser = Chooser(_grams({"tilt": size}), UNITS, EVERY)
+    found = chooser.proved(BASE.plus(LAWS[0], np.inf))
+    assert (found > 0.0) == proved
+    if proved:  # columns of unit variance: the square of the size, once a residual
+        assert found == pytest.approx(0.25 * LAUNCHES * PIECES * EACH, rel=0.1)
+
+
 def test_a_law_of_other_sign_in_every_other_launch_is_refused():
     chooser = Chooser(_grams({"tilt": np.where(EVERY % 2, 1.0, -0.8)}), UNITS, EVERY)
     assert not chooser.same_in_both_halves(BASE, LAWS[0])
