@@ -37,9 +37,11 @@ def account(problem: Problem, found: Explained, use: np.ndarray, proof: np.ndarr
     before, after = _squares(problem, found.baseline, proof), _left(problem, found, proof)
     refuted = _refuted(problem, found, proof, before, after)
     findings, unborne = ((), found.model.laws) if refuted else _findings(problem, found, use, proof, after)
+    freedom = max(float(problem.freedom[proof].sum()), 1.0)
+    if unborne and after > MUCH**2 * freedom:  # laws chosen beside wrong ones, and much is left: they stood in for it
+        findings, unborne = (), found.model.laws
     refuted = refuted or bool(unborne and not findings)
     after = before if refuted else after
-    freedom = max(float(problem.freedom[proof].sum()), 1.0)
     rms = [problem.noise_m * float(np.sqrt(squares / freedom)) for squares in (before, after)]
     unseen = not findings and rms[1] > MUCH * problem.noise_m  # it happened in the untouched launches alone
     lost = found.lost or refuted or unseen or (found.doubtful is not None and not findings)
