@@ -25,7 +25,6 @@ from sim2real.diagnose.where import whereabouts
 LOST = "something is missing, but these data do not tell what"
 BORNE = 0.1  # of what untouched launches have beyond noise, that a law must explain to be told
 FELT = 16.0  # the same difference of two laws' squares, below which it is chance that says which is better
-SLACK = 0.2  # of what a law that is proved already should explain of untouched launches, by which they may be worse
 LEAST_WORSE = 4.0  # growth of the sum of squares of untouched launches, in units of what it scatters by
 
 
@@ -64,27 +63,27 @@ def _refuted(problem: Problem, found: Explained, proof: np.ndarray, plain: float
     nothing where they hardly feel the law."""
     if not found.model.laws or any(law.each_launch for law in found.model.laws):
         return False
-    if found.unlisted is None and _felt(problem, found.baseline, found.law, proof) < FELT * found.dispersion:
-        return False
-    slack = _slack(problem, found, proof)
-    if mended >= plain + slack:
-        return True
-    before, _ = soft_loss(problem, problem.residuals(found.baseline.values, (), proof))
-    after, _ = soft_loss(problem, problem.residuals(found.law.values, (), proof))
     if found.unlisted is not None:
-        parts = problem.units.of(proof)
-        with_it, without = (found.losses(theta, parts) for theta in (found.theta, 0.0 * found.theta))
-        freedom = problem.units.freedom[parts]
-        after += float((gram.soft(with_it, freedom) - gram.soft(without, freedom)).sum())
-    return after > before + LEAST_WORSE * found.dispersion + slack
+        return _likeness_refuted(problem, found, proof, mended >= plain)
+    if _felt(problem, found.baseline, found.law, proof) < FELT * found.dispersion:
+        return False
+    laws = (found.baseline, found.law)
+    before, after = (soft_loss(problem, problem.residuals(law.values, (), proof))[0] for law in laws)
+    return mended >= plain or after > before + LEAST_WORSE * found.dispersion
 
 
-def _slack(problem: Problem, found: Explained, proof: np.ndarray) -> float:
-    """By how much the squares of the clusters `proof` may grow under a law that the launches of the fit prove by
-    themselves, each foretold by the others: a share of what it should have explained."""
-    units = found.chooser.use
-    expected = found.chooser.proved(found.model) * found.dispersion
-    return SLACK * expected * float(problem.freedom[proof].sum() / problem.units.freedom[units].sum())
+def _likeness_refuted(problem: Problem, found: Explained, proof: np.ndarray, worse: bool) -> bool:
+    """The same of a family, which is a likeness of the truth at best, and may fail where no launch that it was fitted
+    to ever was: if those prove it to each other, untouched ones must be `worse` together by more than they scatter."""
+    parts = problem.units.of(proof)
+    before, after = (
+        gram.soft(some, problem.units.freedom[parts])
+        for some in (found.screen.grams.s[parts], found.losses(found.theta, parts))
+    )
+    gained = np.bincount(problem.units.cluster[parts], before - after)
+    if found.chooser.proved(found.model) > 0.0:
+        return float(gained.sum()) < -float(np.linalg.norm(gained))
+    return worse or float(gained.sum()) < -LEAST_WORSE * found.dispersion
 
 
 def _findings(

@@ -205,8 +205,9 @@ def _gantry(data: Cut, values: dict[str, float], progress: Progress) -> list[Acc
 
 
 def _states(glides: GlideProblem, found: Explained) -> States:
-    if found.unlisted is None:
-        return glides.states(found.law)
+    mended = found.switched()
+    if found.unlisted is None or mended:
+        return glides.states(replace(found.final, values={**found.final.values, **mended}))
     return glides.states(found.final, found.unlisted.name, found.theta[-len(found.unlisted.columns) :])
 
 

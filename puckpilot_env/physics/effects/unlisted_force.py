@@ -1,6 +1,7 @@
 """A smooth force that no other effect says: a table of numbers over place, speed, heading or time.
 
-`kind` says what the numbers are. A push acts along x and y, a brake against the motion, a side force to its left.
+`kind` says what the numbers are. A push acts along x and y, a brake against the motion, a side force to its left. Of a
+brake and the baseline's friction together a negative sum is none: nothing drives a puck on that rests.
 
 | kind | force | numbers [m/s^2 unless said otherwise] |
 | --- | --- | --- |
@@ -73,28 +74,39 @@ def acceleration(p, t, x, y, vx, vy, spin):
     if v == 0.0:
         return 0.0, 0.0
     ux, uy = vx / v, vy / v
-    brake, side = along_and_across(p, kind, t, x, y, ux, uy, v)
+    brake, side = by_motion(p, kind, ux, uy, v)
     return -brake * ux - side * uy, -brake * uy + side * ux
 
 
 @kernel
-def along_and_across(p, kind, t, x, y, ux, uy, v):
-    """`(brake, side force)` of a puck of speed `v` along the unit vector `u`."""
-    if kind == BRAKE_BY_PLACE:
-        return over_place(p, x, y, numbers_0_to_23(p)), 0.0
-    if kind == BRAKE_BY_X:
-        return cosines(math.cos(math.pi * x / p.length), numbers_0_to_13(p)), 0.0
-    if kind == BRAKE_BY_Y:
-        return cosines(math.cos(math.pi * y / p.width), numbers_0_to_13(p)), 0.0
+def by_motion(p, kind, ux, uy, v):
+    """`(brake, side force)` of a puck of speed `v` along the unit vector `u`, but for what `friction` says."""
     if kind == BRAKE_BY_SPEED:
         return over_knots(v, numbers_0_to_9(p), numbers_10_to_19(p)), 0.0
     if kind == SIDE_BY_SPEED:
         return 0.0, over_knots(v, numbers_0_to_9(p), numbers_10_to_19(p))
-    if kind == BRAKE_BY_TIME:
-        return over_even_knots((t - p.unlisted_00) / (p.unlisted_01 - p.unlisted_00), numbers_2_to_21(p)), 0.0
     if kind == BY_HEADING:
-        return over_heading(p, ux, uy)
+        return 0.0, over_heading(ux, uy, numbers_8_to_15(p))
     return 0.0, 0.0
+
+
+@kernel
+def friction(p, t, x, y, dx, dy, friction):
+    """With the brakes that do not depend on the speed, at the middle of the way."""
+    kind = p.unlisted_kind
+    if kind == BRAKE_BY_PLACE:
+        return friction + over_place(p, x + 0.5 * dx, y + 0.5 * dy, numbers_0_to_23(p))
+    if kind == BRAKE_BY_X:
+        return friction + cosines(math.cos(math.pi * (x + 0.5 * dx) / p.length), numbers_0_to_13(p))
+    if kind == BRAKE_BY_Y:
+        return friction + cosines(math.cos(math.pi * (y + 0.5 * dy) / p.width), numbers_0_to_13(p))
+    if kind == BRAKE_BY_TIME:
+        share = (t - p.unlisted_00) / (p.unlisted_01 - p.unlisted_00)
+        return friction + over_even_knots(share, numbers_2_to_21(p))
+    way = math.sqrt(dx * dx + dy * dy)
+    if kind == BY_HEADING and way > 0.0:
+        return friction + over_heading(dx / way, dy / way, numbers_0_to_7(p))
+    return friction
 
 
 @kernel
@@ -140,15 +152,13 @@ def over_even_knots(share, values):
 
 
 @kernel
-def over_heading(p, c, s):
-    """`(brake, side force)` of the first 16 numbers as harmonics of the heading, whose cosine and sine are given."""
-    a = numbers_0_to_23(p)
-    brake, side, ck, sk = 0.0, 0.0, 1.0, 0.0
+def over_heading(c, s, a):
+    """Harmonics of the heading, whose cosine and sine are given, with the numbers `a`."""
+    force, ck, sk = 0.0, 1.0, 0.0
     for k in range(HARMONICS):
         ck, sk = ck * c - sk * s, sk * c + ck * s
-        brake += a[2 * k] * ck + a[2 * k + 1] * sk
-        side += a[2 * HARMONICS + 2 * k] * ck + a[2 * HARMONICS + 2 * k + 1] * sk
-    return brake, side
+        force += a[2 * k] * ck + a[2 * k + 1] * sk
+    return force
 
 
 @kernel
@@ -190,6 +200,24 @@ def numbers_14_to_27(p):
         p.unlisted_14, p.unlisted_15, p.unlisted_16, p.unlisted_17, p.unlisted_18, p.unlisted_19,
         p.unlisted_20, p.unlisted_21, p.unlisted_22, p.unlisted_23, p.unlisted_24, p.unlisted_25,
         p.unlisted_26, p.unlisted_27,
+    )  # fmt: skip
+
+
+@kernel
+def numbers_0_to_7(p):
+    """These as a tuple."""
+    return (
+        p.unlisted_00, p.unlisted_01, p.unlisted_02, p.unlisted_03, p.unlisted_04, p.unlisted_05,
+        p.unlisted_06, p.unlisted_07,
+    )  # fmt: skip
+
+
+@kernel
+def numbers_8_to_15(p):
+    """These as a tuple."""
+    return (
+        p.unlisted_08, p.unlisted_09, p.unlisted_10, p.unlisted_11, p.unlisted_12, p.unlisted_13,
+        p.unlisted_14, p.unlisted_15,
     )  # fmt: skip
 
 

@@ -13,14 +13,13 @@ from sim2real.diagnose.engine.choose import LEAST_FORETOLD, LEAST_SHARE, Chooser
 from sim2real.diagnose.engine.fit import Fit, fit, given
 from sim2real.diagnose.engine.noise import dispersion
 from sim2real.diagnose.engine.settle import as_shipped, calm_clusters, far_off, nearly_all, refit, standing, undisturbed
+from sim2real.diagnose.engine.smooth import Smooth, fit_smooth
 from sim2real.diagnose.problem import Columns, Problem
 
 MOST_LISTED = 4
 PER_COEFFICIENT = 7.0  # residuals, below which a smooth law would follow the noise
 REMAINDER = 0.1  # share of what the listed laws foretell better that a law on top of them must add
-HALF = 0.5  # of what listed laws explain that leave much; a family that explains as much is nearer to the truth
-FEW = 2  # listed laws that one table may have; more of them, needless beside a family, only stood in for it
-MOSTLY = 2.0 / 3.0  # of what a family alone explains; listed laws that explain as much are no stand-ins
+TRIED = 2  # families that foretell best, and as many that fit best, that are fitted by themselves
 
 
 @dataclass(frozen=True)
@@ -86,38 +85,85 @@ def explain(
     chooser = Chooser(screen.grams, problem.units, use, beyond)
     model, gains = chooser.add(Model(problem.base), screen.listed, MOST_LISTED)
     listed, law = standing(problem, baseline, chooser.prune(model), screen, use)
-    model = _completed(problem, baseline, law, listed, chooser, screen, use) if clear else listed
-    if model is not listed:
-        model, law = standing(problem, baseline, model, screen, use)
-    unlisted = next((one for one in model.laws if one.family), None)
+    way = _completed(problem, baseline, law, listed, chooser, screen, use) if clear else _Way(listed, law, None, np.inf)
+    model, law, smooth = way.model, way.law, way.smooth
     kept = tuple(one for one in model.laws if not one.family)
-    calm = use if unlisted else calm_clusters(problem, law, use)
+    calm = use if smooth else calm_clusters(problem, law, use)
     if len(calm) < len(use):
         law = refit(problem, baseline, kept, screen, calm)
-    theta, spread, columns = _smooth(problem, law, unlisted, model, screen, use)
     return Explained(
         baseline, law, as_shipped(problem, shipped, baseline, use, beyond), beyond, kept,
-        unlisted, theta, spread, columns, screen, chooser, model,
+        smooth.family if smooth else None, smooth.theta if smooth else np.zeros(0),
+        smooth.covariance(problem, use) if smooth else np.zeros((0, 0)), smooth.columns if smooth else screen,
+        screen, chooser, model,
         _doubtful(chooser, _beside(chooser, model, screen) if model.laws else gains) if clear else None,
         clear and not model.laws and far_off(problem, baseline, law, use),
     )  # fmt: skip
 
 
+@dataclass(frozen=True)
+class _Way:
+    """One way to explain a problem: the `model` as it was chosen, its fit, and the family on top of it. `foretold`: the
+    loss of units held out, about the fit itself."""
+
+    model: Model
+    law: Fit
+    smooth: Smooth | None
+    foretold: float
+
+    @property
+    def cost(self) -> int:
+        """How much is said: a listed law is a name, a family is a name and a shape."""
+        return len(self.model.laws) + (self.smooth is not None)
+
+
 def _completed(
     problem: Problem, baseline: Fit, law: Fit, listed: Model, chooser: Chooser, screen: Columns, use: np.ndarray
-) -> Model:
+) -> _Way:
     """The listed laws, of which `law` is the fit, with a family for what they leave, or in their place."""
-    model = listed
-    if not nearly_all(problem, baseline, law, use):
-        columns = screen
-        if law is not baseline:
-            columns = _tellable(problem.columns(law.values, law.free, None), problem, use)
-        refitted = Chooser(columns.grams, problem.units, use, chooser.dispersion)
-        model = _with_remainder(chooser, listed, _remainder(chooser, listed, refitted, law, columns), screen)
-    if any(one.family for one in model.laws) or not far_off(problem, baseline, law, use):
-        return model
-    smooth = _likeliest(chooser, Model(problem.base), screen)
-    return smooth if smooth is not None and _explained(chooser, smooth) > HALF * _explained(chooser, model) else model
+    plain = _Way(listed, law, None, np.inf)
+    if nearly_all(problem, baseline, law, use):
+        return plain
+    columns = screen
+    if law is not baseline:
+        columns = _tellable(problem.columns(law.values, law.free, None), problem, use)
+    refitted = Chooser(columns.grams, problem.units, use, chooser.dispersion)
+    rest = _remainder(chooser, listed, refitted, law, columns)
+    if rest is None and not far_off(problem, baseline, law, use):
+        return plain
+    ways = [replace(plain, foretold=float(refitted.foretold(Model(law.free)).sum()))]
+    nothing = float(chooser.foretold(Model(problem.base)).sum())
+    for gain in _worth_trying(chooser, Model(problem.base), screen):
+        if nothing - gain.fitted < min(way.foretold for way in ways):  # what it might leave, if it were the truth
+            ways.append(_with_family(problem, Model(problem.base), baseline, gain, chooser, use))
+    if rest is not None and listed.laws:
+        ways.append(_with_family(problem, listed, law, rest, chooser, use))
+        fewer = chooser.prune(listed.plus(rest.law, rest.spread)).minus(rest.law)
+        if len(fewer.laws) < len(listed.laws) and fewer.laws:
+            fewer, fitted = standing(problem, baseline, fewer, screen, use)
+            ways.append(_with_family(problem, fewer, fitted, rest, chooser, use))
+    return _simplest(ways, nothing)
+
+
+def _with_family(problem: Problem, listed: Model, law: Fit, gain: Gain, chooser: Chooser, use: np.ndarray) -> _Way:
+    smooth = fit_smooth(problem, law, gain.law, use, chooser.dispersion)
+    return _Way(listed.plus(gain.law, smooth.spread), smooth.law, smooth, smooth.foretold)
+
+
+def _worth_trying(chooser: Chooser, base: Model, screen: Columns) -> list[Gain]:
+    """The families that may explain most by themselves, best first: those that fit best and those that foretell best,
+    as far as that can be seen from the baseline's path."""
+    gains = [chooser.gain(base, law) for law in screen.families]
+    foretelling = sorted(gains, key=lambda gain: -gain.total)[:TRIED]
+    fitting = sorted(gains, key=lambda gain: 2.0 * len(gain.law.columns) - gain.fitted)[:TRIED]
+    return list({gain.law.name: gain for gain in (*fitting, *foretelling)}.values())
+
+
+def _simplest(ways: Sequence[_Way], nothing: float) -> _Way:
+    """The way that says least of those that foretell hardly worse than the best; `nothing`: the baseline's loss."""
+    best = min(way.foretold for way in ways)
+    enough = max(LEAST_FORETOLD, LEAST_SHARE * (nothing - best))
+    return min((way for way in ways if way.foretold < best + enough), key=lambda way: (way.cost, way.foretold))
 
 
 def _beside(chooser: Chooser, model: Model, screen: Columns) -> list[Gain]:
@@ -149,42 +195,5 @@ def _remainder(chooser: Chooser, model: Model, refitted: Chooser, law: Fit, colu
     return None
 
 
-def _with_remainder(chooser: Chooser, model: Model, rest: Gain | None, screen: Columns) -> Model:
-    """The model with the family `rest` on top; or a family alone, where that does as well and the listed laws are but a
-    part of it: then they only stood in for it."""
-    if rest is None:
-        return model
-    both = chooser.prune(model.plus(rest.law, rest.spread))
-    alone = _likeliest(chooser, Model(model.base), screen)
-    if alone is None:
-        return both
-    stood_in = len(model.laws) > FEW and all(one.family for one in both.laws)
-    if model.laws and not stood_in and _explained(chooser, model) > MOSTLY * _explained(chooser, alone):
-        return model.plus(rest.law, rest.spread)
-    worse = _explained(chooser, both) - _explained(chooser, alone)
-    return alone if worse < max(LEAST_FORETOLD, LEAST_SHARE * _explained(chooser, both)) else both
-
-
-def _likeliest(chooser: Chooser, base: Model, screen: Columns) -> Model | None:
-    """The baseline and the family that alone foretells best, of those that are more than chance; few launches may do:
-    that something is missing is sure already."""
-    some = [gain for gain in (chooser.gain(base, law) for law in screen.families) if chooser.likely(gain)]
-    best = max(some, key=lambda gain: gain.total, default=None)
-    return None if best is None else base.plus(best.law, best.spread)
-
-
 def _explained(chooser: Chooser, model: Model) -> float:
     return float((chooser.foretold(Model(model.base)) - chooser.foretold(model)).sum())
-
-
-def _smooth(problem: Problem, law: Fit, unlisted: Law | None, model: Model, screen: Columns, use: np.ndarray):
-    """Coefficients of the family on top of the final fit, their covariance, and the columns that they belong to."""
-    if unlisted is None:
-        return np.zeros(0), np.zeros((0, 0)), screen
-    columns = problem.columns(law.values, law.free, None)
-    spread = model.spreads[model.laws.index(unlisted)]
-    index, ridge = Model(law.free, (unlisted,), (spread,)).columns(columns.grams)
-    units = problem.units.of(use)
-    theta = gram.solve_softly(columns.grams, index, units, problem.units.freedom[units], ridge)
-    launches = gram.gathered(columns.grams, problem.units.cluster, problem.clusters)
-    return theta, gram.covariance(launches, index, theta, use), columns

@@ -60,6 +60,13 @@ def gathered(grams: Grams, into: np.ndarray, count: int) -> Grams:
     return Grams(grams.names, **sums)
 
 
+def moved(grams: Grams, columns: np.ndarray, theta: np.ndarray) -> Grams:
+    """The sums of the residuals `r + J theta`, with the same derivatives."""
+    g = np.einsum("cij,j->ci", grams.g[:, :, columns], theta)
+    more = 2.0 * grams.b[:, columns] @ theta + g[:, columns] @ theta
+    return Grams(grams.names, grams.g, grams.b + g, grams.s + more, grams.count)
+
+
 def solve(grams: Grams, columns: np.ndarray, clusters: np.ndarray, ridge: np.ndarray | float = 0.0) -> np.ndarray:
     """Least squares theta (k,) of `columns` on `clusters`, with penalties `ridge` (k,); columns of zeros get 0."""
     g = grams.g[np.ix_(clusters, columns, columns)].sum(axis=0)

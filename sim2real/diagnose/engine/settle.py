@@ -16,6 +16,7 @@ from sim2real.diagnose.problem import Columns, Problem
 CLEAR = 1e-4  # chance at which the simulator's own numbers would be refused though they are right
 FAR_OFF = 2.0  # mean square residual beyond 1 of a typical launch, in units of the noise, that nothing explains
 REMAINDER = 0.1  # share of what the baseline leaves that must remain to be worth a law
+AUDIBLE = 1.0  # of the noise, in variance, that must remain to be worth a law in any case
 MANY_ASTRAY = 0.25  # of the launches: more than accidents, such as touches that nobody saw, spoil
 NEAR, HALF_WAY = 0.3, 0.3  # the same beside listed laws, and as a share of what the baseline leaves
 STRAY = 6.0  # times the usual sum of squares: a launch in which something else happened
@@ -27,11 +28,11 @@ FEW_ROUNDS = 4  # of a fit, to see which start leads farthest
 
 def far_off(problem: Problem, baseline: Fit, law: Fit, use: np.ndarray) -> bool:
     """Whether something must be missing still: a bare baseline leaves far more than noise of most launches (of most
-    units, where single ones may be wrong altogether) or of many, or listed laws leave much of what it does."""
+    units, where single ones may be wrong altogether) or of many; or listed laws do, or leave much of what it does."""
     before, after = (_typical(problem, one, use) - 1.0 for one in (baseline, law))
     if law is baseline:
         return after > FAR_OFF or _astray(problem, law, use) > MANY_ASTRAY
-    return after > NEAR and after > HALF_WAY * before
+    return after > NEAR and after > min(HALF_WAY * before, FAR_OFF)
 
 
 def _astray(problem: Problem, law: Fit, use: np.ndarray) -> float:
@@ -42,9 +43,11 @@ def _astray(problem: Problem, law: Fit, use: np.ndarray) -> float:
 
 
 def nearly_all(problem: Problem, baseline: Fit, law: Fit, use: np.ndarray) -> bool:
-    """Whether listed laws explain so much that what they leave is not worth a law of its own."""
+    """Whether listed laws explain so much that what they leave is not worth a law of its own: little of what there was,
+    and little beside the noise."""
     noise = float(problem.freedom[use].sum())
-    return law is not baseline and law.loss - noise < REMAINDER * (baseline.loss - noise)
+    left = law.loss - noise
+    return law is not baseline and left < min(REMAINDER * (baseline.loss - noise), AUDIBLE * noise)
 
 
 def left_of(problem: Problem, law: Fit, use: np.ndarray) -> np.ndarray:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from puckpilot_env.physics.effects.unlisted_force import HARMONICS, TIME_KNOTS, WAVES_X, WAVES_Y
-from sim2real.diagnose.piecewise import hats, memory_hats, spread_knots
+from sim2real.diagnose.piecewise import hats, memory_hats, ripples, stiff, tamed
 
 UNIT = 0.1  # m/s^2, what a coefficient of 1 stands for
 RIPPLES = (14, 8)  # of cosines along one axis alone
@@ -23,8 +23,8 @@ SPIN = "side force by each launch's spin"
 @dataclass(frozen=True)
 class Motion:
     """Glides as the families see them: `t` (n,) [s], `place`, `velocity` (n, 2), `since` (n,) [s] after the last
-    contact (nan where none), the number `launch` (n,) of the launch, the time `aged` (n,) [s] since it began, and the
-    table's `size` (2,) [m]."""
+    contact (nan where none), the number `launch` (n,) of the launch, the time `aged` (n,) [s] since it began, the
+    table's `size` (2,) [m], and `speeds` (k,) [m/s] between which a force by speed is straight."""
 
     t: np.ndarray
     place: np.ndarray
@@ -33,6 +33,7 @@ class Motion:
     launch: np.ndarray
     aged: np.ndarray
     size: np.ndarray
+    speeds: np.ndarray
 
     @property
     def along(self) -> np.ndarray:
@@ -45,18 +46,27 @@ class Motion:
         return np.stack([-self.along[:, 1], self.along[:, 0]], axis=1)
 
 
+def over_place() -> np.ndarray:
+    """Sizes (WAVES_X WAVES_Y,) of `cosines`."""
+    return tamed(np.hypot(*np.meshgrid(np.arange(WAVES_X), np.arange(WAVES_Y), indexing="ij"))).ravel()
+
+
+def along_axis(axis: int) -> np.ndarray:
+    """Sizes (RIPPLES,) of the waves along one axis."""
+    return tamed(np.arange(RIPPLES[axis]))
+
+
 def cosines(motion: Motion) -> np.ndarray:
     """Smooth functions (n, WAVES_X WAVES_Y) of the place on the table."""
     u, w = (motion.place / motion.size).T
     x = np.stack([np.cos(np.pi * i * u) for i in range(WAVES_X)])
     y = np.stack([np.cos(np.pi * j * w) for j in range(WAVES_Y)])
-    return (x[:, None] * y[None]).reshape(-1, len(u)).T
+    return (x[:, None] * y[None]).reshape(-1, len(u)).T * over_place()
 
 
-def ripples(motion: Motion, axis: int) -> np.ndarray:
+def _ripples(motion: Motion, axis: int) -> np.ndarray:
     """Smooth functions (n, RIPPLES) of the place along one axis of the table."""
-    u = motion.place[:, axis] / motion.size[axis]
-    return np.stack([np.cos(np.pi * i * u) for i in range(RIPPLES[axis])], axis=1)
+    return ripples(motion.place[:, axis] / motion.size[axis], RIPPLES[axis])
 
 
 def harmonics(motion: Motion) -> np.ndarray:
@@ -75,22 +85,18 @@ def _axes(motion: Motion) -> tuple[np.ndarray, np.ndarray]:
     return np.tile([1.0, 0.0], (n, 1)), np.tile([0.0, 1.0], (n, 1))
 
 
-def speed_knots(motion: Motion) -> np.ndarray:
-    """Speeds (k,) [m/s] between which a force by speed is straight."""
-    return spread_knots(np.linalg.norm(motion.velocity, axis=1), SPEED_KNOTS)
-
-
 def time_knots(motion: Motion) -> np.ndarray:
     """Times (k,) [s] between which a force by time is straight."""
     return np.linspace(motion.t.min(), motion.t.max(), TIME_KNOTS)
 
 
 def _speeds(motion: Motion) -> np.ndarray:
-    return hats(np.linalg.norm(motion.velocity, axis=1), speed_knots(motion))
+    return hats(np.linalg.norm(motion.velocity, axis=1), motion.speeds) @ stiff(motion.speeds)
 
 
 def _moments(motion: Motion) -> np.ndarray:
-    return hats(motion.t, time_knots(motion))
+    knots = time_knots(motion)
+    return hats(motion.t, knots) @ stiff(knots)
 
 
 def _memory(motion: Motion) -> np.ndarray:
@@ -107,10 +113,10 @@ Family = Callable[[Motion], np.ndarray]
 FAMILIES: dict[str, tuple[str, Family]] = {
     "push by position": ("position", lambda m: _times(cosines(m), *_axes(m))),
     "brake by position": ("position", lambda m: _times(cosines(m), -m.along)),
-    "push by place along the table": ("position", lambda m: _times(ripples(m, 0), *_axes(m))),
-    "push by place across the table": ("position", lambda m: _times(ripples(m, 1), *_axes(m))),
-    "brake by place along the table": ("position", lambda m: _times(ripples(m, 0), -m.along)),
-    "brake by place across the table": ("position", lambda m: _times(ripples(m, 1), -m.along)),
+    "push by place along the table": ("position", lambda m: _times(_ripples(m, 0), *_axes(m))),
+    "push by place across the table": ("position", lambda m: _times(_ripples(m, 1), *_axes(m))),
+    "brake by place along the table": ("position", lambda m: _times(_ripples(m, 0), -m.along)),
+    "brake by place across the table": ("position", lambda m: _times(_ripples(m, 1), -m.along)),
     "brake by speed": ("speed", lambda m: _times(_speeds(m), -m.along)),
     "side force by speed": ("speed", lambda m: _times(_speeds(m), m.across)),
     "force by heading": ("heading", lambda m: _times(harmonics(m), -m.along, m.across)),

@@ -11,12 +11,13 @@ from puckpilot_env.parameters import BY_NAME
 from puckpilot_env.physics.advance import PUCK
 from sim2real.diagnose.engine.fit import Fit
 from sim2real.diagnose.glide.data import GlideData
-from sim2real.diagnose.glide.families import FAMILIES, Motion
+from sim2real.diagnose.glide.families import FAMILIES, SPEED_KNOTS, Motion
 from sim2real.diagnose.glide.laws import glide_columns
 from sim2real.diagnose.glide.trace import bend, trace
+from sim2real.diagnose.piecewise import spread_knots
 from sim2real.diagnose.problem import Columns, Residuals, Units, record_of
 
-ROUNDS = 3  # of Gauss-Newton at most, from a parabola's start
+ROUNDS = 3  # of Gauss-Newton at most, from the last law's starts, and again from a parabola's
 STEP = np.array([1e-6, 1e-6, 1e-5, 1e-5])  # of a start: m, m/s
 
 
@@ -43,7 +44,9 @@ class GlideProblem:
         self.data = data
         self.clusters = data.clusters
         self._common = dict(values)
-        self._starts = _first_guess(data)
+        self._guess, speed = _first_guess(data)
+        self._starts = self._guess.copy()
+        self._speeds = spread_knots(speed, SPEED_KNOTS)
         self._pucks = np.zeros(1, PUCK)
         self.units = Units(data.cluster, 2.0 * np.diff(data.first) - 4.0, "glides", _kinds(self._starts[:, 2:]))
         self.freedom = np.bincount(data.cluster, self.units.freedom, data.clusters)
@@ -60,7 +63,8 @@ class GlideProblem:
         begun = np.full(data.clusters, np.inf)
         np.minimum.at(begun, launch, data.t)
         size = np.array([self._common["length"], self._common["width"]])
-        return Motion(data.t, path[:, :2], path[:, 2:], since, launch.astype(float), data.t - begun[launch], size)
+        aged = data.t - begun[launch]
+        return Motion(data.t, path[:, :2], path[:, 2:], since, launch.astype(float), aged, size, self._speeds)
 
     def residuals(self, values: Mapping[str, float], free: Sequence[str], clusters: np.ndarray) -> Residuals:
         """See `Problem.residuals`."""
@@ -162,7 +166,7 @@ class GlideProblem:
         data = self.data
         path, other = np.empty((len(data.t), 4)), np.empty((len(data.t), 4))
         by_start = np.empty((len(data.t), 2, 4))
-        for _ in range(ROUNDS):
+        for tried in range(2 * ROUNDS):
             self._trace(record, self._starts, path)
             for k in range(4):
                 moved = self._starts.copy()
@@ -171,8 +175,11 @@ class GlideProblem:
                 by_start[:, :, k] = (other[:, :2] - path[:, :2]) / STEP[k]
             change = _steps(data, path, by_start)
             self._starts[:, :4] += change
-            if np.all(np.abs(change) < 10 * STEP):
+            astray = np.any(np.abs(change) > 10 * STEP, axis=1)
+            if not astray.any():
                 break
+            if tried == ROUNDS - 1:  # a law that was tried before may have led these too far away
+                self._starts[astray] = self._guess[astray]
         self._trace(record, self._starts, path)
         return path, by_start
 
@@ -184,13 +191,15 @@ def _kinds(velocity: np.ndarray) -> dict[str, np.ndarray]:
     return {"slow": ~fast, "fast": fast, "lengthwise": along, "crosswise": ~along}
 
 
-def _first_guess(data: GlideData) -> np.ndarray:
-    starts = np.zeros((data.glides, 5))
+def _first_guess(data: GlideData) -> tuple[np.ndarray, np.ndarray]:
+    """Starts (g, 5) of parabolas through the glides, and the speed (n,) [m/s] of each frame along them."""
+    starts, speed = np.zeros((data.glides, 5)), np.zeros(len(data.t))
     for g, (a, b) in enumerate(zip(data.first[:-1], data.first[1:], strict=True)):
         u = data.t[a:b] - data.t[a]
         fit = np.polyfit(u, data.place[a:b], 2)
         starts[g, :2], starts[g, 2:4] = fit[2], fit[1]
-    return starts
+        speed[a:b] = np.linalg.norm(fit[1] + 2.0 * fit[0] * u[:, None], axis=1)
+    return starts, speed
 
 
 def _steps(data: GlideData, path: np.ndarray, by_start: np.ndarray) -> np.ndarray:

@@ -7,7 +7,9 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from puckpilot_env.physics.effects import unlisted_force
-from sim2real.diagnose.glide.families import RIPPLES, UNIT, Motion, speed_knots, time_knots
+from puckpilot_env.physics.effects.unlisted_force import WAVES_X, WAVES_Y
+from sim2real.diagnose.glide.families import RIPPLES, UNIT, Motion, along_axis, over_place, time_knots
+from sim2real.diagnose.piecewise import stiff
 
 ROWS = unlisted_force.EFFECT.row_names
 
@@ -16,11 +18,15 @@ def _as_they_are(motion: Motion, theta: np.ndarray) -> np.ndarray:
     return UNIT * theta
 
 
+def _over_place(motion: Motion, theta: np.ndarray) -> np.ndarray:
+    return UNIT * (theta.reshape(-1, WAVES_X * WAVES_Y) * over_place()).ravel()
+
+
 def _ripples(axis: int) -> Callable[[Motion, np.ndarray], np.ndarray]:
     """For each direction as many numbers as the simulator has, the last ones 0."""
 
     def numbers(motion: Motion, theta: np.ndarray) -> np.ndarray:
-        each = UNIT * theta.reshape(-1, RIPPLES[axis])
+        each = UNIT * theta.reshape(-1, RIPPLES[axis]) * along_axis(axis)
         return np.pad(each, ((0, 0), (0, unlisted_force.RIPPLES - RIPPLES[axis]))).ravel()
 
     return numbers
@@ -28,19 +34,21 @@ def _ripples(axis: int) -> Callable[[Motion, np.ndarray], np.ndarray]:
 
 def _by_speed(motion: Motion, theta: np.ndarray) -> np.ndarray:
     """Knots and values, the last ones repeated."""
-    knots = speed_knots(motion)
+    knots = motion.speeds
     more = (0, unlisted_force.SPEED_KNOTS - len(knots))
-    return np.concatenate([np.pad(knots, more, "edge"), np.pad(UNIT * theta, more, "edge")])
+    return np.concatenate([np.pad(knots, more, "edge"), np.pad(UNIT * stiff(knots) @ theta, more, "edge")])
 
 
 def _by_time(motion: Motion, theta: np.ndarray) -> np.ndarray:
-    return np.concatenate([time_knots(motion)[[0, -1]], UNIT * theta])
+    knots = time_knots(motion)
+    values = UNIT * theta.reshape(-1, len(knots)) @ stiff(knots).T  # along each direction
+    return np.concatenate([knots[[0, -1]], values.ravel()])
 
 
 # family: kind of the simulator's force, and its numbers from the family's coefficients
 SWITCHES: Mapping[str, tuple[int, Callable[[Motion, np.ndarray], np.ndarray]]] = {
-    "push by position": (unlisted_force.PUSH_BY_PLACE, _as_they_are),
-    "brake by position": (unlisted_force.BRAKE_BY_PLACE, _as_they_are),
+    "push by position": (unlisted_force.PUSH_BY_PLACE, _over_place),
+    "brake by position": (unlisted_force.BRAKE_BY_PLACE, _over_place),
     "push by place along the table": (unlisted_force.PUSH_BY_X, _ripples(0)),
     "push by place across the table": (unlisted_force.PUSH_BY_Y, _ripples(1)),
     "brake by place along the table": (unlisted_force.BRAKE_BY_X, _ripples(0)),

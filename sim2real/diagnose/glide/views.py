@@ -124,4 +124,4 @@ def varied(mechanism: str, values: Mapping[str, float], usual: Motion, x: np.nda
             case "time":
                 t = x
     never = np.full(n, np.nan)
-    return Motion(t, place, velocity, never, never, never, usual.size)
+    return Motion(t, place, velocity, never, never, never, usual.size, usual.speeds)

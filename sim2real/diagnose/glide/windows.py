@@ -71,7 +71,8 @@ def motion(problem: GlideProblem, some: Windows, values: Mapping[str, float]) ->
     """The mean motion in each window under a law."""
     frames = problem.motion(problem.linearised(values)[0])
     t, place, velocity, since = (some.mean(each) for each in (frames.t, frames.place, frames.velocity, frames.since))
-    return Motion(t, place, velocity, since, some.mean(frames.launch), some.mean(frames.aged), frames.size)
+    launch, aged = some.mean(frames.launch), some.mean(frames.aged)
+    return Motion(t, place, velocity, since, launch, aged, frames.size, frames.speeds)
 
 
 def _second_derivative(t: np.ndarray, std: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ import numpy as np
 from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.contact_laws import UNIT, contact_columns
 from sim2real.diagnose.engine.choose import Law
-from sim2real.diagnose.piecewise import memory_hats, spread_hats
+from sim2real.diagnose.piecewise import memory_hats, ripples, spread_hats
 from sim2real.diagnose.problem import Columns
 from sim2real.diagnose.wall.data import KINDS, Bounces
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 FRICTIONS = (0.04, 0.07, 0.1, 0.15, 0.2, 0.3, 0.5)  # at which friction with spin is looked for
 KNOTS = 5  # of a smooth law
-WAVES = 4  # of cosines along each wall
+WAVES, RIPPLES = 4, 10  # of cosines along each wall, and along all alike
 ONE_ROW_EACH = ("wall_to_wall_restitution", "speed_dependent_restitution")
 
 
@@ -54,10 +54,18 @@ def _along_walls(data: Bounces) -> np.ndarray:
     return np.stack(columns, axis=1)
 
 
+def _by_place(data: Bounces) -> np.ndarray:
+    """How far along its wall (n,) a bounce is, 0 to 1: along x at the long walls, along y at the short ones."""
+    short = (data.kind == KINDS["x0"]) | (data.kind == KINDS["x1"])
+    span = np.maximum(data.place.max(axis=0, initial=0.0), 1e-3)
+    return np.where(short, data.place[:, 1] / span[1], data.place[:, 0] / span[0])
+
+
 FAMILIES: dict[str, tuple[str, Callable[[Bounces], np.ndarray]]] = {
     "speed": ("speed", lambda d: spread_hats(d.closing, KNOTS)),
     "angle": ("heading", lambda d: spread_hats(d.angle, KNOTS)),
     "place": ("position", _along_walls),
+    "place alike on all walls": ("position", lambda d: ripples(_by_place(d), RIPPLES)),
     "time": ("time", lambda d: spread_hats(d.t, KNOTS)),
     "time since a contact": ("history", lambda d: memory_hats(d.since, KNOTS)),
 }

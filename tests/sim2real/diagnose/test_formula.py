@@ -107,7 +107,9 @@ def test_a_whirl_and_a_source_have_a_middle(turn, name):
     rng = np.random.default_rng(5)
     place = rng.uniform((0.0, 0.0), (2.0, 1.0), (PIECES, 2))
     t, one = np.arange(PIECES) / 100.0, np.zeros(PIECES)
-    motion = Motion(t, place, np.ones((PIECES, 2)), np.full(PIECES, np.nan), one, t, np.array([2.0, 1.0]))
+    motion = Motion(
+        t, place, np.ones((PIECES, 2)), np.full(PIECES, np.nan), one, t, np.array([2.0, 1.0]), np.array([0.1, 2.0])
+    )
     dx, dy = (place - (0.7, 0.6)).T / 0.25
     strength = 0.06 * np.exp(0.5 - 0.5 * (dx**2 + dy**2))
     law = np.stack([-strength * dy, strength * dx] if turn else [strength * dx, strength * dy], axis=1)

@@ -71,6 +71,14 @@ NEAR = {
 }
 
 
+def pull(p, t: float, x: float, y: float, vx: float, vy: float) -> tuple[float, float]:
+    """Acceleration by the table alone, its friction and its forces."""
+    ax, ay = unlisted_force.acceleration(p, t, x, y, vx, vy, 0.0)
+    v = math.hypot(vx, vy)
+    extra = unlisted_force.friction(p, t, x, y, 1e-9 * vx, 1e-9 * vy, 0.0)
+    return (ax - extra * vx / v, ay - extra * vy / v) if v > 0.0 else (ax, ay)
+
+
 def worst(values: dict[str, float], law: Law) -> float:
     """Greatest distance [m] between the ends of a second's slide by the simulator and by the reference."""
     rng = np.random.default_rng(7)
@@ -109,7 +117,16 @@ def test_cosines_over_the_table() -> None:
         push = acceleration(record(**numbers(unlisted_force.PUSH_BY_PLACE, *theta.ravel())), 0.0, x, y, 0.0, 0.0, 0.0)
         assert push == pytest.approx((np.sum(theta[0] * both), np.sum(theta[1] * both)), abs=1e-12)
         braked = record(**numbers(unlisted_force.BRAKE_BY_PLACE, *theta[0].ravel()))
-        assert acceleration(braked, 0.0, x, y, 0.0, -2.0, 0.0) == pytest.approx((0.0, np.sum(theta[0] * both)))
+        assert pull(braked, 0.0, x, y, 0.0, -2.0) == pytest.approx((0.0, np.sum(theta[0] * both)))
+
+
+def test_a_brake_that_pushes_drives_no_puck_on() -> None:
+    """Beyond the baseline's friction it takes nothing back: a resting puck rests, and a moving one glides freely."""
+    values = numbers(unlisted_force.BRAKE_BY_TIME, 0.0, 10.0, *[-3.0 * FRICTION] * TIME_KNOTS)
+    for speed, way in ((0.0, 0.0), (0.5, 0.5)):
+        puck = new_puck(1.0, 0.5, speed, 0.0)
+        slide(puck, record(drag=0.0, **values), 2.0, 1.0)
+        assert (puck.x, puck.vx) == pytest.approx((1.0 + way, speed), abs=1e-9)
 
 
 def test_between_knots_it_is_straight_and_beyond_them_level() -> None:

@@ -71,3 +71,12 @@ def test_a_column_without_data_gets_nothing():
     jacobian[:, 1] = 0.0
     grams = gram.make_grams("abc", r, jacobian, cluster, 8)
     assert gram.solve(grams, np.arange(3), np.arange(8))[1] == 0.0
+
+
+def test_moved_residuals_are_those_of_the_same_law_counted_from_elsewhere():
+    r, jacobian, cluster, truth = _problem(4)
+    grams = gram.make_grams("abc", r, jacobian, cluster, 8)
+    expected = gram.make_grams("abc", r + jacobian[:, [0, 2]] @ truth[[0, 2]], jacobian, cluster, 8)
+    found = gram.moved(grams, np.array([0, 2]), truth[[0, 2]])
+    for name in ("g", "b", "s", "count"):
+        assert np.allclose(getattr(found, name), getattr(expected, name)), name

@@ -10,7 +10,7 @@ from puckpilot_env import Tables
 from puckpilot_env.effects_file import effect_values
 from puckpilot_env.parameters import make_records
 from puckpilot_env.physics.advance import PUCK
-from puckpilot_env.physics.effects.unlisted_force import acceleration
+from puckpilot_env.physics.effects.unlisted_force import acceleration, friction
 from puckpilot_env.physics.slide import slide
 from sim2real.diagnose.diagnosis import diagnose
 from sim2real.diagnose.files import write
@@ -38,13 +38,15 @@ def test_the_simulator_s_force_is_the_family_s(family):
         np.zeros(n),
         np.zeros(n),
         SIZE,
+        np.linspace(0.1, 2.5, 6),
     )
     columns = FAMILIES[family][1](motion)
     theta = rng.normal(0, 1, columns.shape[2])
     p = make_records(1, switched_on(family, motion, theta))[0]
     for k in range(n):
         place, velocity = motion.place[k], motion.velocity[k]
-        force = acceleration(p, motion.t[k], *place, *velocity, 3.0)
+        extra = friction(p, motion.t[k], *place, *(1e-12 * velocity), 0.0)
+        force = acceleration(p, motion.t[k], *place, *velocity, 3.0) - extra * motion.along[k]
         assert force == pytest.approx(columns[k] @ theta, abs=1e-9)
 
 

@@ -27,7 +27,9 @@ def test_a_law_over_its_coordinate(mechanism):
     own, by_hand = LAWS[mechanism]
     values = {"warp_xx": 0.0, "warp_yy": 0.0, **BASE, **own}
     never = np.full(7, np.nan)
-    usual = Motion(X, np.tile(SIZE / 3, (7, 1)), np.tile([0.3, 0.4], (7, 1)), never, never, never, SIZE)
+    usual = Motion(
+        X, np.tile(SIZE / 3, (7, 1)), np.tile([0.3, 0.4], (7, 1)), never, never, never, SIZE, np.array([0.1, 2.0])
+    )
     look, at = listed_view(mechanism, values), varied(mechanism, values, usual, X)
     assert look.coordinate(at) == pytest.approx(X)
     if mechanism not in ("linear_drag", "side_force"):
