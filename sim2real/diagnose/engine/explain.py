@@ -9,7 +9,7 @@ import numpy as np
 
 from puckpilot_env.parameters import BY_NAME
 from sim2real.diagnose.engine import gram
-from sim2real.diagnose.engine.choose import LEAST_FORETOLD, LEAST_SHARE, Chooser, Gain, Law, Model
+from sim2real.diagnose.engine.choose import LEAST_FIT, LEAST_FORETOLD, LEAST_SHARE, Chooser, Gain, Law, Model
 from sim2real.diagnose.engine.fit import Fit, fit, given
 from sim2real.diagnose.engine.noise import dispersion
 from sim2real.diagnose.engine.settle import as_shipped, calm_clusters, far_off, nearly_all, refit, standing, undisturbed
@@ -19,6 +19,7 @@ from sim2real.diagnose.problem import Columns, Problem
 MOST_LISTED = 4
 PER_COEFFICIENT = 7.0  # residuals, below which a smooth law would follow the noise
 REMAINDER = 0.1  # share of what the listed laws foretell better that a law on top of them must add
+UNKNOWN = np.zeros(0)  # losses that nobody asked for
 TRIED = 2  # families that foretell best, and as many that fit best, that are fitted by themselves
 
 
@@ -85,7 +86,9 @@ def explain(
     chooser = Chooser(screen.grams, problem.units, use, beyond)
     model, gains = chooser.add(Model(problem.base), screen.listed, MOST_LISTED)
     listed, law = standing(problem, baseline, chooser.prune(model), screen, use)
-    way = _completed(problem, baseline, law, listed, chooser, screen, use) if clear else _Way(listed, law, None, np.inf)
+    way = (
+        _completed(problem, baseline, law, listed, chooser, screen, use) if clear else _Way(listed, law, None, UNKNOWN)
+    )
     model, law, smooth = way.model, way.law, way.smooth
     kept = tuple(one for one in model.laws if not one.family)
     calm = use if smooth else calm_clusters(problem, law, use)
@@ -103,13 +106,13 @@ def explain(
 
 @dataclass(frozen=True)
 class _Way:
-    """One way to explain a problem: the `model` as it was chosen, its fit, and the family on top of it. `foretold`: the
-    loss of units held out, about the fit itself."""
+    """One way to explain a problem: the `model` as it was chosen, its fit, and the family on top of it. `foretold`
+    (launches,): the loss of units held out, about the fit itself."""
 
     model: Model
     law: Fit
     smooth: Smooth | None
-    foretold: float
+    foretold: np.ndarray
 
     @property
     def cost(self) -> int:
@@ -121,7 +124,7 @@ def _completed(
     problem: Problem, baseline: Fit, law: Fit, listed: Model, chooser: Chooser, screen: Columns, use: np.ndarray
 ) -> _Way:
     """The listed laws, of which `law` is the fit, with a family for what they leave, or in their place."""
-    plain = _Way(listed, law, None, np.inf)
+    plain = _Way(listed, law, None, UNKNOWN)
     if nearly_all(problem, baseline, law, use):
         return plain
     columns = screen
@@ -131,10 +134,10 @@ def _completed(
     rest = _remainder(chooser, listed, refitted, law, columns)
     if rest is None and not far_off(problem, baseline, law, use):
         return plain
-    ways = [replace(plain, foretold=float(refitted.foretold(Model(law.free)).sum()))]
+    ways = [replace(plain, foretold=refitted.foretold(Model(law.free)))]
     nothing = float(chooser.foretold(Model(problem.base)).sum())
     for gain in _worth_trying(chooser, Model(problem.base), screen):
-        if nothing - gain.fitted < min(way.foretold for way in ways):  # what it might leave, if it were the truth
+        if nothing - gain.fitted < min(way.foretold.sum() for way in ways):  # what it might leave, if it were the truth
             ways.append(_with_family(problem, Model(problem.base), baseline, gain, chooser, use))
     if rest is not None and listed.laws:
         ways.append(_with_family(problem, listed, law, rest, chooser, use))
@@ -160,10 +163,16 @@ def _worth_trying(chooser: Chooser, base: Model, screen: Columns) -> list[Gain]:
 
 
 def _simplest(ways: Sequence[_Way], nothing: float) -> _Way:
-    """The way that says least of those that foretell hardly worse than the best; `nothing`: the baseline's loss."""
-    best = min(way.foretold for way in ways)
-    enough = max(LEAST_FORETOLD, LEAST_SHARE * (nothing - best))
-    return min((way for way in ways if way.foretold < best + enough), key=lambda way: (way.cost, way.foretold))
+    """The way that says least, if none that says more foretells much better, or two launches far beyond chance;
+    `nothing`: the baseline's loss."""
+    enough = max(LEAST_FORETOLD, LEAST_SHARE * (nothing - min(float(way.foretold.sum()) for way in ways)))
+    best, *others = sorted(ways, key=lambda way: (way.cost, way.foretold.sum()))
+    for way in others:
+        gained = best.foretold - way.foretold
+        total = float(gained.sum())
+        if total > enough or (total > LEAST_FIT and float(np.sort(gained)[-2:].min()) > LEAST_FIT):
+            best = way
+    return best
 
 
 def _beside(chooser: Chooser, model: Model, screen: Columns) -> list[Gain]:

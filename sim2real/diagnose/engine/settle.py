@@ -31,23 +31,23 @@ def far_off(problem: Problem, baseline: Fit, law: Fit, use: np.ndarray) -> bool:
     units, where single ones may be wrong altogether) or of many; or listed laws do, or leave much of what it does."""
     before, after = (_typical(problem, one, use) - 1.0 for one in (baseline, law))
     if law is baseline:
-        return after > FAR_OFF or _astray(problem, law, use) > MANY_ASTRAY
+        return after > FAR_OFF or float(_astray(problem, law, use).mean()) > MANY_ASTRAY
     return after > NEAR and after > min(HALF_WAY * before, FAR_OFF)
 
 
-def _astray(problem: Problem, law: Fit, use: np.ndarray) -> float:
-    """The share of launches of which a law leaves what noise alone hardly ever does."""
+def _astray(problem: Problem, law: Fit, use: np.ndarray) -> np.ndarray:
+    """The launches (n,) bool of which a law leaves what noise alone hardly ever does."""
     seen = problem.freedom[use] > 0.0
     freedom = problem.freedom[use][seen]
-    return float(np.mean(left_of(problem, law, use)[seen] * freedom > gram.soft_from(freedom)))
+    return left_of(problem, law, use)[seen] * freedom > gram.soft_from(freedom)
 
 
 def nearly_all(problem: Problem, baseline: Fit, law: Fit, use: np.ndarray) -> bool:
     """Whether listed laws explain so much that what they leave is not worth a law of its own: little of what there was,
-    and little beside the noise."""
+    and little beside the noise, of all launches but one that may have met an accident."""
     noise = float(problem.freedom[use].sum())
-    left = law.loss - noise
-    return law is not baseline and left < min(REMAINDER * (baseline.loss - noise), AUDIBLE * noise)
+    enough = min(REMAINDER * (baseline.loss - noise), AUDIBLE * noise)
+    return law is not baseline and law.loss - noise < enough and _astray(problem, law, use).sum() <= 1
 
 
 def left_of(problem: Problem, law: Fit, use: np.ndarray) -> np.ndarray:
