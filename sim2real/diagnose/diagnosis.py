@@ -205,10 +205,9 @@ def _gantry(data: Cut, values: dict[str, float], progress: Progress) -> list[Acc
 
 
 def _states(glides: GlideProblem, found: Explained) -> States:
-    mended = found.switched()
-    if found.unlisted is None or mended:
-        return glides.states(replace(found.final, values={**found.final.values, **mended}))
-    return glides.states(found.final, found.unlisted.name, found.theta[-len(found.unlisted.columns) :])
+    if found.unlisted is None or found.switched():
+        return glides.states(replace(found.final, values=found.mended))
+    return glides.states(found.final, found.unlisted.name, found.coefficients)
 
 
 def _blows(recordings: Sequence[Recording], impacts: Sequence[list[Impact]]) -> Blows | None:

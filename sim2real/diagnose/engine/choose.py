@@ -176,14 +176,15 @@ class Chooser:
         assert best is not None
         return best
 
-    def likely(self, gain: Gain) -> bool:
-        """Whether a gain is more than chance, in the fit and on held-out units."""
-        return gain.fitted > self._by_chance(gain.law) and gain.total > LEAST_FORETOLD
+    @staticmethod
+    def fits(gain: Gain) -> bool:
+        """Whether a law fits better than chance lets it."""
+        return gain.fitted > LEAST_FIT + 2.0 * len(gain.law.columns) + 2.0 * float(np.log(gain.law.searched))
 
     def passes(self, gain: Gain) -> bool:
         """Whether a gain is more than chance, in the fit and on held-out units, and not the doing of few launches: any
         of them may be missed, or two far beyond chance say the same, each as the others foretell it."""
-        if not self.likely(gain) or gain.without_best <= LEAST_ELSEWHERE:
+        if not self.fits(gain) or gain.total <= LEAST_FORETOLD or gain.without_best <= LEAST_ELSEWHERE:
             return False
         if float(np.quantile(self._resampled @ gain.foretold, UNSURE)) > 0.0:
             return True
@@ -215,13 +216,9 @@ class Chooser:
         steady = float(np.quantile(self._resampled @ gained, UNSURE)) > 0.0
         return float(gained.sum()) if steady and gained.sum() > enough else 0.0
 
-    @staticmethod
-    def _by_chance(law: Law) -> float:
-        return LEAST_FIT + 2.0 * len(law.columns) + 2.0 * float(np.log(law.searched))
-
     def doubtful(self, gain: Gain) -> bool:
         """Whether a law fits far better than chance lets it, and yet does not pass: few launches ask for it."""
-        return gain.fitted > self._by_chance(gain.law) and not self.passes(gain)
+        return self.fits(gain) and not self.passes(gain)
 
     def same_in_both_halves(self, model: Model, law: Law) -> bool:
         """Whether the odd and the even launches ask for the law with the same sign, as far as either knows."""

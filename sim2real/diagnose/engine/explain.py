@@ -9,7 +9,7 @@ import numpy as np
 
 from puckpilot_env.parameters import BY_NAME
 from sim2real.diagnose.engine import gram
-from sim2real.diagnose.engine.choose import LEAST_FIT, LEAST_FORETOLD, LEAST_SHARE, Chooser, Gain, Law, Model
+from sim2real.diagnose.engine.choose import LEAST_FORETOLD, LEAST_SHARE, Chooser, Gain, Law, Model
 from sim2real.diagnose.engine.fit import Fit, fit, given
 from sim2real.diagnose.engine.noise import dispersion
 from sim2real.diagnose.engine.settle import as_shipped, calm_clusters, far_off, nearly_all, refit, standing, undisturbed
@@ -19,7 +19,6 @@ from sim2real.diagnose.problem import Columns, Problem
 MOST_LISTED = 4
 PER_COEFFICIENT = 7.0  # residuals, below which a smooth law would follow the noise
 REMAINDER = 0.1  # share of what the listed laws foretell better that a law on top of them must add
-UNKNOWN = np.zeros(0)  # losses that nobody asked for
 TRIED = 2  # families that foretell best, and as many that fit best, that are fitted by themselves
 
 
@@ -56,6 +55,24 @@ class Explained:
         n = len(self.law.free)
         return replace(self.law, values=values, covariance=self.theta_covariance[:n, :n])
 
+    @property
+    def coefficients(self) -> np.ndarray:
+        """Of the family (k,)."""
+        return self.theta[len(self.law.free) :]
+
+    @property
+    def mended(self) -> Mapping[str, float]:
+        """The values of all of it, the smooth law and all where the simulator has a place for it."""
+        return {**self.final.values, **self.switched()}
+
+    @property
+    def gained(self) -> float:
+        """What the smooth law explains: the growth of the sum of squares without it, the other numbers fitted anew."""
+        columns = self.columns.grams.columns(self.law.free)
+        rest = gram.solve(self.columns.grams, columns, self.chooser.use)
+        without = gram.losses(self.columns.grams, columns, rest, self.chooser.use)
+        return float((without - self.losses(self.theta, self.chooser.use)).sum())
+
     def losses(self, theta: np.ndarray, parts: np.ndarray) -> np.ndarray:
         """Sums of squares (parts,) that coefficients of the family, and steps of the listed numbers, leave of units."""
         assert self.unlisted is not None
@@ -67,7 +84,7 @@ class Explained:
         if self.unlisted is None:
             return {}
         law = next(one for one in self.columns.families if one.name == self.unlisted.name)
-        return law.switch(self.theta[len(self.law.free) :])
+        return law.switch(self.coefficients)
 
 
 def explain(
@@ -86,9 +103,7 @@ def explain(
     chooser = Chooser(screen.grams, problem.units, use, beyond)
     model, gains = chooser.add(Model(problem.base), screen.listed, MOST_LISTED)
     listed, law = standing(problem, baseline, chooser.prune(model), screen, use)
-    way = (
-        _completed(problem, baseline, law, listed, chooser, screen, use) if clear else _Way(listed, law, None, UNKNOWN)
-    )
+    way = _completed(problem, baseline, law, listed, chooser, screen, use) if clear else _Way(listed, law, None, np.inf)
     model, law, smooth = way.model, way.law, way.smooth
     kept = tuple(one for one in model.laws if not one.family)
     calm = use if smooth else calm_clusters(problem, law, use)
@@ -106,13 +121,13 @@ def explain(
 
 @dataclass(frozen=True)
 class _Way:
-    """One way to explain a problem: the `model` as it was chosen, its fit, and the family on top of it. `foretold`
-    (launches,): the loss of units held out, about the fit itself."""
+    """One way to explain a problem: the `model` as it was chosen, its fit, and the family on top of it. `foretold`:
+    the loss of units held out, about the fit itself."""
 
     model: Model
     law: Fit
     smooth: Smooth | None
-    foretold: np.ndarray
+    foretold: float
 
     @property
     def cost(self) -> int:
@@ -124,7 +139,7 @@ def _completed(
     problem: Problem, baseline: Fit, law: Fit, listed: Model, chooser: Chooser, screen: Columns, use: np.ndarray
 ) -> _Way:
     """The listed laws, of which `law` is the fit, with a family for what they leave, or in their place."""
-    plain = _Way(listed, law, None, UNKNOWN)
+    plain = _Way(listed, law, None, np.inf)
     if nearly_all(problem, baseline, law, use):
         return plain
     columns = screen
@@ -134,10 +149,10 @@ def _completed(
     rest = _remainder(chooser, listed, refitted, law, columns)
     if rest is None and not far_off(problem, baseline, law, use):
         return plain
-    ways = [replace(plain, foretold=refitted.foretold(Model(law.free)))]
+    ways = [replace(plain, foretold=float(refitted.foretold(Model(law.free)).sum()))]
     nothing = float(chooser.foretold(Model(problem.base)).sum())
     for gain in _worth_trying(chooser, Model(problem.base), screen):
-        if nothing - gain.fitted < min(way.foretold.sum() for way in ways):  # what it might leave, if it were the truth
+        if nothing - gain.fitted < min(way.foretold for way in ways):  # what it might leave, if it were the truth
             ways.append(_with_family(problem, Model(problem.base), baseline, gain, chooser, use))
     if rest is not None and listed.laws:
         ways.append(_with_family(problem, listed, law, rest, chooser, use))
@@ -156,23 +171,17 @@ def _with_family(problem: Problem, listed: Model, law: Fit, gain: Gain, chooser:
 def _worth_trying(chooser: Chooser, base: Model, screen: Columns) -> list[Gain]:
     """The families that may explain most by themselves, best first: those that fit best and those that foretell best,
     as far as that can be seen from the baseline's path."""
-    gains = [chooser.gain(base, law) for law in screen.families]
+    gains = [gain for gain in (chooser.gain(base, law) for law in screen.families) if chooser.fits(gain)]
     foretelling = sorted(gains, key=lambda gain: -gain.total)[:TRIED]
     fitting = sorted(gains, key=lambda gain: 2.0 * len(gain.law.columns) - gain.fitted)[:TRIED]
     return list({gain.law.name: gain for gain in (*fitting, *foretelling)}.values())
 
 
 def _simplest(ways: Sequence[_Way], nothing: float) -> _Way:
-    """The way that says least, if none that says more foretells much better, or two launches far beyond chance;
-    `nothing`: the baseline's loss."""
-    enough = max(LEAST_FORETOLD, LEAST_SHARE * (nothing - min(float(way.foretold.sum()) for way in ways)))
-    best, *others = sorted(ways, key=lambda way: (way.cost, way.foretold.sum()))
-    for way in others:
-        gained = best.foretold - way.foretold
-        total = float(gained.sum())
-        if total > enough or (total > LEAST_FIT and float(np.sort(gained)[-2:].min()) > LEAST_FIT):
-            best = way
-    return best
+    """The way that says least of those that foretell hardly worse than the best; `nothing`: the baseline's loss."""
+    best = min(way.foretold for way in ways)
+    enough = max(LEAST_FORETOLD, LEAST_SHARE * (nothing - best))
+    return min((way for way in ways if way.foretold < best + enough), key=lambda way: (way.cost, way.foretold))
 
 
 def _beside(chooser: Chooser, model: Model, screen: Columns) -> list[Gain]:

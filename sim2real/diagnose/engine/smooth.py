@@ -21,14 +21,14 @@ HALVINGS = 4  # of a step that leads uphill
 @dataclass(frozen=True)
 class Smooth:
     """A family fitted on top of `law`. `theta` (n + k,): steps of the law's numbers, and the family's coefficients, in
-    `columns`, which stand for the whole family, wherever they were taken. `foretold` (launches,): held-out loss."""
+    `columns`, which stand for the whole family, wherever they were taken. `foretold`: held-out loss."""
 
     law: Fit
     family: Law
     spread: float
     columns: Columns
     theta: np.ndarray
-    foretold: np.ndarray
+    foretold: float
 
     @property
     def model(self) -> Model:
@@ -90,8 +90,8 @@ def _solved(problem: Problem, place: _Place, use: np.ndarray, beyond: float) -> 
     """The least squares there, with the spread that foretells best."""
     chooser = Chooser(place.columns.grams, problem.units, use, beyond)
     models = [Model(place.law.free, (place.family,), (spread,)) for spread in SPREADS]
-    foretold = [chooser.foretold(model) for model in models]
-    best = int(np.argmin([some.sum() for some in foretold]))
+    foretold = [float(chooser.foretold(model).sum()) for model in models]
+    best = int(np.argmin(foretold))
     index, ridge = models[best].columns(place.columns.grams)
     theta = gram.solve_softly(place.columns.grams, index, chooser.use, problem.units.freedom[chooser.use], ridge)
     return Smooth(place.law, place.family, SPREADS[best], place.columns, theta, foretold[best])

@@ -126,3 +126,8 @@ FAMILIES: dict[str, tuple[str, Family]] = {
     SPIN: ("history", lambda m: _times(_spins(m), m.across)),
     "side force after a contact": ("history", lambda m: _times(_memory(m), m.across)),
 }
+
+
+def force(name: str, motion: Motion, theta: np.ndarray) -> np.ndarray:
+    """Accelerations (n, 2) [m/s^2] of a family with coefficients `theta`."""
+    return FAMILIES[name][1](motion) @ theta

@@ -14,7 +14,7 @@ from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.engine.explain import Explained
 from sim2real.diagnose.finding import Curve, Parting
 from sim2real.diagnose.formula import Formula
-from sim2real.diagnose.glide.families import FAMILIES, Motion
+from sim2real.diagnose.glide.families import FAMILIES, Motion, force
 from sim2real.diagnose.glide.forces import accelerations
 from sim2real.diagnose.glide.problem import GlideProblem
 from sim2real.diagnose.glide.views import COORDINATES, View, listed_view, varied
@@ -30,7 +30,7 @@ def parting(problem: GlideProblem, found: Explained) -> Parting:
     some = windows(problem.data)
     seen = motion(problem, some, found.baseline.values)
     before = missing(problem, some, found.baseline.values)
-    after = missing(problem, some, found.final.values, _smooth_force(problem, found))
+    after = missing(problem, some, found.mended, _untraced(problem, found))
     first, last = (
         np.stack([(seen.along * a).sum(axis=1), (seen.across * a).sum(axis=1)], axis=1) for a in (before, after)
     )
@@ -49,7 +49,7 @@ def listed_curve(problem: GlideProblem, found: Explained, mechanism: str) -> Cur
     free = [name for name in found.final.free if name in EFFECTS[mechanism].row_names]
     some = windows(problem.data)
     seen, look = motion(problem, some, values), listed_view(mechanism, values)
-    left = look.of(seen, missing(problem, some, values, _smooth_force(problem, found)))
+    left = look.of(seen, missing(problem, some, found.mended, _untraced(problem, found)))
     x, std = look.coordinate(seen), np.hypot(*(look.direction(seen) * some.std).T)
     points = binned(x, left, std)
     index = [found.final.free.index(name) for name in free]
@@ -72,17 +72,18 @@ def listed_curve(problem: GlideProblem, found: Explained, mechanism: str) -> Cur
 
 def smooth_curve(problem: GlideProblem, found: Explained, law: Law, formula: Formula, looks: list[View]) -> Curve:
     """An unlisted law and its readable formula, from that side of `looks` from which the law is largest."""
-    frames = problem.motion(problem.linearised(found.final.values)[0])
+    frames = problem.motion(problem.linearised(found.mended)[0])
     block = FAMILIES[law.name][1](frames)
-    theta, spread = _own(found, law)
-    force, even = block @ theta, np.ones(len(frames.t))
-    look = max(looks, key=lambda one: _size(one, frames, force))
+    spread = found.theta_covariance[-len(law.columns) :, -len(law.columns) :]
+    pull, even = force(law.name, frames, found.coefficients), np.ones(len(frames.t))
+    look = max(looks, key=lambda one: _size(one, frames, pull))
     some = windows(problem.data, SHORT_SPAN if law.family == "history" else None)
-    seen = motion(problem, some, found.final.values)
+    seen = motion(problem, some, found.mended)
     std = np.hypot(*(look.direction(seen) * some.std).T)
-    points = binned(look.coordinate(seen), look.of(seen, missing(problem, some, found.final.values)), std)
+    lacking = missing(problem, some, found.mended, -pull if found.switched() else None)
+    points = binned(look.coordinate(seen), look.of(seen, lacking), std)
     x = look.coordinate(frames)
-    shape = binned(x, look.of(frames, force), even, LAW_BINS)
+    shape = binned(x, look.of(frames, pull), even, LAW_BINS)
     columns = np.einsum("na,nak->nk", look.direction(frames), block)
     whole = formula.form.field(formula.values) + _beside(found, formula, frames)
     said = over(shape.members, x, look.of(frames, whole), even)
@@ -96,18 +97,12 @@ def _beside(found: Explained, formula: Formula, frames: Motion) -> np.ndarray:
     return -more[:, None] * frames.along
 
 
-def _smooth_force(problem: GlideProblem, found: Explained) -> np.ndarray | None:
-    """The force (n, 2) of the unlisted law at each frame; None where there is none."""
-    if found.unlisted is None:
+def _untraced(problem: GlideProblem, found: Explained) -> np.ndarray | None:
+    """The force (n, 2) at each frame of an unlisted law that the simulator has no place for; None where it has one."""
+    if found.unlisted is None or found.switched():
         return None
     frames = problem.motion(problem.linearised(found.final.values)[0])
-    return FAMILIES[found.unlisted.name][1](frames) @ _own(found, found.unlisted)[0]
-
-
-def _own(found: Explained, law: Law) -> tuple[np.ndarray, np.ndarray]:
-    """The coefficients of an unlisted law and their covariance."""
-    k = len(law.columns)
-    return found.theta[-k:], found.theta_covariance[-k:, -k:]
+    return force(found.unlisted.name, frames, found.coefficients)
 
 
 def _aside(name: str, value: float, size: float) -> float:

@@ -11,7 +11,7 @@ from puckpilot_env.parameters import BY_NAME
 from puckpilot_env.physics.advance import PUCK
 from sim2real.diagnose.engine.fit import Fit
 from sim2real.diagnose.glide.data import GlideData
-from sim2real.diagnose.glide.families import FAMILIES, SPEED_KNOTS, Motion
+from sim2real.diagnose.glide.families import SPEED_KNOTS, Motion, force
 from sim2real.diagnose.glide.laws import glide_columns
 from sim2real.diagnose.glide.trace import bend, trace
 from sim2real.diagnose.piecewise import spread_knots
@@ -124,8 +124,8 @@ class GlideProblem:
             velocity_by_start[:, :, k] = (other[:, 2:] - path[:, 2:]) / STEP[k]
         whole = np.concatenate([by_start, velocity_by_start], axis=1)
         if theta is not None:
-            force = FAMILIES[smooth][1](self.motion(path)) @ theta
-            change = np.concatenate(self.bent(path, law.values, force[:, :, None]), axis=1)[:, :, 0]
+            pull = force(smooth, self.motion(path), theta)
+            change = np.concatenate(self.bent(path, law.values, pull[:, :, None]), axis=1)[:, :, 0]
             starts = _steps(data, path + change, by_start)
             path = path + change + np.einsum("nai,ni->na", whole, data.of_frame(starts))
         ends = [data.first[:-1], data.first[1:] - 1]

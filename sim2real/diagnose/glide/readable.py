@@ -12,7 +12,7 @@ from sim2real.diagnose.engine.explain import Explained
 from sim2real.diagnose.forms import Axis, Direction, Form, Profile, form, harmonic, profiles
 from sim2real.diagnose.formula import Formula, Rest, find_formula
 from sim2real.diagnose.glide import swirls
-from sim2real.diagnose.glide.families import HARMONICS, Motion
+from sim2real.diagnose.glide.families import HARMONICS, Motion, force
 from sim2real.diagnose.glide.problem import GlideProblem
 from sim2real.diagnose.glide.views import COORDINATES, DIRECTIONS, View, around, view
 
@@ -24,7 +24,7 @@ SYMBOLS = {"along": "along", "across": "left", "x": "x", "y": "y"}
 
 def readable(problem: GlideProblem, found: Explained, law: Law, use: np.ndarray) -> tuple[Formula, list[View]]:
     """The formula of a family of smooth forces that was found, fitted to the clusters `use`; and views that show it."""
-    values = found.final.values
+    values = found.mended
     path, by_start = problem.linearised(values)
     data, motion = problem.data, problem.motion(path)
     by_start = (by_start / data.std[:, :, None]).reshape(-1, 4)
@@ -38,8 +38,11 @@ def readable(problem: GlideProblem, found: Explained, law: Law, use: np.ndarray)
         return columns
 
     left = problem.residuals(values, found.final.free, np.arange(problem.clusters))
+    r = left.r
+    if found.switched():  # it is in the path, and the formula is to stand in its place
+        r = r + respond(force(law.name, motion, found.coefficients)[:, :, None])[:, 0]
     book = Book(motion, law)
-    best = find_formula(Rest(left.r, left.jacobian, left.cluster, use, respond), book.single, book.joined)
+    best = find_formula(Rest(r, left.jacobian, left.cluster, use, respond), book.single, book.joined)
     return best, book.views(best)
 
 
