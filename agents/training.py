@@ -10,6 +10,7 @@ import json
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -26,6 +27,7 @@ from agents.run_folder import RunFolder
 from agents.runner import Iteration, SelfPlayRunner
 from agents.scaling import Reading, Scaling
 from agents.seating import Seating
+from agents.widen import widened
 from baselines import make_player
 from baselines.player import Player, Seat
 from puckpilot_env.tables import Tables
@@ -37,7 +39,7 @@ Row = dict[str, Any]
 @dataclass(frozen=True)
 class Settings:
     """What is trained. `effects`: parameters of an effects file, or None; `against`: the one player that is met, else
-    a league is."""
+    a league is; `start`: folder of the run whose networks it begins with, else they know nothing."""
 
     variant: str
     seed: int
@@ -45,10 +47,11 @@ class Settings:
     preset: Preset
     effects: Mapping[str, float] | None = None
     against: str | None = None
+    start: str | None = None
 
     def as_dict(self) -> dict[str, Any]:
         """As JSON can hold it."""
-        kept = {name: getattr(self, name) for name in ("variant", "seed", "threads", "effects", "against")}
+        kept = {name: getattr(self, name) for name in ("variant", "seed", "threads", "effects", "against", "start")}
         return {**kept, "preset": self.preset.text}
 
     @classmethod
@@ -83,9 +86,11 @@ class Training:
         self.league = League([Member(name) for name in preset.anchors], preset.gate, preset.cap, preset.most)
         self.rows: list[Row] = []
         if folder.checkpoint.exists():
-            self._resume()
+            self._read(folder.checkpoint, self._take_up)
             self._hold(self.steps)
         else:
+            if settings.start:
+                self._read(RunFolder(Path(settings.start)).checkpoint, self._learn_on)
             self._admit("self-0")
 
     @property
@@ -179,13 +184,21 @@ class Training:
             },
         )
 
-    def _resume(self) -> None:
-        kept = load_checkpoint(self.folder.checkpoint)
+    def _read(self, checkpoint: Path, use: Callable[[Mapping[str, Any]], None]) -> None:
+        kept = load_checkpoint(checkpoint)
         try:
-            self._take_up(kept)
+            use(kept)
         except (KeyError, IndexError, TypeError, AttributeError, RuntimeError) as error:  # torch says misfits many ways
             words = f"{type(error).__name__}: {error}".splitlines()[0]
-            raise ValueError(f"the checkpoint {self.folder.checkpoint} does not fit this run ({words})") from None
+            raise ValueError(f"the checkpoint {checkpoint} does not fit this run ({words})") from None
+
+    def _learn_on(self, kept: Mapping[str, Any]) -> None:
+        """Begin with another run's networks, and nothing else of it."""
+        known = load_policy(RunFolder(Path(self.settings.start or "")).policy).columns
+        learner = kept["learner"]
+        for part in ("actor_state_dict", "critic_state_dict"):
+            learner[part] = widened(learner[part], known, self.env.columns)
+        self.runner.alg.load(learner, {"actor": True, "critic": True}, True)
 
     def _take_up(self, kept: Mapping[str, Any]) -> None:
         self.runner.alg.load(kept["learner"], None, True)

@@ -27,6 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--steps", type=float, default=FOREVER, metavar="N", help="stop after so many steps in all")
     parser.add_argument("--minutes", type=float, default=FOREVER, metavar="M", help="stop after so many minutes")
     parser.add_argument("--resume", action="store_true", help="go on with the run in DIR, with its own settings")
+    parser.add_argument("--start", metavar="DIR", help="begin with the networks of the run in DIR")
     parser.add_argument("--variant", default="match-v0", metavar="ID", help="what is played (default match-v0)")
     parser.add_argument("--seed", type=int, default=0, help="seed of everything random (default 0)")
     parser.add_argument("--threads", type=int, default=1, metavar="K", help="threads to learn on (default 1)")
@@ -56,7 +57,7 @@ def run(args: argparse.Namespace) -> int:
         else:
             variant, preset = find_variant(args.variant).id, find_preset(args.preset)
             effects = effect_values(args.effects) if args.effects else None
-            settings = Settings(variant, args.seed, args.threads, preset, effects)
+            settings = Settings(variant, args.seed, args.threads, preset, effects, start=args.start)
             if first:
                 folder.begin(settings.as_dict())
         training = run_training(folder, settings, steps=args.steps, minutes=args.minutes, quiet=not first)
