@@ -53,10 +53,16 @@ def tiny(**changed: object) -> Preset:
 
 
 def training(
-    path: Path, *, resume: bool = False, preset: Preset | None = None, variant: str = "puckpilot/match-v0"
+    path: Path,
+    *,
+    resume: bool = False,
+    preset: Preset | None = None,
+    variant: str = "puckpilot/match-v0",
+    start: Path | None = None,
 ) -> Training:
     """A new training in the folder, or the one that is there."""
-    folder, settings = RunFolder(path), Settings(variant, 5, 1, preset or tiny())
+    settings = Settings(variant, 5, 1, preset or tiny(), start=str(start) if start else None)
+    folder = RunFolder(path)
     if not resume:
         folder.begin(settings.as_dict())
     return Training(folder, settings)
