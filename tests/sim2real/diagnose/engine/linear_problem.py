@@ -15,16 +15,19 @@ FELT = 50.0  # standard deviations of the noise that a parameter of 1 makes of a
 
 
 class LinearProblem:
-    """`truth`: parameters by name, each a number or one for each launch; `noise`: in units of the sensor's."""
+    """`truth`: parameters by name, each a number or one for each launch; `noise`: in units of the sensor's;
+    `likeness`: whether the tilt is a family's, instead of a listed law's."""
 
     regime = "glide"
     base: tuple[str, ...] = ("friction", "drag")
     plain: tuple[str, ...] = base
     noise_m = 0.001
 
-    def __init__(self, truth: Mapping[str, float | np.ndarray], noise: float = 1.0, seed: int = 0) -> None:
+    def __init__(
+        self, truth: Mapping[str, float | np.ndarray], noise: float = 1.0, seed: int = 0, likeness: bool = False
+    ) -> None:
         rng = np.random.default_rng(seed)
-        self.clusters, self.truth = LAUNCHES, truth
+        self.clusters, self.truth, self.likeness = LAUNCHES, truth, likeness
         self.launch = np.repeat(np.arange(LAUNCHES), PIECES * EACH)
         self.felt = FELT * rng.normal(size=(len(self.launch), len(NAMES)))
         self.seen = noise * rng.normal(size=len(self.launch))
@@ -54,4 +57,7 @@ class LinearProblem:
         exact = self.residuals(values, NAMES, np.arange(LAUNCHES))
         piece = np.repeat(np.arange(LAUNCHES * PIECES), EACH)
         grams = gram.make_grams(NAMES, exact.r, exact.jacobian, piece, LAUNCHES * PIECES)
-        return Columns(grams, [Law("table_tilt", ("tilt_x", "tilt_y"))], [])
+        columns = ("tilt_x", "tilt_y")
+        if self.likeness:
+            return Columns(grams, [], [Law("push by place", columns, "position")])
+        return Columns(grams, [Law("table_tilt", columns)], [])

@@ -14,8 +14,8 @@ USE = np.setdiff1d(np.arange(LAUNCHES), PROOF)
 TILT = {"tilt_x": 0.02, "tilt_y": -0.03}
 
 
-def _account(truth, noise: float = 1.0) -> Account:
-    problem = LinearProblem(truth, noise)
+def _account(truth, noise: float = 1.0, likeness: bool = False) -> Account:
+    problem = LinearProblem(truth, noise, likeness=likeness)
     return account(problem, explain(problem, SHIPPED, USE), USE, PROOF)
 
 
@@ -63,6 +63,21 @@ def test_a_law_that_hardly_helps_untouched_launches_is_not_told(there):
     assert found.findings == () and found.lost
     helped = _account({name: value * (1.0 + share) / 2.0 for name, value in TILT.items()})
     assert [one.mechanism for one in helped.findings] == ["table_tilt"]
+
+
+@pytest.mark.parametrize("against, told", [(0, True), (1, True), (4, False)])
+def test_a_likeness_may_fail_in_one_untouched_launch_but_not_in_most(against, told):
+    """Of five launches kept apart, so many are pushed the other way, far beyond the noise."""
+    signs = np.ones(LAUNCHES)
+    signs[PROOF[:against]] = -1.0
+    found = _account({name: value * signs for name, value in TILT.items()}, likeness=True)
+    assert [one.mechanism for one in found.findings] == (["unlisted"] if told else [])
+    assert found.lost is not told
+
+
+def test_a_likeness_that_no_launch_needs_is_not_told():
+    found = _account({}, likeness=True)
+    assert (found.findings, found.shipped, found.undetermined) == ((), True, "")
 
 
 def test_a_proof_that_does_not_feel_a_law_says_nothing_against_it():
