@@ -18,11 +18,13 @@ if TYPE_CHECKING:
     from agents.training import Settings, Training
 
 FOREVER = 1e18
+PRESETS = Path(__file__).parents[1] / "presets"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
-    parser.add_argument("--preset", default="fast", metavar="NAME", help="how to train: fast, paper, or a .toml file")
+    known = ", ".join(sorted(path.stem for path in PRESETS.glob("*.toml")))
+    parser.add_argument("--preset", default="fast", metavar="NAME", help=f"how to train: {known}, or a .toml file")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder of the run")
     parser.add_argument("--steps", type=float, default=FOREVER, metavar="N", help="stop after so many steps in all")
     parser.add_argument("--minutes", type=float, default=FOREVER, metavar="M", help="stop after so many minutes")
@@ -53,11 +55,14 @@ def run(args: argparse.Namespace) -> int:
     first = ranks.rank() == 0  # of several processes one writes
     with folder.locked() if first else nullcontext():
         if args.resume:
+            if args.start:
+                raise ValueError("--resume goes on with a run as it is; --start is for a new one")
             settings = Settings.from_dict(folder.settings())
         else:
             variant, preset = find_variant(args.variant).id, find_preset(args.preset)
             effects = effect_values(args.effects) if args.effects else None
-            settings = Settings(variant, args.seed, args.threads, preset, effects, start=args.start)
+            start = str(Path(args.start).resolve()) if args.start else None
+            settings = Settings(variant, args.seed, args.threads, preset, effects, start=start)
             if first:
                 folder.begin(settings.as_dict())
         training = run_training(folder, settings, steps=args.steps, minutes=args.minutes, quiet=not first)

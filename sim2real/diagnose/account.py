@@ -77,11 +77,12 @@ def _likeness_refuted(problem: Problem, found: Explained, proof: np.ndarray, wor
     to ever was: if those prove it to each other, untouched ones must be `worse` together by more than they scatter."""
     parts = problem.units.of(proof)
     before, after = (
-        gram.soft(some, problem.units.freedom[parts])
+        gram.soft(some, problem.units.freedom[parts] * found.dispersion)
         for some in (found.screen.grams.s[parts], found.losses(found.theta, parts))
     )
-    gained = np.bincount(problem.units.cluster[parts], before - after)
-    if found.chooser.proved(found.model) > 0.0:
+    launches = np.unique(problem.units.cluster[parts], return_inverse=True)[1]
+    gained = np.bincount(launches, before - after)
+    if len(gained) > 1 and found.chooser.proved(found.model):
         return float(gained.sum()) < -float(np.linalg.norm(gained))
     return worse or float(gained.sum()) < -LEAST_WORSE * found.dispersion
 
@@ -96,7 +97,7 @@ def _findings(
     freedom = max(float(problem.freedom[proof].sum()), 1.0)
     others = [(law, _fit_without(problem, found, law, use)) for law in found.model.laws]
     without = [(law, _squares(problem, fitted, proof)) for law, fitted in others]
-    sure = found.chooser.proved(found.model) > 0.0  # then the proof need not feel it
+    sure = found.chooser.proved(found.model)  # then the proof need not feel it
     silent = [
         law for law, fitted in others
         if law.each_launch or (sure and law.family)
@@ -126,7 +127,7 @@ def _fit_without(problem: Problem, found: Explained, law: Law, use: np.ndarray) 
     if not others:
         return found.baseline
     if len(others) == len(found.listed):
-        return found.law
+        return fit(problem, found.law.values, found.law.free, use)
     rows = law.rows
     free = [name for name in found.law.free if name not in rows]
     values = {**found.law.values, **{name: BY_NAME[name].default for name in rows}}

@@ -45,7 +45,7 @@ def _glide_finding(problem: GlideProblem, found: Explained, one: Finding, use: n
         return replace(one, curve=glides.listed_curve(problem, found, one.mechanism))
     formula, looks = glide_formula(problem, found, found.unlisted, use)
     curve = glides.smooth_curve(problem, found, found.unlisted, formula, looks)
-    return replace(one, curve=curve, formula=_said(found, formula), parameters=formula.parameters)
+    return replace(one, curve=curve, formula=_said(problem, found, formula, use), parameters=formula.parameters)
 
 
 def _wall_finding(problem: WallProblem, found: Explained, one: Finding, use: np.ndarray) -> Finding:
@@ -53,15 +53,15 @@ def _wall_finding(problem: WallProblem, found: Explained, one: Finding, use: np.
         return replace(one, curve=bounces.listed_curve(problem, found, one.mechanism))
     formula, view = wall_formula(problem, found, found.unlisted, use)
     curve = bounces.smooth_curve(problem, found, formula, view)
-    return replace(one, curve=curve, formula=_said(found, formula), parameters=formula.parameters)
+    return replace(one, curve=curve, formula=_said(problem, found, formula, use), parameters=formula.parameters)
 
 
-def _said(found: Explained, formula: Formula) -> str:
+def _said(problem: Problem, found: Explained, formula: Formula, use: np.ndarray) -> str:
     """A formula with the numbers that the rest of the law has beside it, and how rough it is if it is."""
     fitted = zip(found.final.free, formula.moved, strict=True)
     beside = [f"{name} {found.final.values[name] + by:.4g} {BY_NAME[name].unit}" for name, by in fitted]
     said = f"{formula.words}; with {', '.join(beside)}".replace(" 1,", ",").removesuffix(" 1")
-    share = formula.gained / found.gained
+    share = formula.gained / max(found.gained(problem.units.of(use)), formula.gained)
     return said if share > ROUGH else f"{said} (roughly: it explains {100 * share:.0f} % of what the smooth law does)"
 
 

@@ -44,7 +44,7 @@ def test_what_was_learned_is_played_on_and_learned_on(first: Path, tmp_path: Pat
     assert len(begun.columns) > len(before.columns)
     acts = [PolicyPlayer(policy, seat).act(observation) for policy in (before, begun)]
     assert np.ptp(acts[0], axis=0).max() > 0.0
-    np.testing.assert_array_equal(*acts)
+    np.testing.assert_array_equal(acts[0], acts[1])
     assert second.steps == 0
     second.round()
     after = PolicyPlayer(second.policy(), seat).act(observation)

@@ -1,7 +1,7 @@
 """A smooth force that no other effect says: a table of numbers over place, speed, heading or time.
 
 `kind` says what the numbers are. A push acts along x and y, a brake against the motion, a side force to its left. Of a
-brake and the baseline's friction together a negative sum is none: nothing drives a puck on that rests.
+brake and the baseline's friction together a negative sum is none, but for a brake by speed, which is a force.
 
 | kind | force | numbers [m/s^2 unless said otherwise] |
 | --- | --- | --- |

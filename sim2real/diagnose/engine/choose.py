@@ -206,15 +206,15 @@ class Chooser:
             left[out] = gram.losses(self.grams, columns, theta, self.use[out])
         return np.bincount(self._launch, gram.soft(left, self._freedom)) / self.dispersion
 
-    def proved(self, model: Model) -> float:
-        """The drop of the loss that laws bring to launches which their fit did not see, where these alone prove them:
-        it is most of what the baseline leaves beyond noise, no small thing, and not the doing of few. Else 0."""
+    def proved(self, model: Model) -> bool:
+        """Whether launches prove laws to each other, each foretold by the others: what they gain is most of what the
+        baseline leaves beyond noise, no small thing, and not the doing of few."""
         noise = float(self._freedom.sum()) / self.dispersion
         plain = self.left_out(Model(model.base))
         gained = plain - self.left_out(model)
         enough = max(MOST * (float(plain.sum()) - noise), NOTICEABLE * noise)
         steady = float(np.quantile(self._resampled @ gained, UNSURE)) > 0.0
-        return float(gained.sum()) if steady and gained.sum() > enough else 0.0
+        return steady and float(gained.sum()) > enough
 
     def doubtful(self, gain: Gain) -> bool:
         """Whether a law fits far better than chance lets it, and yet does not pass: few launches ask for it."""

@@ -24,10 +24,10 @@ TRIED = 2  # families that foretell best, and as many that fit best, that are fi
 
 @dataclass(frozen=True)
 class Explained:
-    """What the engine found. `law`: the final fit, of the baseline and the listed laws `listed`; `unlisted` and its
-    coefficients `theta` are a family on top of it. `doubtful`: what too few launches ask for beside it; `lost`: whether
-    something is missing that no law surely explains. `columns` are those of the final law; `model` was chosen by
-    `chooser` in those of `screen`."""
+    """What the engine found. `law`: the fit of the baseline and the listed laws `listed`, or their numbers beside
+    `unlisted`, a family on top; `theta` are further steps of these numbers, and its coefficients. `doubtful`: what too
+    few launches ask for beside it; `lost`: whether something is missing that no law surely explains. `columns` are
+    those of the final law; `model` was chosen by `chooser` in those of `screen`."""
 
     baseline: Fit
     law: Fit
@@ -65,13 +65,16 @@ class Explained:
         """The values of all of it, the smooth law and all where the simulator has a place for it."""
         return {**self.final.values, **self.switched()}
 
-    @property
-    def gained(self) -> float:
-        """What the smooth law explains: the growth of the sum of squares without it, the other numbers fitted anew."""
-        columns = self.columns.grams.columns(self.law.free)
-        rest = gram.solve(self.columns.grams, columns, self.chooser.use)
-        without = gram.losses(self.columns.grams, columns, rest, self.chooser.use)
-        return float((without - self.losses(self.theta, self.chooser.use)).sum())
+    def gained(self, parts: np.ndarray) -> float:
+        """What the smooth law can explain of units: how their sum of squares grows without it."""
+        assert self.unlisted is not None
+        spread = self.model.spreads[self.model.laws.index(self.unlisted)]
+        left = []
+        for model in (Model(self.law.free), Model(self.law.free, (self.unlisted,), (spread,))):
+            columns, ridge = model.columns(self.columns.grams)
+            theta = gram.solve(self.columns.grams, columns, parts, ridge)
+            left.append(float(gram.losses(self.columns.grams, columns, theta, parts).sum()))
+        return left[0] - left[1]
 
     def losses(self, theta: np.ndarray, parts: np.ndarray) -> np.ndarray:
         """Sums of squares (parts,) that coefficients of the family, and steps of the listed numbers, leave of units."""
@@ -151,7 +154,10 @@ def _completed(
         return plain
     ways = [replace(plain, foretold=float(refitted.foretold(Model(law.free)).sum()))]
     nothing = float(chooser.foretold(Model(problem.base)).sum())
-    for gain in _worth_trying(chooser, Model(problem.base), screen):
+    gains = _worth_trying(chooser, Model(problem.base), screen)
+    if rest is not None and not listed.laws and rest.law.name not in {gain.law.name for gain in gains}:
+        gains.append(rest)
+    for gain in gains:
         if nothing - gain.fitted < min(way.foretold for way in ways):  # what it might leave, if it were the truth
             ways.append(_with_family(problem, Model(problem.base), baseline, gain, chooser, use))
     if rest is not None and listed.laws:
@@ -165,7 +171,7 @@ def _completed(
 
 def _with_family(problem: Problem, listed: Model, law: Fit, gain: Gain, chooser: Chooser, use: np.ndarray) -> _Way:
     smooth = fit_smooth(problem, law, gain.law, use, chooser.dispersion)
-    return _Way(listed.plus(gain.law, smooth.spread), smooth.law, smooth, smooth.foretold)
+    return _Way(listed.plus(smooth.family, smooth.spread), smooth.law, smooth, smooth.foretold)
 
 
 def _worth_trying(chooser: Chooser, base: Model, screen: Columns) -> list[Gain]:

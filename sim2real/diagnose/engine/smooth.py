@@ -45,17 +45,21 @@ def fit_smooth(problem: Problem, law: Fit, family: Law, use: np.ndarray, beyond:
     """Fit `family` on top of `law` to the clusters `use`; `beyond`: noise beyond the problem's, in variance.
 
     Where the simulator can switch the family on, columns are taken anew about the path with it, until no step leads
-    any further; else about the path without it.
+    any further; else about the path without it. A family of which every step leads uphill foretells nothing.
     """
-    here = _at(problem, law, family, np.zeros(len(family.columns)))
-    best = _solved(problem, here, use, beyond)
-    for _ in range(ROUNDS if family.switch(best.theta[len(law.free) :]) else 0):
-        now = _loss(problem, here, use)
-        there = _downhill(problem, here, best, use, now)
+    search = _Search(problem, use, beyond)
+    here = search.at(law, family, np.zeros(len(family.columns)))
+    best = search.solved(here)
+    if not family.switch(best.theta[len(law.free) :]):
+        return best
+    foretold = np.inf
+    for _ in range(ROUNDS):
+        there = search.downhill(here, best)
         if there is None:
-            break
-        here, best = there, _solved(problem, there, use, beyond)
-        if now - _loss(problem, here, use) < ENOUGH * now:
+            return replace(best, theta=np.concatenate([np.zeros(len(law.free)), here.at]), foretold=foretold)
+        foretold, now = best.foretold, search.loss(here, best.spread)
+        here, best = there, search.solved(there)
+        if now - search.loss(here, best.spread) < ENOUGH * now:
             break
     return best
 
@@ -70,42 +74,49 @@ class _Place:
     columns: Columns
 
 
-def _at(problem: Problem, law: Fit, family: Law, at: np.ndarray) -> _Place:
-    values: Mapping[str, float] = {**law.values, **(family.switch(at) if at.any() else {})}
-    columns = problem.columns(values, law.free, None)
-    family = next(one for one in columns.families if one.name == family.name)
-    moved = columns.grams.columns(family.columns)
-    return _Place(law, family, at, replace(columns, grams=gram.moved(columns.grams, moved, -at)))
+class _Search:
+    """Steps of Gauss-Newton on the clusters `use`."""
 
+    def __init__(self, problem: Problem, use: np.ndarray, beyond: float) -> None:
+        self._problem, self._use, self._beyond = problem, use, beyond
+        self._parts = problem.units.of(use)
+        self._freedom = problem.units.freedom[self._parts] * beyond
 
-def _loss(problem: Problem, place: _Place, use: np.ndarray) -> float:
-    """Soft loss of the law with the coefficients at which the columns were taken."""
-    parts = problem.units.of(use)
-    at = place.columns.grams.columns(place.family.columns)
-    left = gram.losses(place.columns.grams, at, place.at, parts)
-    return float(gram.soft(left, problem.units.freedom[parts]).sum())
+    def at(self, law: Fit, family: Law, at: np.ndarray) -> _Place:
+        """A place, with the columns about its path."""
+        values: Mapping[str, float] = {**law.values, **(family.switch(at) if at.any() else {})}
+        columns = self._problem.columns(values, law.free, None)
+        family = next(one for one in columns.families if one.name == family.name)
+        moved = columns.grams.columns(family.columns)
+        return _Place(law, family, at, replace(columns, grams=gram.moved(columns.grams, moved, -at)))
 
+    def loss(self, place: _Place, spread: float) -> float:
+        """Soft loss at a place, and what its coefficients cost by their spread."""
+        columns = place.columns.grams.columns(place.family.columns)
+        left = gram.losses(place.columns.grams, columns, place.at, self._parts)
+        return float(gram.soft(left, self._freedom).sum() + np.sum(place.at**2) / spread**2)
 
-def _solved(problem: Problem, place: _Place, use: np.ndarray, beyond: float) -> Smooth:
-    """The least squares there, with the spread that foretells best."""
-    chooser = Chooser(place.columns.grams, problem.units, use, beyond)
-    models = [Model(place.law.free, (place.family,), (spread,)) for spread in SPREADS]
-    foretold = [float(chooser.foretold(model).sum()) for model in models]
-    best = int(np.argmin(foretold))
-    index, ridge = models[best].columns(place.columns.grams)
-    theta = gram.solve_softly(place.columns.grams, index, chooser.use, problem.units.freedom[chooser.use], ridge)
-    return Smooth(place.law, place.family, SPREADS[best], place.columns, theta, foretold[best])
+    def solved(self, place: _Place) -> Smooth:
+        """The least squares there, with the spread that foretells best."""
+        grams = place.columns.grams
+        chooser = Chooser(grams, self._problem.units, self._use, self._beyond)
+        models = [Model(place.law.free, (place.family,), (spread,)) for spread in SPREADS]
+        foretold = [float(chooser.foretold(model).sum()) for model in models]
+        best = int(np.argmin(foretold))
+        index, ridge = models[best].columns(grams)
+        theta = gram.solve_softly(grams, index, self._parts, self._freedom, ridge)
+        return Smooth(place.law, place.family, SPREADS[best], place.columns, theta, foretold[best])
 
-
-def _downhill(problem: Problem, here: _Place, step: Smooth, use: np.ndarray, now: float) -> _Place | None:
-    """Where a step leads, or a part of it; None where all of them lead uphill."""
-    n = len(here.law.free)
-    for part in 0.5 ** np.arange(HALVINGS):
-        values = dict(here.law.values)
-        for name, change in zip(here.law.free, part * step.theta[:n], strict=True):
-            values[name] = BY_NAME[name].within(values[name] + change)
-        at = here.at + part * (step.theta[n:] - here.at)
-        there = _at(problem, replace(here.law, values=values), here.family, at)
-        if _loss(problem, there, use) < now:
-            return there
-    return None
+    def downhill(self, here: _Place, step: Smooth) -> _Place | None:
+        """Where a step leads, or a part of it; None where all of them lead uphill."""
+        n = len(here.law.free)
+        now = self.loss(here, step.spread)
+        for part in 0.5 ** np.arange(HALVINGS):
+            values = dict(here.law.values)
+            for name, change in zip(here.law.free, part * step.theta[:n], strict=True):
+                values[name] = BY_NAME[name].within(values[name] + change)
+            at = here.at + part * (step.theta[n:] - here.at)
+            there = self.at(replace(here.law, values=values), here.family, at)
+            if self.loss(there, step.spread) < now:
+                return there
+        return None

@@ -48,7 +48,7 @@ def listed_curve(problem: GlideProblem, found: Explained, mechanism: str) -> Cur
     values = dict(found.final.values)
     free = [name for name in found.final.free if name in EFFECTS[mechanism].row_names]
     some = windows(problem.data)
-    seen, look = motion(problem, some, values), listed_view(mechanism, values)
+    seen, look = motion(problem, some, found.mended), listed_view(mechanism, values)
     left = look.of(seen, missing(problem, some, found.mended, _untraced(problem, found)))
     x, std = look.coordinate(seen), np.hypot(*(look.direction(seen) * some.std).T)
     points = binned(x, left, std)

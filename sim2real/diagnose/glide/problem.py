@@ -48,7 +48,7 @@ class GlideProblem:
         self._starts = self._guess.copy()
         self._speeds = spread_knots(speed, SPEED_KNOTS)
         self._pucks = np.zeros(1, PUCK)
-        self.units = Units(data.cluster, 2.0 * np.diff(data.first) - 4.0, "glides", _kinds(self._starts[:, 2:]))
+        self.units = Units(data.cluster, 2.0 * np.diff(data.first) - 4.0, "glides", _kinds(self._starts[:, 2:4]))
         self.freedom = np.bincount(data.cluster, self.units.freedom, data.clusters)
         self.noise_m = float(np.sqrt(np.mean(data.std**2)))
 
@@ -175,7 +175,7 @@ class GlideProblem:
                 by_start[:, :, k] = (other[:, :2] - path[:, :2]) / STEP[k]
             change = _steps(data, path, by_start)
             self._starts[:, :4] += change
-            astray = np.any(np.abs(change) > 10 * STEP, axis=1)
+            astray = ~np.all(np.abs(change) < 10 * STEP, axis=1)
             if not astray.any():
                 break
             if tried == ROUNDS - 1:  # a law that was tried before may have led these too far away

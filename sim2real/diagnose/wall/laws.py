@@ -55,17 +55,19 @@ def _along_walls(data: Bounces) -> np.ndarray:
 
 
 def _by_place(data: Bounces) -> np.ndarray:
-    """How far along its wall (n,) a bounce is, 0 to 1: along x at the long walls, along y at the short ones."""
+    """Ripples (n, RIPPLES) of how far along its wall a bounce is: along x at the long walls, along y at the short ones;
+    nothing at a post."""
     short = (data.kind == KINDS["x0"]) | (data.kind == KINDS["x1"])
     span = np.maximum(data.place.max(axis=0, initial=0.0), 1e-3)
-    return np.where(short, data.place[:, 1] / span[1], data.place[:, 0] / span[0])
+    share = np.where(short, data.place[:, 1] / span[1], data.place[:, 0] / span[0])
+    return ripples(share, RIPPLES) * np.isin(data.kind, list(KINDS.values()))[:, None]
 
 
 FAMILIES: dict[str, tuple[str, Callable[[Bounces], np.ndarray]]] = {
     "speed": ("speed", lambda d: spread_hats(d.closing, KNOTS)),
     "angle": ("heading", lambda d: spread_hats(d.angle, KNOTS)),
     "place": ("position", _along_walls),
-    "place alike on all walls": ("position", lambda d: ripples(_by_place(d), RIPPLES)),
+    "place alike on all walls": ("position", _by_place),
     "time": ("time", lambda d: spread_hats(d.t, KNOTS)),
     "time since a contact": ("history", lambda d: memory_hats(d.since, KNOTS)),
 }

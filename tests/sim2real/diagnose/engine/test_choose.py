@@ -78,10 +78,7 @@ def test_what_a_launch_asks_for_is_doubted_unless_another_says_the_same(sizes, t
 )
 def test_launches_prove_a_law_that_explains_most_of_each_other(size, proved):
     chooser = Chooser(_grams({"tilt": size}), UNITS, EVERY)
-    found = chooser.proved(BASE.plus(LAWS[0], np.inf))
-    assert (found > 0.0) == proved
-    if proved:  # columns of unit variance: the square of the size, once a residual
-        assert found == pytest.approx(0.25 * LAUNCHES * PIECES * EACH, rel=0.1)
+    assert chooser.proved(BASE.plus(LAWS[0], np.inf)) == proved
 
 
 def test_a_law_of_other_sign_in_every_other_launch_is_refused():
