@@ -122,7 +122,8 @@ def find_policy(name: str) -> Policy:
     if name in policy_names():
         return load_policy(SHIPPED / f"{name}.npz")
     if not Path(name).exists():
-        raise ValueError(f"no policy '{name}'; shipped: {', '.join(policy_names())}, or a path to an .npz file")
+        shipped = "".join(f"'{one}' or " for one in policy_names())
+        raise ValueError(f"no policy '{name}'; expected {shipped}a path to an .npz file")
     return load_policy(Path(name))
 
 

@@ -82,7 +82,9 @@ def read_preset(text: str, name: str) -> Preset:
             earlier=tuple(league.pop("earlier")), **league,
         )  # fmt: skip
         preset.at(max((change.from_steps for change in later), default=0))  # its rewards are known ones
-    except (KeyError, TypeError, ValueError) as error:  # a text that is no TOML is a ValueError too
+    except KeyError as error:
+        raise ValueError(f"preset {name}: it has no {error.args[0]}") from None
+    except (TypeError, ValueError) as error:  # a text that is no TOML is a ValueError too
         raise ValueError(f"preset {name}: {error}") from None
     if preset.flip not in FLIPS:
         raise ValueError(f"preset {name}: flip is {preset.flip!r}; expected one of {', '.join(FLIPS)}")

@@ -115,7 +115,6 @@ def _print(name: str, meetings: list[dict[str, Any]], deployability: Deployabili
     from rich.console import Console
     from rich.table import Table
 
-    console = Console(highlight=False, soft_wrap=True)
     table = Table(title=f"{name}, decisive games won", box=box.SIMPLE_HEAD, title_justify="left", pad_edge=False)
     table.add_column("variant", no_wrap=True)
     table.add_column("opponent", no_wrap=True)
@@ -128,6 +127,8 @@ def _print(name: str, meetings: list[dict[str, Any]], deployability: Deployabili
             f"{goals[0]}:{goals[1]}", "-" if rate["value"] is None else f"{100 * rate['value']:.1f} %",
             f"{100 * rate['low']:.1f}-{100 * rate['high']:.1f} %",
         )  # fmt: skip
+    needed = Console(width=10_000).measure(table).maximum  # a count that is cut would say something else
+    console = Console(width=max(needed, 100), highlight=False)
     console.print(table)
     console.print("On the gantry (match-v0):")
     for field, value in deployability.as_dict().items():

@@ -26,9 +26,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     known = ", ".join(sorted(path.stem for path in PRESETS.glob("*.toml")))
     parser.add_argument("--preset", default="fast", metavar="NAME", help=f"how to train: {known}, or a .toml file")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder of the run")
-    parser.add_argument("--steps", type=float, default=FOREVER, metavar="N", help="stop after so many steps in all")
-    parser.add_argument("--minutes", type=float, default=FOREVER, metavar="M", help="stop after so many minutes")
-    parser.add_argument("--resume", action="store_true", help="go on with the run in DIR, with its own settings")
+    parser.add_argument(
+        "--steps",
+        type=float,
+        default=FOREVER,
+        metavar="N",
+        help="stop after the round that brings so many steps in all",
+    )
+    parser.add_argument(
+        "--minutes", type=float, default=FOREVER, metavar="M", help="stop after so many minutes of this call"
+    )
+    parser.add_argument(
+        "--resume", action="store_true", help="go on with the run in DIR; its own settings hold, whatever else is given"
+    )
     parser.add_argument("--start", metavar="DIR", help="begin with the networks of the run in DIR")
     parser.add_argument("--variant", default="match-v0", metavar="ID", help="what is played (default match-v0)")
     parser.add_argument("--seed", type=int, default=0, help="seed of everything random (default 0)")

@@ -1,6 +1,7 @@
 """A first look, in a minute or two: players meet, a game is filmed, a recording is compared.
 
-1. Two scripted players meet in paired games on every registered environment; a table with 95 % intervals.
+1. A trained player and a scripted one, or any two, meet in paired games on every registered environment; a table with
+   95 % intervals.
 2. The first of those matches is filmed.
 3. A small bundled recording, made by an independent table with physics that the simulator leaves out, is cut into
    glides and hits, and each is compared with what the simulator says.
@@ -19,7 +20,7 @@ BUNDLED = Path(__file__).resolve().parent.parent / "demo_recording"
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
-    parser.add_argument("players", nargs="*", metavar="PLAYER", help="two players (veteran interceptor)")
+    parser.add_argument("players", nargs="*", metavar="PLAYER", help="two players (policy:champion veteran)")
     parser.add_argument("--games", type=int, default=20, help="games on each environment (20)")
     parser.add_argument("--seed", type=int, default=0, help="seed of the games (0)")
     parser.add_argument("--out", type=Path, default=Path("out/demo"), metavar="DIR", help="folder for files (out/demo)")
@@ -34,7 +35,7 @@ def run(args: argparse.Namespace) -> int:
     from baselines.match import MOST_GAMES
     from sim2real.compare import compare_recording, print_summary
 
-    players = tuple(args.players or ("veteran", "interceptor"))
+    players = tuple(args.players or ("policy:champion", "veteran"))
     if len(players) != 2:
         raise ValueError(f"{len(players)} players given; expected two, as in: puckpilot demo veteran goalie")
     for name in players:

@@ -54,7 +54,12 @@ def run_study(
     if note:
         print(note, file=sys.stderr)
     with progress_bar("cases made") as progress:
-        labels = make_cases(plan, folder, workers, progress)
+        try:
+            labels = make_cases(plan, folder, workers, progress)
+        except ValueError:
+            if not (folder / "recordings").exists():  # such a study there is not: the folder is free for another
+                (folder / "plan.json").unlink()
+            raise
     with progress_bar("cases diagnosed") as progress:
         answers = diagnose_cases(folder, labels, tool or THIS, "diagnoses", heldout, workers, progress)
     keys = {label: json.loads((folder / "key" / f"{label}.json").read_text()) for label in labels}

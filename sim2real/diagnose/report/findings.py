@@ -106,8 +106,9 @@ def _twins(one: Finding) -> str:
     return table + words.paragraph(
         "A null twin is the simulator with its refitted numbers and fresh noise; a permutation twin is the recording's "
         "own misses, each glide's or bounce's with a sign drawn by lot. Neither holds a law: the law should gain "
-        "nothing there, and the search should name nothing. One name among six is an accident that happens; more of "
-        "them speak against the name found in the recording."
+        "nothing in either. In null twins the search should name nothing as well: one name among six is an accident "
+        "that happens, more of them speak against the name found in the recording. The misses of a permutation twin "
+        "are as large and as smooth as what the recording lacks, so that a search takes some of them for other laws."
     )
 
 
