@@ -19,6 +19,8 @@ from sim2real.diagnose.problem import Columns, Problem
 MOST_LISTED = 4
 PER_COEFFICIENT = 7.0  # residuals, below which a smooth law would follow the noise
 REMAINDER = 0.1  # share of what the listed laws foretell better that a law on top of them must add
+MOSTLY = 2.0 / 3.0  # of what a family alone explains; listed laws that explain as much are no stand-ins,
+FEW = 2  # unless there are more of them than one table may have
 TRIED = 2  # families that foretell best, and as many that fit best, that are fitted by themselves
 
 
@@ -157,9 +159,12 @@ def _completed(
     gains = _worth_trying(chooser, Model(problem.base), screen)
     if rest is not None and not listed.laws and rest.law.name not in {gain.law.name for gain in gains}:
         gains.append(rest)
+    alone = []
     for gain in gains:
-        if nothing - gain.fitted < min(way.foretold for way in ways):  # what it might leave, if it were the truth
-            ways.append(_with_family(problem, Model(problem.base), baseline, gain, chooser, use))
+        if nothing - gain.fitted < min(way.foretold for way in (*ways, *alone)):  # what it might leave, if it were true
+            alone.append(_with_family(problem, Model(problem.base), baseline, gain, chooser, use))
+    if not _stands_by_itself(ways[0], alone, nothing):
+        ways += alone
     if rest is not None and listed.laws:
         ways.append(_with_family(problem, listed, law, rest, chooser, use))
         fewer = chooser.prune(listed.plus(rest.law, rest.spread)).minus(rest.law)
@@ -167,6 +172,12 @@ def _completed(
             fewer, fitted = standing(problem, baseline, fewer, screen, use)
             ways.append(_with_family(problem, fewer, fitted, rest, chooser, use))
     return _simplest(ways, nothing)
+
+
+def _stands_by_itself(listed: _Way, alone: Sequence[_Way], nothing: float) -> bool:
+    """Whether listed laws explain so much of what a family by itself does that they are no stand-ins for it."""
+    best = min((way.foretold for way in alone), default=np.inf)
+    return 0 < len(listed.model.laws) <= FEW and nothing - listed.foretold > MOSTLY * (nothing - best)
 
 
 def _with_family(problem: Problem, listed: Model, law: Fit, gain: Gain, chooser: Chooser, use: np.ndarray) -> _Way:

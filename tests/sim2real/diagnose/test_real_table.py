@@ -66,7 +66,7 @@ def glides_of_first_half() -> Explained:
 def bounces_of(name: str) -> tuple[Bounces, int]:
     """The bounces of a recording, told by the law of the glides, and its number of launches."""
     here = part(name)
-    states = here.glides.states(given(glides_of_first_half().law.values))
+    states = here.glides.states(given(glides_of_first_half().mended))
     return bounces(find_impacts(here.pieces, here.glides, states), geometry(here.recording)), here.glides.clusters
 
 
@@ -80,14 +80,14 @@ def test_what_the_first_half_s_glides_say_holds_in_the_second() -> None:
     assert found.unlisted is None or found.unlisted.family == "position"  # no real table is quite a quadratic surface
     second = np.flatnonzero(begun(problem) >= HALF)
     before, after = (
-        float(np.sum(problem.residuals(law.values, (), second).r ** 2)) for law in (found.baseline, found.law)
+        float(np.sum(problem.residuals(values, (), second).r ** 2)) for values in (found.baseline.values, found.mended)
     )
     print(f"glides, second half of play_a: RSS {after / before - 1:+.1%} against the refitted baseline")
     assert after < 0.3 * before
 
 
 def test_what_the_bounces_of_one_recording_say_holds_in_another() -> None:
-    values = dict(glides_of_first_half().law.values)
+    values = dict(glides_of_first_half().mended)
     data, launches = bounces_of("play_a")
     _, found = explain_bounces(
         WallProblem(data, launches, values), {"wall_restitution": 0.7}, np.unique(data.cluster), True
