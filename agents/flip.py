@@ -6,16 +6,17 @@ import torch
 from tensordict import TensorDict
 from torch import Tensor
 
-from agents.learner_env import POLICY, LearnerEnv
+from agents.hall import Hall, stacked
+from agents.learner_env import POLICY
 from agents.scaling import ACTION_FLIP
 
 
-def augment(env: LearnerEnv, obs: TensorDict | None, actions: Tensor | None) -> tuple[TensorDict | None, Tensor | None]:
+def augment(env: Hall, obs: TensorDict | None, actions: Tensor | None) -> tuple[TensorDict | None, Tensor | None]:
     """`obs` (n,) and `actions` (n, 4) followed by their mirror images, (2 n,) and (2 n, 4); None stays None."""
     if obs is not None:
         mirrored = obs.clone()
         mirrored[POLICY] = obs[POLICY] * torch.from_numpy(env.reading.scaling.flip).to(obs.device)
-        obs = TensorDict.cat([obs, mirrored])
+        obs = stacked([obs, mirrored])
     if actions is not None:
         actions = torch.cat([actions, actions * torch.tensor(ACTION_FLIP, device=actions.device)])
     return obs, actions

@@ -23,12 +23,18 @@ LEAST_CHANCE = 0.01  # weight of one that never wins, so that it is still met no
 @dataclass(eq=False)
 class Member:
     """An opponent: a script's name, or a policy. `points`: the learner's and its own, of late; `games`: likewise
-    games that the learner won, drew and lost."""
+    games that the learner won, drew and lost. `beside`: the variant beside the run's own that it is met in, if so."""
 
     name: str
     policy: Policy | None = None
+    beside: str = ""
     points: NDArray[np.float64] = field(default_factory=lambda: np.zeros(2))
     games: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
+
+    @property
+    def label(self) -> str:
+        """How it is called among all anchors."""
+        return f"{self.name}@{self.beside}" if self.beside else self.name
 
     @property
     def share(self) -> float:
@@ -59,19 +65,22 @@ class League:
     earlier: list[Member] = field(default_factory=list)
     waited: int = 0
 
-    def choose(self, seats: int, rng: np.random.Generator) -> list[Member]:
-        """Who sits at `seats` blocks in a round, some perhaps at two: half of them earlier selves, on average."""
-        groups = [np.array([max((1.0 - one.share) ** 2, LEAST_CHANCE) for one in some]) for some in self._groups()]
-        chances = np.concatenate([weights / weights.sum() / len(groups) for weights in groups])
-        members = [one for some in self._groups() for one in some]
+    def choose(self, seats: int, rng: np.random.Generator, beside: str = "") -> list[Member]:
+        """Who sits at `seats` blocks in a round, some perhaps at two: half of them earlier selves, on average. The
+        others are anchors of the run's own variant, or of the one `beside` it."""
+        groups = [some for some in (self.earlier, self.of(beside)) if some]
+        odds = [np.array([max((1.0 - one.share) ** 2, LEAST_CHANCE) for one in some]) for some in groups]
+        chances = np.concatenate([weights / weights.sum() / len(groups) for weights in odds])
+        members = [one for some in groups for one in some]
         return [members[index] for index in rng.choice(len(members), size=seats, p=chances)]
 
-    def _groups(self) -> list[list[Member]]:
-        return [some for some in (self.earlier, self.anchors) if some]
+    def of(self, beside: str) -> list[Member]:
+        """The anchors of the run's own variant, for "", or of one beside it."""
+        return [member for member in self.anchors if member.beside == beside]
 
     def rating(self) -> float:
-        """Elo of the learner among its anchors, by the games of late; their mean and its own together is 0."""
-        met = [member for member in self.anchors if member.games.sum() > 0.0]
+        """Elo of the learner among the anchors of its own variant, by the games of late; the mean of all is 0."""
+        met = [member for member in self.of("") if member.games.sum() > 0.0]
         if not met:
             return 0.0
         wins, draws = np.zeros((2, 1 + len(met), 1 + len(met)))

@@ -17,11 +17,13 @@ from tensordict import TensorDict
 from torch import Tensor
 
 from agents.ppo import CUT, FINAL
+from agents.privileged import SIDEWAYS, seen_state, true_state
 from agents.rewards import Rewards
 from agents.scaling import ACTION_FLIP, Reading
 from agents.seating import Seating
 from agents.tally import Tally
 from baselines.player import Player
+from puckpilot_env.game.rules import SHOT
 from puckpilot_env.tables import Tables
 
 POLICY, PRIVILEGED = "policy", "privileged"
@@ -30,19 +32,20 @@ POLICY, PRIVILEGED = "policy", "privileged"
 class LearnerEnv(VecEnv):
     """The learner's rows of `tables`, as `seating` has them; `opponents` sit in its blocks, in order.
 
-    Observations: "policy" (rows, d), what a player sees, scaled; "privileged" (rows, 1), what only the critic may
-    know: the share of points that the learner wins against this opponent, from -1 for none to 1 for all. On every other
-    pair of tables the learner sees and plays the left-right flipped game, if `flip`: half its experience is of either
-    hand, at no cost.
+    Observations: "policy" (rows, d), what a player sees, scaled; "privileged" (rows, ..), what only the critic may
+    know: the share of points that the learner wins against this opponent, from -1 for none to 1 for all, and, for a
+    `critic` of the "state", the table as it truly is (see `privileged`). On every other pair of tables the learner sees
+    and plays the left-right flipped game, if `flip`: half its experience is of either hand, at no cost.
     """
 
     def __init__(
-        self, tables: Tables, seating: Seating, reading: Reading, rewards: Rewards, *, gamma: float, flip: bool
-    ) -> None:
+        self, tables: Tables, seating: Seating, reading: Reading, rewards: Rewards, *, gamma: float, flip: bool,
+        critic: str = "score",
+    ) -> None:  # fmt: skip
         self.tables, self.seating, self.rewards, self.gamma = tables, seating, rewards, gamma
         self.tally = Tally(seating)
         self.reading = reading
-        self.columns = [column.name for column in tables.observation_columns]
+        self.critic = critic
         self.opponents: Sequence[Player] = ()
         self.shares = np.zeros((len(seating.learners), 1), np.float32)
         self.num_envs, self.num_actions = len(seating.learners), 4
@@ -80,6 +83,8 @@ class LearnerEnv(VecEnv):
         tables.step(self._actions.reshape(len(tables), 2, 4))
         done = tables.terminated | tables.truncated
         scored = np.where(done[:, None], tables.states["last_score"], tables.states["score"]) - score
+        into = np.flatnonzero(tables.states["ending"] == SHOT)  # a drill ends before the puck is there
+        scored[into, tables.states["winner"][into]] += 1
         rewards = self.rewards.after(tables, before, scored, done, self.gamma).reshape(-1)[self.seating.learners]
         self.tally.add(scored, done, tables.states["winner"])
         self._tell_opponents(done)
@@ -96,9 +101,15 @@ class LearnerEnv(VecEnv):
                 player.reset(done[block.first : block.last])
 
     def _seen(self, observations: NDArray[np.float32], which: Any) -> TensorDict:
-        """The learner's view of (n, 2, columns) observations, of its rows in `which`."""
+        """The learner's view of (n, 2, columns) observations, of its rows in `which`: a slice for now, a mask for the
+        ends of episodes that are over."""
         rows = self.seating.learners[which]
         flat = observations.reshape(self._actions.shape[0], -1)
         policy = self.reading.seen(flat[rows]) * self._see[which]
-        parts = {POLICY: torch.from_numpy(policy), PRIVILEGED: torch.from_numpy(self.shares[which])}
+        known = [self.shares[which]]
+        if self.critic == "state":
+            over = not isinstance(which, slice)
+            state = seen_state(self.tables, rows, flat[rows]) if over else true_state(self.tables, rows)
+            known.append(np.where(self._play[which, 1:2] < 0.0, SIDEWAYS, 1.0).astype(np.float32) * state)
+        parts = {POLICY: torch.from_numpy(policy), PRIVILEGED: torch.from_numpy(np.hstack(known))}
         return TensorDict(parts, batch_size=[len(rows)])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import zipfile
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,12 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from agents.network import SQUASHES, Network
+from agents.run_folder import RunFolder
 from agents.scaling import Reading, Scaling
 from baselines.player import Player, Seat
 from puckpilot_env.whole_file import write_whole
 
 FORMAT = "puckpilot-policy-1"
 SHIPPED = Path(__file__).parent / "policies"  # a file there is a policy, and its name is the policy's name
+PREFIX = "policy:"  # may stand before a policy's name; a script's name without it is the script
 OUTPUTS = 4  # of target x, y and voltages x, y, before they are squashed
 MOST_BYTES = 1 << 28  # of all arrays; a network of eight layers of 2048 is half of it
 SCALINGS = ("centre", "span", "flip", "low", "high")
@@ -57,7 +60,8 @@ def load_policy(path: Path) -> Policy:
     except FileNotFoundError:
         raise ValueError(f"no policy at {path}") from None
     except Exception as error:  # a broken file breaks its readers in many ways: zlib's, zipfile's, numpy's, json's
-        raise ValueError(f"{path} is no policy, or is cut short ({type(error).__name__})") from None
+        words = f"{path} is no policy, or is cut short ({type(error).__name__})"
+        raise ValueError(f"{words}; expected an .npz file that `puckpilot train` or `export` wrote") from None
     if not isinstance(head, dict) or head.get("format") != FORMAT:
         raise ValueError(f"{path} is not of the format {FORMAT}")
     try:
@@ -117,16 +121,38 @@ def policy_names() -> list[str]:
     return sorted(path.stem for path in SHIPPED.glob("*.npz"))
 
 
-def find_policy(name: str) -> Policy:
-    """The shipped policy of this name, or that of a file. ValueError, in one line, for one that cannot be loaded."""
+def is_policy(name: str) -> bool:
+    """Whether a player's name asks for a policy, be it there or not: by prefix, by a shipped name, or as a path."""
+    as_path = name.endswith(".npz") or "/" in name or os.sep in name or Path(name).exists()
+    return name.startswith(PREFIX) or name in policy_names() or (name != "" and as_path)
+
+
+def policy_file(name: str) -> Path:
+    """The file of a policy, which may be named by a shipped name, by its file, or by the folder of the run that made
+    it, each with or without `policy:`. ValueError, in one line, where there is none."""
+    name = name.removeprefix(PREFIX)
     if name in policy_names():
-        return load_policy(SHIPPED / f"{name}.npz")
-    if not Path(name).exists():
-        shipped = "".join(f"'{one}' or " for one in policy_names())
-        raise ValueError(f"no policy '{name}'; expected {shipped}a path to an .npz file")
-    return load_policy(Path(name))
+        return SHIPPED / f"{name}.npz"
+    path = Path(name)
+    if not name or not path.exists():
+        shipped = "".join(f"'{one}', " for one in policy_names())
+        raise ValueError(f"no policy '{name}'; expected {shipped}a policy's .npz file, or the folder of a training run")
+    if not path.is_dir():
+        return path
+    file = RunFolder(path).policy
+    if not file.exists():
+        raise ValueError(
+            f"no policy in the folder '{name}': it has no {file.name}; expected the folder of a training run, "
+            "which has one after its first round"
+        )
+    return file
+
+
+def find_policy(name: str) -> Policy:
+    """The policy that is named so; see `policy_file`. ValueError, in one line, for one that cannot be loaded."""
+    return load_policy(policy_file(name))
 
 
 def find_policy_player(name: str) -> Callable[[Seat], Player]:
-    """What makes the player of this policy for a seat; see `find_policy`."""
+    """What makes the player of this policy for a seat; see `policy_file`."""
     return partial(PolicyPlayer, find_policy(name))

@@ -8,9 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from agents.rewards import Rewards
+from puckpilot_env.variants import find_variant
 
 FOLDER = Path(__file__).parent / "presets"
 FLIPS = ("rows", "augment", "none")
+CRITICS = ("score", "state")  # what only the critic sees: how strong the opponent is, or the table's true state as well
 COUNTS = ("tables", "steps", "round", "cap", "most")
 CHANGEABLE = ("learning_rate", "gamma", "lam", "clip_param", "entropy_coef")
 
@@ -25,6 +27,16 @@ class Change:
 
 
 @dataclass(frozen=True)
+class Beside:
+    """Tables of another variant beside the run's own, at which the same network learns; see `Preset`."""
+
+    variant: str
+    tables: int
+    anchors: dict[str, int]
+    earlier: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True)
 class Preset:
     """A preset's numbers, by the names of its file; see the comments in `agents/presets/fast.toml`."""
 
@@ -35,6 +47,7 @@ class Preset:
     flip: str
     hidden: tuple[int, ...]
     distribution: str
+    critic: str
     ppo: dict[str, Any]
     rewards: Rewards
     anchors: dict[str, int]
@@ -43,6 +56,7 @@ class Preset:
     cap: int
     most: int
     later: tuple[Change, ...] = ()
+    beside: tuple[Beside, ...] = ()
 
     def at(self, steps: int) -> Preset:
         """What holds after so many steps."""
@@ -75,10 +89,11 @@ def read_preset(text: str, name: str) -> Preset:
         raw = tomllib.loads(text)
         network, league = raw.pop("network"), raw.pop("league")
         later = tuple(_change(entry) for entry in raw.pop("later", []))
+        beside = tuple(_beside(entry) for entry in raw.pop("beside", []))
         ppo, rewards = raw.pop("ppo"), Rewards(**raw.pop("rewards"))
         preset = Preset(
-            text=text, ppo=ppo, rewards=rewards, later=later, **raw,
-            hidden=tuple(network.pop("hidden")), **network,
+            text=text, ppo=ppo, rewards=rewards, later=later, beside=beside, **raw,
+            hidden=tuple(network.pop("hidden")), critic=network.pop("critic", "score"), **network,
             earlier=tuple(league.pop("earlier")), **league,
         )  # fmt: skip
         preset.at(max((change.from_steps for change in later), default=0))  # its rewards are known ones
@@ -88,6 +103,8 @@ def read_preset(text: str, name: str) -> Preset:
         raise ValueError(f"preset {name}: {error}") from None
     if preset.flip not in FLIPS:
         raise ValueError(f"preset {name}: flip is {preset.flip!r}; expected one of {', '.join(FLIPS)}")
+    if preset.critic not in CRITICS:
+        raise ValueError(f"preset {name}: critic is {preset.critic!r}; expected one of {', '.join(CRITICS)}")
     if "gamma" not in preset.ppo:
         raise ValueError(f"preset {name}: [ppo] has no gamma, by which shaping and returns are discounted")
     _check_counts(preset, name)
@@ -103,10 +120,16 @@ def _change(entry: dict[str, Any]) -> Change:
     return Change(ppo=numbers[0], rewards=numbers[1], **entry)
 
 
+def _beside(entry: dict[str, Any]) -> Beside:
+    return Beside(find_variant(entry.pop("variant")).id, earlier=tuple(entry.pop("earlier", [])), **entry)
+
+
 def _check_counts(preset: Preset, name: str) -> None:
     named = [(count, getattr(preset, count)) for count in COUNTS]
     named += [(part, size) for part in ("hidden", "earlier") for size in getattr(preset, part)]
     named += list(preset.anchors.items())
+    for one in preset.beside:
+        named += [(f"[[beside]] {one.variant}", size) for size in (one.tables, *one.anchors.values(), *one.earlier)]
     named += [("[[later]] from_steps", change.from_steps) for change in preset.later]
     for what, count in named:
         if type(count) is not int or count < 1:

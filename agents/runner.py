@@ -7,6 +7,7 @@ import inspect
 import io
 import math
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,7 +19,8 @@ from torch import nn
 
 from agents import ranks
 from agents.distribution import TanhNormal
-from agents.learner_env import POLICY, PRIVILEGED, LearnerEnv
+from agents.hall import Hall
+from agents.learner_env import POLICY, PRIVILEGED
 from agents.network import Network
 from agents.policy import OUTPUTS, Policy
 from agents.ppo import FinalStatePPO
@@ -48,10 +50,10 @@ class Iteration:
 class SelfPlayRunner(OnPolicyRunner):
     """Collects and learns, one update a call. `env` is the runner's environment, with opponents seated."""
 
-    env: LearnerEnv
+    env: Hall
     alg: FinalStatePPO
 
-    def __init__(self, env: LearnerEnv, preset: Preset, device: str = "cpu") -> None:
+    def __init__(self, env: Hall, preset: Preset, device: str = "cpu") -> None:
         with contextlib.redirect_stdout(io.StringIO()):  # rsl-rl prints its networks
             super().__init__(env, _config(preset), log_dir=None, device=device)
         self._distribution = preset.distribution
@@ -84,15 +86,14 @@ class SelfPlayRunner(OnPolicyRunner):
         acting = collected - begun - played
         return Iteration(losses, played, acting, time.perf_counter() - collected)
 
-    def policy(self, about: dict[str, Any]) -> Policy:
-        """What has been learned so far, as a player without torch."""
+    def policy(self, columns: Sequence[str], about: dict[str, Any]) -> Policy:
+        """What has been learned so far about these columns of observations, as a player without torch."""
         layers = [layer for layer in self.alg.get_policy().mlp.modules() if isinstance(layer, nn.Linear)]
         weights = [layer.weight.detach().cpu().numpy().copy() for layer in layers]
         biases = [layer.bias.detach().cpu().numpy().copy() for layer in layers]
         weights[-1], biases[-1] = weights[-1][:OUTPUTS], biases[-1][:OUTPUTS]
-        reading = self.env.reading
         squash = DISTRIBUTIONS[self._distribution][1]
-        return Policy(Network(weights, biases), reading.scaling, tuple(self.env.columns), about, squash)
+        return Policy(Network(weights, biases), self.env.reading.scaling, tuple(columns), about, squash)
 
 
 def _config(preset: Preset) -> dict[str, Any]:

@@ -38,8 +38,12 @@ class Scaling:
     @classmethod
     def from_tables(cls, tables: Tables) -> Scaling:
         """The scaling of these tables' variant."""
-        centre, span, flip = _of_columns(tables.observation_columns)
-        return cls(centre, span, flip, *tables.action_bounds.copy())
+        return cls.of(tables.observation_columns, tables.action_bounds)
+
+    @classmethod
+    def of(cls, columns: Sequence[Column], action_bounds: Array) -> Scaling:
+        """The scaling of these columns, and of actions within these bounds (2, 4)."""
+        return cls(*_of_columns(columns), *action_bounds.copy())
 
     def seen(self, observations: Array) -> Array:
         """What a network sees of observations (n, d); a new array."""

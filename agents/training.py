@@ -6,7 +6,6 @@ killed goes on from its last round and, on one thread, takes the very same path.
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -16,23 +15,22 @@ from typing import Any
 import numpy as np
 import torch
 
-from agents import ranks
-from agents.checkpoint import load_checkpoint, restore_tables, save_checkpoint, tables_as_tensors
+from agents import ranks, saving
 from agents.exploit import against
+from agents.hall import Hall, readings
 from agents.league import League, Member
 from agents.learner_env import LearnerEnv
-from agents.policy import Policy, PolicyPlayer, load_policy
+from agents.policy import Policy, PolicyPlayer
 from agents.preset import CHANGEABLE, Preset, read_preset
 from agents.run_folder import RunFolder
 from agents.runner import Iteration, SelfPlayRunner
-from agents.scaling import Reading, Scaling
 from agents.seating import Seating
-from agents.widen import widened
 from baselines import make_player
 from baselines.player import Player, Seat
 from puckpilot_env.tables import Tables
 
 RANKS_APART = 2**32  # between the seeds of processes that train together
+PARTS_APART = 2**48  # between the seeds of the parts of a hall
 Row = dict[str, Any]
 
 
@@ -74,23 +72,18 @@ class Training:
         torch.manual_seed(seed)
         self.folder, self.settings = folder, settings
         self.rng = np.random.default_rng(settings.seed)
-        self.tables = Tables(settings.variant, preset.tables, seed=seed, parameters=settings.effects)
-        stagger(self.tables, np.random.default_rng((settings.seed, ranks.rank())))
-        seating = Seating.of(preset.tables, [*preset.anchors.values(), *preset.earlier])
-        names = [column.name for column in self.tables.observation_columns]
-        reading = Reading.of(Scaling.from_tables(self.tables), names, names)
-        self.env = LearnerEnv(
-            self.tables, seating, reading, preset.rewards, gamma=preset.ppo["gamma"], flip=preset.flip == "rows"
-        )
-        self.runner = SelfPlayRunner(self.env, preset)
-        self.league = League([Member(name) for name in preset.anchors], preset.gate, preset.cap, preset.most)
+        self.hall, self.columns = _hall(preset, settings, seed)
+        self.runner = SelfPlayRunner(self.hall, preset)
+        members = [Member(name) for name in preset.anchors]
+        members += [Member(name, beside=_short(one.variant)) for one in preset.beside for name in one.anchors]
+        self.league = League(members, preset.gate, preset.cap, preset.most)
         self.rows: list[Row] = []
         if folder.checkpoint.exists():
-            self._read(folder.checkpoint, self._take_up)
+            saving.take_up(self)
             self._hold(self.steps)
         else:
             if settings.start:
-                self._read(RunFolder(Path(settings.start)).checkpoint, self._learn_on)
+                saving.learn_on(self, Path(settings.start))
             self._admit("self-0")
 
     @property
@@ -100,43 +93,56 @@ class Training:
 
     def round(self) -> Row:
         """One round, and its checkpoint; what came of it."""
-        preset, tally = self.preset, self.env.tally
-        chosen = self.league.choose(len(preset.earlier), self.rng)
-        met = [*self.league.anchors, *chosen]
-        self.env.seat(self._players(met), [member.share for member in met])
-        tally.clear()
-        iterations = [self.runner.iterate() for _ in range(preset.round)]
-        points, games = ranks.added(tally.points), ranks.added(tally.games)
-        for member in dict.fromkeys(met):
-            here = [block for block, one in enumerate(met) if one is member]
+        met = [self._seat(part, beside) for part, beside in zip(self.hall.parts, self._besides(), strict=True)]
+        iterations = [self.runner.iterate() for _ in range(self.preset.round)]
+        tallies = [part.tally for part in self.hall.parts]
+        points = np.concatenate([ranks.added(tally.points) for tally in tallies])
+        games = np.concatenate([ranks.added(tally.games) for tally in tallies])
+        everyone = [member for some in met for member in some]
+        for member in dict.fromkeys(everyone):
+            here = [block for block, one in enumerate(everyone) if one is member]
             member.note(points[here].sum(axis=0), games[here].sum(axis=0))
+        chosen = met[0][len(self.preset.anchors) :]
         if chosen and self.league.wants_new(chosen):
             self._admit(f"self-{len(self.rows) + 1}")
         before = self.steps
         self.rows.append(self._row(iterations))
         self._hold(before)
         if ranks.rank() == 0:
-            self._save()
+            saving.save(self)
         return self.rows[-1]
+
+    def _besides(self) -> list[str]:
+        return ["", *(_short(one.variant) for one in self.preset.beside)]
+
+    def _seat(self, part: LearnerEnv, beside: str) -> list[Member]:
+        """Seat opponents for a round at the tables of a part: its anchors, and some chosen. Who they are, in order."""
+        anchors = self.league.of(beside)
+        seats = len(part.seating.blocks) - len(anchors)
+        met = [*anchors, *(self.league.choose(seats, self.rng, beside) if seats else [])]
+        part.seat(self._players(part, met), [member.share for member in met])
+        part.tally.clear()
+        return met
 
     def policy(self) -> Policy:
         """What has been learned so far."""
         about = {"variant": self.settings.variant, "seed": self.settings.seed, "steps": self.steps}
-        return self.runner.policy(about)
+        return self.runner.policy(self.columns, about)
 
     def _hold(self, before: int) -> None:
         """Let hold what the preset has for now. The learning rate is changed only if that is new since `before` steps:
         a schedule may have moved it, and a checkpoint keeps it."""
         now = self.preset.at(self.steps)
-        self.env.rewards, self.env.gamma = now.rewards, now.ppo["gamma"]
+        for part in self.hall.parts:
+            part.rewards, part.gamma = now.rewards, now.ppo["gamma"]
         fresh = self.preset.at(before).ppo.get("learning_rate") != now.ppo.get("learning_rate")
         names = [name for name in CHANGEABLE if name in now.ppo and (fresh or name != "learning_rate")]
         self.runner.alg.hold({name: now.ppo[name] for name in names})
 
-    def _players(self, met: list[Member]) -> list[Player]:
-        seat = Seat.from_tables(self.tables)
+    def _players(self, part: LearnerEnv, met: list[Member]) -> list[Player]:
+        seat = Seat.from_tables(part.tables)
         players = []
-        for block, member in zip(self.env.seating.blocks, met, strict=True):
+        for block, member in zip(part.seating.blocks, met, strict=True):
             own = replace(seat, tables=block.last - block.first, seed=int(self.rng.integers(2**31)))
             players.append(make_player(member.name, own) if member.policy is None else PolicyPlayer(member.policy, own))
         return players
@@ -151,7 +157,7 @@ class Training:
         preset = self.preset
         before = self.rows[-1] if self.rows else {"steps": 0, "seconds": 0.0}
         spent = {part: sum(getattr(i, part) for i in iterations) for part in ("environment", "acting", "learning")}
-        taken = self.env.num_envs * preset.steps * preset.round * ranks.world()
+        taken = self.hall.num_envs * preset.steps * preset.round * ranks.world()
         return {
             "round": len(self.rows) + 1,
             "steps": before["steps"] + taken,
@@ -162,58 +168,34 @@ class Training:
             "scale": float(self.runner.alg.get_policy().output_std.detach().mean()),
             "selves": len(self.league.earlier),
             "rating": round(self.league.rating(), 1),
-            **{f"points_{member.name}": round(member.share, 4) for member in self.league.anchors},
-            **{f"wins_{member.name}": round(member.win_rate, 4) for member in self.league.anchors},
+            **{f"points_{member.label}": round(member.share, 4) for member in self.league.anchors},
+            **{f"wins_{member.label}": round(member.win_rate, 4) for member in self.league.anchors},
         }
 
-    def _save(self) -> None:
-        self.policy().save(self.folder.policy)
-        self.folder.write_curve(self.rows)
-        league = self.league
-        save_checkpoint(
-            self.folder.checkpoint,
-            {
-                "learner": self.runner.alg.save(),
-                "torch_random": torch.get_rng_state(),
-                "random": json.dumps(self.rng.bit_generator.state),
-                "tables": tables_as_tensors(self.tables),
-                "rows": json.dumps(self.rows),
-                "waited": league.waited,
-                "anchors": [_as_dict(member) for member in league.anchors],
-                "earlier": [_as_dict(member) for member in league.earlier],
-            },
+
+def _hall(preset: Preset, settings: Settings, seed: int) -> tuple[Hall, list[str]]:
+    """All tables that a run learns at, and the names of what its network reads."""
+    sizes = [(settings.variant, preset.tables, [*preset.anchors.values(), *preset.earlier])]
+    sizes += [(one.variant, one.tables, [*one.anchors.values(), *one.earlier]) for one in preset.beside]
+    batches = [
+        Tables(variant, tables, seed=seed + PARTS_APART * part, parameters=settings.effects)
+        for part, (variant, tables, _) in enumerate(sizes)
+    ]
+    for part, tables in enumerate(batches):
+        stagger(tables, np.random.default_rng((settings.seed, ranks.rank(), part)))
+    read, columns = readings(batches)
+    parts = [
+        LearnerEnv(
+            tables, Seating.of(count, blocks), reading, preset.rewards,
+            gamma=preset.ppo["gamma"], flip=preset.flip == "rows", critic=preset.critic,
         )
+        for tables, reading, (_, count, blocks) in zip(batches, read, sizes, strict=True)
+    ]  # fmt: skip
+    return Hall(parts), columns
 
-    def _read(self, checkpoint: Path, use: Callable[[Mapping[str, Any]], None]) -> None:
-        kept = load_checkpoint(checkpoint)
-        try:
-            use(kept)
-        except (KeyError, IndexError, TypeError, AttributeError, RuntimeError) as error:  # torch says misfits many ways
-            words = f"{type(error).__name__}: {error}".splitlines()[0]
-            raise ValueError(f"the checkpoint {checkpoint} does not fit this run ({words})") from None
 
-    def _learn_on(self, kept: Mapping[str, Any]) -> None:
-        """Begin with another run's networks, and nothing else of it."""
-        known = load_policy(RunFolder(Path(self.settings.start or "")).policy).columns
-        learner = kept["learner"]
-        for part in ("actor_state_dict", "critic_state_dict"):
-            learner[part] = widened(learner[part], known, self.env.columns)
-        self.runner.alg.load(learner, {"actor": True, "critic": True}, True)
-
-    def _take_up(self, kept: Mapping[str, Any]) -> None:
-        self.runner.alg.load(kept["learner"], None, True)
-        self.rng.bit_generator.state = json.loads(kept["random"])
-        if ranks.rank() == 0:  # the others' games begin anew
-            torch.set_rng_state(kept["torch_random"])
-            restore_tables(self.tables, kept["tables"])
-        self.rows = json.loads(kept["rows"])
-        self.runner.current_learning_iteration = len(self.rows) * self.preset.round
-        league = self.league
-        league.waited = kept["waited"]
-        league.anchors = [_member(entry) for entry in kept["anchors"]]
-        league.earlier = [
-            _member(entry, load_policy(self.folder.selves / f"{entry['name']}.npz")) for entry in kept["earlier"]
-        ]
+def _short(variant: str) -> str:
+    return variant.removeprefix("puckpilot/")
 
 
 def stagger(tables: Tables, rng: np.random.Generator) -> None:
@@ -224,14 +206,6 @@ def stagger(tables: Tables, rng: np.random.Generator) -> None:
         return
     tables.states["steps"] = rng.integers(0, longest - 1, len(tables))
     tables.states["time"] = tables.states["steps"] * rules.period
-
-
-def _as_dict(member: Member) -> dict[str, Any]:
-    return {"name": member.name, "points": member.points.tolist(), "games": member.games.tolist()}
-
-
-def _member(entry: Mapping[str, Any], policy: Policy | None = None) -> Member:
-    return Member(entry["name"], policy, np.array(entry["points"]), np.array(entry["games"]))
 
 
 def train(training: Training, *, steps: float, seconds: float, tell: Callable[[Row], None]) -> None:

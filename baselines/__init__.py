@@ -1,6 +1,7 @@
 """Players by name. A file in `baselines/players/` is a scripted player, and its name is the player's name.
 
-A name `KIND:REST` is made by somebody above this package (`KINDS`): `policy:champion`, or `policy:run/policy.npz`.
+Any other player is a policy, which the package above this one finds: `policy:champion`, an .npz file, a run's folder;
+`agents.policy.policy_file` says how one may be named.
 
 from baselines import make_player, player_names
 from baselines.player import Seat
@@ -19,9 +20,9 @@ from collections.abc import Callable
 from baselines import players
 from baselines.player import Player, Seat
 
-KINDS = {"policy": "agents.policy:find_policy_player"}  # prefix of a name: what finds such a player, loaded when asked
+POLICIES = "agents.policy"  # finds them; it stands above this package, so it is loaded when a name is no script's
 
-__all__ = ["Player", "Seat", "find_player", "make_player", "player_names"]
+__all__ = ["Player", "Seat", "find_player", "full_name", "make_player", "player_names"]
 
 
 def player_names() -> list[str]:
@@ -31,15 +32,8 @@ def player_names() -> list[str]:
 
 def find_player(name: str) -> Callable[[Seat], Player]:
     """What makes the player of this name for a seat. Raises ValueError, in one line, for an unknown name."""
-    kind, colon, rest = str(name).partition(":")
-    if colon and kind in KINDS:
-        module, _, finder = KINDS[kind].partition(":")
-        return getattr(importlib.import_module(module), finder)(rest)
-    names = player_names()
-    if name not in names:
-        near = difflib.get_close_matches(str(name), names, n=1)
-        hint = f"did you mean '{near[0]}'?" if near else f"known: {', '.join(names)}, and policy:NAME or policy:FILE"
-        raise ValueError(f"unknown player '{name}'; {hint}")
+    if name not in player_names():
+        return _policy_player(str(name))
     module = importlib.import_module(f"{players.__name__}.{name}")
     found = [c for c in vars(module).values() if isinstance(c, type) and c.__module__ == module.__name__]
     found = [c for c in found if issubclass(c, Player)]
@@ -48,6 +42,28 @@ def find_player(name: str) -> Callable[[Seat], Player]:
     return found[0]
 
 
+def full_name(name: str) -> str:
+    """The one name of a player that may be named in several ways: a script's, or `policy:` and what finds the policy.
+
+    Raises ValueError, in one line, for an unknown name.
+    """
+    if name in player_names():
+        return name
+    find_player(name)
+    prefix = importlib.import_module(POLICIES).PREFIX
+    return f"{prefix}{name.removeprefix(prefix)}"
+
+
 def make_player(name: str, seat: Seat) -> Player:
     """The player of this name, sitting at `seat`. Raises ValueError, in one line, for an unknown name."""
     return find_player(name)(seat)
+
+
+def _policy_player(name: str) -> Callable[[Seat], Player]:
+    policies = importlib.import_module(POLICIES)
+    if policies.is_policy(name):
+        return policies.find_policy_player(name)
+    known = [*player_names(), *policies.policy_names()]
+    near = difflib.get_close_matches(name, known, n=1)
+    hint = f"did you mean '{near[0]}'?" if near else f"known: {', '.join(known)}, a policy's .npz file, a run's folder"
+    raise ValueError(f"unknown player '{name}'; {hint}")

@@ -23,7 +23,7 @@ CAUTION = 1.0
 
 @dataclass(frozen=True)
 class Estimate:
-    """A share in [0, 1] with its 95 % interval; `value` is None where no decisive game was played."""
+    """A share in [0, 1] with its 95 % interval; `value` is None where nothing was counted, no decisive game, say."""
 
     value: float | None
     low: float
@@ -33,11 +33,11 @@ class Estimate:
         return asdict(self)
 
 
-def decisive_win_rate(wins: int, losses: int) -> Estimate:
-    """Share of decisive games that the first player won. The games must not depend on each other."""
-    if wins < 0 or losses < 0:
-        raise ValueError(f"wins and losses are counts, at least 0; given {wins} and {losses}")
-    return _clopper_pearson(wins, wins + losses)
+def share_estimate(hits: int, misses: int) -> Estimate:
+    """Share of trials that were hits. The trials must not depend on each other."""
+    if hits < 0 or misses < 0:
+        raise ValueError(f"hits and misses are counts, at least 0; given {hits} and {misses}")
+    return _clopper_pearson(hits, hits + misses)
 
 
 def paired_win_rate(results: ArrayLike) -> Estimate:

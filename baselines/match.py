@@ -33,6 +33,7 @@ class MatchResult:
     goals: tuple[int, int]
     results: NDArray[np.float64]  # (pairs, 2): 1, 0, -1 as first won, drew, lost in seat 0 and in seat 1; NaN: unplayed
     lengths: NDArray[np.int64]  # (games,) steps; the games with first in seat 0 come first
+    endings: NDArray[np.int64]  # (games,) how each ended, a number of `rules.ENDING_NAMES`; in the order of `lengths`
 
     @property
     def padded_results(self) -> NDArray[np.float64]:
@@ -51,6 +52,7 @@ class _Half:
     winners: NDArray[np.int64]  # (n,) seat, or -1
     scores: NDArray[np.int64]  # (n, 2)
     lengths: NDArray[np.int64]  # (n,)
+    endings: NDArray[np.int64]  # (n,)
 
 
 def play(
@@ -101,7 +103,7 @@ def _play_half(
     players = [_make(contestant, Seat.from_tables(tables, seed=2 * seed + k)) for k, contestant in enumerate(seats)]
     for player in players:
         player.reset(np.ones(count, np.bool_))
-    half = _Half(np.full(count, -1), np.zeros((count, 2), np.int64), np.zeros(count, np.int64))
+    half = _Half(np.full(count, -1), np.zeros((count, 2), np.int64), *np.zeros((2, count), np.int64))
     running = np.ones(count, np.bool_)
     actions = np.zeros((count, 2, 4), np.float32)
     while running.any():
@@ -114,6 +116,7 @@ def _play_half(
         ended = running & (tables.terminated | tables.truncated)
         half.winners[ended] = tables.states["winner"][ended]
         half.scores[ended] = tables.states["score"][ended]
+        half.endings[ended] = tables.states["ending"][ended]
         running &= ~ended
         if tick and ended.any():
             tick(int(count - running.sum()))
@@ -135,6 +138,7 @@ def _add_up(names: tuple[str, str], games: int, halves: list[_Half]) -> MatchRes
         (int(goals[0]), int(goals[1])),
         results,
         np.concatenate([half.lengths for half in halves]),
+        np.concatenate([half.endings for half in halves]),
     )
 
 

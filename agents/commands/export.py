@@ -14,19 +14,17 @@ ENDINGS = (".npz", ".onnx")
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
-    parser.add_argument("policy", metavar="POLICY", help="a shipped policy's name, an .npz file, or a run's folder")
+    parser.add_argument("policy", metavar="POLICY", help="a policy by name, .npz file or run's folder")
     parser.add_argument("--out", type=Path, required=True, metavar="FILE", help="what to write: .npz or .onnx")
 
 
 def run(args: argparse.Namespace) -> int:
     """0: written. Raises ValueError, in one line, for what cannot be read or written."""
     from agents.policy import find_policy
-    from agents.run_folder import RunFolder
 
     if args.out.suffix not in ENDINGS:
         raise ValueError(f"--out is {args.out}; expected a file that ends in {' or '.join(ENDINGS)}")
-    folder = Path(args.policy)
-    policy = find_policy(str(RunFolder(folder).policy) if folder.is_dir() else args.policy)
+    policy = find_policy(args.policy)
     if args.out.suffix == ".npz":
         policy.save(args.out)
     else:

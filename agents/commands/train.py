@@ -24,7 +24,7 @@ PRESETS = Path(__file__).parents[1] / "presets"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
     known = ", ".join(sorted(path.stem for path in PRESETS.glob("*.toml")))
-    parser.add_argument("--preset", default="fast", metavar="NAME", help=f"how to train: {known}, or a .toml file")
+    parser.add_argument("--preset", metavar="NAME", help=f"how to train: {known}, or a .toml file (default fast)")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder of the run")
     parser.add_argument(
         "--steps",
@@ -37,12 +37,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--minutes", type=float, default=FOREVER, metavar="M", help="stop after so many minutes of this call"
     )
     parser.add_argument(
-        "--resume", action="store_true", help="go on with the run in DIR; its own settings hold, whatever else is given"
+        "--resume", action="store_true", help="go on with the run in DIR; options that it contradicts are refused"
     )
     parser.add_argument("--start", metavar="DIR", help="begin with the networks of the run in DIR")
-    parser.add_argument("--variant", default="match-v0", metavar="ID", help="what is played (default match-v0)")
-    parser.add_argument("--seed", type=int, default=0, help="seed of everything random (default 0)")
-    parser.add_argument("--threads", type=int, default=1, metavar="K", help="threads to learn on (default 1)")
+    parser.add_argument("--variant", metavar="ID", help="what is played (default match-v0)")
+    parser.add_argument("--seed", type=int, help="seed of everything random (default 0)")
+    parser.add_argument("--threads", type=int, metavar="K", help="threads to learn on (default 1)")
     parser.add_argument("--effects", metavar="FILE", help="physics beyond the baseline, as `diagnose` writes it")
 
 
@@ -50,31 +50,20 @@ def run(args: argparse.Namespace) -> int:
     """0: trained as long as was asked. Raises ValueError, in one line, for what cannot be trained."""
     need_torch()
     from agents import ranks
-    from agents.preset import find_preset
+    from agents.commands.given import kept_settings, new_settings
     from agents.run_folder import RunFolder
-    from agents.training import Settings
-    from puckpilot_env.effects_file import effect_values
-    from puckpilot_env.variants import find_variant
 
     for name in ("steps", "minutes"):
         if not getattr(args, name) > 0:
             raise ValueError(f"--{name} is {getattr(args, name):g}; expected more than 0")
-    if args.threads < 1:
+    if args.threads is not None and args.threads < 1:
         raise ValueError(f"--threads is {args.threads}; expected a whole number from 1 on")
     folder = RunFolder(args.out)
     first = ranks.rank() == 0  # of several processes one writes
     with folder.locked() if first else nullcontext():
-        if args.resume:
-            if args.start:
-                raise ValueError("--resume goes on with a run as it is; --start is for a new one")
-            settings = Settings.from_dict(folder.settings())
-        else:
-            variant, preset = find_variant(args.variant).id, find_preset(args.preset)
-            effects = effect_values(args.effects) if args.effects else None
-            start = str(Path(args.start).resolve()) if args.start else None
-            settings = Settings(variant, args.seed, args.threads, preset, effects, start=start)
-            if first:
-                folder.begin(settings.as_dict())
+        settings = kept_settings(args, folder) if args.resume else new_settings(args)
+        if first and not args.resume:
+            folder.begin(settings.as_dict())
         training = run_training(folder, settings, steps=args.steps, minutes=args.minutes, quiet=not first)
     if first:
         print(f"{training.steps:,} steps; the player is {folder.policy}")

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
-    parser.add_argument("first", metavar="A", help="a player")
-    parser.add_argument("second", metavar="B", help="its opponent")
+    parser.add_argument("first", metavar="A", help="a script, or a policy by name, .npz file or run's folder")
+    parser.add_argument("second", metavar="B", help="its opponent, named likewise")
     parser.add_argument("--games", type=int, default=100, metavar="N", help="games in all (default 100)")
     parser.add_argument("--video", metavar="FILE", help="film the first game, up to 60 s of it, as a .gif or .mp4")
     add_options(parser)

@@ -2,31 +2,20 @@
 
 from __future__ import annotations
 
-import os
 import pickle
 import shutil
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 import torch
+from hostile import Bomb
 from tiny import files, tiny, training
 from turned import random_actions
 
 from agents.checkpoint import load_checkpoint, restore_tables, save_checkpoint, tables_as_tensors
 from puckpilot_env.tables import Tables
-
-
-class Bomb:
-    """A pickle that makes a folder when it is read."""
-
-    def __init__(self, mark: Path) -> None:
-        self.mark = mark
-
-    def __reduce__(self) -> tuple[Callable[..., Any], tuple[Any, ...]]:
-        return os.mkdir, (str(self.mark),)
 
 
 def refusal(path: Path) -> str:

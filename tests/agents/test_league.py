@@ -19,7 +19,7 @@ POLICY = Policy(
 
 
 def member(name: str, won: float, lost: float) -> Member:
-    return Member(name, POLICY, np.array([won, lost], np.float64))
+    return Member(name, POLICY, points=np.array([won, lost], np.float64))
 
 
 def league(*earlier: Member, gate: float = 0.6, cap: int = 4, most: int = 3) -> League:

@@ -94,7 +94,9 @@ def test_everybody_sees_and_plays_his_own_seat() -> None:
         np.testing.assert_allclose(env.tables.observations, twin.observations, atol=2e-4)
         expected = rows(twin.observations, LEARNERS)
         scaling = env.reading.scaling
-        np.testing.assert_allclose(seen[POLICY].numpy() * scaling.span + scaling.centre, expected, rtol=1e-4, atol=1e-3)
+        np.testing.assert_allclose(
+            np.asarray(seen[POLICY]) * scaling.span + scaling.centre, expected, rtol=1e-4, atol=1e-3
+        )
         np.testing.assert_allclose(rewards.numpy(), rows(twin.rewards, LEARNERS), atol=1e-4)
         assert not dones.any() and dones.shape == rewards.shape == (len(LEARNERS),) and not extras
 
@@ -104,7 +106,7 @@ def test_a_flipped_table_is_seen_and_played_in_the_mirror() -> None:
     twin = Tables("match-v0", N, seed=6)
     for step in range(5):
         own = outputs(step)
-        seen = env.step(own)[0][POLICY].numpy()
+        seen = np.asarray(env.step(own)[0][POLICY])
         twin.step(joint(twin, own, opponents, FLIPPED))
         mirror = observed(twin, turned_left_right(twin))
         shown = [(mirror if table in FLIPPED else twin.observations)[table, player] for table, player in LEARNERS]
@@ -119,7 +121,7 @@ def test_a_flipped_table_is_seen_and_played_in_the_mirror() -> None:
 
 def test_the_critic_is_told_how_the_learner_fares_against_whom() -> None:
     env, _ = made()
-    told = env.get_observations()[PRIVILEGED].numpy()
+    told = np.asarray(env.get_observations()[PRIVILEGED])
     np.testing.assert_allclose(told[:, 0], [0.0] * 8 + [0.5] * 2 + [-0.8] * 3, atol=1e-6)
 
 
@@ -196,3 +198,24 @@ def test_the_goal_that_ends_a_match_counts_and_so_does_the_match() -> None:
     assert (float(rewards[at]), int(dones[at]), int(dones.sum())) == (2.0, 1, 1) and not extras
     assert env.tally.points[1].tolist() == [1.0, 0.0] and env.tally.games.tolist() == [[0, 0, 0], [1, 0, 0]]
     assert tables.states["score"][7].tolist() == [0, 0]
+
+
+def test_a_shot_that_ends_an_attack_on_its_way_into_the_goal_counts_as_the_goal() -> None:
+    """A puck just before the middle line flies at the middle of an empty goal, or beside it."""
+    tables = Tables("attack-v0", 2, seed=3)
+    names = [column.name for column in tables.observation_columns]
+    reading = Reading.of(Scaling.from_tables(tables), names, names)
+    env = LearnerEnv(tables, Seating.of(2, [2]), reading, Rewards(rules=0.0, goal=1.0), gamma=0.9, flip=False)
+    env.seat([Recorder(Seat.from_tables(tables), 1)], [0.5])
+    p, puck = tables.nominal[0], tables.states["puck"]
+    puck["x"], puck["vx"], puck["vy"] = 0.49 * p["length"], 6.0, 0.0
+    puck["y"] = 0.5 * p["width"], 0.9 * p["width"]
+    for axis in "xy":  # both mallets in a corner
+        mallets = tables.states["mallets"][axis]
+        mallets["rest"], mallets["slow"], mallets["fast"] = p["mallet_radius"], 0.0, 0.0
+        mallets["rest"][:, 1] = p["length" if axis == "x" else "width"] - p["mallet_radius"]
+    tables.states["subject"] = 0
+    _, rewards, dones, _ = env.step(torch.full((2, 4), -1.0))
+    assert dones.tolist() == [1, 1]
+    assert rewards.tolist() == [1.0, 0.0]  # the learner sits on the left of the first table, on the right of the other
+    assert env.tally.points.tolist() == [[1.0, 0.0]]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import json
-import os
 import pickle
 import zipfile
 from collections.abc import Callable
@@ -13,24 +12,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hostile import Bomb
+from some_policy import made
 
-from agents import policy as policy_module
-from agents.network import Network
-from agents.policy import Policy, PolicyPlayer, find_policy, load_policy
-from agents.scaling import Scaling
-from baselines import find_player
+from agents.policy import PolicyPlayer, load_policy
 from baselines.match import play
 from baselines.player import Seat
 from puckpilot_env.tables import Tables
-
-
-def made(variant: str = "match-v0", hidden: int = 8, seed: int = 1) -> Policy:
-    tables, rng = Tables(variant, 1), np.random.default_rng(seed)
-    columns = tuple(column.name for column in tables.observation_columns)
-    sizes = [len(columns), hidden, 4]
-    weights = [rng.normal(0.0, 1.0, (b, a)).astype(np.float32) for a, b in ((sizes[0], hidden), (hidden, 4))]
-    biases = [rng.normal(0.0, 1.0, size).astype(np.float32) for size in sizes[1:]]
-    return Policy(Network(weights, biases), Scaling.from_tables(tables), columns, {"seed": seed, "steps": 12})
 
 
 @pytest.fixture
@@ -49,16 +37,6 @@ def refusal(path: Path) -> str:
     words = str(error.value)
     assert "\n" not in words and str(path) in words and len(words) < 400
     return words
-
-
-class Bomb:
-    """A pickle that makes a file when it is read."""
-
-    def __init__(self, mark: Path) -> None:
-        self.mark = mark
-
-    def __reduce__(self) -> tuple[Callable[..., Any], tuple[Any, ...]]:
-        return os.mkdir, (str(self.mark),)
 
 
 def test_what_is_saved_plays_the_same(tmp_path: Path) -> None:
@@ -90,19 +68,6 @@ def test_a_file_is_a_player_by_its_name(saved: Path, variant: str) -> None:
     result = play(variant, f"policy:{saved}", "still", 4, 1)
     assert sum(result.wins) + result.draws == 4
     assert play(variant, f"policy:{saved}", "still", 4, 1).lengths.tolist() == result.lengths.tolist()
-
-
-@pytest.mark.parametrize("name", ["policy:nobody", "policy:", "policy:no/such/file.npz"])
-def test_an_unknown_policy_is_one_line(name: str) -> None:
-    with pytest.raises(ValueError) as error:
-        find_player(name)
-    assert "\n" not in str(error.value) and "no policy" in str(error.value)
-
-
-def test_shipped_policies_go_by_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(policy_module, "SHIPPED", tmp_path)
-    made(seed=9).save(tmp_path / "ours.npz")
-    assert policy_module.policy_names() == ["ours"] and find_policy("ours").about["seed"] == 9
 
 
 @pytest.mark.parametrize("tenth", range(10))

@@ -29,7 +29,7 @@ for _ in range(2):
 league = training.league
 told = {
     "weights": [p.tolist() for p in training.runner.alg.get_policy().parameters()],
-    "places": training.tables.states["puck"]["x"].tolist(),
+    "places": training.hall.parts[0].tables.states["puck"]["x"].tolist(),
     "members": [[one.name, one.points.tolist(), one.games.tolist()] for one in [*league.anchors, *league.earlier]],
     "steps": training.steps,
 }

@@ -55,13 +55,13 @@ def test_what_learns_is_what_plays(tmp_path: Path, variant: str) -> None:
     """Torch's mean, scaled in numpy as in learning, and the compiled player that a file holds do the same."""
     run = training(tmp_path, preset=tiny(flip="none"), variant=variant)
     run.round()
-    player = PolicyPlayer(run.policy(), Seat.from_tables(run.tables))
-    rows = run.env.seating.learners
-    observed = run.tables.observations.reshape(2 * len(run.tables), -1)[rows]
+    player = PolicyPlayer(run.policy(), Seat.from_tables(run.hall.parts[0].tables))
+    rows = run.hall.parts[0].seating.learners
+    observed = run.hall.parts[0].tables.observations.reshape(2 * len(run.hall.parts[0].tables), -1)[rows]
     with torch.inference_mode():
-        outputs = run.runner.alg.get_policy()(run.env.get_observations()).numpy()
+        outputs = run.runner.alg.get_policy()(run.hall.parts[0].get_observations()).numpy()
     assert np.abs(outputs).max() <= 1.0 and np.ptp(outputs, axis=0).min() > 0.0
-    learned = run.env.reading.scaling.action(outputs)
+    learned = run.hall.parts[0].reading.scaling.action(outputs)
     np.testing.assert_allclose(player.act(observed), learned, rtol=1e-4, atol=1e-5)
 
 
@@ -84,7 +84,7 @@ def test_a_preset_s_numbers_change_when_it_says_so(tmp_path: Path) -> None:
     for taken_up in (False, True, True, True):
         run = training(tmp_path, preset=preset, resume=taken_up)
         run.round()
-        alg, env = run.runner.alg, run.env
+        alg, env = run.runner.alg, run.hall.parts[0]
         rates = {group["lr"] for group in alg.optimizer.param_groups}
         held.append((*rates, alg.learning_rate, alg.gamma, env.gamma, env.rewards.goal, alg.entropy_coef))
     first, second, third, fourth = held
@@ -159,20 +159,20 @@ def test_a_reward_that_is_no_number_ends_the_run_and_harms_no_file(
 ) -> None:
     run = training(tmp_path)
     run.round()
-    before, honest = files(tmp_path), run.env.step
+    before, honest = files(tmp_path), run.hall.parts[0].step
 
     def broken(actions: torch.Tensor):
         seen, rewards, dones, extras = honest(actions)
         rewards[3] = math.nan
         return seen, rewards, dones, extras
 
-    monkeypatch.setattr(run.env, "step", broken)
+    monkeypatch.setattr(run.hall.parts[0], "step", broken)
     with pytest.raises(DivergedError):
         run.round()
     assert files(tmp_path) == before
 
 
 def test_games_are_spread_over_their_length(tmp_path: Path) -> None:
-    tables = training(tmp_path, preset=tiny(tables=60)).tables
+    tables = training(tmp_path, preset=tiny(tables=60)).hall.parts[0].tables
     assert tables.states["time"] == pytest.approx(tables.states["steps"] * 0.1)
     assert tables.states["time"].min() < 30.0 and 150.0 < tables.states["time"].max() < 180.0

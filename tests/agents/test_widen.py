@@ -20,8 +20,12 @@ SEEN, MORE = "puckpilot/match-v0", "puckpilot/match-randomized-v0"
 def test_inputs_go_by_their_names_and_new_ones_move_nothing() -> None:
     """Outputs by hand: columns a and b, then what only a critic sees; c is new, and b comes first now."""
     old = {FIRST: torch.tensor([[1.0, 2.0, 7.0], [3.0, 4.0, 8.0]]), "mlp.0.bias": torch.tensor([0.5, -0.5])}
-    new = widened(old, ["a", "b"], ["b", "c", "a"])
+    new = widened(old, ["a", "b"], ["b", "c", "a"], 4)
     assert new[FIRST].tolist() == [[2.0, 0.0, 1.0, 7.0], [4.0, 0.0, 3.0, 8.0]]
+    wider = widened(old, ["a", "b"], ["a", "b", "c"], 6)  # the critic sees two more
+    assert wider[FIRST].tolist() == [[1.0, 2.0, 0.0, 7.0, 0.0, 0.0], [3.0, 4.0, 0.0, 8.0, 0.0, 0.0]]
+    with pytest.raises(ValueError, match="has 1 inputs beside its columns; expected 0 at most"):
+        widened(old, ["a", "b"], ["a", "b"], 2)
     assert new["mlp.0.bias"] is old["mlp.0.bias"] and old[FIRST].shape == (2, 3)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.stats import binom, multinomial
 
-from baselines.intervals import Estimate, decisive_win_rate, paired_win_rate
+from baselines.intervals import Estimate, paired_win_rate, share_estimate
 
 
 def covers(estimate: Estimate, truth: float) -> bool:
@@ -16,22 +16,22 @@ def covers(estimate: Estimate, truth: float) -> bool:
 
 
 @pytest.mark.parametrize(("games", "share"), [(100, 0.5), (100, 0.9), (100, 0.995), (500, 0.99), (1000, 0.999)])
-def test_win_rate_coverage(games, share):
+def test_share_coverage(games, share):
     """Exact: the chance of each count, summed where the interval holds the truth. Wilson fails at 0.995."""
     chances = binom.pmf(np.arange(games + 1), games, share)
-    held = [covers(decisive_win_rate(wins, games - wins), share) for wins in range(games + 1)]
+    held = [covers(share_estimate(wins, games - wins), share) for wins in range(games + 1)]
     assert 0.95 <= chances[held].sum() <= 0.987
 
 
-def test_win_rate_by_hand():
-    assert decisive_win_rate(0, 0).as_dict() == {"value": None, "low": 0.0, "high": 1.0}
-    assert decisive_win_rate(3, 1).value == 0.75
-    perfect = decisive_win_rate(10, 0)
+def test_share_by_hand():
+    assert share_estimate(0, 0).as_dict() == {"value": None, "low": 0.0, "high": 1.0}
+    assert share_estimate(3, 1).value == 0.75
+    perfect = share_estimate(10, 0)
     assert (perfect.value, perfect.high) == (1.0, 1.0)
     assert perfect.low == pytest.approx(0.025**0.1)  # the share at which ten wins in ten have a chance of 2.5 %
-    assert decisive_win_rate(0, 10).high == pytest.approx(1 - 0.025**0.1)
+    assert share_estimate(0, 10).high == pytest.approx(1 - 0.025**0.1)
     with pytest.raises(ValueError, match="counts"):
-        decisive_win_rate(-1, 2)
+        share_estimate(-1, 2)
 
 
 @pytest.mark.parametrize("correlation", [0.0, 0.5])
@@ -75,11 +75,11 @@ def test_correlated_pairs_widen_the_interval():
 
 def test_few_pairs_and_no_losses_are_the_worst_case():
     """No pair says how alike its games are, so 20 wins in 10 pairs count as 10."""
-    assert paired_win_rate(np.ones((10, 2), int)) == decisive_win_rate(10, 0)
-    assert paired_win_rate([[1, -1]]).low <= decisive_win_rate(1, 1).low
+    assert paired_win_rate(np.ones((10, 2), int)) == share_estimate(10, 0)
+    assert paired_win_rate([[1, -1]]).low <= share_estimate(1, 1).low
     assert paired_win_rate(np.zeros((7, 2), int)) == Estimate(None, 0.0, 1.0)
     assert paired_win_rate(np.zeros((0, 2), int)) == Estimate(None, 0.0, 1.0)
-    assert paired_win_rate([[1, 0], [0, 0], [0, 1]]) == decisive_win_rate(2, 0)
+    assert paired_win_rate([[1, 0], [0, 0], [0, 1]]) == share_estimate(2, 0)
 
 
 @pytest.mark.parametrize("results", [[1, -1], [[1, 2]], [[0.5, 1]], [[1, 1, 1]], [[math.nan, 1]]])

@@ -9,6 +9,9 @@ import pytest
 
 from baselines.match import play
 from puckpilot import main
+from puckpilot_env.game.rules import ENDING_NAMES
+
+PLAYERS = ("follower", "still", "random")
 
 
 def test_it_says_what_the_games_say(capsys: pytest.CaptureFixture[str]) -> None:
@@ -20,10 +23,33 @@ def test_it_says_what_the_games_say(capsys: pytest.CaptureFixture[str]) -> None:
         result = play("defence-v0", "goalie", row["opponent"], 6, 3)
         assert (row["wins"], row["draws"], row["goals"]) == (list(result.wins), result.draws, list(result.goals))
         assert row["variant"] == "puckpilot/defence-v0" and row["games"] == 6
+        conceded = sum(ENDING_NAMES[ending] == "conceded" for ending in result.endings[:3])  # as player_0
+        role = row["role"]
+        assert (role["job"], role["done"], role["of"]) == ("shots kept out", 3 - conceded, 3)
+        assert role["value"] == 1.0 - conceded / 3 and role["low"] <= role["value"] <= role["high"]
+    assert found["ratings"] == []  # drills rate nobody
     measured = found["deployability"]
     assert 0.0 < measured["voltage_share"] < measured["voltage_most"] + 1e-6 < 1.0 + 2e-6
     assert measured["decision_us"] > 0.0
     assert [at["at"] for at in found["robustness"]["delay_s"]] == [0.0, 0.02, 0.04, 0.06]
+
+
+def test_tables_show_jobs_in_drills_and_ratings_in_matches(capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["evaluate", "follower", "--games", "4", "--hampered", "still", "--against", "still", "random", "random"]
+    assert main([*words, "--variants", "attack-v0", "match-v0", "drills"]) == 0
+    told = capsys.readouterr().out.splitlines()
+    rows = [line.split() for line in told]
+    drills = [row for row in rows if row[:1] in (["attack-v0"], ["defence-v0"])]
+    assert [row[0] for row in drills] == ["attack-v0"] * 2 + ["defence-v0"] * 2  # each once, in the order asked for
+    for row in drills:
+        result = play(row[0], "follower", row[1], 4, 0)
+        ending, job = ("shot on goal", "attacks scored") if row[0] == "attack-v0" else ("conceded", "shots kept out")
+        seen = sum(ENDING_NAMES[number] == ending for number in result.endings[:2])
+        assert " ".join(row[2:]).startswith(f"{seen if row[0] == 'attack-v0' else 2 - seen}/2 {job} ")
+        assert f"{result.wins[0]}/{result.draws}/{result.wins[1]}" in row
+    assert "match-v0, rated by 4 games of follower with each and 4 of every two of the others:" in told
+    ranked = [row[0] for row in rows[[row[:1] for row in rows].index(["player"]) :] if row and row[0] in PLAYERS]
+    assert ranked[0] == "follower" and sorted(ranked) == sorted(PLAYERS)
 
 
 @pytest.mark.parametrize(

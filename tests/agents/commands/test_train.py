@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from agents.preset import find_preset
 from puckpilot import main
 
 TINY = """
@@ -83,6 +84,67 @@ def test_resuming_needs_a_run_that_can_be_read(tmp_path: Path, capsys: pytest.Ca
         assert words in refused(capsys, "--resume", "--out", str(run))
     (run / "run.json").write_text('{"format": "puckpilot-run-1", "variant": "match-v0"}')
     refused(capsys, "--resume", "--out", str(run))
+
+
+EFFECTS = 'format = "puckpilot-effects/1"\n[effects.table_tilt]\ntilt_x = {}\n'
+# option: what the run has, what contradicts it, what says the same in other words, and how the run's is told
+CONTRADICTIONS = {
+    "variant": ("defence-v0", "match-v0", "puckpilot/defence-v0", "puckpilot/defence-v0"),
+    "preset": ("tiny.toml", "fast", "same.toml", "one of its own, in run.json"),
+    "seed": ("7", "0", "07", "7"),
+    "threads": ("1", "2", "01", "1"),
+    "effects": ("tilt.toml", "more.toml", "tilt_again.toml", "tilt_x 0.02"),
+}
+
+
+@pytest.fixture
+def run(preset: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A run after its first round, of none but given options."""
+    monkeypatch.chdir(tmp_path)
+    for name, tilt in (("tilt", 0.02), ("tilt_again", 0.02), ("more", 0.03)):
+        (tmp_path / f"{name}.toml").write_text(EFFECTS.format(tilt))
+    (tmp_path / "same.toml").write_text(TINY)
+    words = [word for option, (has, *_) in CONTRADICTIONS.items() for word in (f"--{option}", has)]
+    assert main(["train", "--out", "run", "--steps", "1", *words]) == 0
+    return tmp_path / "run"
+
+
+@pytest.mark.parametrize("option", CONTRADICTIONS)
+def test_resuming_refuses_an_option_that_the_run_contradicts(
+    option: str, run: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    before = {path: path.read_bytes() for path in run.rglob("*") if path.is_file() and path.name != ".lock"}
+    _, other, same, told = CONTRADICTIONS[option]
+    words = ["--resume", "--out", "run", "--steps", str(2 * EACH)]
+    assert refused(capsys, *words, f"--{option}", other) == (
+        f"puckpilot train: --resume goes on with the run in run as it is, but --{option} is {other} where the run has "
+        f"{told}; leave it out, or begin a new run in another folder\n"
+    )
+    assert before == {path: path.read_bytes() for path in run.rglob("*") if path.is_file() and path.name != ".lock"}
+    assert main(["train", *words, f"--{option}", same]) == 0
+    assert len((run / "curve.csv").read_text().splitlines()) == 1 + 2
+
+
+def test_resuming_names_all_that_is_contradicted_and_nothing_that_was_not_given(
+    run: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["--resume", "--out", "run", "--steps", str(2 * EACH)]
+    told = refused(capsys, *words, "--seed", "8", "--threads", "2", "--variant", "defence-v0")
+    assert "but --seed is 8 where the run has 7, --threads is 2 where the run has 1; leave them out" in told
+    assert "no preset 'nobody'" in refused(capsys, *words, "--preset", "nobody")
+    assert "unknown variant 'chess-v0'" in refused(capsys, *words, "--variant", "chess-v0")
+    assert "--start is for a new one" in refused(capsys, *words, "--start", "run")
+    assert main(["train", *words]) == 0
+
+
+def test_a_run_of_a_shipped_preset_is_told_by_its_name_and_no_effects_as_none(
+    run: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    kept = json.loads((run / "run.json").read_text())
+    (run / "run.json").write_text(json.dumps({**kept, "preset": find_preset("fast").text, "effects": None}))
+    words = ["--resume", "--out", "run", "--preset", "paper", "--effects", "tilt.toml"]
+    told = refused(capsys, *words)
+    assert "--preset is paper where the run has fast, --effects is tilt.toml where the run has none;" in told
 
 
 OPTIONS = {

@@ -1,0 +1,107 @@
+"""What `puckpilot evaluate` found, for the eye."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from agents.deployability import Deployability, Robustness
+from agents.meetings import Rated
+from baselines.intervals import Estimate
+from baselines.payoff_table import payoff_table, rating_table
+
+TEXTS = {
+    "wall_margin_m": ("nearest to an edge of its half, 1st percentile", "{:.3f} m"),
+    "voltage_share": ("voltage asked for, mean share of the most", "{:.2f}"),
+    "voltage_most": ("voltage asked for, greatest share", "{:.2f}"),
+    "acceleration_m_s2": ("greatest acceleration of a decision, 99th percentile", "{:.1f} m/s2"),
+    "jitter_m": ("change of the commanded place between decisions", "{:.3f} m"),
+    "decision_us": ("one decision at one table, median", "{:.1f} us"),
+}
+LONGEST = 24  # characters of a player's name in a payoff matrix, where it stands twice
+
+
+def print_meetings(name: str, rows: Sequence[dict[str, Any]]) -> None:
+    """Matches, then drills."""
+    matches = [row for row in rows if row["role"] is None]
+    drills = [row for row in rows if row["role"] is not None]
+    if matches:
+        table = _table(f"{name}, decisive games won", "won", "drawn", "lost", "goals", "share", "95 %")
+        for row in matches:
+            won, lost = (str(number) for number in row["wins"])
+            goals = "{}:{}".format(*row["goals"])
+            table.add_row(*_who(row), won, str(row["draws"]), lost, goals, *_share(row["decisive_win_rate"]))
+        _show(table)
+    if drills:
+        headings = ("in seat player_0", "share", "95 %", "won/drawn/lost", "of decisive", "95 %")
+        table = _table(f"{name} in drills: how often it did its job, and games won from both seats", *headings)
+        for row in drills:
+            role, wins = row["role"], row["wins"]
+            job, games = f"{role['done']}/{role['of']} {role['job']}", f"{wins[0]}/{row['draws']}/{wins[1]}"
+            table.add_row(*_who(row), job, *_share(role), games, *_share(row["decisive_win_rate"]))
+        _show(table)
+
+
+def print_ratings(name: str, games: int, rated: Sequence[Rated]) -> None:
+    """The payoff matrix and the ratings of each match variant."""
+    for one in rated:
+        payoff, ratings = one.payoff, one.ratings
+        names = tuple(player if len(player) <= LONGEST else f"…{player[1 - LONGEST :]}" for player in payoff.players)
+        if len(set(names)) == len(names):
+            payoff, ratings = replace(payoff, players=names), replace(ratings, players=names)
+        among = f" and {one.among_others} of every two of the others" if one.among_others else " alone"
+        print(f"{_short(one.variant)}, rated by {games} games of {name} with each{among}:\n")
+        _show(payoff_table(payoff))
+        _show(rating_table(ratings))
+
+
+def print_deployability(deployability: Deployability, robustness: Robustness) -> None:
+    """What it asks of a gantry, and how it plays where it sees late or noisily."""
+    console = Console(width=100, highlight=False)
+    console.print("On the gantry (match-v0):")
+    for field, value in deployability.as_dict().items():
+        words, form = TEXTS[field]
+        console.print(f"  {words:52} {form.format(value)}")
+    console.print(f"\nSeen through a camera, against {robustness.opponent}, who sees as little (decisive games won):")
+    for at, rate in robustness.delays:
+        console.print(f"  {1000 * at:4.0f} ms late   {_in_words(rate)}")
+    for at, rate in robustness.noises:
+        console.print(f"  {1000 * at:4.1f} mm noise  {_in_words(rate)}")
+
+
+def _table(title: str, *numbers: str) -> Table:
+    table = Table(title=title, box=box.SIMPLE_HEAD, title_justify="left", pad_edge=False)
+    for heading in ("variant", "opponent"):
+        table.add_column(heading, no_wrap=True)
+    for heading in numbers:
+        table.add_column(heading, justify="right", no_wrap=True)
+    return table
+
+
+def _who(row: dict[str, Any]) -> tuple[str, str]:
+    return _short(row["variant"]), row["opponent"]
+
+
+def _share(rate: dict[str, Any]) -> tuple[str, str]:
+    share = "-" if rate["value"] is None else f"{100 * rate['value']:.1f} %"
+    return share, f"{100 * rate['low']:.1f}-{100 * rate['high']:.1f} %"
+
+
+def _show(table: Table) -> None:
+    needed = Console(width=10_000).measure(table).maximum  # a count that is cut would say something else
+    Console(width=max(needed, 100), highlight=False).print(table)
+
+
+def _short(variant: str) -> str:
+    return variant.removeprefix("puckpilot/")
+
+
+def _in_words(rate: Estimate) -> str:
+    if rate.value is None:
+        return "no decisive game"
+    return f"{100 * rate.value:5.1f} % ({100 * rate.low:.1f} to {100 * rate.high:.1f} %)"

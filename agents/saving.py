@@ -1,0 +1,95 @@
+"""What a training run keeps of itself between rounds, and how it is taken up again."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import torch
+
+from agents import ranks
+from agents.checkpoint import load_checkpoint, restore_tables, save_checkpoint, tables_as_tensors
+from agents.league import Member
+from agents.policy import Policy, load_policy
+from agents.run_folder import RunFolder
+from agents.widen import FIRST, widened
+
+if TYPE_CHECKING:
+    from agents.training import Training
+
+
+def save(training: Training) -> None:
+    """Write the policy, the curve and the checkpoint."""
+    folder, league = training.folder, training.league
+    training.policy().save(folder.policy)
+    folder.write_curve(training.rows)
+    save_checkpoint(
+        folder.checkpoint,
+        {
+            "learner": training.runner.alg.save(),
+            "torch_random": torch.get_rng_state(),
+            "random": json.dumps(training.rng.bit_generator.state),
+            "tables": [tables_as_tensors(part.tables) for part in training.hall.parts],
+            "rows": json.dumps(training.rows),
+            "waited": league.waited,
+            "anchors": [_as_dict(member) for member in league.anchors],
+            "earlier": [_as_dict(member) for member in league.earlier],
+        },
+    )
+
+
+def take_up(training: Training) -> None:
+    """Go on where the run's checkpoint left it. ValueError for one that does not fit."""
+    _read(training.folder.checkpoint, lambda kept: _take_up(training, kept))
+
+
+def learn_on(training: Training, start: Path) -> None:
+    """Begin with the networks of the run in `start`, and nothing else of it. ValueError for one that does not fit."""
+
+    def use(kept: Mapping[str, Any]) -> None:
+        known = load_policy(RunFolder(start).policy).columns
+        learner, alg = kept["learner"], training.runner.alg
+        for part, network in (("actor_state_dict", alg.actor), ("critic_state_dict", alg.critic)):
+            inputs = network.state_dict()[FIRST].shape[1]
+            learner[part] = widened(learner[part], known, training.columns, inputs)
+        alg.load(learner, {"actor": True, "critic": True}, True)
+
+    _read(RunFolder(start).checkpoint, use)
+
+
+def _read(checkpoint: Path, use: Callable[[Mapping[str, Any]], None]) -> None:
+    kept = load_checkpoint(checkpoint)
+    try:
+        use(kept)
+    except (KeyError, IndexError, TypeError, AttributeError, RuntimeError) as error:  # torch says misfits many ways
+        words = f"{type(error).__name__}: {error}".splitlines()[0]
+        raise ValueError(f"the checkpoint {checkpoint} does not fit this run ({words})") from None
+
+
+def _take_up(training: Training, kept: Mapping[str, Any]) -> None:
+    training.runner.alg.load(kept["learner"], None, True)
+    training.rng.bit_generator.state = json.loads(kept["random"])
+    if ranks.rank() == 0:  # the others' games begin anew
+        torch.set_rng_state(kept["torch_random"])
+        for part, tables in zip(training.hall.parts, kept["tables"], strict=True):
+            restore_tables(part.tables, tables)
+    training.rows = json.loads(kept["rows"])
+    training.runner.current_learning_iteration = len(training.rows) * training.preset.round
+    league = training.league
+    league.waited = kept["waited"]
+    league.anchors = [_member(entry) for entry in kept["anchors"]]
+    league.earlier = [
+        _member(entry, load_policy(training.folder.selves / f"{entry['name']}.npz")) for entry in kept["earlier"]
+    ]
+
+
+def _as_dict(member: Member) -> dict[str, Any]:
+    numbers = {"points": member.points.tolist(), "games": member.games.tolist()}
+    return {"name": member.name, "beside": member.beside, **numbers}
+
+
+def _member(entry: Mapping[str, Any], policy: Policy | None = None) -> Member:
+    return Member(entry["name"], policy, entry["beside"], np.array(entry["points"]), np.array(entry["games"]))

@@ -1,0 +1,66 @@
+"""What the critic alone sees, held against places put by hand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import torch
+
+from agents.hall import readings
+from agents.learner_env import PRIVILEGED, LearnerEnv
+from agents.ppo import FINAL
+from agents.privileged import SIDEWAYS, seen_state, true_state
+from agents.rewards import Rewards
+from agents.seating import Seating
+from puckpilot_env.tables import Tables
+
+ROWS = np.arange(4)
+
+
+def by_hand(variant: str = "match-randomized-v0") -> Tables:
+    """Two tables; on the first a puck a quarter up and across, flying at 2.5 and -1 m/s."""
+    tables = Tables(variant, 2, seed=1)
+    length, width = (float(tables.nominal[name][0]) for name in ("length", "width"))
+    puck = tables.states["puck"]
+    puck["x"], puck["y"], puck["vx"], puck["vy"] = 0.25 * length, 0.75 * width, 2.5, -1.0
+    for axis, places in (("x", (0.1 * length, 0.8 * length)), ("y", (0.3 * width, 0.6 * width))):
+        mallets = tables.states["mallets"][axis]
+        mallets["rest"], mallets["slow"], mallets["fast"] = [places], 0.0, 0.0
+    return tables
+
+
+def test_each_player_s_true_state_is_in_its_own_frame() -> None:
+    found = true_state(by_hand(), ROWS)
+    assert found[0].tolist() == pytest.approx([-0.5, 0.5, 0.5, -0.2, 0.6, 0.2], abs=1e-6)
+    assert found[1].tolist() == pytest.approx([0.5, -0.5, -0.5, 0.2, 0.8, 0.4], abs=1e-6)
+    np.testing.assert_array_equal(found[:2], found[2:])
+
+
+def test_where_a_player_sees_exactly_both_are_the_same() -> None:
+    tables = Tables("match-v0", 2, seed=4)
+    rng = np.random.default_rng(2)
+    for _ in range(20):
+        low, high = tables.action_bounds
+        tables.step(rng.uniform(low, high, (2, 2, 4)).astype(np.float32).clip(low, high))
+    flat = tables.observations.reshape(4, -1)
+    np.testing.assert_allclose(seen_state(tables, ROWS, flat), true_state(tables, ROWS), atol=1e-5)
+
+
+def test_a_flipped_table_s_critic_sees_it_flipped_and_an_end_that_is_over_is_what_was_seen() -> None:
+    tables = Tables("defence-v0", 4, seed=1, max_cycles=3)
+    read, _ = readings([tables])
+    env = LearnerEnv(tables, Seating.of(4, []), read[0], Rewards(), gamma=0.9, flip=True, critic="state")
+    state = np.asarray(env.get_observations()[PRIVILEGED])
+    assert state.shape == (8, 7) and (state[:, 0] == 0.0).all()
+    plain = true_state(tables, np.arange(8))
+    np.testing.assert_allclose(state[:4, 1:], plain[:4])
+    np.testing.assert_allclose(state[4:, 1:], plain[4:] * SIDEWAYS)
+    extras: dict = {}
+    for _ in range(3):
+        _, _, _, extras = env.step(torch.zeros(8, 4))
+    assert len(extras[FINAL]) == 8
+    final = seen_state(tables, np.arange(8), tables.final_observations.reshape(8, -1))
+    final[4:] *= SIDEWAYS
+    np.testing.assert_allclose(extras[FINAL][PRIVILEGED][:, 1:].numpy(), final, atol=1e-6)
+    begun = true_state(tables, np.arange(8))
+    assert np.abs(begun[:4] - final[:4]).max() > 0.1  # it is not the next episode's
