@@ -159,10 +159,10 @@ def _apply(puck, p, mallets, kind, clock, t, film):
         ax, ay = 0.0, 0.0
         if compose.is_forced(p):
             ax, ay = slide.force(puck, p, clock + t, puck.vx, puck.vy)
-        hit(puck, p, mallets, kind - bounce.MALLET_0, t, ax, ay)
+        hit(puck, p, mallets, kind - bounce.MALLET_0, clock, t, ax, ay)
     else:
         nx, ny = bounce.boundary_normal(kind, puck.x, puck.y, p.length, p.width, p.goal_width)
-        rebound(puck, p, kind, nx, ny)
+        rebound(puck, p, clock + t, kind, nx, ny)
     _keep_inside(puck, p)
 
 

@@ -9,9 +9,11 @@ An effect's file has the hooks of its regime, every one a kernel; those that it 
 | glide | `friction(p, t, x, y, dx, dy, friction)` | friction [m/s^2] from that so far: its mean over the way (dx, dy) |
 | wall, corner | `restitution(p, kind, closing, e)` | restitution from that so far; `kind` as in `bounce` |
 | wall | `tangent(p, closing, e, along, spin, after)` | (tangential speed, spin) after it, from the speed so far |
+| wall | `shares(p, t, kind, x, y, closing, along)` | (of the normal speed, of the tangential): kept beyond all this |
 | mallet | `mallet_restitution(p, closing, e)` | restitution from that so far |
 | mallet | `mallet_impulse(p, impulse)` | normal impulse [m/s] from that so far |
 | mallet | `mallet_tangent(p, impulse, along, spin, after)` | (tangential speed, spin), relative to the mallet |
+| mallet | `mallet_shares(p, t, x, y, closing, along)` | (of the normal speed, of the tangential): kept beyond this |
 | sensing | `camera_map(p)` | (xx, xy, yx, yy): how far off x and y are seen for each metre of x and of y |
 | gantry | `loses(p)` | whether less arrives at the motors than a plan asks for; goes with the next |
 | gantry | `delivered(p, volts, load)` | volts at a motor from those so far; `load` = abs(V_x) + abs(V_y) as asked for |
@@ -79,6 +81,16 @@ def _tangent(first: Hook, second: Hook) -> Hook:
     return both
 
 
+def _shares(first: Hook, second: Hook) -> Hook:
+    @inner
+    def both(p, t, kind, x, y, closing, along):
+        normal, tangential = first(p, t, kind, x, y, closing, along)
+        more, more_along = second(p, t, kind, x, y, closing, along)
+        return normal + more, tangential + more_along
+
+    return both
+
+
 def _mallet_restitution(first: Hook, second: Hook) -> Hook:
     @inner
     def both(p, closing, e):
@@ -100,6 +112,16 @@ def _mallet_tangent(first: Hook, second: Hook) -> Hook:
     def both(p, impulse, along, spin, after):
         after, turned = first(p, impulse, along, spin, after)
         return second(p, impulse, along, turned, after)
+
+    return both
+
+
+def _mallet_shares(first: Hook, second: Hook) -> Hook:
+    @inner
+    def both(p, t, x, y, closing, along):
+        normal, tangential = first(p, t, x, y, closing, along)
+        more, more_along = second(p, t, x, y, closing, along)
+        return normal + more, tangential + more_along
 
     return both
 
@@ -126,9 +148,11 @@ acceleration = reduce(_sum, _hooks("acceleration"))
 friction = reduce(_friction, _hooks("friction"))
 restitution = reduce(_restitution, _hooks("restitution"))
 tangent = reduce(_tangent, _hooks("tangent"))
+shares = reduce(_shares, _hooks("shares"))
 mallet_restitution = reduce(_mallet_restitution, _hooks("mallet_restitution"))
 mallet_impulse = reduce(_mallet_impulse, _hooks("mallet_impulse"))
 mallet_tangent = reduce(_mallet_tangent, _hooks("mallet_tangent"))
+mallet_shares = reduce(_mallet_shares, _hooks("mallet_shares"))
 camera_map = reduce(_camera_map, _hooks("camera_map"))
 loses = reduce(_either, _hooks("loses"))
 delivered = reduce(_delivered, _hooks("delivered"))

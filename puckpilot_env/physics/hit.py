@@ -34,10 +34,10 @@ def closes_on(puck, vx, vy, p, mallet, t):
 
 
 @kernel
-def hit(puck, p, mallets, k, t, ax, ay):
+def hit(puck, p, mallets, k, clock, t, ax, ay):
     """Apply the impulse of player `k`'s mallet at `t`, seeing to it that no puck is driven through anything.
 
-    `a` [m/s^2]: what the effects' forces do to the puck.
+    `clock` [s]: the time of the episode when the plans began; `a` [m/s^2]: what the effects' forces do to the puck.
     """
     mx, my, mvx, mvy = motion_at(mallets[k], t)
     dx, dy = puck.x - mx, puck.y - my
@@ -45,7 +45,7 @@ def hit(puck, p, mallets, k, t, ax, ay):
     nx, ny = dx / apart, dy / apart
     push = push_at(mallets[k], t, nx, ny) + max(-(ax * nx + ay * ny), 0.0)
     before_x, before_y = puck.vx, puck.vy
-    rebound.strike(puck, p, mvx, mvy, nx, ny)
+    rebound.strike(puck, p, clock + t, mvx, mvy, nx, ny)
     vx, vy = contact.part(puck.vx, puck.vy, mvx, mvy, nx, ny, push, p.friction, p.drag)
     other, wx, wy, ox, oy = _other_obstacle(puck, p, mallets, k, t, nx, ny)
     if other != -2 and (vx - ox) * wx + (vy - oy) * wy < 0.0:

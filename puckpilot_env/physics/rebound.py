@@ -18,8 +18,33 @@ def wall_restitution(p, kind, closing, turned):
 
 
 @kernel
-def rebound(puck, p, kind, nx, ny):
-    """Let a puck bounce off a wall or post (`kind` as in `bounce`), of unit normal `n` towards the puck, in place."""
+def kept_beyond(before, after, more):
+    """What a speed [m/s], `before` a contact and `after` it, gains by a further share of it that is kept: `more`, but
+    that turns no speed round and adds none."""
+    least, most = min(after, min(before, 0.0)), max(after, max(before, 0.0))
+    return min(max(after + more * before, least), most) - after
+
+
+@kernel
+def kick(puck, nx, ny, gain, rub):
+    """Add `gain` [m/s] along the normal and `rub` along the tangent to a puck's velocity."""
+    puck.vx, puck.vy = puck.vx + gain * nx - rub * ny, puck.vy + gain * ny + rub * nx
+
+
+@kernel
+def more_shares(puck, p, t, kind, closing, along):
+    """Shares of the normal and of the tangential speed that are kept beyond what restitution and friction leave."""
+    if puck.turned == 0:
+        return compose.shares(p, t, kind, puck.x, puck.y, closing, along)
+    return compose.shares(p, t, bounce.opposite(kind), p.length - puck.x, p.width - puck.y, closing, along)
+
+
+@kernel
+def rebound(puck, p, t, kind, nx, ny):
+    """Let a puck bounce off a wall or post (`kind` as in `bounce`), of unit normal `n` towards the puck, in place.
+
+    `t` [s] is the time of the episode.
+    """
     closing = -(puck.vx * nx + puck.vy * ny)
     if closing <= bounce.SLIDING:
         puck.vx, puck.vy = bounce.reflect(puck.vx, puck.vy, nx, ny, p.wall_restitution)
@@ -31,13 +56,24 @@ def rebound(puck, p, kind, nx, ny):
     puck.vx, puck.vy = bounce.reflect(puck.vx, puck.vy, nx, ny, e)
     if after != kept:
         puck.vx, puck.vy = puck.vx - (after - kept) * ny, puck.vy + (after - kept) * nx
+    more, more_along = more_shares(puck, p, t, kind, closing, along)
+    if more != 0.0 or more_along != 0.0:
+        kick(puck, nx, ny, kept_beyond(closing, e * closing, more), kept_beyond(along, after, more_along))
 
 
 @kernel
-def strike(puck, p, mx, my, nx, ny):
+def more_shares_past_mallet(puck, p, t, closing, along):
+    """The same of the speeds past a mallet."""
+    if puck.turned == 0:
+        return compose.mallet_shares(p, t, puck.x, puck.y, closing, along)
+    return compose.mallet_shares(p, t, p.length - puck.x, p.width - puck.y, closing, along)
+
+
+@kernel
+def strike(puck, p, t, mx, my, nx, ny):
     """Let a puck bounce off a mallet of velocity `m` [m/s], of unit normal `n` towards the puck, in place.
 
-    The mallet keeps to its path: its drive makes up for what the puck gives it.
+    `t` [s] is the time of the episode. The mallet keeps to its path: its drive makes up for what the puck gives it.
     """
     vx, vy = puck.vx - mx, puck.vy - my
     closing = -(vx * nx + vy * ny)
@@ -50,5 +86,7 @@ def strike(puck, p, mx, my, nx, ny):
     after, puck.spin = compose.mallet_tangent(p, impulse, along, puck.spin, along)
     puck.vx, puck.vy = contact.reflect(puck.vx, puck.vy, mx, my, nx, ny, e)
     if impulse != plain or after != along:
-        gain, rub = impulse - plain, after - along
-        puck.vx, puck.vy = puck.vx + gain * nx - rub * ny, puck.vy + gain * ny + rub * nx
+        kick(puck, nx, ny, impulse - plain, after - along)
+    more, more_along = more_shares_past_mallet(puck, p, t, closing, along)
+    if more != 0.0 or more_along != 0.0:
+        kick(puck, nx, ny, kept_beyond(closing, impulse - closing, more), kept_beyond(along, after, more_along))

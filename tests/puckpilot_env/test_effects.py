@@ -26,6 +26,14 @@ SOME = {
     "wall_friction_spin": {"mu": 0.2},
     "wall_to_wall_restitution": {"x1": 0.1, "y0": -0.2},
     "corner_restitution": {"extra": -0.3},
+    "unlisted_bounce": {  # by place, of both speeds: each wall in a way of its own
+        **{"kind": 4.0, "share": 3.0, "c00": 1.0, "c01": 1.0, "c02": 2.0, "c03": 2.0},
+        **{"c05": 0.1, "c08": -0.05, "c14": 0.1, "c17": 0.15},
+    },
+    "unlisted_blow": {  # by place along the table, of both speeds: the two mallets in ways of their own
+        **{"kind": 3.0, "share": 3.0, "c00": 0.2, "c01": 0.8, "c02": 1.2, "c03": 1.8},
+        **{"c04": -0.2, "c05": 0.1, "c06": -0.1, "c07": 0.15},
+    },
     "mallet_friction": {"mu": 0.1},
     "mallet_speed_restitution": {"slope": 0.03},
 }
@@ -33,9 +41,9 @@ SOME = {
 
 HOOKS = {
     "glide": ("is_on", "acceleration", "friction"),
-    "wall": ("restitution", "tangent"),
+    "wall": ("restitution", "tangent", "shares"),
     "corner": ("restitution",),
-    "mallet": ("mallet_restitution", "mallet_impulse", "mallet_tangent"),
+    "mallet": ("mallet_restitution", "mallet_impulse", "mallet_tangent", "mallet_shares"),
     "sensing": ("camera_map",),
     "gantry": ("loses", "delivered"),
 }

@@ -9,6 +9,7 @@ import pytest
 from scipy import stats
 
 from puckpilot_env import Tables, all_variants, find_variant, parameters
+from puckpilot_env.infos import drawn_info
 from puckpilot_env.parallel_env import TableEnv
 from puckpilot_env.randomization import REALITY, Draw, as_rows
 
@@ -131,3 +132,9 @@ def test_impossible_draws(draw, told):
         as_rows((draw,))
     with pytest.raises(ValueError, match=f"^{told}"):
         Tables(replace(find_variant("match-v0"), draws=(draw,)), 1)
+
+
+def test_given_parameters_are_not_drawn():
+    tables = Tables("match-randomized-v0", 16, seed=1, parameters={"friction": 0.2})
+    assert (tables.params["friction"] == 0.2).all() and len(set(tables.params["drag"])) == 16
+    assert "friction" not in drawn_info(tables, np.zeros(16, int))["parameters"]

@@ -23,6 +23,7 @@ import math
 
 from puckpilot_env.effect import Effect, Parameter
 from puckpilot_env.kernel import kernel
+from puckpilot_env.physics.curves import cosines, over_even_knots, over_knots
 
 PUSH_BY_PLACE, BRAKE_BY_PLACE, PUSH_BY_X, PUSH_BY_Y, BRAKE_BY_X, BRAKE_BY_Y = range(1, 7)
 BRAKE_BY_SPEED, SIDE_BY_SPEED, BY_HEADING, PUSH_BY_TIME, BRAKE_BY_TIME = range(7, 12)
@@ -110,15 +111,6 @@ def friction(p, t, x, y, dx, dy, friction):
 
 
 @kernel
-def cosines(c, a):
-    """Sum of a_i cos(i h), where `c` is cos h (Clenshaw 1955)."""
-    last, before = 0.0, 0.0
-    for i in range(len(a) - 1, 0, -1):
-        last, before = a[i] + 2.0 * c * last - before, last
-    return a[0] + c * last - before
-
-
-@kernel
 def over_place(p, x, y, a):
     """Sum of a[4 i + j] cos(pi i x / length) cos(pi j y / width)."""
     c, d = math.cos(math.pi * x / p.length), math.cos(math.pi * y / p.width)
@@ -130,25 +122,6 @@ def over_place(p, x, y, a):
             return row + c * last - before
         last, before = row + 2.0 * c * last - before, last
     return 0.0
-
-
-@kernel
-def over_knots(x, knots, values):
-    """Straight pieces through `values` at `knots`, level beyond."""
-    if x <= knots[0]:
-        return values[0]
-    for i in range(1, len(knots)):
-        if x < knots[i]:
-            return values[i - 1] + (values[i] - values[i - 1]) * (x - knots[i - 1]) / (knots[i] - knots[i - 1])
-    return values[len(values) - 1]
-
-
-@kernel
-def over_even_knots(share, values):
-    """Straight pieces through `values` at even steps from share 0 to 1, level beyond."""
-    place = min(max(share, 0.0), 1.0) * (len(values) - 1)
-    i = min(int(place), len(values) - 2)
-    return values[i] + (values[i + 1] - values[i]) * (place - i)
 
 
 @kernel

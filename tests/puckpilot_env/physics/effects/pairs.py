@@ -2,9 +2,22 @@
 
 from __future__ import annotations
 
+from puckpilot_env.physics.effects import unlisted_blow, unlisted_bounce
+from puckpilot_env.physics.effects.unlisted_bounce import BY_SPEED, BY_TIME, OF_BOTH, OF_NORMAL
 from tests.reality import Law
 
 Pair = tuple[dict[str, float], Law]
+
+
+def bounce_table(kind: int, share: int, *values: float) -> dict[str, float]:
+    """Parameters of `unlisted_bounce`; numbers that are not given are 0."""
+    return dict(zip(unlisted_bounce.EFFECT.row_names, [float(kind), float(share), *values], strict=False))
+
+
+def blow_table(kind: int, share: int, *values: float) -> dict[str, float]:
+    """Parameters of `unlisted_blow`."""
+    return dict(zip(unlisted_blow.EFFECT.row_names, [float(kind), float(share), *values], strict=True))
+
 
 # Places are relative to the middle of the table where they matter; the reference names some numbers otherwise.
 GLIDE: dict[str, Pair] = {
@@ -50,7 +63,27 @@ CONTACTS: dict[str, Pair] = {
     "wall_to_wall_restitution": ({"restitution_y1": -0.2}, Law(odd_wall=3, odd_wall_extra=-0.2)),
     "wall_to_wall_restitution at an end": ({"restitution_x0": 0.1}, Law(odd_wall=0, odd_wall_extra=0.1)),
     "corner_restitution": ({"post_extra": -0.3}, Law(post_restitution=0.4)),
+    "unlisted_bounce": (
+        bounce_table(BY_SPEED, OF_BOTH, 0.0, 2.0, 4.0, 6.0, 14.0, 0.0, -0.1, -0.2, -0.3, -0.7),
+        Law(restitution_slope=0.05),
+    ),
+    "unlisted_bounce of the normal speed alone": (
+        bounce_table(BY_SPEED, OF_NORMAL, 0.0, 2.0, 4.0, 6.0, 14.0, 0.1, 0.0, -0.1, -0.2, -0.6),
+        Law(wall_restitution=0.8, restitution_slope=0.05, tangential_restitution=0.7),
+    ),
+    "unlisted_bounce by time": (
+        bounce_table(BY_TIME, OF_BOTH, 0.0, 0.25, 0.5, 0.75, 1.0, 0.0, -0.1, -0.2, -0.3, -0.4),
+        Law(wall_warming=-0.4),
+    ),
     "mallet_speed_restitution": ({"mallet_restitution_slope": 0.06}, Law(mallet_restitution_slope=0.06)),
     "mallet_friction": ({"mallet_mu": 0.2}, Law(mallet_mu=0.2)),
     "mallet_give": ({"mallet_give": 0.15}, Law(mallet_give=0.15)),
+    "unlisted_blow": (
+        blow_table(unlisted_blow.BY_SPEED, OF_NORMAL, 0.0, 2.0, 4.0, 8.0, 0.0, -0.12, -0.24, -0.48),
+        Law(mallet_restitution_slope=0.06),
+    ),
+    "unlisted_blow by time": (
+        blow_table(unlisted_blow.BY_TIME, OF_NORMAL, 0.0, 0.25, 0.5, 1.0, 0.0, -0.1, -0.2, -0.4),
+        Law(mallet_warming=-0.4),
+    ),
 }

@@ -37,7 +37,7 @@ WAITING = (1.9, 0.06)  # m, of a mallet that is out of the way
 def draw_start(rng: np.random.Generator, name: str) -> tuple[tuple[float, ...], tuple[float, float]]:
     """Puck, and the first mallet's place: aimed at what the effect is about."""
     speed = 10.0 ** rng.uniform(-0.7, 0.6)
-    if name.startswith("mallet"):
+    if name.startswith(("mallet", "unlisted_blow")):
         return (0.7, rng.uniform(0.45, 0.55), -speed - 0.5, 0.0), (0.2, 0.5)
     if name.startswith("corner"):
         return (0.5, 0.5, -2.0, rng.uniform(0.55, 0.75)), (0.9, 0.9)
@@ -104,7 +104,7 @@ direction = st.floats(0.0, 2.0 * math.pi)
 def test_without_effects_a_wall_is_the_baseline_s_to_the_last_digit(vx, vy, angle, e) -> None:
     nx, ny = math.cos(angle), math.sin(angle)
     puck = new_puck(0.5, 0.5, vx, vy)
-    rebound(puck, record(wall_restitution=e), bounce.POST, nx, ny)
+    rebound(puck, record(wall_restitution=e), 0.0, bounce.POST, nx, ny)
     assert (puck.vx, puck.vy) == bounce.reflect(vx, vy, nx, ny, e)
     assert puck.spin == 0.0
 
@@ -113,7 +113,7 @@ def test_without_effects_a_wall_is_the_baseline_s_to_the_last_digit(vx, vy, angl
 def test_without_effects_a_mallet_is_the_baseline_s_to_the_last_digit(vx, vy, mx, my, angle, e) -> None:
     nx, ny = math.cos(angle), math.sin(angle)
     puck = new_puck(0.5, 0.5, vx, vy)
-    strike(puck, record(mallet_restitution=e), mx, my, nx, ny)
+    strike(puck, record(mallet_restitution=e), 0.0, mx, my, nx, ny)
     assert (puck.vx, puck.vy) == contact.reflect(vx, vy, mx, my, nx, ny, e)
     assert puck.spin == 0.0
 
@@ -124,7 +124,7 @@ def test_a_rub_takes_energy_and_keeps_what_a_rub_keeps(vx, vy, spin, mu, inertia
     p = record(wall_mu=mu, spin_inertia=inertia)
     puck = new_puck(0.5, 0.5, vx, -abs(vy) - 0.01, spin)
     before = puck.vx**2 + puck.vy**2 + inertia * (p.puck_radius * puck.spin) ** 2
-    rebound(puck, p, bounce.WALL_Y0, 0.0, 1.0)
+    rebound(puck, p, 0.0, bounce.WALL_Y0, 0.0, 1.0)
     after = puck.vx**2 + puck.vy**2 + inertia * (p.puck_radius * puck.spin) ** 2
     assert after <= before * (1.0 + 1e-12)
     # the tangent of the wall y = 0 is -x
@@ -135,7 +135,7 @@ def test_a_rub_takes_energy_and_keeps_what_a_rub_keeps(vx, vy, spin, mu, inertia
 def test_restitution_stays_between_nothing_and_all() -> None:
     for slope, extra, expected in ((0.3, 0.0, 0.0), (0.0, 0.5, 1.0)):
         puck = new_puck(0.5, 0.5, 0.0, -5.0)
-        rebound(puck, record(restitution_slope=slope, restitution_y0=extra), bounce.WALL_Y0, 0.0, 1.0)
+        rebound(puck, record(restitution_slope=slope, restitution_y0=extra), 0.0, bounce.WALL_Y0, 0.0, 1.0)
         assert puck.vy == pytest.approx(5.0 * expected)
 
 
@@ -143,6 +143,6 @@ def test_a_turned_table_turns_its_walls() -> None:
     p = record(restitution_y0=-0.2)
     puck = new_puck(0.5, 0.5, 0.0, 1.0)
     puck.turned = 1
-    rebound(puck, p, bounce.WALL_Y1, 0.0, -1.0)
+    rebound(puck, p, 0.0, bounce.WALL_Y1, 0.0, -1.0)
     assert puck.vy == pytest.approx(-0.5)
     assert [bounce.opposite(bounce.opposite(kind)) for kind in range(11)] == list(range(11))

@@ -1,0 +1,33 @@
+"""Functions of one number that a table of numbers says: cosines, and straight pieces between knots."""
+
+from __future__ import annotations
+
+from puckpilot_env.kernel import kernel
+
+
+@kernel
+def cosines(c, a):
+    """Sum of a_i cos(i h), where `c` is cos h (Clenshaw 1955)."""
+    last, before = 0.0, 0.0
+    for i in range(len(a) - 1, 0, -1):
+        last, before = a[i] + 2.0 * c * last - before, last
+    return a[0] + c * last - before
+
+
+@kernel
+def over_knots(x, knots, values):
+    """Straight pieces through `values` at `knots`, level beyond."""
+    if x <= knots[0]:
+        return values[0]
+    for i in range(1, len(knots)):
+        if x < knots[i]:
+            return values[i - 1] + (values[i] - values[i - 1]) * (x - knots[i - 1]) / (knots[i] - knots[i - 1])
+    return values[len(values) - 1]
+
+
+@kernel
+def over_even_knots(share, values):
+    """Straight pieces through `values` at even steps from share 0 to 1, level beyond."""
+    place = min(max(share, 0.0), 1.0) * (len(values) - 1)
+    i = min(int(place), len(values) - 2)
+    return values[i] + (values[i + 1] - values[i]) * (place - i)
