@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from puckpilot_env.physics.effects.unlisted_bounce import OF_BOTH, OF_NORMAL, OF_TANGENT
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.problem import Columns
@@ -22,6 +23,8 @@ GROWTH = 1.2  # of a friction, between the two columns that show how its effect 
 
 # What a smooth law acts on: the speed along the normal (0), along the tangent (1), or, as the baseline's e, on both.
 COMPONENTS = {"restitution": (0,), "tangential ratio": (1,), "share kept": (0, 1)}
+# The same as the simulator numbers it in tables of numbers
+SHARES = {"restitution": OF_NORMAL, "tangential ratio": OF_TANGENT, "share kept": OF_BOTH}
 
 Families = Mapping[str, tuple[str, Callable[[Any], np.ndarray]]]  # by name: what it depends on, and functions (n, k)
 

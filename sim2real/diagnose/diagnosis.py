@@ -11,6 +11,7 @@ from sim2real.diagnose.account import account
 from sim2real.diagnose.agreement import Part, check_agreement, parts_of
 from sim2real.diagnose.apart import KEPT_APART, Launches, glides_of, keep_apart
 from sim2real.diagnose.contact_data import join as join_contacts
+from sim2real.diagnose.contact_data import known_apart
 from sim2real.diagnose.contacts import geometry
 from sim2real.diagnose.encoders import read_encoders
 from sim2real.diagnose.engine.explain import Explained, explain
@@ -174,14 +175,15 @@ def _puck(data: Cut, sights: Sequence[Sight], values: dict[str, float], progress
     yield told
     states = glides.states(given(law)) if found is None else _states(glides, found)
     law |= {} if found is None else found.final.values
-    clear = found is None or found.unlisted is None
+    clear = found is None or (found.unlisted is None and not told.lost)
     progress("bounces", 0.6)
     impacts = [find_impacts(pieces, glides, states, k) for k, pieces in enumerate(data.pieces)]
-    hits = bounces([hit for some in impacts for hit in some], geometry(data.recordings[0]))
+    hits = known_apart(bounces([hit for some in impacts for hit in some], geometry(data.recordings[0])), proof)
     yield judged(_explain(WallProblem(hits, glides.clusters, law), law, proof, tables, clear)[1], clear)
     progress("blows", 0.75)
     struck = _blows(data.recordings, impacts)
     if struck is not None:
+        struck = known_apart(struck, proof)
         yield judged(_explain(MalletProblem(struck, glides.clusters, law), law, proof, tables, clear)[1], clear)
 
 

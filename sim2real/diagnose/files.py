@@ -18,6 +18,13 @@ from sim2real.diagnose.diagnosis import Diagnosis
 from sim2real.diagnose.finding import Curve, Estimate, Finding
 
 FORMAT = "puckpilot-diagnosis/1"
+# An effect that is a table of numbers, in words
+TABLES = {
+    "unlisted_force": "a force",
+    "unlisted_bounce": "a change of what bounces keep of their speed (share 1: normal, 2: along the wall, 3: both)",
+    "unlisted_blow": "a change of what pucks keep of their speed past a mallet (share 1: normal, 2: along, 3: both)",
+}
+REMEMBERS = "a table does not know when its puck last touched something"
 
 
 def as_dict(diagnosis: Diagnosis) -> dict[str, Any]:
@@ -90,12 +97,12 @@ def effects_toml(diagnosis: Diagnosis) -> str:
 
 def _comments(name: str, values: Mapping[str, float]) -> list[str]:
     """What the numbers of an effect mean."""
-    if name != "unlisted_force":
+    if EFFECTS[name].listed:
         return [f"# {EFFECTS[name].law}"]
     kind = f"{values[EFFECTS[name].rows['kind'].name]:.0f}"
     table = [[cell.strip() for cell in line.split("|")] for line in (MODULES[name].__doc__ or "").splitlines()]
     meaning = next(row[2:4] for row in table if len(row) > 3 and kind in row[1].split(", "))
-    return [f"# a force that has no name: {meaning[0]}; its numbers c00, c01, ...: {meaning[1]}"]
+    return [f"# {TABLES[name]} that has no name: {meaning[0]}; its numbers c00, c01, ...: {meaning[1]}"]
 
 
 def _simulated(one: Finding) -> bool:
@@ -103,6 +110,8 @@ def _simulated(one: Finding) -> bool:
 
 
 def _why_not(one: Finding) -> str:
+    if one.mechanism == "unlisted" and one.regime in ("glide", "wall") and "history" in one.depends_on:
+        return REMEMBERS
     return EFFECTS[one.mechanism].not_simulated if one.mechanism in EFFECTS else ""
 
 

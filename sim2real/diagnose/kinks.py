@@ -71,6 +71,7 @@ def find_kinks(t: np.ndarray, p: np.ndarray, noise: Noise, cuts: np.ndarray, exp
     cuts = cuts.copy()
     for half in SCALES:
         rows = _allowed(t, p, half, expected)
+        rows = rows[~cuts[rows]]  # across a pause of minutes there is nothing to fit
         common = _commonplace(kink_strength(t, p, noise, cuts, rows, half)[0])
         while len(rows):
             new = _peaks(t, p, noise, cuts, rows, half, common * np.where(expected, SURE_WHERE_EXPECTED, SURE))

@@ -24,6 +24,13 @@ def spread_hats(x: np.ndarray, count: int) -> np.ndarray:
     return hats(x, spread_knots(x, count)) if len(x) else np.zeros((0, count))
 
 
+def knots_and_values(x: np.ndarray, values: np.ndarray, count: int) -> np.ndarray:
+    """The `spread_knots` of x and the `values` there (2 count,), the last of both repeated where there are fewer."""
+    knots = spread_knots(x, count)
+    more = (0, count - len(knots))
+    return np.concatenate([np.pad(knots, more, "edge"), np.pad(values, more, "edge")])
+
+
 def stiff(knots: np.ndarray) -> np.ndarray:
     """Values (k, k) at `knots` (k,) of independent functions of size 1 that together are any: a level, a slope, and
     bends, the sharper the less likely. A law in them goes straight on where no data bend it (a cubic smoothing spline:

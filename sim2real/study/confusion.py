@@ -47,7 +47,8 @@ def _said(score: Score) -> str:
 
 
 def draw(path: Path, confusion: Confusion) -> None:
-    """The matrix as a picture: what is right in green, what is wrong in red, both as shares of the row."""
+    """The matrix as a picture: what is right in green, what is wrong in red, both as shares of the row; a word where
+    all cases have two effects."""
     import numpy as np
     from matplotlib.figure import Figure as Picture
 
@@ -61,7 +62,10 @@ def draw(path: Path, confusion: Confusion) -> None:
     size = 0.34 * max(len(confusion.columns), 4) + 3.2, 0.28 * max(len(confusion.rows), 3) + 2.6
     picture = Picture(figsize=size, layout="constrained")
     axes = picture.add_subplot()
-    axes.imshow(colours, aspect="auto")
+    if confusion.rows:
+        axes.imshow(colours, aspect="auto")
+    else:
+        axes.text(0.5, 0.5, "no case with one truth", ha="center", va="center", transform=axes.transAxes)
     axes.set_xticks(range(len(confusion.columns)), confusion.columns, rotation=60, ha="right", fontsize=8)
     axes.set_yticks(range(len(confusion.rows)), confusion.rows, fontsize=8)
     axes.set_xlabel("said")

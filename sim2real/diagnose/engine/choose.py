@@ -42,8 +42,10 @@ class Law:
     `name`: a mechanism, or a family of smooth forces; `family` is what it depends on, "" for a mechanism. `start`:
     parameters of a nonlinear law at which its columns were taken. `switch`: the simulator's parameters by name for
     coefficients of a family; none where the simulator has no place for it. `mechanism`: what a finding calls a family.
-    `each_launch`: whether every launch has numbers of its own, which no other launch foretells; `searched`: how many
-    places or sizes the columns are the best of.
+    `straight`: whether columns taken without a family hold with it too, however large it is. `each_launch`: whether
+    every launch has numbers of its own, which no other launch foretells; `searched`: how many places or sizes the
+    columns are the best of; `among`: what families are called that differ in a size alone, and of which the best is
+    taken.
     """
 
     name: str
@@ -51,9 +53,11 @@ class Law:
     family: str = ""
     start: dict[str, float] = field(default_factory=dict)
     switch: Callable[[np.ndarray], Mapping[str, float]] = no_parameters
+    straight: bool = False
     mechanism: str = "unlisted"
     each_launch: bool = False
     searched: int = 1
+    among: str = ""
 
     @property
     def rows(self) -> tuple[str, ...]:

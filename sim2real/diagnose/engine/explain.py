@@ -9,19 +9,14 @@ import numpy as np
 
 from puckpilot_env.parameters import BY_NAME
 from sim2real.diagnose.engine import gram
-from sim2real.diagnose.engine.choose import LEAST_FORETOLD, LEAST_SHARE, Chooser, Gain, Law, Model
+from sim2real.diagnose.engine.choose import Chooser, Gain, Law, Model
 from sim2real.diagnose.engine.fit import Fit, fit, given
 from sim2real.diagnose.engine.noise import dispersion
-from sim2real.diagnose.engine.settle import as_shipped, calm_clusters, far_off, nearly_all, refit, standing, undisturbed
-from sim2real.diagnose.engine.smooth import Smooth, fit_smooth
+from sim2real.diagnose.engine.settle import as_shipped, calm_clusters, far_off, refit, standing, undisturbed
+from sim2real.diagnose.engine.ways import Way, completed, tellable
 from sim2real.diagnose.problem import Columns, Problem
 
 MOST_LISTED = 4
-PER_COEFFICIENT = 7.0  # residuals, below which a smooth law would follow the noise
-REMAINDER = 0.1  # share of what the listed laws foretell better that a law on top of them must add
-MOSTLY = 2.0 / 3.0  # of what a family alone explains; listed laws that explain as much are no stand-ins,
-FEW = 2  # unless there are more of them than one table may have
-TRIED = 2  # families that foretell best, and as many that fit best, that are fitted by themselves
 
 
 @dataclass(frozen=True)
@@ -102,13 +97,13 @@ def explain(
     """
     roughly = given(shipped) if problem.plain == problem.base else fit(problem, shipped, problem.plain, use)
     use, baseline = undisturbed(problem, fit(problem, roughly.values, problem.base, use), use)
-    screen = _tellable(problem.columns(baseline.values, (), use), problem, use)
+    screen = tellable(problem.columns(baseline.values, (), use), problem, use)
     laws = [*screen.listed, *screen.families]
     beyond = beyond or dispersion(screen.grams, problem.units, problem.base, laws, use)
     chooser = Chooser(screen.grams, problem.units, use, beyond)
     model, gains = chooser.add(Model(problem.base), screen.listed, MOST_LISTED)
     listed, law = standing(problem, baseline, chooser.prune(model), screen, use)
-    way = _completed(problem, baseline, law, listed, chooser, screen, use) if clear else _Way(listed, law, None, np.inf)
+    way = completed(problem, baseline, law, listed, chooser, screen, use) if clear else Way(listed, law, None, np.inf)
     model, law, smooth = way.model, way.law, way.smooth
     kept = tuple(one for one in model.laws if not one.family)
     calm = use if smooth else calm_clusters(problem, law, use)
@@ -124,83 +119,6 @@ def explain(
     )  # fmt: skip
 
 
-@dataclass(frozen=True)
-class _Way:
-    """One way to explain a problem: the `model` as it was chosen, its fit, and the family on top of it. `foretold`:
-    the loss of units held out, about the fit itself."""
-
-    model: Model
-    law: Fit
-    smooth: Smooth | None
-    foretold: float
-
-    @property
-    def cost(self) -> int:
-        """How much is said: a listed law is a name, a family is a name and a shape."""
-        return len(self.model.laws) + (self.smooth is not None)
-
-
-def _completed(
-    problem: Problem, baseline: Fit, law: Fit, listed: Model, chooser: Chooser, screen: Columns, use: np.ndarray
-) -> _Way:
-    """The listed laws, of which `law` is the fit, with a family for what they leave, or in their place."""
-    plain = _Way(listed, law, None, np.inf)
-    if nearly_all(problem, baseline, law, use):
-        return plain
-    columns = screen
-    if law is not baseline:
-        columns = _tellable(problem.columns(law.values, law.free, None), problem, use)
-    refitted = Chooser(columns.grams, problem.units, use, chooser.dispersion)
-    rest = _remainder(chooser, listed, refitted, law, columns)
-    if rest is None and not far_off(problem, baseline, law, use):
-        return plain
-    ways = [replace(plain, foretold=float(refitted.foretold(Model(law.free)).sum()))]
-    nothing = float(chooser.foretold(Model(problem.base)).sum())
-    gains = _worth_trying(chooser, Model(problem.base), screen)
-    if rest is not None and not listed.laws and rest.law.name not in {gain.law.name for gain in gains}:
-        gains.append(rest)
-    alone = []
-    for gain in gains:
-        if nothing - gain.fitted < min(way.foretold for way in (*ways, *alone)):  # what it might leave, if it were true
-            alone.append(_with_family(problem, Model(problem.base), baseline, gain, chooser, use))
-    if not _stands_by_itself(ways[0], alone, nothing):
-        ways += alone
-    if rest is not None and listed.laws:
-        ways.append(_with_family(problem, listed, law, rest, chooser, use))
-        fewer = chooser.prune(listed.plus(rest.law, rest.spread)).minus(rest.law)
-        if len(fewer.laws) < len(listed.laws) and fewer.laws:
-            fewer, fitted = standing(problem, baseline, fewer, screen, use)
-            ways.append(_with_family(problem, fewer, fitted, rest, chooser, use))
-    return _simplest(ways, nothing)
-
-
-def _stands_by_itself(listed: _Way, alone: Sequence[_Way], nothing: float) -> bool:
-    """Whether listed laws explain so much of what a family by itself does that they are no stand-ins for it."""
-    best = min((way.foretold for way in alone), default=np.inf)
-    return 0 < len(listed.model.laws) <= FEW and nothing - listed.foretold > MOSTLY * (nothing - best)
-
-
-def _with_family(problem: Problem, listed: Model, law: Fit, gain: Gain, chooser: Chooser, use: np.ndarray) -> _Way:
-    smooth = fit_smooth(problem, law, gain.law, use, chooser.dispersion)
-    return _Way(listed.plus(smooth.family, smooth.spread), smooth.law, smooth, smooth.foretold)
-
-
-def _worth_trying(chooser: Chooser, base: Model, screen: Columns) -> list[Gain]:
-    """The families that may explain most by themselves, best first: those that fit best and those that foretell best,
-    as far as that can be seen from the baseline's path."""
-    gains = [gain for gain in (chooser.gain(base, law) for law in screen.families) if chooser.fits(gain)]
-    foretelling = sorted(gains, key=lambda gain: -gain.total)[:TRIED]
-    fitting = sorted(gains, key=lambda gain: 2.0 * len(gain.law.columns) - gain.fitted)[:TRIED]
-    return list({gain.law.name: gain for gain in (*fitting, *foretelling)}.values())
-
-
-def _simplest(ways: Sequence[_Way], nothing: float) -> _Way:
-    """The way that says least of those that foretell hardly worse than the best; `nothing`: the baseline's loss."""
-    best = min(way.foretold for way in ways)
-    enough = max(LEAST_FORETOLD, LEAST_SHARE * (nothing - best))
-    return min((way for way in ways if way.foretold < best + enough), key=lambda way: (way.cost, way.foretold))
-
-
 def _beside(chooser: Chooser, model: Model, screen: Columns) -> list[Gain]:
     """What each listed law would add to a model that has others."""
     taken = {law.name for law in model.laws}
@@ -211,24 +129,3 @@ def _doubtful(chooser: Chooser, gains: Sequence[Gain]) -> Law | None:
     """The law that fits best of those that few launches alone ask for."""
     some = [gain for gain in gains if chooser.doubtful(gain)]
     return max(some, key=lambda gain: gain.fitted).law if some else None
-
-
-def _tellable(columns: Columns, problem: Problem, use: np.ndarray) -> Columns:
-    """The columns, with no families but those of which the clusters `use` can tell the shape."""
-    most = float(problem.freedom[use].sum()) / PER_COEFFICIENT
-    return replace(columns, families=[law for law in columns.families if len(law.columns) <= most])
-
-
-def _remainder(chooser: Chooser, model: Model, refitted: Chooser, law: Fit, columns: Columns) -> Gain | None:
-    """The family that explains most of what the listed laws leave once they are refitted (`law`, with its `columns`),
-    if that is more than chance and worth a law."""
-    gains = sorted((refitted.gain(Model(law.free), one) for one in columns.families), key=lambda gain: -gain.total)
-    explained = _explained(chooser, model)
-    for gain in gains:
-        if refitted.passes(gain) and gain.total > REMAINDER * explained:
-            return gain
-    return None
-
-
-def _explained(chooser: Chooser, model: Model) -> float:
-    return float((chooser.foretold(Model(model.base)) - chooser.foretold(model)).sum())

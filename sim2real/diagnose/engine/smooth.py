@@ -44,13 +44,14 @@ class Smooth:
 def fit_smooth(problem: Problem, law: Fit, family: Law, use: np.ndarray, beyond: float) -> Smooth:
     """Fit `family` on top of `law` to the clusters `use`; `beyond`: noise beyond the problem's, in variance.
 
-    Where the simulator can switch the family on, columns are taken anew about the path with it, until no step leads
-    any further; else about the path without it. A family of which every step leads uphill foretells nothing.
+    Where the simulator can switch on a family that is not straight, columns are taken anew about the path with it,
+    until no step leads any further; else about the path without it. A family of which every step leads uphill foretells
+    nothing.
     """
     search = _Search(problem, use, beyond)
     here = search.at(law, family, np.zeros(len(family.columns)))
     best = search.solved(here)
-    if not family.switch(best.theta[len(law.free) :]):
+    if family.straight or not family.switch(best.theta[len(law.free) :]):
         return best
     foretold = np.inf
     for _ in range(ROUNDS):

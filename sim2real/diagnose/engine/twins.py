@@ -27,7 +27,7 @@ def twins(
     A null twin is the sensor's noise about the baseline. In a permutation twin the residuals of every piece keep their
     size, but their signs are drawn, piece by piece.
     """
-    laws = list({law.name: law for law in (*model.laws, *listed)}.values())
+    laws = list({law.columns: law for law in (*model.laws, *listed)}.values())
     every = Model(model.base, tuple([*model.laws, *listed]), (1.0,) * (len(model.laws) + len(listed)))
     inner = _only(grams, every.columns(grams)[0])
     rest = _without(inner, inner.columns(model.base), units, use)

@@ -21,7 +21,7 @@ from sim2real.diagnose.problem import Columns
 
 
 @kernel
-def _strikes(p, normal, t, chain, driven, before, pucks, after):
+def _strikes(p, normal, t, place, chain, driven, before, pucks, after):
     """Velocities after (n, 2) of blows in order, by a mallet of velocity `driven`; a chain begins without spin."""
     puck = pucks[0]
     for i in range(len(normal)):
@@ -29,8 +29,9 @@ def _strikes(p, normal, t, chain, driven, before, pucks, after):
             puck.spin = 0.0
         else:
             puck.spin *= np.exp(-p.spin_decay * (t[i] - t[i - 1]))
+        puck.x, puck.y = place[i, 0], place[i, 1]
         puck.vx, puck.vy = before[i, 0], before[i, 1]
-        strike(puck, p, driven[i, 0], driven[i, 1], normal[i, 0], normal[i, 1])
+        strike(puck, p, t[i], driven[i, 0], driven[i, 1], normal[i, 0], normal[i, 1])
         after[i, 0], after[i, 1] = puck.vx, puck.vy
 
 
@@ -75,9 +76,10 @@ class MalletProblem(ContactProblem[Blows]):
 
     def _predicted(self, record: np.void, before: np.ndarray, driven: np.ndarray) -> np.ndarray:
         after = np.empty_like(before)
-        _strikes(record, self.data.normal, self.data.t, self.data.chain, driven, before, self._pucks, after)
-        change = self.data.split(after - before)[:, :1]
-        return np.concatenate([self.data.split(after), -float(record["mallet_give"]) * change], axis=1)
+        d = self.data
+        _strikes(record, d.normal, d.t, d.place, d.chain, driven, before, self._pucks, after)
+        change = d.split(after - before)[:, :1]
+        return np.concatenate([d.split(after), -float(record["mallet_give"]) * change], axis=1)
 
     def _noise(self, record: np.void) -> tuple[np.ndarray, np.ndarray]:
         """Covariance (n, 3, 3) of what is seen less what a law foretells of it; and how the foretold changes with the

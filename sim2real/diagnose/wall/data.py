@@ -15,6 +15,7 @@ from sim2real.diagnose.impacts import Impact, Side
 KINDS = {"x0": bounce.WALL_X0, "x1": bounce.WALL_X1, "y0": bounce.WALL_Y0, "y1": bounce.WALL_Y1}
 SLOWEST = 0.05  # m/s along the normal; a slower touch is no clear bounce
 LATE = 0.02  # s, by which the time of a hit may be wrong
+FEWEST = 3  # bounces of a wall that has a usual restitution of its own
 UNUSUAL = 0.3  # difference of a restitution from the usual one that no wall makes
 STRAY = 12.0  # standard deviations of a jump in place across a bounce that is none
 
@@ -30,15 +31,19 @@ class Bounces(Contacts):
 def bounces(impacts: list[Impact], g: Geometry) -> Bounces:
     """The clear bounces off walls and posts among `impacts`, in order of time."""
     rows = [row for impact in impacts if (row := _row(impact, g)) is not None]
-    return _usual(contacts_of(Bounces, rows, impacts, {}))
+    return usual(contacts_of(Bounces, rows, impacts, {}))
 
 
-def _usual(every: Bounces) -> Bounces:
-    """The bounces without hits at a wall of a quite unusual restitution: there something else was hit as well."""
+def usual(every: Bounces) -> Bounces:
+    """The bounces without hits at a wall of a restitution quite unusual for it: there something else was hit as well.
+    A wall that was hit a few times has a usual restitution of its own."""
     restitution = every.split(every.after)[:, 0] / every.closing
-    wall = every.kind != bounce.POST
-    middle = np.median(restitution[wall]) if wall.any() else 0.0
-    return kept(every, ~wall | (np.abs(restitution - middle) < UNUSUAL))
+    wall, usual = every.kind != bounce.POST, np.zeros(len(every))
+    for kind in KINDS.values():
+        here = every.kind == kind
+        own = here if here.sum() >= FEWEST else wall
+        usual[here] = np.median(restitution[own]) if here.any() else 0.0
+    return kept(every, ~wall | (np.abs(restitution - usual) < UNUSUAL))
 
 
 def _row(impact: Impact, g: Geometry) -> dict[str, Any] | None:

@@ -15,7 +15,7 @@ from sim2real.diagnose.engine.explain import Explained
 from sim2real.diagnose.finding import Curve, Parting
 from sim2real.diagnose.formula import Formula
 from sim2real.diagnose.wall.data import KINDS, Bounces
-from sim2real.diagnose.wall.laws import shares
+from sim2real.diagnose.wall.families import shares
 from sim2real.diagnose.wall.problem import WallProblem
 
 SLOWEST = 0.1  # m/s of a component; the share kept of a slower one is noise

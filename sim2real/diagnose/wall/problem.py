@@ -20,7 +20,7 @@ UNKNOWN_SPIN, LAUNCH_SPIN = 30.0, 1.0  # rad/s, std of the spin after a contact 
 
 
 @kernel
-def _rebounds(p, kind, normal, t, chain, before, spin, pucks, after):
+def _rebounds(p, kind, normal, t, place, chain, before, spin, pucks, after):
     """Velocities after (n, 2) of bounces in order; each chain begins with `spin` [rad/s] and carries it on."""
     puck = pucks[0]
     for i in range(len(kind)):
@@ -28,8 +28,9 @@ def _rebounds(p, kind, normal, t, chain, before, spin, pucks, after):
             puck.spin = spin
         else:
             puck.spin *= np.exp(-p.spin_decay * (t[i] - t[i - 1]))
+        puck.x, puck.y = place[i, 0], place[i, 1]
         puck.vx, puck.vy = before[i, 0], before[i, 1]
-        rebound(puck, p, kind[i], normal[i, 0], normal[i, 1])
+        rebound(puck, p, t[i], kind[i], normal[i, 0], normal[i, 1])
         after[i, 0], after[i, 1] = puck.vx, puck.vy
 
 
@@ -118,7 +119,7 @@ class WallProblem(ContactProblem[Bounces]):
     def _after(self, record: np.void, before: np.ndarray, spin: float = 0.0) -> np.ndarray:
         d = self.data
         after = np.empty_like(before)
-        _rebounds(record, d.kind, d.normal, d.t, d.chain, before, spin, self._pucks, after)
+        _rebounds(record, d.kind, d.normal, d.t, d.place, d.chain, before, spin, self._pucks, after)
         return after
 
     def _noise(self, record: np.void) -> tuple[np.ndarray, np.ndarray]:

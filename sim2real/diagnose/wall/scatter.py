@@ -16,7 +16,7 @@ from scipy.stats import chi2
 from sim2real.diagnose.contact_laws import acted_on
 from sim2real.diagnose.engine.explain import Explained, explain
 from sim2real.diagnose.engine.fit import fit
-from sim2real.diagnose.wall.laws import shares
+from sim2real.diagnose.wall.families import shares
 from sim2real.diagnose.wall.problem import WallProblem
 
 ROUGH = 4.0  # times the usual sum of squares of a typical bounce, beyond which noise alone is no explanation

@@ -1,5 +1,6 @@
 """Pieces of paths whose events are known: nothing invented, nothing swallowed."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -54,6 +55,21 @@ def test_launches_wild_and_held_frames_are_told_apart():
     assert (pieces.wild & truth.wild).sum() >= 0.97 * (truth.wild & ~truth.held).sum()
     assert (pieces.wild & ~truth.wild & ~truth.held).sum() <= 0.001 * len(path)
     assert pieces.noise_std == pytest.approx(0.0006, rel=0.1)
+
+
+@pytest.mark.parametrize("pause", [600.0, 7200.0])
+def test_a_long_pause_changes_no_piece(pause):
+    rng = np.random.default_rng(2)
+    path, hits = bouncing(random_launches(rng, 20, 0.5, 3.0), 2.0)
+    recording, _ = recorded(path, hits, rng, 0.0006)
+    assert recording.frames is not None
+    middle = len(path) // 2 + 70  # within a glide or two
+    t = recording.frames["t"] + np.where(np.arange(len(path)) >= middle, pause, 0.0)
+    later = replace(recording, frames=Stream({**recording.frames.columns, "t": t}))
+    one, other = cut(recording), cut(later)
+    far = [hit.t - pause if hit.t > pause else hit.t for hit in other.hits]
+    assert len(other.launches) in (len(one.launches), len(one.launches) + 1)
+    assert len(far) > 20 and sum(min(abs(t - hit.t) for hit in one.hits) < 1e-6 for t in far) >= len(one.hits) - 2
 
 
 @pytest.mark.parametrize("noise", [0.0002, 0.0005, 0.001])

@@ -217,3 +217,11 @@ def test_the_matrix_says_who_was_taken_for_whom(tmp_path: Path):
     with Image.open(tmp_path / "m.png") as picture:
         red, green, _ = np.asarray(picture.convert("RGB"), dtype=int).reshape(-1, 3).T
     assert ((red < 130) & (green > 200)).any() and ((red > 200) & (green < 200)).any()
+
+
+def test_where_all_cases_have_two_effects_the_picture_says_so(tmp_path: Path):
+    said = answer(finding("table_tilt"), finding("linear_drag"))
+    matrix = confuse([score("case_0000", key("two", "table_tilt", "linear_drag"), said)])
+    assert matrix.rows == ()
+    draw(tmp_path / "m.png", matrix)
+    assert np.asarray(Image.open(tmp_path / "m.png").convert("L")).min() < 100

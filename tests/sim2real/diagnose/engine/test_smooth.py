@@ -1,5 +1,7 @@
 """A strong smooth law, fitted about the path that it leads along, on a table that the product did not make."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -65,3 +67,27 @@ def test_a_family_that_the_simulator_cannot_switch_on_is_fitted_about_the_law_al
     smooth = fit_smooth(problem, baseline, by_name(problem, baseline.values, "brake after a contact"), use, 1.0)
     assert smooth.law is baseline
     assert not smooth.family.switch(smooth.theta[len(baseline.free) :])
+
+
+def test_a_straight_family_is_fitted_about_the_law_alone_and_never_switched_on(grainy):
+    """As those of the bounces, of which the columns hold however large the law is."""
+    problem, baseline, use = grainy
+    family = by_name(problem, baseline.values, FAMILY)
+    straight = replace(family, straight=True, switch=lambda theta: pytest.fail("switched on"))
+    smooth = fit_smooth(problem, baseline, straight, use, 1.0)
+    assert smooth.law is baseline and np.isfinite(smooth.foretold)
+
+
+def test_a_family_of_which_every_step_leads_uphill_foretells_nothing(grainy, monkeypatch):
+    """As where the simulator's switch does the opposite of what the columns say."""
+    problem, baseline, use = grainy
+    honest = problem.columns
+
+    def opposite(values, free, at):
+        found = honest(values, free, at)
+        turned = [replace(one, switch=lambda theta, one=one: one.switch(-theta)) for one in found.families]
+        return replace(found, families=turned)
+
+    monkeypatch.setattr(problem, "columns", opposite)
+    smooth = fit_smooth(problem, baseline, by_name(problem, baseline.values, FAMILY), use, 1.0)
+    assert smooth.foretold == np.inf and not smooth.theta.any()

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sim2real.diagnose.engine import gram
-from sim2real.diagnose.engine.choose import Law, Model
+from sim2real.diagnose.engine.choose import Chooser, Law, Model
 from sim2real.diagnose.engine.twins import NULL, PERMUTED, twins
 from sim2real.diagnose.problem import Units
 
@@ -41,3 +41,17 @@ def test_too_rich_a_law_is_seen_to_lose_on_noise():
     twin = twins(_grams(60, 0.0), UNITS, rich, [], USE, PROOF)[NULL]
     expected = np.sqrt(1.0 + 60 / (len(USE) * EACH))  # of a fit to white noise: columns over residuals, more error
     assert twin.after / twin.before == pytest.approx(expected, rel=0.02)
+
+
+def test_the_search_among_twins_is_among_all_laws_of_a_name(monkeypatch):
+    """Each size at which a law is looked for, as many as in the search of the recording itself."""
+    sizes = [Law("push", (f"push {k}" if k else "push",)) for k in range(4)]
+    searched, honest = [], Chooser.add
+
+    def noting(self, model, laws, most):
+        searched.append(laws)
+        return honest(self, model, laws, most)
+
+    monkeypatch.setattr(Chooser, "add", noting)
+    twins(_grams(4), UNITS, ONE, sizes, USE, PROOF)
+    assert searched and all({law.columns for law in laws} == {law.columns for law in sizes} for laws in searched)

@@ -1,0 +1,82 @@
+"""What bounces kept apart may and may not do to the others, and which bounces count."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from puckpilot_env.parameters import TABLE
+from puckpilot_env.physics import bounce
+from sim2real.diagnose.contact_data import known_apart
+from sim2real.diagnose.engine.fit import fit
+from sim2real.diagnose.engine.ways import tellable
+from sim2real.diagnose.wall.data import KINDS, Bounces, usual
+from sim2real.diagnose.wall.problem import WallProblem
+
+COUNT, LAUNCHES, NOISE = 80, 20, 0.001
+DEFAULTS = {row.name: row.default for row in TABLE}
+APART = np.arange(15, LAUNCHES)
+
+
+def bounces_of(kept, kind: np.ndarray | None = None, wrong: int = 0) -> Bounces:
+    """Bounces of the wall y0 (or `kind`) that keep `kept(x)` of both components at x [m]; `wrong` of them a quarter
+    less. A number of the glides' law that is not known moves all of them."""
+    rng = np.random.default_rng(5)
+    closing, along = rng.uniform(0.4, 3.0, COUNT), rng.uniform(-2.0, 2.0, COUNT)
+    x = rng.uniform(0.1, 1.9, COUNT)
+    share = kept(x)
+    share[rng.choice(COUNT, wrong, replace=False)] -= 0.25
+    before = np.stack([along, -closing], axis=1)
+    after = share[:, None] * np.stack([along, closing], axis=1) + rng.normal(0.0, NOISE, (COUNT, 2))
+    return Bounces(
+        kind=np.full(COUNT, bounce.WALL_Y0) if kind is None else kind, normal=np.tile([0.0, 1.0], (COUNT, 1)),
+        t=np.arange(COUNT, dtype=float), before=before, after=after, place=np.stack([x, np.full(COUNT, 0.03)], axis=1),
+        spread=np.tile(0.5 * NOISE**2 * np.eye(2), (COUNT, 2, 1, 1)), drift=rng.normal(0.0, NOISE, (COUNT, 2, 2, 1)),
+        turn=np.zeros(COUNT), chain=np.arange(COUNT), lost=np.ones(COUNT, bool), since=np.full(COUNT, np.nan),
+        cluster=np.arange(COUNT) * LAUNCHES // COUNT,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("apart", [True, False])
+def test_a_fit_does_not_feel_what_untouched_bounces_were(apart: bool) -> None:
+    """To the last digit; where all share one unknown number, it does."""
+    data = bounces_of(lambda x: np.full(COUNT, 0.8))
+    later = replace(data, after=np.where(np.isin(data.cluster, APART)[:, None], 0.9 * data.after, data.after))
+    use = np.setdiff1d(np.arange(LAUNCHES), APART)
+    fits = []
+    for one in (data, later):
+        problem = WallProblem(known_apart(one, APART) if apart else one, LAUNCHES, DEFAULTS)
+        fits.append(fit(problem, {"wall_restitution": 0.7}, ["wall_restitution"], use).values["wall_restitution"])
+        assert fits[-1] == pytest.approx(0.8, abs=0.05)
+    assert (fits[0] == fits[1]) is apart
+
+
+def test_what_is_not_known_apart_is_as_large_as_before() -> None:
+    data = bounces_of(lambda x: np.full(COUNT, 0.8))
+    both = known_apart(data, APART)
+    np.testing.assert_array_equal(both.drift.sum(axis=3, keepdims=True), data.drift)
+    assert not (both.drift[..., 0] * both.drift[..., 1]).any()
+
+
+def test_a_wall_unlike_the_others_is_kept_and_a_lone_odd_bounce_is_not() -> None:
+    kind = np.full(COUNT, bounce.WALL_Y0)
+    kind[:6] = KINDS["x0"]
+    data = bounces_of(lambda x: np.full(COUNT, 0.9), kind)
+    after = data.after.copy()
+    after[:6, 1] = 0.45 * data.closing[:6]  # the wall x0
+    after[20, 1] = 0.3 * data.closing[20]
+    found = usual(replace(data, after=after))
+    assert len(found) == COUNT - 1 and (found.kind == KINDS["x0"]).sum() == 6 and 20.0 not in found.t
+
+
+@pytest.mark.parametrize("wrong", [0, 6])
+def test_the_length_of_a_wave_is_not_decided_by_a_few_odd_bounces(wrong: int) -> None:
+    """0.61 m, and the lengths that are looked for are 0.593 and 0.615 m thereabouts."""
+    data = bounces_of(lambda x: 0.8 + 0.015 * np.sin(2.0 * np.pi * x / 0.61), wrong=wrong)
+    problem = WallProblem(data, LAUNCHES, DEFAULTS)
+    use = np.arange(LAUNCHES)
+    columns = tellable(problem.columns({"wall_restitution": 0.8}, (), None), problem, use)
+    waves = [law.name for law in columns.families if law.among == "share kept by a wave"]
+    assert waves == ["share kept by a wave of 0.615 m along the walls"]
