@@ -16,6 +16,7 @@ from sim2real.diagnose.contacts import geometry
 from sim2real.diagnose.encoders import read_encoders
 from sim2real.diagnose.engine.explain import Explained, explain
 from sim2real.diagnose.engine.fit import given
+from sim2real.diagnose.engine.proving import prove
 from sim2real.diagnose.finding import Account, Finding, Proof, Sight
 from sim2real.diagnose.gantry.problem import gantry_problem
 from sim2real.diagnose.gantry.run import UnusableError
@@ -221,7 +222,7 @@ def _blows(recordings: Sequence[Recording], impacts: Sequence[list[Impact]]) -> 
 
 
 def _explain(problem: Problem, law: Mapping[str, float], proof: np.ndarray, tables: Sequence[Part], clear: bool = True):
-    """The engine's findings of a problem (None where there is too little data), and its account; `clear` as there."""
+    """What stands of a problem (None where there is too little data), and its account; `clear` as there."""
     live = np.flatnonzero(problem.freedom > 0)
     use, apart = np.setdiff1d(live, proof), np.intersect1d(live, proof)
     if len(use) + len(apart) < FEWEST_LAUNCHES or not len(apart) or problem.freedom[use].sum() < FEWEST_RESIDUALS:
@@ -232,10 +233,11 @@ def _explain(problem: Problem, law: Mapping[str, float], proof: np.ndarray, tabl
         problem, found = explain_bounces(problem, shipped, use, clear)
     else:
         found = explain(problem, shipped, use, clear)
-    told = account(problem, found, use, apart)
+    proved = prove(problem, found, apart)
+    told = account(problem, proved, use, apart)
     if told.lost and not told.next_recording:
         told = replace(told, next_recording=f"record more {MORE_OF[problem.regime]}")
-    return found, illustrated(problem, found, told, use)
+    return proved.found, illustrated(problem, proved.found, told, use)
 
 
 def judged(told: Account, clear: bool) -> Account:

@@ -139,6 +139,11 @@ class Chooser:
     def _launches(self) -> int:
         return int(self._launch.max()) + 1
 
+    @property
+    def noise(self) -> float:
+        """Loss that noise alone leaves."""
+        return float(self._freedom.sum()) / self.dispersion
+
     def fitted(self, model: Model) -> float:
         """Loss that a model leaves when fitted to all units."""
         return self._once("fitted", model, self._fitted)
@@ -213,10 +218,9 @@ class Chooser:
     def proved(self, model: Model) -> bool:
         """Whether launches prove laws to each other, each foretold by the others: what they gain is most of what the
         baseline leaves beyond noise, no small thing, and not the doing of few."""
-        noise = float(self._freedom.sum()) / self.dispersion
         plain = self.left_out(Model(model.base))
         gained = plain - self.left_out(model)
-        enough = max(MOST * (float(plain.sum()) - noise), NOTICEABLE * noise)
+        enough = max(MOST * (float(plain.sum()) - self.noise), NOTICEABLE * self.noise)
         steady = float(np.quantile(self._resampled @ gained, UNSURE)) > 0.0
         return steady and float(gained.sum()) > enough
 
@@ -271,7 +275,7 @@ class Chooser:
     def prune(self, model: Model) -> Model:
         """Take out laws that the others make needless, or that are not sure beside them, the weakest first."""
         explained = float((self.foretold(Model(model.base)) - self.foretold(model)).sum())
-        enough = min(LEAST_SHARE * explained, NOTICEABLE * float(self._freedom.sum()) / self.dispersion)
+        enough = min(LEAST_SHARE * explained, NOTICEABLE * self.noise)
         while model.laws:
             gains = [self.gain(model.minus(law), law) for law in model.laws]
             worth = enough if len(gains) > 1 else 0.0

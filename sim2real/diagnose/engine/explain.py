@@ -13,33 +13,52 @@ from sim2real.diagnose.engine.choose import Chooser, Gain, Law, Model
 from sim2real.diagnose.engine.fit import Fit, fit, given
 from sim2real.diagnose.engine.noise import dispersion
 from sim2real.diagnose.engine.settle import as_shipped, calm_clusters, far_off, refit, standing, undisturbed
+from sim2real.diagnose.engine.smooth import Smooth, fit_smooth
 from sim2real.diagnose.engine.ways import Way, completed, tellable
 from sim2real.diagnose.problem import Columns, Problem
 
 MOST_LISTED = 4
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Explained:
-    """What the engine found. `law`: the fit of the baseline and the listed laws `listed`, or their numbers beside
-    `unlisted`, a family on top; `theta` are further steps of these numbers, and its coefficients. `doubtful`: what too
-    few launches ask for beside it; `lost`: whether something is missing that no law surely explains. `columns` are
-    those of the final law; `model` was chosen by `chooser` in those of `screen`."""
+    """What the engine found. `law`: the fit of the baseline and the listed laws, or their numbers beneath `smooth`, a
+    family on top. `doubtful`: what too few launches ask for beside it; `lost`: whether something is missing that no law
+    surely explains. `model` was chosen by `chooser` in the columns of `screen`; `clusters` are those that it was fitted
+    to; `theta_covariance`: of the smooth law's `theta`."""
 
     baseline: Fit
+    model: Model
     law: Fit
+    smooth: Smooth | None
+    theta_covariance: np.ndarray
+    clusters: np.ndarray
     shipped: bool
     dispersion: float
-    listed: tuple[Law, ...]
-    unlisted: Law | None
-    theta: np.ndarray
-    theta_covariance: np.ndarray
-    columns: Columns
     screen: Columns
     chooser: Chooser
-    model: Model
     doubtful: Law | None
     lost: bool
+
+    @property
+    def listed(self) -> tuple[Law, ...]:
+        """The laws of the model that have a name."""
+        return tuple(one for one in self.model.laws if not one.family)
+
+    @property
+    def unlisted(self) -> Law | None:
+        """The family on top of them."""
+        return self.smooth.family if self.smooth else None
+
+    @property
+    def theta(self) -> np.ndarray:
+        """Further steps of the law's numbers, and the family's coefficients; none without a family."""
+        return self.smooth.theta if self.smooth else np.zeros(0)
+
+    @property
+    def columns(self) -> Columns:
+        """The columns of the final law."""
+        return self.smooth.columns if self.smooth else self.screen
 
     @property
     def final(self) -> Fit:
@@ -105,18 +124,49 @@ def explain(
     listed, law = standing(problem, baseline, chooser.prune(model), screen, use)
     way = completed(problem, baseline, law, listed, chooser, screen, use) if clear else Way(listed, law, None, np.inf)
     model, law, smooth = way.model, way.law, way.smooth
-    kept = tuple(one for one in model.laws if not one.family)
     calm = use if smooth else calm_clusters(problem, law, use)
     if len(calm) < len(use):
-        law = refit(problem, baseline, kept, screen, calm)
+        law = refit(problem, baseline, [one for one in model.laws if not one.family], screen, calm)
+    hints = (_beside(chooser, model, screen) if model.laws else gains) if clear else []
     return Explained(
-        baseline, law, as_shipped(problem, shipped, baseline, use, beyond), beyond, kept,
-        smooth.family if smooth else None, smooth.theta if smooth else np.zeros(0),
-        smooth.covariance(problem, use) if smooth else np.zeros((0, 0)), smooth.columns if smooth else screen,
-        screen, chooser, model,
-        _doubtful(chooser, _beside(chooser, model, screen) if model.laws else gains) if clear else None,
-        clear and not model.laws and far_off(problem, baseline, law, use),
-    )  # fmt: skip
+        baseline=baseline,
+        model=model,
+        law=law,
+        smooth=smooth,
+        theta_covariance=_covariance(problem, smooth, use),
+        clusters=calm,
+        shipped=as_shipped(problem, shipped, baseline, use, beyond),
+        dispersion=beyond,
+        screen=screen,
+        chooser=chooser,
+        doubtful=_doubtful(chooser, hints),
+        lost=clear and not model.laws and far_off(problem, baseline, law, use),
+    )
+
+
+def without(problem: Problem, found: Explained, law: Law) -> Explained:
+    """The same with one of its laws less: what is left of the model, fitted anew to the same clusters."""
+    model = found.model.minus(law)
+    named = [one for one in model.laws if not one.family]
+    fitted, smooth = found.baseline, None
+    if named:
+        gone = () if law.family else law.rows
+        values = {**found.law.values, **{name: BY_NAME[name].default for name in gone}}
+        fitted = fit(problem, values, [name for name in found.law.free if name not in gone], found.clusters)
+    if found.unlisted is not None and not law.family:
+        smooth = fit_smooth(problem, fitted, found.unlisted, found.clusters, found.dispersion)
+    spread = _covariance(problem, smooth, found.clusters)
+    return replace(found, model=model, law=fitted, smooth=smooth, theta_covariance=spread)
+
+
+def bare(found: Explained) -> Explained:
+    """The same with no law but the baseline."""
+    model = Model(found.model.base)
+    return replace(found, model=model, law=found.baseline, smooth=None, theta_covariance=np.zeros((0, 0)))
+
+
+def _covariance(problem: Problem, smooth: Smooth | None, use: np.ndarray) -> np.ndarray:
+    return smooth.covariance(problem, use) if smooth else np.zeros((0, 0))
 
 
 def _beside(chooser: Chooser, model: Model, screen: Columns) -> list[Gain]:

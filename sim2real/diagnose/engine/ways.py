@@ -15,6 +15,7 @@ from sim2real.diagnose.problem import Columns, Problem
 
 PER_COEFFICIENT = 7.0  # residuals, below which a smooth law would follow the noise
 REMAINDER = 0.1  # share of what the listed laws foretell better that a law on top of them must add
+BEYOND = 1.0 / 3.0  # of what the listed laws leave beyond noise, that it must explain as well
 MOSTLY = 2.0 / 3.0  # of what a family alone explains; listed laws that explain as much are no stand-ins,
 FEW = 2  # unless there are more of them than one table may have
 TRIED = 2  # families that foretell best, and as many that fit best, that are fitted by themselves
@@ -101,15 +102,10 @@ def _remainder(chooser: Chooser, model: Model, refitted: Chooser, law: Fit, colu
     """The family that explains most of what the listed laws leave once they are refitted (`law`, with its `columns`),
     if that is more than chance and worth a law."""
     gains = sorted((refitted.gain(Model(law.free), one) for one in columns.families), key=lambda gain: -gain.total)
-    explained = _explained(chooser, model)
-    for gain in gains:
-        if refitted.passes(gain) and gain.total > REMAINDER * explained:
-            return gain
-    return None
-
-
-def _explained(chooser: Chooser, model: Model) -> float:
-    return float((chooser.foretold(Model(model.base)) - chooser.foretold(model)).sum())
+    explained = float((chooser.foretold(Model(model.base)) - chooser.foretold(model)).sum())
+    left = float(refitted.foretold(Model(law.free)).sum()) - refitted.noise if model.laws else 0.0
+    worth = max(REMAINDER * explained, BEYOND * left)
+    return next((gain for gain in gains if refitted.passes(gain) and gain.total > worth), None)
 
 
 def tellable(columns: Columns, problem: Problem, use: np.ndarray) -> Columns:

@@ -9,6 +9,7 @@ from sim2real.diagnose.account import account
 from sim2real.diagnose.diagnosis import Diagnosis, diagnose
 from sim2real.diagnose.engine.choose import Law as Tried
 from sim2real.diagnose.engine.explain import explain
+from sim2real.diagnose.engine.proving import prove
 from sim2real.diagnose.illustrate import illustrated
 from sim2real.diagnose.report.page import page
 from sim2real.recording import read_recording
@@ -82,7 +83,7 @@ def test_launches_are_shown_under_the_law_that_was_found_smooth_part_and_all():
     problem, launches = _Nameless({"tilt_x": 0.02, "tilt_y": -0.03}), np.arange(LAUNCHES)
     use, apart = launches[launches % 4 > 0], launches[launches % 4 == 0]
     found = explain(problem, SHIPPED, use)
-    told = illustrated(problem, found, account(problem, found, use, apart), use)
+    told = illustrated(problem, found, account(problem, prove(problem, found, apart), use, apart), use)
     assert [one.mechanism for one in told.findings] == ["unlisted"]
     assert told.parting is not None and told.proof is not None
     for shown, proved in ((told.parting.before, told.proof.before_m), (told.parting.after, told.proof.after_m)):

@@ -13,6 +13,7 @@ from sim2real.diagnose.account import account
 from sim2real.diagnose.agreement import Part, check_agreement
 from sim2real.diagnose.engine.explain import explain
 from sim2real.diagnose.engine.fit import fit
+from sim2real.diagnose.engine.proving import prove
 from sim2real.diagnose.finding import Account
 from sim2real.diagnose.gantry.problem import gantry_problem
 from sim2real.diagnose.gantry.run import UnusableError
@@ -38,7 +39,8 @@ def diagnosed(recording: Recording) -> Account:
     problem, _ = gantry_problem([recording], values)
     proof = np.arange(problem.clusters)[3::4]
     use = np.setdiff1d(np.arange(problem.clusters), proof)
-    return account(problem, explain(problem, {name: values[name] for name in problem.base}, use), use, proof)
+    found = explain(problem, {name: values[name] for name in problem.base}, use)
+    return account(problem, prove(problem, found, proof), use, proof)
 
 
 @pytest.mark.parametrize(
