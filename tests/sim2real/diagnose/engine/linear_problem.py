@@ -10,7 +10,7 @@ from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.problem import Columns, Residuals, Units
 
 LAUNCHES, PIECES, EACH = 20, 3, 20
-NAMES = ("friction", "drag", "tilt_x", "tilt_y")
+NAMES = ("friction", "drag", "tilt_x", "tilt_y", "linear_drag")
 SHIPPED = {"friction": 0.125, "drag": 0.125}
 FELT = 50.0  # standard deviations of the noise that a parameter of 1 makes of a residual
 
@@ -68,4 +68,4 @@ class LinearProblem:
             return Columns(
                 grams, [], [Law("push by place", columns, "position", switch=partial(_switched, self.launch))]
             )
-        return Columns(grams, [Law("table_tilt", columns)], [])
+        return Columns(grams, [Law("table_tilt", columns), Law("linear_drag", ("linear_drag",))], [])

@@ -60,9 +60,9 @@ def test_a_law_that_hardly_helps_untouched_launches_is_not_told(there):
     """Of a tilt of which a third is there, two thirds are left by the law, more than without it; where 0.51 are, 0.49
     are left, which is 8 % less of its square."""
     share = np.where(np.isin(np.arange(LAUNCHES), PROOF), there, 1.0)
-    found = _account({name: value * share for name, value in TILT.items()})
+    found = _account({name: 4.0 * value * share for name, value in TILT.items()})
     assert found.findings == () and found.lost
-    helped = _account({name: value * (1.0 + share) / 2.0 for name, value in TILT.items()})
+    helped = _account({name: 4.0 * value * (1.0 + share) / 2.0 for name, value in TILT.items()})
     assert [one.mechanism for one in helped.findings] == ["table_tilt"]
 
 

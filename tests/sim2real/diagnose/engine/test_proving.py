@@ -1,0 +1,76 @@
+"""What untouched launches silence, and what not: truths put by hand, in launches of which some are kept apart."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from sim2real.diagnose.engine.explain import bare, explain
+from sim2real.diagnose.engine.proving import Proved, prove
+from tests.sim2real.diagnose.engine.linear_problem import LAUNCHES, SHIPPED, LinearProblem
+
+PROOF = np.arange(LAUNCHES)[3::4]
+USE = np.setdiff1d(np.arange(LAUNCHES), PROOF)
+TILT = {"tilt_x": 0.02, "tilt_y": -0.03}
+DRAG = 0.04
+
+
+def proved(truth, likeness: bool = False) -> tuple[LinearProblem, Proved]:
+    problem = LinearProblem(truth, likeness=likeness)
+    return problem, prove(problem, explain(problem, SHIPPED, USE), PROOF)
+
+
+def in_untouched(value: float, there: float) -> np.ndarray:
+    """A number for each launch, of which untouched ones have a share."""
+    return value * np.where(np.isin(np.arange(LAUNCHES), PROOF), there, 1.0)
+
+
+def test_what_holds_stands_as_it_was_found() -> None:
+    problem, said = proved({**TILT, "linear_drag": DRAG})
+    assert {law.name for law in said.found.model.laws} == {"table_tilt", "linear_drag"} == set(said.without)
+    assert said.silenced == ()
+    assert said.found.law.values == explain(problem, SHIPPED, USE).law.values
+
+
+@pytest.mark.parametrize("likeness", [False, True])
+def test_one_odd_launch_silences_nothing(likeness: bool) -> None:
+    """Of the launches kept apart one is pushed the other way ten times as hard: more squares than all others have."""
+    odd = np.ones(LAUNCHES)
+    odd[PROOF[0]] = -10.0
+    problem, said = proved({name: value * odd for name, value in TILT.items()}, likeness)
+    without, left = (
+        float(np.sum(problem.residuals(values, (), PROOF).r ** 2)) for values in (SHIPPED, {**SHIPPED, **TILT})
+    )
+    assert left > without and said.silenced == () and len(said.found.model.laws) == 1
+
+
+def test_a_law_that_is_not_there_goes_alone_and_the_other_is_fitted_anew() -> None:
+    """The drag of the fitted launches is the opposite of that of the untouched ones; the tilt is in all."""
+    truth = {name: 5.0 * value for name, value in TILT.items()} | {"linear_drag": in_untouched(DRAG, -1.0)}
+    problem, said = proved(truth)
+    assert [law.name for law in said.silenced] == ["linear_drag"]
+    assert [law.name for law in said.found.model.laws] == ["table_tilt"]
+    values = said.found.law.values
+    assert values["linear_drag"] == 0.0 and "linear_drag" not in said.found.law.free
+    rows = problem.residuals(values, ("friction", "drag", "tilt_x", "tilt_y"), USE)
+    assert np.abs(rows.jacobian.T @ rows.r).max() < 1e-4 * np.abs(rows.jacobian.T @ rows.jacobian).max()
+
+
+def test_with_a_law_silenced_and_most_left_the_others_go_as_well() -> None:
+    """Beside the drag that untouched launches do not have, the tilt explains little of what else they have."""
+    truth = {name: 10.0 * value for name, value in TILT.items()} | {"linear_drag": in_untouched(2.0 * DRAG, -3.0)}
+    _, said = proved(truth)
+    assert {law.name for law in said.silenced} == {"table_tilt", "linear_drag"}
+    assert said.found.law is said.found.baseline and said.without == {}
+
+
+def test_what_is_fitted_without_a_law_is_found_without_it() -> None:
+    _problem, said = proved({**TILT, "linear_drag": DRAG})
+    rest = said.without["table_tilt"]
+    assert [law.name for law in rest.model.laws] == ["linear_drag"]
+    assert rest.law.values["linear_drag"] == pytest.approx(DRAG, abs=0.01)
+    assert [rest.law.values[name] for name in TILT] == [0.0, 0.0]
+    assert (
+        bare(said.found).law.values
+        == explain(LinearProblem({**TILT, "linear_drag": DRAG}), SHIPPED, USE).baseline.values
+    )
