@@ -27,8 +27,8 @@ def allowing_for(shared: np.ndarray, rows: np.ndarray) -> np.ndarray:
 
 
 def dispersion(grams: Grams, units: Units, base: tuple[str, ...], laws: Sequence[Law], use: np.ndarray) -> float:
-    """Noise beyond the sensor's, in variance: what even all `laws` together leave of a typical launch, for each residual
-    that they leave free there. At least 1."""
+    """Noise beyond the sensor's, in variance: what even all `laws` together leave of a typical launch, for each
+    residual that they leave free there. At least 1."""
     every = Model(base, tuple(laws), (1.0,) * len(laws))
     columns, ridge = every.columns(grams)
     parts = units.of(use)
@@ -43,8 +43,8 @@ def dispersion(grams: Grams, units: Units, base: tuple[str, ...], laws: Sequence
 
 
 def _taken(g: np.ndarray, ridge: np.ndarray) -> np.ndarray:
-    """How many residuals (parts,) of each a fit of all columns, with the sums of squares `g` (parts, k, k), uses up: the
-    trace of its part of the hat matrix."""
+    """How many residuals (parts,) of each a fit of all columns, with the sums of squares `g` (parts, k, k), uses up:
+    the trace of its part of the hat matrix."""
     normal = g.sum(axis=0) + np.diag(ridge)
     size = np.sqrt(np.maximum(np.diag(normal), 0.0))
     inverse = np.linalg.pinv(normal / size[:, None] / size, hermitian=True) / size[:, None] / size

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -30,20 +30,36 @@ class Bounces(Contacts):
 
 def bounces(impacts: list[Impact], g: Geometry) -> Bounces:
     """The clear bounces off walls and posts among `impacts`, in order of time."""
-    rows = [row for impact in impacts if (row := _row(impact, g)) is not None]
-    return usual(contacts_of(Bounces, rows, impacts, {}))
+    rows = {k: row for k, impact in enumerate(impacts) if (row := _row(impact, g)) is not None}
+    every = contacts_of(Bounces, list(rows.values()), impacts, {})
+    usual = are_usual(every)
+    number = np.array(list(rows), int)[usual]
+    return chained(kept(every, usual), number, np.array([impact.chain for impact in impacts], int))
 
 
-def usual(every: Bounces) -> Bounces:
-    """The bounces without hits at a wall of a restitution quite unusual for it: there something else was hit as well.
-    A wall that was hit a few times has a usual restitution of its own."""
+def are_usual(every: Bounces) -> np.ndarray:
+    """Which bounces (n,) are no hits at a wall of a restitution quite unusual for it: there something else was hit as
+    well. A wall that was hit a few times has a usual restitution of its own."""
     restitution = every.split(every.after)[:, 0] / every.closing
     wall, usual = every.kind != bounce.POST, np.zeros(len(every))
     for kind in KINDS.values():
         here = every.kind == kind
         own = here if here.sum() >= FEWEST else wall
         usual[here] = np.median(restitution[own]) if here.any() else 0.0
-    return kept(every, ~wall | (np.abs(restitution - usual) < UNUSUAL))
+    return ~wall | (np.abs(restitution - usual) < UNUSUAL)
+
+
+def chained(some: Bounces, number: np.ndarray, chains: np.ndarray) -> Bounces:
+    """Bounces, of this `number` (n,) among impacts of these `chains` (m,), with chains that end where an impact of
+    theirs is not among them: what spin the puck has after it, nobody knows."""
+    link, lost = np.arange(len(some)), some.lost.copy()
+    for i, k in enumerate(number):
+        within = k > 0 and chains[k] == chains[k - 1]
+        if within and i > 0 and number[i - 1] == k - 1:
+            link[i], lost[i] = link[i - 1], lost[i - 1]
+        else:
+            lost[i] |= within
+    return replace(some, chain=link, lost=lost)
 
 
 def _row(impact: Impact, g: Geometry) -> dict[str, Any] | None:

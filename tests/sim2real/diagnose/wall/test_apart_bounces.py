@@ -9,10 +9,10 @@ import pytest
 
 from puckpilot_env.parameters import TABLE
 from puckpilot_env.physics import bounce
-from sim2real.diagnose.contact_data import known_apart
+from sim2real.diagnose.contact_data import kept, known_apart
 from sim2real.diagnose.engine.fit import fit
 from sim2real.diagnose.engine.ways import tellable
-from sim2real.diagnose.wall.data import KINDS, Bounces, usual
+from sim2real.diagnose.wall.data import KINDS, Bounces, are_usual, chained
 from sim2real.diagnose.wall.problem import WallProblem
 
 COUNT, LAUNCHES, NOISE = 80, 20, 0.001
@@ -20,13 +20,13 @@ DEFAULTS = {row.name: row.default for row in TABLE}
 APART = np.arange(15, LAUNCHES)
 
 
-def bounces_of(kept, kind: np.ndarray | None = None, wrong: int = 0) -> Bounces:
-    """Bounces of the wall y0 (or `kind`) that keep `kept(x)` of both components at x [m]; `wrong` of them a quarter
+def bounces_of(keep, kind: np.ndarray | None = None, wrong: int = 0) -> Bounces:
+    """Bounces of the wall y0 (or `kind`) that keep `keep(x)` of both components at x [m]; `wrong` of them a quarter
     less. A number of the glides' law that is not known moves all of them."""
     rng = np.random.default_rng(5)
     closing, along = rng.uniform(0.4, 3.0, COUNT), rng.uniform(-2.0, 2.0, COUNT)
     x = rng.uniform(0.1, 1.9, COUNT)
-    share = kept(x)
+    share = keep(x)
     share[rng.choice(COUNT, wrong, replace=False)] -= 0.25
     before = np.stack([along, -closing], axis=1)
     after = share[:, None] * np.stack([along, closing], axis=1) + rng.normal(0.0, NOISE, (COUNT, 2))
@@ -67,8 +67,23 @@ def test_a_wall_unlike_the_others_is_kept_and_a_lone_odd_bounce_is_not() -> None
     after = data.after.copy()
     after[:6, 1] = 0.45 * data.closing[:6]  # the wall x0
     after[20, 1] = 0.3 * data.closing[20]
-    found = usual(replace(data, after=after))
-    assert len(found) == COUNT - 1 and (found.kind == KINDS["x0"]).sum() == 6 and 20.0 not in found.t
+    assert list(np.flatnonzero(~are_usual(replace(data, after=after)))) == [20]
+
+
+def test_no_spin_is_carried_past_a_contact_that_is_left_out() -> None:
+    """Of seven impacts in two chains, number 2 and number 5 are no clear bounces."""
+    chains, number = np.array([10, 10, 10, 10, 20, 20, 20]), np.array([0, 1, 3, 4, 6])
+    some = kept(bounces_of(lambda x: np.full(COUNT, 0.9)), np.arange(COUNT) < len(number))
+    found = chained(replace(some, lost=np.zeros(len(number), bool)), number, chains)
+    assert [found.chain[i] == found.chain[i - 1] for i in range(1, len(number))] == [True, False, False, False]
+    assert list(found.lost) == [False, False, True, False, True]
+
+
+def test_what_is_lost_before_a_chain_stays_lost_in_it() -> None:
+    number = np.arange(3)
+    some = kept(bounces_of(lambda x: np.full(COUNT, 0.9)), np.arange(COUNT) < 3)
+    found = chained(replace(some, lost=np.array([True, True, False])), number, np.array([1, 1, 2]))
+    assert list(found.lost) == [True, True, False]
 
 
 @pytest.mark.parametrize("wrong", [0, 6])
