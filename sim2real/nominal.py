@@ -23,11 +23,13 @@ FROM_META = {
 
 def parameters(recording: Recording, shipped: Mapping[str, float] | None = None) -> dict[str, float]:
     """Parameters by name: `shipped` or the defaults, with the sizes that the recording states."""
-    values = {row.name: row.default for row in TABLE} | dict(shipped or {})
-    for name, (section, key) in FROM_META.items():
-        stated = recording.nominal(section, key)
-        values[name] = values[name] if stated is None else stated
-    return values
+    return {row.name: row.default for row in TABLE} | dict(shipped or {}) | stated_sizes(recording)
+
+
+def stated_sizes(recording: Recording) -> dict[str, float]:
+    """The sizes that the recording states, by the names of parameters."""
+    stated = {name: recording.nominal(section, key) for name, (section, key) in FROM_META.items()}
+    return {name: value for name, value in stated.items() if value is not None}
 
 
 def read_baseline(path: Path) -> dict[str, float]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -38,7 +38,7 @@ from sim2real.diagnose.stretch import without_stretch
 from sim2real.diagnose.wall.data import bounces
 from sim2real.diagnose.wall.problem import WallProblem
 from sim2real.diagnose.wall.scatter import explain_bounces
-from sim2real.nominal import parameters
+from sim2real.nominal import parameters, stated_sizes
 from sim2real.recording import Recording
 
 FEWEST_LAUNCHES, FEWEST_RESIDUALS = 4, 8  # of all recordings together: with fewer, nothing is said of a regime
@@ -58,7 +58,8 @@ Progress = Callable[[str, float], None]
 class Diagnosis:
     """All accounts, by regime. `reason`: why nothing can be said, "" if something can; `remedy`: what to do then.
 
-    `notes`: what should be known of the recordings, a sentence each; `sights`: the sensor of each, those held out last.
+    `notes`: what should be known of the recordings, a sentence each; `sights`: the sensor of each, those held out last;
+    `sizes`: of the table, puck, mallet and gantry as far as they are stated, by the simulator's names.
     """
 
     accounts: tuple[Account, ...]
@@ -66,6 +67,7 @@ class Diagnosis:
     remedy: str = ""
     notes: tuple[str, ...] = ()
     sights: tuple[Sight, ...] = ()
+    sizes: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def findings(self) -> list[Finding]:
@@ -134,7 +136,7 @@ def diagnose(
         accounts, sights = _accounts(timed[: len(recordings)], timed[len(recordings) :], shipped, progress)
     except UndeterminedError as why:
         return Diagnosis((), why.reason, why.remedy, notes(every))
-    return Diagnosis(accounts, notes=notes(every), sights=sights)
+    return Diagnosis(accounts, notes=notes(every), sights=sights, sizes=stated_sizes(every[0]))
 
 
 def _accounts(

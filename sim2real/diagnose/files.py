@@ -77,11 +77,13 @@ def _estimate(one: Estimate) -> dict[str, Any]:
 
 
 def effects_toml(diagnosis: Diagnosis) -> str:
-    """The refitted baseline and all that was found, as the simulator takes it: each number within its range.
+    """The table's stated sizes, the refitted baseline and all that was found, as the simulator takes it: each fitted
+    number within its range.
 
-    A finding that it has no place for is named in a comment, as a clock that drifts: its players have one clock.
+    What it has no place for is named in a comment, such as a clock that drifts, since its players have one clock.
     """
-    values = {name: one.value for each in diagnosis.accounts for name, one in each.baseline.items()}
+    values = {name: value for name, value in diagnosis.sizes.items() if BY_NAME[name].within(value) == value}
+    values |= {name: one.value for each in diagnosis.accounts for name, one in each.baseline.items()}
     for one in diagnosis.findings:
         values |= one.values
     near = {name: BY_NAME[name].within(value) for name, value in values.items()}
@@ -91,6 +93,7 @@ def effects_toml(diagnosis: Diagnosis) -> str:
         taken = {} if effect.not_simulated else effect.rows
         numbers = [f"{key} = {near[row.name]!r}" for key, row in taken.items() if row.name in near]
         lines += ["", *_comments(name, near), f"[effects.{name}]", *numbers] if numbers else []
+    lines += [f"{NOT_SWITCHED} {_size(name, value)}" for name, value in diagnosis.sizes.items() if name not in values]
     lines += [f"{NOT_SWITCHED} {_name(one)}" for one in diagnosis.findings if not _simulated(one)]
     return "\n".join(lines) + "\n"
 
@@ -113,6 +116,11 @@ def _why_not(one: Finding) -> str:
     if one.mechanism == "unlisted" and one.regime in ("glide", "wall") and "history" in one.depends_on:
         return REMEMBERS
     return EFFECTS[one.mechanism].not_simulated if one.mechanism in EFFECTS else ""
+
+
+def _size(name: str, value: float) -> str:
+    row = BY_NAME[name]
+    return f"{name} {value:g} {row.unit}, which is beyond its {row.low:g} to {row.high:g} {row.unit}"
 
 
 def _name(one: Finding) -> str:

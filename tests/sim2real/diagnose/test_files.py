@@ -68,6 +68,15 @@ def test_what_has_no_place_in_the_simulator_is_named(tmp_path):
     assert "# not in the simulator: clock_drift of the sensing" in (tmp_path / "effects.toml").read_text()
 
 
+def test_players_meet_the_table_s_own_sizes_on_it(tmp_path):
+    sizes = {"length": 2.3, "width": 1.1, "puck_radius": 0.05}
+    file = tmp_path / "effects.toml"
+    file.write_text(effects_toml(Diagnosis((), sizes=sizes)))
+    assert effect_values(file) == {"length": 2.3, "width": 1.1}
+    assert Tables("match-v0", 1, effects=file).params["length"][0] == 2.3
+    assert "# not in the simulator: puck_radius 0.05 m, which is beyond its 0.01 to 0.045 m" in file.read_text()
+
+
 def test_a_stretched_map_found_in_a_recording(tmp_path):
     law = Law(camera_scale_x=0.012, camera_scale_y=-0.008)
     make_recording(tmp_path / "table", law, "launches", 4, 40.0, camera=Camera(noise=0.0006, rate=150.0), dt=2e-5)
