@@ -48,8 +48,9 @@ def effect_values(effects: Effects | None) -> dict[str, float]:
         raise ValueError(f"{path}: {' '.join(str(error).split())}") from None
 
 
-def described(path: str | PathLike[str]) -> list[str]:
-    """What a file switches on, a line each: the effects, the baseline's numbers, and what it holds beyond a table.
+def described(path: str | PathLike[str], apart_from: Iterable[str] = ()) -> list[str]:
+    """What a file switches on, a line each: the effects, the baseline's numbers, and what it holds beyond a table. Of
+    the baseline's numbers none that are named in `apart_from`.
 
     Raises ValueError as `effect_values` does.
     """
@@ -60,7 +61,8 @@ def described(path: str | PathLike[str]) -> list[str]:
         if any(value != effect.rows[key].default for key, value in numbers.items()):
             told = ", ".join(f"{key} {value:.4g}" for key, value in numbers.items())
             lines.append(f"effect on: {name} ({told if len(numbers) <= FEW else f'{len(numbers)} numbers'})")
-    plain = [f"{name} {value:.4g}" for name, value in values.items() if BY_NAME[name] not in EFFECT_ROWS]
+    others = {name for name in values if BY_NAME[name] not in EFFECT_ROWS}.difference(apart_from)
+    plain = [f"{name} {value:.4g}" for name, value in values.items() if name in others]
     lines += [f"in place of the defaults: {', '.join(plain)}"] if plain else []
     text = Path(path).read_text(encoding="utf-8").splitlines()
     lines += [f"not switched on:{line.removeprefix(NOT_SWITCHED)}" for line in text if line.startswith(NOT_SWITCHED)]
@@ -83,6 +85,8 @@ def _by_name(effects: Mapping[str, Any], where: str) -> dict[str, float]:
     for effect in effects:
         rows = EFFECTS[effect].rows
         given = _section(effects, effect, where)
+        if not given:
+            raise ValueError(f"{where}.{effect} has no numbers; expected some of {', '.join(list(rows)[:FEW])}")
         _refuse_unknown(given, rows, f"number of {effect}")
         values |= {rows[short].name: _number(rows[short].name, value) for short, value in given.items()}
     refuse_not_simulated(values)

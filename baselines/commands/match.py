@@ -7,7 +7,7 @@ import json
 import sys
 from typing import TYPE_CHECKING
 
-from baselines.commands.options import add_options, parse_values, print_effects, progress_bar
+from baselines.commands.options import add_options, parse_values, print_table, progress_bar
 
 if TYPE_CHECKING:
     from baselines.intervals import Estimate
@@ -37,7 +37,7 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print(json.dumps(_as_dict(args, result, rate), indent=2))
     else:
-        print_effects(args.effects)
+        print_table(args)
         _print(args, result, rate)
     if filmed:
         print(filmed, file=sys.stderr if args.json else sys.stdout)
@@ -66,9 +66,13 @@ def _play(args: argparse.Namespace) -> tuple[MatchResult, str]:
 
 
 def _as_dict(args: argparse.Namespace, result: MatchResult, rate: Estimate) -> dict[str, object]:
+    from puckpilot_env.effects_file import effect_values
+
     return {
         "variant": args.variant,
         "seed": args.seed,
+        "parameters": parse_values(args.set),
+        "effects": effect_values(args.effects),
         "players": list(result.players),
         "games": result.games,
         "wins": list(result.wins),

@@ -34,10 +34,13 @@ def parse_values(settings: Iterable[str]) -> dict[str, float]:
     return values
 
 
-def print_effects(file: str | None) -> None:
-    """Say what the file of --effects switches on; nothing where there is none."""
-    for line in described(file) if file else ():
+def print_table(args: argparse.Namespace) -> None:
+    """Say what --effects and --set make of the table; nothing where neither is given."""
+    given = parse_values(args.set)
+    for line in described(args.effects, apart_from=given) if args.effects else ():
         print(line)
+    if given:
+        print(f"set: {', '.join(f'{name} {value:.4g}' for name, value in given.items())}")
 
 
 @contextmanager

@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from baselines.commands.options import add_options, parse_values, print_effects, progress_bar
+from baselines.commands.options import add_options, parse_values, print_table, progress_bar
 
 if TYPE_CHECKING:
     from baselines.tournament import Tournament
@@ -41,7 +41,7 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print(json.dumps(tournament.as_dict(), indent=2))
         return 0
-    print_effects(args.effects)
+    print_table(args)
     _print(tournament, written)
     return 0
 

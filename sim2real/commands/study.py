@@ -11,6 +11,7 @@ import argparse
 import json
 import shlex
 import shutil
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -36,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """0: the study is done; 1: it is, and a bar was missed or a case has no diagnosis. Raises ValueError, in one line,
+    """0: the study is done; 1: it is, and a bar was surely missed or a case has no diagnosis. Raises ValueError, in one line,
     for what cannot be run."""
     from sim2real.study.making import Plan
     from sim2real.study.run import run_study
@@ -50,7 +51,11 @@ def run(args: argparse.Namespace) -> int:
     tool = shlex.split(args.tool) if args.tool else None
     if tool and shutil.which(tool[0]) is None:
         raise ValueError(f"--tool {tool[0]}: there is no such program; give one that is called as puckpilot is")
-    study = run_study(plan, args.out, args.workers, tool, args.holdout, args.peer)
+    try:
+        study = run_study(plan, args.out, args.workers, tool, args.holdout, args.peer)
+    except KeyboardInterrupt:
+        print(f"what is done is kept in {args.out}; the same command goes on from there", file=sys.stderr)
+        raise
     if args.json:
         print(json.dumps(study.as_dict(), indent=1))
     else:
@@ -58,7 +63,7 @@ def run(args: argparse.Namespace) -> int:
         if args.peer and not study.peer_scores:
             print("PySINDy was asked nothing: no case is of a gliding puck alone")
     failed = any(score.verdict == "failed" for score in study.scores)
-    return int(failed or any(figure.reached is False for figure in study.figures))
+    return int(failed or any(figure.reached is False and figure.sure for figure in study.figures))
 
 
 def _print(study: Study, folder: Path) -> None:
@@ -68,7 +73,8 @@ def _print(study: Study, folder: Path) -> None:
     needed = max(Console(width=10_000).measure(table).maximum for table in tables)
     console = Console(width=max(needed, 100), highlight=False)
     for table in tables:
-        console.print(table)
+        if table.row_count:
+            console.print(table)
     for score in study.scores:
         if score.error:
             print(f"{score.label}: {score.error}")
@@ -110,7 +116,9 @@ def _outcome(figure: Any) -> str:
         return ""
     if figure.too_few:
         return "too few cases"
-    return ("reached" if figure.reached else "MISSED") + ("" if figure.sure else ", not sure")
+    if figure.reached:
+        return "reached" if figure.sure else "reached, not sure"
+    return "MISSED" if figure.sure else "not reached, not sure"
 
 
 def _mechanisms(study: Study) -> Any:

@@ -109,8 +109,8 @@ def _sizes(found: Explained, law: Law) -> Mapping[str, Estimate]:
 
 def _doubt(found: Explained, silenced: Sequence[Law]) -> str:
     if silenced:
-        names = " and ".join(law.name for law in silenced)
-        return f"{names} would fit, but does not foretell untouched launches any better"
+        names, does = " and ".join(law.name for law in silenced), "does" if len(silenced) == 1 else "do"
+        return f"{names} would fit, but {does} not foretell untouched launches any better"
     if found.doubtful is None:
         return ""
     return f"{found.doubtful.name} would fit, but what asks for it is in too few launches to tell it from an accident"

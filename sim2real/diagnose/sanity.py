@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from sim2real.diagnose.clocks import leaps
+from sim2real.diagnose.plain_words import counted
 from sim2real.diagnose.stated import assumptions
 from sim2real.recording import POSITIONS, Recording, Stream
 
@@ -51,7 +52,9 @@ def notes(recordings: Sequence[Recording]) -> tuple[str, ...]:
         for name, stream in _rows(one).items():
             pauses = int((np.diff(stream.t) > PAUSE).sum()) if name in POSITIONS else 0
             if pauses:
-                found.append(f"{one.name}: {name}.csv has {pauses} pauses of more than {PAUSE:g} s and is cut there")
+                found.append(
+                    f"{one.name}: {name}.csv has {counted(pauses, 'pause', 'pauses')} of more than {PAUSE:g} s and is cut there"
+                )
     return (*found, *assumptions(recordings))
 
 

@@ -35,7 +35,8 @@ def diagnose_cases(
     what has been diagnosed is not asked again.
     """
     kept = folder / into
-    kept.mkdir(parents=True, exist_ok=True)
+    if labels:
+        kept.mkdir(parents=True, exist_ok=True)
     waiting = [label for label in labels if read_answer(kept, label).get("diagnosis") is None]
     done = len(labels) - len(waiting)
     progress(done, len(labels))

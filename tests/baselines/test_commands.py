@@ -29,7 +29,18 @@ def test_match_as_json_says_what_was_played(capsys) -> None:
     assert call(match, *words) == 0
     text = capsys.readouterr().out
     found = json.loads(text)
-    keys = ["variant", "seed", "players", "games", "wins", "draws", "goals", "decisive_win_rate"]
+    keys = [
+        "variant",
+        "seed",
+        "parameters",
+        "effects",
+        "players",
+        "games",
+        "wins",
+        "draws",
+        "goals",
+        "decisive_win_rate",
+    ]
     assert list(found) == keys and list(found["decisive_win_rate"]) == ["value", "low", "high"]
     result = play("defence-v0", "random", "still", 9, 4)
     assert (found["variant"], found["seed"], found["players"]) == ("puckpilot/defence-v0", 4, ["random", "still"])

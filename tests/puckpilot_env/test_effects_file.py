@@ -53,6 +53,7 @@ def test_a_file_is_told_in_lines(tmp_path: Path) -> None:
         "in place of the defaults: friction 0.09",
         "not switched on: clock_drift of the sensing",
     ]
+    assert "in place of the defaults: friction 0.09" not in described(write(tmp_path, GOOD), apart_from=["friction"])
     assert described(write(tmp_path, 'format = "puckpilot-effects/1"')) == ["no effect is on"]
 
 
@@ -102,6 +103,8 @@ def test_a_mapping_is_as_strict() -> None:
         effect_values({"tilt": {"tilt_x": 0.1}})
     with pytest.raises(ValueError, match=r"^parameter 'tilt_x' is 5; expected a number in \[-0.2, 0.2\] m/s\^2$"):
         effect_values({"table_tilt": {"tilt_x": 5}})
+    with pytest.raises(ValueError, match=r"^effects.table_tilt has no numbers; expected some of tilt_x, tilt_y$"):
+        effect_values({"table_tilt": {}})
 
 
 @pytest.mark.parametrize(

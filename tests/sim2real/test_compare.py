@@ -95,7 +95,7 @@ def test_missing_rows_are_told(tmp_path, capsys):
     write_recording(tmp_path / "gap", Recording("gap", META, Stream(columns)))
     assert command(str(tmp_path / "gap"), "--out", str(tmp_path / "o")) == 0
     told = [line for line in capsys.readouterr().out.splitlines() if line.startswith("note: ")]
-    assert "note: gap: frames.csv has 1 pauses of more than 0.5 s and is cut there" in told
+    assert "note: gap: frames.csv has 1 pause of more than 0.5 s and is cut there" in told
 
 
 def test_prints_one_json_object_and_draws(tmp_path, capsys):

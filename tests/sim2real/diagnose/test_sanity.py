@@ -153,7 +153,7 @@ def test_pauses_are_noted(tilted, tmp_path, capsys):
     """A camera that was off for a while: what it saw before and after is diagnosed."""
     paused = _change(tilted, tmp_path / "paused", "frames.csv", lambda lines: lines[:2000] + lines[2300:])
     told = _diagnosed(tmp_path / "out", capsys, paused)
-    assert told["notes"] == ["paused: frames.csv has 1 pauses of more than 0.5 s and is cut there"]
+    assert told["notes"] == ["paused: frames.csv has 1 pause of more than 0.5 s and is cut there"]
     assert [one["mechanism"] for one in told["findings"]] == ["table_tilt"]
 
 
