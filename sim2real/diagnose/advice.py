@@ -25,7 +25,7 @@ def advice(problem: Problem, found: Explained, findings: Sequence[Finding], use:
         purpose = f"to tell {unclear.mechanism} from {' or '.join(unclear.also_possible)}"
     elif found.doubtful is not None:
         law, others = found.doubtful, list(found.model.names)
-        purpose = f"to make sure of {law.name}"
+        purpose = f"to see whether {law.name} is there"
     else:
         return ""
     return f"{purpose}, record {_pieces(problem, found, law, others, use)}{EFFECTS[law.name].excited_by}"

@@ -203,7 +203,7 @@ def _gantry(data: Cut, values: dict[str, float], progress: Progress) -> list[Acc
     apart = sum(k >= len(data.recordings) - data.heldout for k in runs)
     if apart == len(runs):
         return [_too_little("gantry")]
-    problem = problem.proved_on(apart, KEPT_APART)
+    problem = problem.proved_on(apart, KEPT_APART).ticked()
     tables = [Part(data.recordings[k].name, part) for k, part in zip(runs, problem.clusters_of_runs, strict=True)]
     alone = not any(len(times) for times in touched)
     return [_explain(problem, values, problem.proof, tables, alone)[1]]

@@ -63,6 +63,11 @@ class GantryProblem:
         apart = clusters[self.first[len(self.runs) - heldout] :] if heldout else clusters[every - 1 :: every]
         return GantryProblem(self.runs, self._common, apart)
 
+    def ticked(self) -> GantryProblem:
+        """The same with the ticks at which the motors heed plans, as what may be seen tells."""
+        tick = find_tick(self)
+        return GantryProblem([run.with_tick(tick) for run in self.runs], self._common, self.proof)
+
     def thinned(self, samples: int) -> GantryProblem:
         """The same with so many samples of the encoders in all: for fits that are to be fast rather than fine."""
         share = samples / sum(len(run.t) for run in self.runs)
@@ -145,10 +150,7 @@ def gantry_problem(
             reasons.insert(0 if recording.mallet is not None else len(reasons), str(why))
     if not runs:
         raise UnusableError(reasons[0])
-    every = list(runs.values())
-    ticking = next((run for run in every if run.orders.switch.any()), None)
-    tick = 0.0 if ticking is None else find_tick(GantryProblem([ticking], common))
-    return GantryProblem([run.with_tick(tick) for run in every], common), list(runs)
+    return GantryProblem(list(runs.values()), common), list(runs)
 
 
 def _step(name: str, value: float) -> float:

@@ -40,9 +40,10 @@ class Run:
         """The same with motors that heed a change at whole ticks [s] of their control loop."""
         return replace(self, orders=replace(self.orders, tick=tick))
 
-    def first_windows(self, count: int) -> Run:
-        """The first `count` windows alone, each a cluster."""
-        begin, end = self.windows.begin[:count], self.windows.end[:count]
+    def first_windows(self, count: int, clusters: np.ndarray) -> Run:
+        """The first `count` windows of these clusters alone, each a cluster."""
+        some = np.flatnonzero(np.isin(self.windows.cluster, clusters))[:count]
+        begin, end = self.windows.begin[some], self.windows.end[some]
         kept = {name: getattr(self, name)[: end[-1]] for name in ("t", "seen", "place", "speed", "noise")}
         return replace(self, windows=Windows(begin, end, np.arange(len(begin))), **kept)
 

@@ -31,8 +31,14 @@ SHARE = 0.3  # of that log, which a tick must explain to be believed
 
 
 def find_tick(problem: GantryProblem) -> float:
-    """The period [s] of the control loop that explains the switches of the first run best; 0: heeded at once."""
-    part = problem.of([problem.runs[0].first_windows(ENOUGH).thinned(SAMPLES)])
+    """The period [s] of the control loop that explains best the switches of the first run that has any and may be
+    seen; 0: heeded at once."""
+    seen = [np.intersect1d(problem.seen, here) - here[0] for here in problem.clusters_of_runs]
+    some = zip(problem.runs, seen, strict=True)
+    run, clusters = next((one for one in some if one[0].orders.switch.any() and len(one[1])), (None, seen[0]))
+    if run is None:
+        return 0.0
+    part = problem.of([run.first_windows(ENOUGH, clusters).thinned(SAMPLES)])
     for starts in WORLDS:
         law, left = min((_fitted(part, start, tuple(start)) for start in starts), key=lambda one: one[1])
         if left < EXPLAINED:

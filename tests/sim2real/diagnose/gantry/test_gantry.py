@@ -36,8 +36,8 @@ def recorded(folder: Path, law: Law, scenario: str = "gantry", seconds: float = 
 
 def diagnosed(recording: Recording) -> Account:
     values = parameters(recording)
-    problem, _ = gantry_problem([recording], values)
-    proof = np.arange(problem.clusters)[3::4]
+    problem = gantry_problem([recording], values)[0].proved_on(0, 4).ticked()
+    proof = problem.proof
     use = np.setdiff1d(np.arange(problem.clusters), proof)
     found = explain(problem, {name: values[name] for name in problem.base}, use)
     return account(problem, prove(problem, found, proof), use, proof)
@@ -104,7 +104,7 @@ def test_motors_that_heed_a_plan_at_the_next_tick_lack_nothing(
 
     monkeypatch.setattr(volts, "sorted_changes", ticked)
     recording = recorded(tmp_path, law)
-    assert gantry_problem([recording], parameters(recording))[0].runs[0].orders.tick == tick
+    assert gantry_problem([recording], parameters(recording))[0].ticked().runs[0].orders.tick == tick
     assert [one.mechanism for one in diagnosed(recording).findings] == names
 
 
