@@ -37,8 +37,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """0: the study is done; 1: it is, and a bar was surely missed or a case has no diagnosis. Raises ValueError, in one line,
-    for what cannot be run."""
+    """0: the study is done; 1: it is, and a bar was surely missed or a case has no diagnosis. Raises ValueError, in one
+    line, for what cannot be run."""
     from sim2real.study.making import Plan
     from sim2real.study.run import run_study
 

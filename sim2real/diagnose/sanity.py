@@ -52,9 +52,8 @@ def notes(recordings: Sequence[Recording]) -> tuple[str, ...]:
         for name, stream in _rows(one).items():
             pauses = int((np.diff(stream.t) > PAUSE).sum()) if name in POSITIONS else 0
             if pauses:
-                found.append(
-                    f"{one.name}: {name}.csv has {counted(pauses, 'pause', 'pauses')} of more than {PAUSE:g} s and is cut there"
-                )
+                many = counted(pauses, "pause", "pauses")
+                found.append(f"{one.name}: {name}.csv has {many} of more than {PAUSE:g} s and is cut there")
     return (*found, *assumptions(recordings))
 
 
