@@ -25,7 +25,8 @@ RADIUS, OFFSET, TURN = 0.001, 0.0005, 0.002  # m, m, rad: what a good calibratio
 CUSHION = (0.0003, 0.0005)  # m and rad: how straight and true a wall is
 TOLD = 1e-3  # the same of one of them, once they are
 AT_LEAST = 0.001  # of a size; a smaller error is not told
-WRONG_SIZE = 0.022  # of a size; a larger error is that of the size stated, not of the camera
+WRONG_SIZE = 0.022  # of a size; a larger error is that of the size stated, not of the camera,
+BENT = 0.05  # unless the map is bent in a way that no wrong size makes: then one larger than this
 STRETCHED = 0.75  # of what the lines are off by beyond noise, that a map must explain unless it is beyond doubt:
 BEYOND_DOUBT = 1e-12  # a stretch explains nearly all, but a few touches that are none may hide that
 KNOWN, ROUGHLY = 0.003, 0.01  # errors of a scale above which the lines do not tell it, or not even a wrong size
@@ -91,16 +92,25 @@ def fitted_map(found: list[Strike], g: Geometry) -> tuple[np.ndarray, np.ndarray
 
 def wrong_size(values: np.ndarray, std: np.ndarray, g: Geometry) -> str:
     """Why the size cannot be right: a large error, or any where the size is a mere guess; "" if it may be."""
+    most = BENT if _bent(values, std) else WRONG_SIZE
     for axis, (name, size) in enumerate((("length", g.length), ("width", g.width))):
         off, guessed = abs(values[axis]), name in g.assumed
-        surely = off > AT_LEAST + 3 * std[axis] if guessed else off > WRONG_SIZE
-        if (surely and std[axis] < KNOWN) or (off > WRONG_SIZE + 2 * std[axis] and std[axis] < ROUGHLY):
+        surely = off > AT_LEAST + 3 * std[axis] if guessed else off > most
+        if (surely and std[axis] < KNOWN) or (off > most + 2 * std[axis] and std[axis] < ROUGHLY):
             seen, how = (1 + values[axis]) * size, "guessed" if guessed else "stated"
             return (
                 f"the {how} {name} of {size:.3f} m is {off:.1%} off the {seen:.3f} m seen: "
                 "measure the table and state its size, or calibrate the camera"
             )
     return ""
+
+
+def _bent(values: np.ndarray, std: np.ndarray) -> bool:
+    """Whether a map is surely sheared, or stretched by different shares along both axes: who measures a table wrongly
+    errs in one size, or in both alike."""
+    x, y, _ = values
+    sure = np.abs(values) > AT_LEAST + 3 * std
+    return bool(sure[2] or (sure[0] and sure[1] and abs(x - y) > AT_LEAST + 3 * np.hypot(std[0], std[1])))
 
 
 def _design(walls: dict[str, Line], g: Geometry) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

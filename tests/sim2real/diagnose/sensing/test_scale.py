@@ -24,3 +24,17 @@ GUESSED = Geometry(2.0, 1.0, 0.32, 0.03, 0.05, frozenset({"length"}))
 def test_a_wrong_size_is_told_from_a_stretched_map_and_from_too_few_touches(table, stretch, error, told):
     said = wrong_size(np.array([stretch, 0.0, 0.0]), np.array([error, 0.0005, 0.0005]), table)
     assert said.startswith("the " + told) if told else said == ""
+
+
+@pytest.mark.parametrize(
+    "values, wrong",
+    [
+        ((0.03, 0.0, 0.0), True),  # one size
+        ((0.03, 0.03, 0.0), True),  # a tape that is too short
+        ((0.03, 0.01, 0.0), False),
+        ((0.03, 0.0, 0.01), False),  # sheared
+        ((0.06, 0.0, 0.01), True),
+    ],
+)
+def test_a_map_that_is_bent_is_no_wrong_size(values, wrong):
+    assert bool(wrong_size(np.array(values), np.full(3, 0.0005), STATED)) is wrong
