@@ -73,7 +73,7 @@ def _rms(problem: Problem, found: Explained, proof: np.ndarray) -> float:
     if found.unlisted is None:
         squares = float(np.sum(problem.residuals(found.law.values, (), proof).r ** 2))
     else:
-        squares = float(found.losses(found.theta, problem.units.of(proof)).sum())
+        squares = float(found.left(problem.units.of(proof)).sum())
     return float(np.sqrt(squares / max(float(problem.freedom[proof].sum()), 1.0)))
 
 

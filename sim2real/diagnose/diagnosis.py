@@ -235,7 +235,7 @@ def _explain(problem: Problem, law: Mapping[str, float], proof: np.ndarray, tabl
         problem, found = explain_bounces(problem, shipped, use, clear)
     else:
         found = explain(problem, shipped, use, clear)
-    proved = prove(problem, found, apart)
+    proved = prove(problem, found, apart, clear)
     told = account(problem, proved, use, apart)
     if told.lost and not told.next_recording:
         told = replace(told, next_recording=f"record more {MORE_OF[problem.regime]}")

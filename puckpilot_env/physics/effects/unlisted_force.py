@@ -15,6 +15,7 @@ brake and the baseline's friction together a negative sum is none, but for a bra
 | 9 | brake and side force by heading | 8 of the brake, 8 of the side force: cos h, sin h, ... cos 4 h, sin 4 h |
 | 10 | push by time | first and last of 20 even knots [s], 20 values along x, 20 along y |
 | 11 | brake by time | first and last of 20 even knots [s], 20 values |
+| 12 | brake by a wave in time | period [s], and the amounts of its sine and its cosine |
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from puckpilot_env.kernel import kernel
 from puckpilot_env.physics.curves import cosines, over_even_knots, over_knots
 
 PUSH_BY_PLACE, BRAKE_BY_PLACE, PUSH_BY_X, PUSH_BY_Y, BRAKE_BY_X, BRAKE_BY_Y = range(1, 7)
-BRAKE_BY_SPEED, SIDE_BY_SPEED, BY_HEADING, PUSH_BY_TIME, BRAKE_BY_TIME = range(7, 12)
+BRAKE_BY_SPEED, SIDE_BY_SPEED, BY_HEADING, PUSH_BY_TIME, BRAKE_BY_TIME, BRAKE_BY_WAVE = range(7, 13)
 NUMBERS = 48
 WAVES_X, WAVES_Y, RIPPLES, HARMONICS = 6, 4, 14, 4
 SPEED_KNOTS, TIME_KNOTS = 10, 20
@@ -37,7 +38,7 @@ EFFECT = Effect(
     law="a = a smooth function of place, speed, heading or time",
     rows={
         "kind": Parameter(
-            "unlisted_kind", "1", 0.0, 0.0, 11.0, "what the force is a function of; 0: no force", _SOURCE
+            "unlisted_kind", "1", 0.0, 0.0, 12.0, "what the force is a function of; 0: no force", _SOURCE
         ),
         **{
             f"c{k:02}": Parameter(f"unlisted_{k:02}", "SI", 0.0, -1e5, 1e5, f"number {k} of its table", _SOURCE)
@@ -104,6 +105,9 @@ def friction(p, t, x, y, dx, dy, friction):
     if kind == BRAKE_BY_TIME:
         share = (t - p.unlisted_00) / (p.unlisted_01 - p.unlisted_00)
         return friction + over_even_knots(share, numbers_2_to_21(p))
+    if kind == BRAKE_BY_WAVE and p.unlisted_00 > 0.0:
+        turns = 2.0 * math.pi * t / p.unlisted_00
+        return friction + p.unlisted_01 * math.sin(turns) + p.unlisted_02 * math.cos(turns)
     way = math.sqrt(dx * dx + dy * dy)
     if kind == BY_HEADING and way > 0.0:
         return friction + over_heading(dx / way, dy / way, numbers_0_to_7(p))

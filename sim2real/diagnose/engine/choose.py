@@ -241,14 +241,13 @@ class Chooser:
         weight = self.grams.g[np.ix_(self.use, columns[at], columns[at])].sum(axis=0)
         return min(known) < UNKNOWN * len(law.columns) or float(halves[0] @ weight @ halves[1]) > 0.0
 
-    def add(self, model: Model, laws: Sequence[Law], most: int) -> tuple[Model, list[Gain]]:
+    def add(self, model: Model, laws: Sequence[Law], most: int) -> Model:
         """Add the law that foretells best, again and again, whether it is sure or not: `prune` decides on all together.
-        Also returns the gains of each law alone, best first.
 
         Where two laws together foretell much better than one after the other, those two come first: either alone may
         explain little of what both do.
         """
-        whole, first = self._added(model, laws, most)
+        whole = self.grown(model, laws, most)
         pairs = [
             model.plus(one, np.inf).plus(other, np.inf)
             for one, other in combinations(laws, 2)
@@ -256,21 +255,24 @@ class Chooser:
         ]
         best = min(pairs, key=lambda pair: float(self.foretold(pair).sum()), default=None)
         if best is None or most < len(best.laws):
-            return whole, first
-        together = self._added(best, laws, most)[0]
+            return whole
+        together = self.grown(best, laws, most)
         better = float((self.foretold(whole) - self.foretold(together)).sum())
-        return (together if better > LEAST_FORETOLD else whole), first
+        return together if better > LEAST_FORETOLD else whole
 
-    def _added(self, model: Model, laws: Sequence[Law], most: int) -> tuple[Model, list[Gain]]:
-        first: list[Gain] = []
+    def grown(self, model: Model, laws: Sequence[Law], most: int) -> Model:
+        """A model with the law that foretells best added, again and again, until it has `most`."""
         while len(model.laws) < most:
-            taken = {law.name for law in model.laws}
-            gains = sorted((self.gain(model, law) for law in laws if law.name not in taken), key=lambda one: -one.total)
-            first = first or gains
+            gains = self.gains(model, laws)
             if not gains or gains[0].total < LEAST_FORETOLD:
                 break
             model = model.plus(gains[0].law, gains[0].spread)
-        return model, first
+        return model
+
+    def gains(self, model: Model, laws: Sequence[Law]) -> list[Gain]:
+        """What each law that a model has not adds to it, best first."""
+        taken = {law.name for law in model.laws}
+        return sorted((self.gain(model, law) for law in laws if law.name not in taken), key=lambda one: -one.total)
 
     def prune(self, model: Model) -> Model:
         """Take out laws that the others make needless, or that are not sure beside them, the weakest first."""

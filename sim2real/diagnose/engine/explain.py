@@ -98,6 +98,18 @@ class Explained:
         index, _ = Model(self.law.free, (self.unlisted,), (1.0,)).columns(self.columns.grams)
         return gram.losses(self.columns.grams, index, theta, parts)
 
+    def left(self, parts: np.ndarray) -> np.ndarray:
+        """Sums of squares (parts,) that the law with its family leaves of units. Numbers that each launch has of its
+        own, which none of the others foretells, are fitted to these very units."""
+        assert self.unlisted is not None
+        theta = self.theta
+        if self.unlisted.each_launch:
+            grams, n = self.columns.grams, len(self.law.free)
+            stepped = gram.moved(grams, grams.columns(self.law.free), theta[:n])
+            own = gram.solve(stepped, grams.columns(self.unlisted.columns), parts)
+            theta = np.concatenate([theta[:n], own])
+        return self.losses(theta, parts)
+
     def switched(self) -> Mapping[str, float]:
         """The simulator's parameters that switch the smooth law on; empty where it has no place for it."""
         if self.unlisted is None:
@@ -120,14 +132,14 @@ def explain(
     laws = [*screen.listed, *screen.families]
     beyond = beyond or dispersion(screen.grams, problem.units, problem.base, laws, use)
     chooser = Chooser(screen.grams, problem.units, use, beyond)
-    model, gains = chooser.add(Model(problem.base), screen.listed, MOST_LISTED)
-    listed, law = standing(problem, baseline, chooser.prune(model), screen, use)
+    model = chooser.prune(chooser.add(Model(problem.base), screen.listed, MOST_LISTED))
+    listed, law = standing(problem, baseline, model, screen, use)
     way = completed(problem, baseline, law, listed, chooser, screen, use) if clear else Way(listed, law, None, np.inf)
     model, law, smooth = way.model, way.law, way.smooth
     calm = use if smooth else calm_clusters(problem, law, use)
     if len(calm) < len(use):
         law = refit(problem, baseline, [one for one in model.laws if not one.family], screen, calm)
-    hints = (_beside(chooser, model, screen) if model.laws else gains) if clear else []
+    hints = chooser.gains(model, screen.listed) if clear else []
     return Explained(
         baseline=baseline,
         model=model,
@@ -155,6 +167,7 @@ def without(problem: Problem, found: Explained, law: Law) -> Explained:
         fitted = fit(problem, values, [name for name in found.law.free if name not in gone], found.clusters)
     if found.unlisted is not None and not law.family:
         smooth = fit_smooth(problem, fitted, found.unlisted, found.clusters, found.dispersion)
+        model = model.minus(found.unlisted).plus(smooth.family, smooth.spread)
     spread = _covariance(problem, smooth, found.clusters)
     return replace(found, model=model, law=fitted, smooth=smooth, theta_covariance=spread)
 
@@ -167,12 +180,6 @@ def bare(found: Explained) -> Explained:
 
 def _covariance(problem: Problem, smooth: Smooth | None, use: np.ndarray) -> np.ndarray:
     return smooth.covariance(problem, use) if smooth else np.zeros((0, 0))
-
-
-def _beside(chooser: Chooser, model: Model, screen: Columns) -> list[Gain]:
-    """What each listed law would add to a model that has others."""
-    taken = {law.name for law in model.laws}
-    return [chooser.gain(model, law) for law in screen.listed if law.name not in taken]
 
 
 def _doubtful(chooser: Chooser, gains: Sequence[Gain]) -> Law | None:

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import eigh
 
 TINY = 1e-10  # of the greatest eigenvalue; smaller ones are rounding
 MOST_REWEIGHTED, SAME_WEIGHT = 8, 0.03  # rounds, and the share of a weight by which the last may change it
@@ -110,10 +111,19 @@ def solve_normal(g: np.ndarray, b: np.ndarray) -> np.ndarray:
     if not good.any():
         return theta
     unit = scale[good]
-    value, vector = np.linalg.eigh(g[np.ix_(good, good)] / unit[:, None] / unit)
+    value, vector = _eigen(g[np.ix_(good, good)] / unit[:, None] / unit)
     keep = value > TINY * value[-1]
     theta[good] = (vector[:, keep] @ ((vector[:, keep].T @ (b[good] / unit)) / value[keep])) / unit
     return theta
+
+
+def _eigen(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Eigenvalues, ascending, and vectors of a symmetric matrix. numpy's divide and conquer is fast, but was seen to
+    fail on a finite one (OpenBLAS 0.3.31); plain QR then does not."""
+    try:
+        return np.linalg.eigh(matrix)
+    except np.linalg.LinAlgError:
+        return eigh(matrix, driver="ev")
 
 
 def losses(grams: Grams, columns: np.ndarray, theta: np.ndarray, clusters: np.ndarray) -> np.ndarray:

@@ -27,10 +27,13 @@ class Proved:
     silenced: tuple[Law, ...]
 
 
-def prove(problem: Problem, found: Explained, proof: np.ndarray) -> Proved:
+def prove(problem: Problem, found: Explained, proof: np.ndarray, clear: bool = True) -> Proved:
     """Hold what was found against the clusters `proof`, and take out, the most harmful first, what they speak against;
-    where laws were taken out and most is left unexplained, the others stood in for something as well and go too."""
-    untouched, silenced = _Untouched(problem, proof, found.dispersion), []
+    where laws were taken out and most is left unexplained, the others stood in for something as well and go too.
+
+    clear: whether what the regime rests on is known; if not, what is not proved is not believed.
+    """
+    untouched, silenced = _Untouched(problem, proof, found.dispersion, clear), []
     every = found.model.laws
     while found.model.laws:
         others = {law.name: without(problem, found, law) for law in found.model.laws}
@@ -50,8 +53,8 @@ def prove(problem: Problem, found: Explained, proof: np.ndarray) -> Proved:
 class _Untouched:
     """Launches that no fit saw. Losses are soft (`gram.soft`): neither an odd launch nor an odd bounce decides."""
 
-    def __init__(self, problem: Problem, proof: np.ndarray, dispersion: float) -> None:
-        self._problem, self._proof, self._dispersion = problem, proof, dispersion
+    def __init__(self, problem: Problem, proof: np.ndarray, dispersion: float, clear: bool) -> None:
+        self._problem, self._proof, self._dispersion, self._clear = problem, proof, dispersion, clear
         rows = problem.residuals({}, (), proof)
         self._by_unit = rows.unit is not None
         self._part_of_row = rows.cluster if rows.unit is None else rows.unit
@@ -69,9 +72,9 @@ class _Untouched:
     def bear_out(self, found: Explained, other: Explained, laws: tuple[Law, ...]) -> bool:
         """Whether they speak for the `laws` that `found` has and the `other` has not, or at least not against them.
 
-        Of numbers for each launch they say nothing, nor of listed laws that they hardly feel. A family is a likeness
-        of the truth and may fail where no launch that it was fitted to ever was: if those prove it to each other,
-        untouched ones must be worse off together, by more than they scatter.
+        Of numbers for each launch they say nothing, nor of listed laws that they hardly feel, if all else is clear. A
+        family is a likeness of the truth and may fail where no launch that it was fitted to ever was: if those prove it
+        to each other, untouched ones must be worse off together, by more than they scatter.
         """
         if any(law.each_launch for law in laws):
             return True
@@ -79,7 +82,7 @@ class _Untouched:
         if any(law.family for law in laws):
             if len(gained) > 1 and found.chooser.proved(found.model):
                 return float(gained.sum()) >= -float(np.linalg.norm(gained))
-        elif found.unlisted is None and self._felt(found, other) < FELT:
+        elif self._clear and found.unlisted is None and self._felt(found, other) < FELT:
             return True
         beyond = float(self._left(other).sum() - self._freedom.sum() / self._dispersion)
         return float(gained.sum()) > max(BORNE * beyond, 0.0)
@@ -102,7 +105,7 @@ class _Untouched:
         if found.unlisted is None:
             return self._summed(self._rows(found) ** 2)
         units = self._problem.units.of(self._proof)
-        left = np.bincount(units, found.losses(found.theta, units), len(self._problem.units.cluster))
+        left = np.bincount(units, found.left(units), len(self._problem.units.cluster))
         if not self._by_unit:
             left = np.bincount(self._problem.units.cluster, left, self._problem.clusters)
         return left[self._parts]

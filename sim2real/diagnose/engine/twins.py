@@ -47,7 +47,7 @@ def twins(
 def _names(grams: Grams, units: Units, model: Model, laws: Sequence[Law], use: np.ndarray) -> bool:
     """Whether a search finds that something is missing."""
     chooser = Chooser(grams, units, use, dispersion(grams, units, model.base, laws, use))
-    return bool(chooser.prune(chooser.add(Model(model.base), laws, len(model.laws))[0]).laws)
+    return bool(chooser.prune(chooser.add(Model(model.base), laws, len(model.laws))).laws)
 
 
 def _tried(grams: Grams, units: Units, model: Model, use: np.ndarray, proof: np.ndarray) -> Iterator[float]:

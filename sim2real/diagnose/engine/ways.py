@@ -18,6 +18,7 @@ REMAINDER = 0.1  # share of what the listed laws foretell better that a law on t
 BEYOND = 1.0 / 3.0  # of what the listed laws leave beyond noise, that it must explain as well
 MOSTLY = 2.0 / 3.0  # of what a family alone explains; listed laws that explain as much are no stand-ins,
 FEW = 2  # unless there are more of them than one table may have
+MOST = 3  # laws, a family and others that are looked for beside it
 TRIED = 2  # families that foretell best, and as many that fit best, that are fitted by themselves
 
 
@@ -62,6 +63,7 @@ def completed(
             alone.append(_with_family(problem, Model(problem.base), baseline, gain, chooser, use))
     if not stands_by_itself(ways[0], alone, nothing):
         ways += alone
+        ways += _with_more(problem, baseline, gains, alone, chooser, screen, use)
     if rest is not None and listed.laws:
         ways.append(_with_family(problem, listed, law, rest, chooser, use))
         fewer = chooser.prune(listed.plus(rest.law, rest.spread)).minus(rest.law)
@@ -69,6 +71,22 @@ def completed(
             fewer, fitted = standing(problem, baseline, fewer, screen, use)
             ways.append(_with_family(problem, fewer, fitted, rest, chooser, use))
     return simplest(ways, nothing)
+
+
+def _with_more(
+    problem: Problem, baseline: Fit, gains: Sequence[Gain], alone: Sequence[Way], chooser: Chooser, screen: Columns, use
+) -> list[Way]:
+    """The family that explains most by itself with listed laws that show only beside it, where it leaves much."""
+    best = min(alone, key=lambda way: way.foretold, default=None)
+    nothing = float(chooser.foretold(Model(problem.base)).sum())
+    if best is None or best.smooth is None or best.foretold - chooser.noise < REMAINDER * (nothing - best.foretold):
+        return []
+    gain = next(gain for gain in gains if gain.law.name == best.smooth.family.name)
+    grown = chooser.prune(chooser.grown(Model(problem.base).plus(gain.law, gain.spread), screen.listed, MOST))
+    if gain.law not in grown.laws or len(grown.laws) == 1:
+        return []
+    listed, fitted = standing(problem, baseline, grown.minus(gain.law), screen, use)
+    return [_with_family(problem, listed, fitted, gain, chooser, use)]
 
 
 def stands_by_itself(listed: Way, alone: Sequence[Way], nothing: float) -> bool:

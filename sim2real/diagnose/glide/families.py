@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -17,6 +18,7 @@ UNIT = 0.1  # m/s^2, what a coefficient of 1 stands for
 RIPPLES = (14, 8)  # of cosines along one axis alone
 SPEED_KNOTS, HISTORY_KNOTS = 8, 6  # of forces that depend on the speed, and on the time since a contact
 SPIN_DECAY = 0.3  # 1/s, of a spin that is not seen
+PERIODS = 240.0 / np.arange(6.0, 49.0)  # s, of a single wave in time: a minute hardly tells neighbours apart
 SPIN = "side force by each launch's spin"
 
 
@@ -109,6 +111,12 @@ def _spins(motion: Motion) -> np.ndarray:
     return speed[:, None] * (motion.launch[:, None] == np.arange(motion.launch.max(initial=0.0) + 1.0))
 
 
+def _waving(period: float, motion: Motion) -> np.ndarray:
+    turns = 2.0 * np.pi * motion.t / period
+    return _times(np.stack([np.sin(turns), np.cos(turns)], axis=1), -motion.along)
+
+
+WAVES = {f"brake by a wave of {period:.4g} s": period for period in PERIODS}
 Family = Callable[[Motion], np.ndarray]
 FAMILIES: dict[str, tuple[str, Family]] = {
     "push by position": ("position", lambda m: _times(cosines(m), *_axes(m))),
@@ -125,6 +133,7 @@ FAMILIES: dict[str, tuple[str, Family]] = {
     "brake after a contact": ("history", lambda m: _times(_memory(m), -m.along)),
     SPIN: ("history", lambda m: _times(_spins(m), m.across)),
     "side force after a contact": ("history", lambda m: _times(_memory(m), m.across)),
+    **{name: ("time", partial(_waving, period)) for name, period in WAVES.items()},
 }
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -12,7 +12,7 @@ import numpy as np
 from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.choose import Law
-from sim2real.diagnose.glide.families import FAMILIES, SPIN, UNIT, Motion
+from sim2real.diagnose.glide.families import FAMILIES, SPIN, UNIT, WAVES, Motion
 from sim2real.diagnose.glide.switched import switched_on
 from sim2real.diagnose.problem import Columns, Residuals
 
@@ -61,7 +61,10 @@ def glide_columns(
         fresh = tuple(f"{name} {k}" for k in range(block.shape[1]))
         mechanism = "side_force" if name == SPIN else "unlisted"
         switch = partial(switched_on, name, motion)
-        families.append(Law(name, fresh, depends, switch=switch, mechanism=mechanism, each_launch=name == SPIN))
+        family = Law(name, fresh, depends, switch=switch, mechanism=mechanism, each_launch=name == SPIN)
+        if name in WAVES:
+            family = replace(family, searched=len(WAVES), among="brake by a wave in time")
+        families.append(family)
         names += families[-1].columns
         blocks.append(block)
     jacobian = np.concatenate(blocks, axis=1)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 
 import numpy as np
 
 from puckpilot_env.physics.effects import unlisted_force
 from puckpilot_env.physics.effects.unlisted_force import WAVES_X, WAVES_Y
-from sim2real.diagnose.glide.families import RIPPLES, UNIT, Motion, along_axis, over_place, time_knots
+from sim2real.diagnose.glide.families import RIPPLES, UNIT, WAVES, Motion, along_axis, over_place, time_knots
 from sim2real.diagnose.piecewise import stiff
 
 ROWS = unlisted_force.EFFECT.row_names
@@ -45,6 +46,10 @@ def _by_time(motion: Motion, theta: np.ndarray) -> np.ndarray:
     return np.concatenate([knots[[0, -1]], values.ravel()])
 
 
+def _wave(period: float, motion: Motion, theta: np.ndarray) -> np.ndarray:
+    return np.array([period, *UNIT * theta])
+
+
 # family: kind of the simulator's force, and its numbers from the family's coefficients
 SWITCHES: Mapping[str, tuple[int, Callable[[Motion, np.ndarray], np.ndarray]]] = {
     "push by position": (unlisted_force.PUSH_BY_PLACE, _over_place),
@@ -58,6 +63,7 @@ SWITCHES: Mapping[str, tuple[int, Callable[[Motion, np.ndarray], np.ndarray]]] =
     "force by heading": (unlisted_force.BY_HEADING, _as_they_are),
     "push by time": (unlisted_force.PUSH_BY_TIME, _by_time),
     "brake by time": (unlisted_force.BRAKE_BY_TIME, _by_time),
+    **{name: (unlisted_force.BRAKE_BY_WAVE, partial(_wave, period)) for name, period in WAVES.items()},
 }
 
 

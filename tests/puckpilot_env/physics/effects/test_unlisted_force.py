@@ -48,6 +48,10 @@ EXACT = {
         ),
         Law(tilt_drift_x=0.004, tilt_drift_y=-0.002, tilt_drift_from=25.0),
     ),
+    "breathing": (
+        numbers(unlisted_force.BRAKE_BY_WAVE, 10.0, 0.4 * FRICTION, 0.0),
+        Law(breathing=0.4, breathing_period=10.0),
+    ),
     "tilt": (numbers(unlisted_force.PUSH_BY_PLACE, 0.1, *[0.0] * 23, -0.05), Law(tilt_x=0.1, tilt_y=-0.05)),
 }
 NEAR = {

@@ -1,6 +1,7 @@
 """Sums by launch: the same least squares as numpy's on all rows at once."""
 
 import numpy as np
+import pytest
 from scipy.stats import t as student
 
 from sim2real.diagnose.engine import gram
@@ -21,6 +22,18 @@ def test_a_solution_is_that_of_least_squares_on_the_same_rows():
     rows = np.isin(cluster, some)
     expected = np.linalg.lstsq(jacobian[rows], -r[rows], rcond=None)[0]
     assert np.allclose(gram.solve(grams, np.arange(3), some), expected, rtol=1e-9)
+
+
+def test_a_matrix_on_which_numpy_does_not_converge_is_solved_all_the_same(monkeypatch: pytest.MonkeyPatch):
+    r, jacobian, cluster, _ = _problem()
+    grams = gram.make_grams("abc", r, jacobian, cluster, 8)
+
+    def failing(matrix):
+        raise np.linalg.LinAlgError("Eigenvalues did not converge")
+
+    monkeypatch.setattr(np.linalg, "eigh", failing)
+    expected = np.linalg.lstsq(jacobian, -r, rcond=None)[0]
+    assert np.allclose(gram.solve(grams, np.arange(3), np.arange(8)), expected, rtol=1e-9)
 
 
 def test_losses_are_the_sums_of_squares_of_each_cluster():

@@ -64,6 +64,16 @@ def test_with_a_law_silenced_and_most_left_the_others_go_as_well() -> None:
     assert said.found.law is said.found.baseline and said.without == {}
 
 
+def test_what_untouched_launches_do_not_feel_stands_only_where_all_else_is_clear() -> None:
+    problem = LinearProblem(TILT)
+    problem.feel_nothing(PROOF, ("tilt_x", "tilt_y"))
+    found = explain(problem, SHIPPED, USE)
+    stands = {
+        clear: [law.name for law in prove(problem, found, PROOF, clear).found.model.laws] for clear in (True, False)
+    }
+    assert stands == {True: ["table_tilt"], False: []}
+
+
 def test_what_is_fitted_without_a_law_is_found_without_it() -> None:
     _problem, said = proved({**TILT, "linear_drag": DRAG})
     rest = said.without["table_tilt"]
