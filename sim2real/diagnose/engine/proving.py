@@ -82,8 +82,8 @@ class _Untouched:
         if any(law.family for law in laws):
             if len(gained) > 1 and found.chooser.proved(found.model):
                 return float(gained.sum()) >= -float(np.linalg.norm(gained))
-        elif self._clear and found.unlisted is None and self._felt(found, other) < FELT:
-            return True
+        elif found.unlisted is None and self._felt(found, other) < FELT:
+            return self._clear
         beyond = float(self._left(other).sum() - self._freedom.sum() / self._dispersion)
         return float(gained.sum()) > max(BORNE * beyond, 0.0)
 

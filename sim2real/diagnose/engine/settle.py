@@ -15,7 +15,7 @@ from sim2real.diagnose.problem import Columns, Problem
 
 CLEAR = 1e-4  # chance at which the simulator's own numbers would be refused though they are right
 FAR_OFF = 2.0  # mean square residual beyond 1 of a typical launch, in units of the noise, that nothing explains
-REMAINDER = 0.1  # share of what the baseline leaves that must remain to be worth a law
+WORTHWHILE = 0.1  # share of what the baseline leaves that must remain to be worth a law
 AUDIBLE = 1.0  # of the noise, in variance, that must remain to be worth a law in any case
 MANY_ASTRAY = 0.25  # of the launches: more than accidents, such as touches that nobody saw, spoil
 NEAR, HALF_WAY = 0.3, 0.3  # the same beside listed laws, and as a share of what the baseline leaves
@@ -46,7 +46,7 @@ def nearly_all(problem: Problem, baseline: Fit, law: Fit, use: np.ndarray) -> bo
     """Whether listed laws explain so much that what they leave is not worth a law of its own: little of what there was,
     and little beside the noise, of all launches but one that may have met an accident."""
     noise = float(problem.freedom[use].sum())
-    enough = min(REMAINDER * (baseline.loss - noise), AUDIBLE * noise)
+    enough = min(WORTHWHILE * (baseline.loss - noise), AUDIBLE * noise)
     return law is not baseline and law.loss - noise < enough and _astray(problem, law, use).sum() <= 1
 
 

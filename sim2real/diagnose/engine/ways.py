@@ -9,7 +9,7 @@ import numpy as np
 
 from sim2real.diagnose.engine.choose import LEAST_FORETOLD, LEAST_SHARE, SPREADS, Chooser, Gain, Law, Model
 from sim2real.diagnose.engine.fit import Fit
-from sim2real.diagnose.engine.settle import far_off, nearly_all, standing
+from sim2real.diagnose.engine.settle import far_off, nearly_all, refit, standing
 from sim2real.diagnose.engine.smooth import Smooth, fit_smooth
 from sim2real.diagnose.problem import Columns, Problem
 
@@ -18,7 +18,7 @@ REMAINDER = 0.1  # share of what the listed laws foretell better that a law on t
 BEYOND = 1.0 / 3.0  # of what the listed laws leave beyond noise, that it must explain as well
 MOSTLY = 2.0 / 3.0  # of what a family alone explains; listed laws that explain as much are no stand-ins,
 FEW = 2  # unless there are more of them than one table may have
-MOST = 3  # laws, a family and others that are looked for beside it
+TOGETHER = 3  # laws, a family and others that are looked for beside it
 TRIED = 2  # families that foretell best, and as many that fit best, that are fitted by themselves
 
 
@@ -82,10 +82,11 @@ def _with_more(
     if best is None or best.smooth is None or best.foretold - chooser.noise < REMAINDER * (nothing - best.foretold):
         return []
     gain = next(gain for gain in gains if gain.law.name == best.smooth.family.name)
-    grown = chooser.prune(chooser.grown(Model(problem.base).plus(gain.law, gain.spread), screen.listed, MOST))
+    grown = chooser.prune(chooser.grown(Model(problem.base).plus(gain.law, gain.spread), screen.listed, TOGETHER))
     if gain.law not in grown.laws or len(grown.laws) == 1:
         return []
-    listed, fitted = standing(problem, baseline, grown.minus(gain.law), screen, use)
+    listed = grown.minus(gain.law)  # which may come to nothing without the family, so that none is dropped here
+    fitted = refit(problem, baseline, listed.laws, screen, use)
     return [_with_family(problem, listed, fitted, gain, chooser, use)]
 
 

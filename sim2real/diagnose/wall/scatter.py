@@ -34,17 +34,15 @@ def explain_bounces(
     found = explain(problem, shipped, use, clear)
     if found.unlisted is not None or _typical(problem, found, use) < ROUGH * MIDDLE[1]:
         return problem, found
-    rough = _settled(problem, shipped, problem.base, use)
-    anew = found
+    finer = _settled(problem, shipped, problem.base, use)
     for _ in range(AGAIN):
-        anew = explain(rough, shipped, use, clear, beyond=1.0)
+        rough, anew = finer, explain(finer, shipped, use, clear, beyond=1.0)
         if anew.unlisted is None:
             finer = _settled(problem, anew.law.values, anew.law.free, use)
         else:
             finer = problem.scattering(_scatter(problem, _foretold(problem, anew), use))
         if np.all(np.abs(finer.scatter - rough.scatter) < SETTLED):
             break
-        rough = finer
     return (rough, anew) if anew.model.laws else (problem, found)  # a scatter explains nothing by itself
 
 

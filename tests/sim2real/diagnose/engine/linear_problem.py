@@ -10,7 +10,7 @@ from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.problem import Columns, Residuals, Units
 
 LAUNCHES, PIECES, EACH = 20, 3, 20
-NAMES = ("friction", "drag", "tilt_x", "tilt_y", "linear_drag")
+NAMES = ("friction", "drag", "tilt_x", "tilt_y", "linear_drag", "spin")
 SHIPPED = {"friction": 0.125, "drag": 0.125}
 FELT = 50.0  # standard deviations of the noise that a parameter of 1 makes of a residual
 
@@ -22,7 +22,8 @@ def _switched(taken_at: np.ndarray, theta: np.ndarray) -> dict[str, float]:
 
 class LinearProblem:
     """`truth`: parameters by name, each a number or one for each launch; `noise`: in units of the sensor's;
-    `likeness`: whether the tilt is a family's, instead of a listed law's."""
+    `likeness`: whether the tilt is a family's, instead of a listed law's; `spinning`: whether there is a family that
+    has a number, "spin", of each launch's own."""
 
     regime = "glide"
     base: tuple[str, ...] = ("friction", "drag")
@@ -30,10 +31,15 @@ class LinearProblem:
     noise_m = 0.001
 
     def __init__(
-        self, truth: Mapping[str, float | np.ndarray], noise: float = 1.0, seed: int = 0, likeness: bool = False
+        self,
+        truth: Mapping[str, float | np.ndarray],
+        noise: float = 1.0,
+        seed: int = 0,
+        likeness: bool = False,
+        spinning: bool = False,
     ) -> None:
         rng = np.random.default_rng(seed)
-        self.clusters, self.truth, self.likeness = LAUNCHES, truth, likeness
+        self.clusters, self.truth, self.likeness, self.spinning = LAUNCHES, truth, likeness, spinning
         self.launch = np.repeat(np.arange(LAUNCHES), PIECES * EACH)
         self.felt = FELT * rng.normal(size=(len(self.launch), len(NAMES)))
         self.seen = noise * rng.normal(size=len(self.launch))
@@ -64,6 +70,14 @@ class LinearProblem:
         piece = np.repeat(np.arange(LAUNCHES * PIECES), EACH)
         grams = gram.make_grams(NAMES, exact.r, exact.jacobian, piece, LAUNCHES * PIECES)
         columns = ("tilt_x", "tilt_y")
+        if self.spinning:
+            own = exact.jacobian[:, NAMES.index("spin"), None] * (self.launch[:, None] == np.arange(LAUNCHES))
+            spins = tuple(f"spin {k}" for k in range(LAUNCHES))
+            grams = gram.make_grams(
+                (*NAMES, *spins), exact.r, np.hstack([exact.jacobian, own]), piece, LAUNCHES * PIECES
+            )
+            family = Law("side force by spin", spins, "history", mechanism="side_force", each_launch=True)
+            return Columns(grams, [Law("table_tilt", columns), Law("linear_drag", ("linear_drag",))], [family])
         if self.likeness:
             return Columns(
                 grams, [], [Law("push by place", columns, "position", switch=partial(_switched, self.launch))]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from sim2real.diagnose.account import account
 from sim2real.diagnose.engine.explain import bare, explain
 from sim2real.diagnose.engine.proving import Proved, prove
 from tests.sim2real.diagnose.engine.linear_problem import LAUNCHES, SHIPPED, LinearProblem
@@ -84,3 +85,17 @@ def test_what_is_fitted_without_a_law_is_found_without_it() -> None:
         bare(said.found).law.values
         == explain(LinearProblem({**TILT, "linear_drag": DRAG}), SHIPPED, USE).baseline.values
     )
+
+
+def test_a_law_shows_beside_numbers_that_each_launch_has_of_its_own() -> None:
+    """Spins hide a tilt until they are told; untouched launches, whose spins nobody told, prove the tilt by theirs."""
+    spins = 2.0 * np.random.default_rng(3).normal(size=LAUNCHES)
+    problem = LinearProblem({**TILT, "spin": spins}, spinning=True)
+    found = explain(problem, SHIPPED, USE)
+    said = prove(problem, found, PROOF)
+    assert {law.name for law in said.found.model.laws} == {"table_tilt", "side force by spin"} and not said.silenced
+    told = account(problem, said, USE, PROOF)
+    assert {one.mechanism: round(one.after, 1) for one in told.findings} == {"table_tilt": 1.0, "side_force": 1.0}
+    (tilt,) = (one for one in told.findings if one.mechanism == "table_tilt")
+    size = 50.0 * np.hypot(TILT["tilt_x"], TILT["tilt_y"])
+    assert tilt.before == pytest.approx(np.hypot(1.0, size), rel=0.1)

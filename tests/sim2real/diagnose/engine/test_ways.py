@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from sim2real.diagnose.engine.choose import LEAST_FORETOLD, LEAST_SHARE, Law, Model
+from sim2real.diagnose.engine.choose import LEAST_FORETOLD, LEAST_SHARE, Gain, Law, Model
 from sim2real.diagnose.engine.fit import Fit
-from sim2real.diagnose.engine.ways import Way, simplest, stands_by_itself
+from sim2real.diagnose.engine.ways import Way, _remainder, simplest, stands_by_itself
 
 NOTHING = 1000.0 * LEAST_FORETOLD / LEAST_SHARE  # loss of the baseline: the share of it decides, not the least
 LAW = Fit({}, (), np.zeros((0, 0)), 0.0, 9, 3, ())
@@ -45,6 +47,20 @@ def test_listed_laws_stand_where_they_are_few_and_explain_two_thirds(laws: int, 
     """A family alone explains all; listed laws leave a share `left`."""
     alone = [way(0.0, family=True), way(0.5 * NOTHING, family=True)]
     assert stands_by_itself(way(left * NOTHING, listed=laws), alone, NOTHING) is so
+
+
+@pytest.mark.parametrize(("gained", "kept"), [(320.0, False), (340.0, True)])
+def test_a_family_on_top_explains_a_third_of_what_listed_laws_leave(gained: float, kept: bool) -> None:
+    """They leave 1,200, of which 200 are noise, and explain 2,000: a tenth of that is not enough."""
+    listed, family = Law("law", ("row",)), Law("shape", ("knot",), "position")
+    gain = Gain(Model(()), family, gained, np.array([gained]), 1.0)
+    first = SimpleNamespace(foretold=lambda model: np.array([1200.0 if model.laws else 3200.0]))
+    second = SimpleNamespace(
+        gain=lambda model, law: gain, passes=lambda one: True, foretold=lambda model: np.array([1200.0]), noise=200.0
+    )
+    some = SimpleNamespace(families=[family])
+    found = _remainder(first, Model((), (listed,), (1.0,)), second, LAW, some)  # type: ignore[arg-type]
+    assert (found is gain) is kept
 
 
 def test_no_listed_law_stands_for_nothing() -> None:
