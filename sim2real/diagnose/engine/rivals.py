@@ -31,15 +31,19 @@ def compare(chooser: Chooser, model: Model, law: Law, screen: Columns) -> tuple[
         if other.name not in rivals or loss < rivals[other.name].loss:
             whole = float(chooser.foretold(without).sum() - best.sum())
             more = len(other.columns) - len(law.columns)
-            rivals[other.name] = Rival(other.name, loss, _why(gain, loss, whole, more))
+            freer = bool(other.family) and not law.family
+            rivals[other.name] = Rival(other.name, loss, _why(gain, loss, whole, more, freer))
     ordered = sorted(rivals.values(), key=lambda rival: rival.loss)
     return tuple(dict.fromkeys(also)), tuple(ordered)
 
 
-def _why(gain: Gain, loss: float, whole: float, more: int) -> str:
-    """Why a rival lost by `loss` of the `whole` that the winner foretells better; it has `more` numbers."""
+def _why(gain: Gain, loss: float, whole: float, more: int, freer: bool) -> str:
+    """Why a rival lost by `loss` of the `whole` that the winner foretells better; it has `more` numbers, and may be
+    `freer`, of any shape, where the winner has a name."""
     if gain.total <= 0.0:
         return "foretells held-out pieces no better than the baseline"
+    if loss < AMBIGUOUS and freer:
+        return "as good, but of any shape: the law that has a name says more"
     if loss < AMBIGUOUS:
         return "as good: this recording cannot tell the two apart"
     share = max(1.0 - loss / whole, 0.0)

@@ -133,4 +133,7 @@ def test_columns_that_are_one_are_both_possible():
     model = BASE.plus(LAWS[0], np.inf)
     also, rivals = compare(chooser, model, LAWS[0], Columns(twin, LAWS, []))
     assert also == ("patch",)
-    assert {rival.mechanism: rival.reason for rival in rivals}["patch"].startswith("as good")
+    assert {rival.mechanism: rival.reason for rival in rivals}["patch"].startswith("as good: this recording cannot")
+    shape = Law("shape", ("patch",), "position")
+    also, rivals = compare(chooser, model, LAWS[0], Columns(twin, LAWS[:1], [shape]))
+    assert also == () and rivals[0].reason.startswith("as good, but of any shape")
