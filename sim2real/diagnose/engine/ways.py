@@ -122,7 +122,7 @@ def _remainder(chooser: Chooser, model: Model, refitted: Chooser, law: Fit, colu
     if that is more than chance and worth a law."""
     gains = sorted((refitted.gain(Model(law.free), one) for one in columns.families), key=lambda gain: -gain.total)
     explained = float((chooser.foretold(Model(model.base)) - chooser.foretold(model)).sum())
-    left = float(refitted.foretold(Model(law.free)).sum()) - refitted.noise if model.laws else 0.0
+    left = refitted.fitted(Model(law.free)) - refitted.noise if model.laws else 0.0
     worth = max(REMAINDER * explained, BEYOND * left)
     return next((gain for gain in gains if refitted.passes(gain) and gain.total > worth), None)
 

@@ -56,7 +56,7 @@ def test_a_family_on_top_explains_a_third_of_what_listed_laws_leave(gained: floa
     gain = Gain(Model(()), family, gained, np.array([gained]), 1.0)
     first = SimpleNamespace(foretold=lambda model: np.array([1200.0 if model.laws else 3200.0]))
     second = SimpleNamespace(
-        gain=lambda model, law: gain, passes=lambda one: True, foretold=lambda model: np.array([1200.0]), noise=200.0
+        gain=lambda model, law: gain, passes=lambda one: True, fitted=lambda model: 1200.0, noise=200.0
     )
     some = SimpleNamespace(families=[family])
     found = _remainder(first, Model((), (listed,), (1.0,)), second, LAW, some)  # type: ignore[arg-type]
