@@ -42,7 +42,9 @@ def _why(gain: Gain, loss: float, whole: float, more: int, freer: bool) -> str:
     `freer`, of any shape, where the winner has a name."""
     if gain.total <= 0.0:
         return "foretells held-out pieces no better than the baseline"
-    if loss < AMBIGUOUS and freer:
+    if freer and loss < -AMBIGUOUS:
+        return "foretells more, being of any shape: the law that has a name does not explain all"
+    if freer and loss < AMBIGUOUS:
         return "as good, but of any shape: the law that has a name says more"
     if loss < AMBIGUOUS:
         return "as good: this recording cannot tell the two apart"

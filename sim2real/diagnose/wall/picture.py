@@ -108,8 +108,8 @@ def _curve(problem: WallProblem, found: Explained, view: View, formula: Formula 
     d, at = problem.data, view.component
     going = speeds(d)[:, at]
     use = np.isfinite(view.coordinate) & (np.abs(going) > SLOWEST)
-    if found.final.values.get("wall_mu", 0.0) > 0.0:
-        use &= ~d.lost  # of a puck whose spin is unknown
+    if found.final.values.get("wall_mu", 0.0) > 0.0 and (use & ~d.lost).any():
+        use &= ~d.lost  # of pucks whose spin is known, if there are any
     safe = np.where(use, going, np.nan)
     law, columns, spread = _kept(problem, found, at, safe)
     seen, std = d.split(d.after)[:, at] / safe, _std(problem)[:, at] / np.abs(safe)
