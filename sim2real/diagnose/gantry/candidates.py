@@ -38,7 +38,7 @@ SAMPLES = 3000  # for the fits of each effect; the chosen law is fitted anew to 
 STEPS = tuple(0.125 * k for k in range(-8, 9))  # ticks, about a delay found by derivatives, at which it is tried
 MOST = 3  # effects on top of each other
 LITTLE_LEFT = 1.1  # mean square in units of the noise, at which nothing more is looked for
-MUCH_LEFT = 3.0  # mean square at which the effects found must at least explain the share SHARE of what was left before
+MUCH_LEFT = 2.0  # mean square at which the effects found must at least explain the share SHARE of what was left before
 SHARE = 0.9  # of what was left before
 LEAST_SHARE = 0.3  # of what was left before, that the first effect must explain; one on top of others: SHARE
 SURE = 3.0  # standard deviations that an effect's size is from none
@@ -93,8 +93,8 @@ def candidates(problem: GantryProblem, values: Mapping[str, float]) -> list[Cand
         before = _all(problem, now.law)
         found += [Candidate(name, chain, one.law, _all(problem, one.law) - before) for name, one in fits.items()]
         chain, now = (*chain, best), fits[best]
-    unexplained = now.law.loss - freedom > (1.0 - SHARE) * (base.law.loss - freedom)
-    return [] if now.law.loss > MUCH_LEFT * freedom and unexplained else found
+    before, left = (_mean_square(problem, one.law) for one in (base, now))  # of all samples: lost motion is in reversals
+    return [] if left > MUCH_LEFT and left - 1.0 > (1.0 - SHARE) * (before - 1.0) else found
 
 
 def stands(problem: GantryProblem, without: Fit, law: Fit, name: str) -> bool:
@@ -141,6 +141,12 @@ def _delay_in_steps(problem: GantryProblem, law: Fit) -> Fit:
 def _std(law: Fit, row: str) -> float:
     k = law.free.index(row)
     return float(np.sqrt(law.covariance[k, k]))
+
+
+def _mean_square(problem: GantryProblem, law: Fit) -> float:
+    """Mean square residual of what may be seen, in units of the noise."""
+    left = problem.residuals(law.values, (), problem.seen).r
+    return float(left @ left) / float(problem.freedom[problem.seen].sum())
 
 
 def _all(problem: GantryProblem, law: Fit) -> np.ndarray:
