@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -40,7 +40,7 @@ def account(problem: Problem, proved: Proved, use: np.ndarray, proof: np.ndarray
         Proof(problem.noise_m * before, problem.noise_m * after, problem.noise_m, len(proof)),
         undetermined=LOST if lost else "",
         next_recording=advice(problem, found, findings, use),
-        doubt=_doubt(found, proved.silenced),
+        doubt=_doubt(proved),
         lost=lost,
     )
 
@@ -100,17 +100,18 @@ def _unlisted(problem: Problem, found: Explained, law: Law, before: float, after
 def _sizes(found: Explained, law: Law) -> Mapping[str, Estimate]:
     """The coefficients of a smooth law with their intervals."""
     near = reach_of_launches(found.law.clusters) * np.sqrt(np.diag(found.theta_covariance))
-    k = len(law.columns)
     return {
         f"c{i}": Estimate(float(value), float(value - half), float(value + half), "1")
-        for i, (value, half) in enumerate(zip(found.theta[-k:], near[-k:], strict=True))
+        for i, (value, half) in enumerate(zip(found.coefficients, near[-len(law.columns) :], strict=True))
     }
 
 
-def _doubt(found: Explained, silenced: Sequence[Law]) -> str:
-    if silenced:
-        names, does = " and ".join(law.name for law in silenced), "does" if len(silenced) == 1 else "do"
-        return f"{names} would fit, but {does} not foretell untouched launches any better"
+def _doubt(proved: Proved) -> str:
+    found = proved.found
+    if proved.silenced:
+        names, others = (" and ".join(law.name for law in laws) for laws in (proved.silenced, proved.others))
+        beside = f"; beside that, {others} leaves most unexplained" if others else ""
+        return f"{names} would fit, but untouched launches do not bear it out{beside}"
     if found.doubtful is None:
         return ""
     return f"{found.doubtful.name} would fit, but what asks for it is in too few launches to tell it from an accident"

@@ -81,7 +81,8 @@ def _families(problem: ContactProblem, values, now: np.ndarray, families: Famili
     laws = []
     for name, (depends, shape) in families.items():
         for component, axes in COMPONENTS.items():
-            moved = -problem.whitened(_impulses(problem.data, shape(problem.data), axes, problem.each))
+            impulses = _impulses(problem.data, shape(problem.data), axes, problem.each)
+            moved = -problem.whitened(problem.with_recoil(values, impulses))
             block = problem.allowing(values, now, moved)
             label = f"{owner}{component} by {name}"
             law = Law(label, tuple(f"{label} {k}" for k in range(block.shape[1])), depends)

@@ -60,6 +60,11 @@ class ContactProblem(ABC, Generic[C]):
         now: what the law foretells, as `predicted` gives it.
         """
 
+    def with_recoil(self, values: Mapping[str, float], impulses: np.ndarray) -> np.ndarray:
+        """Changes of what `predicted` gives (n, each, k), of which those of the puck's velocity are known, with all
+        that comes with them."""
+        return impulses
+
     def residuals(self, values: Mapping[str, float], free: Sequence[str], clusters: np.ndarray) -> Residuals:
         """See `Problem.residuals`: velocities after each contact, seen less foretold."""
         now = self.predicted(values)

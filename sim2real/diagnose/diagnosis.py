@@ -1,4 +1,4 @@
-"""Recordings in, a diagnosis out: each regime explained in turn, the glides first, since hits are told by them."""
+"""Recordings in, a diagnosis out: each regime explain_regime in turn, the glides first, since hits are told by them."""
 
 from __future__ import annotations
 
@@ -7,27 +7,24 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from sim2real.diagnose.account import account
-from sim2real.diagnose.agreement import Part, check_agreement, parts_of
+from sim2real.diagnose.agreement import Part, parts_of
 from sim2real.diagnose.apart import KEPT_APART, Launches, glides_of, keep_apart
 from sim2real.diagnose.contact_data import join as join_contacts
 from sim2real.diagnose.contact_data import known_apart
 from sim2real.diagnose.contacts import geometry
 from sim2real.diagnose.encoders import read_encoders
-from sim2real.diagnose.engine.explain import Explained, explain
+from sim2real.diagnose.engine.explain import Explained
 from sim2real.diagnose.engine.fit import given
-from sim2real.diagnose.engine.proving import prove
+from sim2real.diagnose.explaining import explain_regime, judged, too_little
 from sim2real.diagnose.finding import Account, Finding, Proof, Sight
 from sim2real.diagnose.gantry.problem import gantry_problem
 from sim2real.diagnose.gantry.run import UnusableError
 from sim2real.diagnose.glide.data import join
 from sim2real.diagnose.glide.problem import GlideProblem, States
-from sim2real.diagnose.illustrate import illustrated
 from sim2real.diagnose.impacts import Impact, find_impacts
 from sim2real.diagnose.mallet.data import Blows, blows
 from sim2real.diagnose.mallet.problem import MalletProblem
 from sim2real.diagnose.pieces import Pieces, cut
-from sim2real.diagnose.problem import Problem
 from sim2real.diagnose.proof import pooled
 from sim2real.diagnose.sanity import UndeterminedError, check_usable, notes
 from sim2real.diagnose.sensing.account import sense
@@ -37,19 +34,8 @@ from sim2real.diagnose.stated import together
 from sim2real.diagnose.stretch import without_stretch
 from sim2real.diagnose.wall.data import bounces
 from sim2real.diagnose.wall.problem import WallProblem
-from sim2real.diagnose.wall.scatter import explain_bounces
 from sim2real.nominal import parameters, stated_sizes
 from sim2real.recording import Recording
-
-FEWEST_LAUNCHES, FEWEST_RESIDUALS = 4, 8  # of all recordings together: with fewer, nothing is said of a regime
-TOO_ROUGH = "it rests on the glides, whose law is not known well enough"
-TOO_LITTLE = "too little data"
-MORE_OF = {
-    "glide": "launches of the puck, twenty or more in all directions and from slow to fast",
-    "wall": "bounces off all four walls, thirty or more, slow and fast, steep and flat",
-    "mallet": "blows of the robot's mallet, thirty or more, some of them with the mallet at rest",
-    "gantry": "plans of the gantry, a minute or more over its whole area",
-}
 
 Progress = Callable[[str, float], None]
 
@@ -168,26 +154,27 @@ def _puck(data: Cut, sights: Sequence[Sight], values: dict[str, float], progress
     progress("glides", 0.2)
     parts = [glides_of(one, pieces) for one, pieces in zip(data.recordings, data.pieces, strict=True)]
     if not sum(part.glides for part in parts):
-        yield _too_little("glide")
+        yield too_little("glide")
         return
     glides = GlideProblem(join(parts), values)
     proof = data.launches.clusters_apart(data.recordings, parts)
     tables = parts_of(glides.data, [one.name for one in data.recordings])
     law = dict(values)
-    found, told = _explain(glides, law, proof, tables)
+    found, told, clear = explain_regime(glides, law, proof, tables)
     yield told
     states = glides.states(given(law)) if found is None else _states(glides, found)
     law |= {} if found is None else found.final.values
-    clear = found is None or (found.unlisted is None and not told.lost)
+    rests_on = (clear, clear and not told.lost)
     progress("bounces", 0.6)
     impacts = [find_impacts(pieces, glides, states, k) for k, pieces in enumerate(data.pieces)]
-    hits = known_apart(bounces([hit for some in impacts for hit in some], geometry(data.recordings[0])), proof)
-    yield judged(_explain(WallProblem(hits, glides.clusters, law), law, proof, tables, clear)[1], clear)
+    hits = known_apart(bounces([hit for some in impacts for hit in some], geometry(data.recordings[0]), proof), proof)
+    yield judged(explain_regime(WallProblem(hits, glides.clusters, law), law, proof, tables, *rests_on)[1], rests_on[1])
     progress("blows", 0.75)
     struck = _blows(data.recordings, impacts)
     if struck is not None:
         struck = known_apart(struck, proof)
-        yield judged(_explain(MalletProblem(struck, glides.clusters, law), law, proof, tables, clear)[1], clear)
+        blows_told = explain_regime(MalletProblem(struck, glides.clusters, law), law, proof, tables, *rests_on)[1]
+        yield judged(blows_told, rests_on[1])
 
 
 def _gantry(data: Cut, values: dict[str, float], progress: Progress) -> list[Account]:
@@ -202,11 +189,11 @@ def _gantry(data: Cut, values: dict[str, float], progress: Progress) -> list[Acc
         return [Account("gantry", (), {}, False, None, str(why))]
     apart = sum(k >= len(data.recordings) - data.heldout for k in runs)
     if apart == len(runs):
-        return [_too_little("gantry")]
+        return [too_little("gantry")]
     problem = problem.proved_on(apart, KEPT_APART).ticked()
     tables = [Part(data.recordings[k].name, part) for k, part in zip(runs, problem.clusters_of_runs, strict=True)]
     alone = not any(len(times) for times in touched)
-    return [_explain(problem, values, problem.proof, tables, alone)[1]]
+    return [explain_regime(problem, values, problem.proof, tables, alone, alone)[1]]
 
 
 def _states(glides: GlideProblem, found: Explained) -> States:
@@ -221,34 +208,3 @@ def _blows(recordings: Sequence[Recording], impacts: Sequence[list[Impact]]) -> 
     parts = [blows(some, encoders, g) for encoders, g, some in read if encoders is not None]
     parts = [part for part in parts if len(part)]
     return join_contacts(parts) if parts else None
-
-
-def _explain(problem: Problem, law: Mapping[str, float], proof: np.ndarray, tables: Sequence[Part], clear: bool = True):
-    """What stands of a problem (None where there is too little data), and its account; `clear` as there."""
-    live = np.flatnonzero(problem.freedom > 0)
-    use, apart = np.setdiff1d(live, proof), np.intersect1d(live, proof)
-    if len(use) + len(apart) < FEWEST_LAUNCHES or not len(apart) or problem.freedom[use].sum() < FEWEST_RESIDUALS:
-        return None, _too_little(problem.regime)
-    shipped = {name: law[name] for name in problem.base}
-    check_agreement(problem, shipped, tables)
-    if isinstance(problem, WallProblem):
-        problem, found = explain_bounces(problem, shipped, use, clear)
-    else:
-        found = explain(problem, shipped, use, clear)
-    proved = prove(problem, found, apart, clear)
-    told = account(problem, proved, use, apart)
-    if told.lost and not told.next_recording:
-        told = replace(told, next_recording=f"record more {MORE_OF[problem.regime]}")
-    return proved.found, illustrated(problem, proved.found, told, use)
-
-
-def judged(told: Account, clear: bool) -> Account:
-    """An account of contacts, but nothing is told by it that leaves much unexplained where the glides' law, by which
-    contacts are told, is not a `clear` one."""
-    if clear or not told.unexplained:
-        return told
-    return replace(told, findings=(), undetermined=TOO_ROUGH)
-
-
-def _too_little(regime: str) -> Account:
-    return Account(regime, (), {}, False, None, TOO_LITTLE, f"record more {MORE_OF[regime]}")

@@ -100,15 +100,17 @@ class Explained:
 
     def left(self, parts: np.ndarray) -> np.ndarray:
         """Sums of squares (parts,) that the law with its family leaves of units. Numbers that each launch has of its
-        own, which none of the others foretells, are fitted to these very units."""
+        own, which no other one foretells, are told by every second unit, and tried on those between."""
         assert self.unlisted is not None
-        theta = self.theta
-        if self.unlisted.each_launch:
-            grams, n = self.columns.grams, len(self.law.free)
-            stepped = gram.moved(grams, grams.columns(self.law.free), theta[:n])
-            own = gram.solve(stepped, grams.columns(self.unlisted.columns), parts)
-            theta = np.concatenate([theta[:n], own])
-        return self.losses(theta, parts)
+        if not self.unlisted.each_launch:
+            return self.losses(self.theta, parts)
+        grams, n = self.columns.grams, len(self.law.free)
+        stepped = gram.moved(grams, grams.columns(self.law.free), self.theta[:n])
+        left, odd = np.zeros(len(parts)), np.arange(len(parts)) % 2 == 1
+        for tried in (odd, ~odd):
+            own = gram.solve(stepped, grams.columns(self.unlisted.columns), parts[~tried])
+            left[tried] = self.losses(np.concatenate([self.theta[:n], own]), parts[tried])
+        return left
 
     def switched(self) -> Mapping[str, float]:
         """The simulator's parameters that switch the smooth law on; empty where it has no place for it."""
@@ -167,7 +169,7 @@ def without(problem: Problem, found: Explained, law: Law) -> Explained:
         fitted = fit(problem, values, [name for name in found.law.free if name not in gone], found.clusters)
     if found.unlisted is not None and not law.family:
         smooth = fit_smooth(problem, fitted, found.unlisted, found.clusters, found.dispersion)
-        model = model.minus(found.unlisted).plus(smooth.family, smooth.spread)
+        fitted, model = smooth.law, model.minus(found.unlisted).plus(smooth.family, smooth.spread)
     spread = _covariance(problem, smooth, found.clusters)
     return replace(found, model=model, law=fitted, smooth=smooth, theta_covariance=spread)
 

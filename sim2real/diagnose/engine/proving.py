@@ -19,22 +19,22 @@ FELT = 16.0  # square of what a law foretells differently, below which it is cha
 
 @dataclass(frozen=True)
 class Proved:
-    """What stands: `found` without the laws that were `silenced`; for each law of its model, by name, what is found
-    `without` it."""
+    """What stands: `found` without the laws that were `silenced`, and without `others`, which are not believed beside
+    them; for each law of its model, by name, what is found `without` it."""
 
     found: Explained
     without: dict[str, Explained]
-    silenced: tuple[Law, ...]
+    silenced: tuple[Law, ...] = ()
+    others: tuple[Law, ...] = ()
 
 
 def prove(problem: Problem, found: Explained, proof: np.ndarray, clear: bool = True) -> Proved:
     """Hold what was found against the clusters `proof`, and take out, the most harmful first, what they speak against;
     where laws were taken out and most is left unexplained, the others stood in for something as well and go too.
 
-    clear: whether what the regime rests on is known; if not, what is not proved is not believed.
+    clear: whether what the regime rests on is known and proved; if not, what is not proved is not believed.
     """
     untouched, silenced = _Untouched(problem, proof, found.dispersion, clear), []
-    every = found.model.laws
     while found.model.laws:
         others = {law.name: without(problem, found, law) for law in found.model.laws}
         against = [law for law in found.model.laws if not untouched.bear_out(found, others[law.name], (law,))]
@@ -44,9 +44,10 @@ def prove(problem: Problem, found: Explained, proof: np.ndarray, clear: bool = T
         found, silenced = others[worst.name], [*silenced, worst]
     if not found.model.laws:
         return Proved(found, {}, tuple(silenced))
-    refuted = not untouched.bear_out(found, bare(found), found.model.laws)
-    if refuted or (silenced and untouched.puzzled_by(found)):
-        return Proved(bare(found), {}, every)
+    if not untouched.bear_out(found, bare(found), found.model.laws):
+        return Proved(bare(found), {}, (*silenced, *found.model.laws))
+    if silenced and untouched.puzzled_by(found):
+        return Proved(bare(found), {}, tuple(silenced), found.model.laws)
     return Proved(found, others, tuple(silenced))
 
 

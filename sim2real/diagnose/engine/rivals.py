@@ -22,7 +22,7 @@ def compare(chooser: Chooser, model: Model, law: Law, screen: Columns) -> tuple[
     best = chooser.foretold(model)
     also, rivals = [], {}
     for other in (*screen.listed, *screen.families):
-        if other.name == law.name or other.name in {one.name for one in model.laws}:
+        if other.name in {one.name for one in model.laws} or (other.among and other.among == law.among):
             continue
         gain = chooser.gain(without, other)
         loss = float((chooser.foretold(without) - gain.foretold - best).sum())

@@ -22,7 +22,8 @@ def twins(
     grams: Grams, units: Units, model: Model, listed: Sequence[Law], use: np.ndarray, proof: np.ndarray
 ) -> dict[str, Twin]:
     """What twins of a recording say, by name: of the laws of `model`, fitted to the twins of the clusters `use` and
-    tried on those of `proof`; and of a search among the `listed` laws, and those of the model, for what they lack.
+    tried on those of `proof`; and of a search among the `listed` laws, and those of the model (a wave at the length
+    that was found), for what they lack.
 
     A null twin is the sensor's noise about the baseline. In a permutation twin the residuals of every piece keep their
     size, but their signs are drawn, piece by piece.

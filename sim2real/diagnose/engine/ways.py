@@ -47,7 +47,7 @@ def completed(
         return plain
     columns = screen
     if law is not baseline:
-        columns = tellable(problem.columns(law.values, law.free, None), problem, use)
+        columns = tellable(problem.columns(law.values, law.free, None), problem, use, law.free)
     refitted = Chooser(columns.grams, problem.units, use, chooser.dispersion)
     rest = _remainder(chooser, listed, refitted, law, columns)
     if rest is None and not far_off(problem, baseline, law, use):
@@ -127,16 +127,16 @@ def _remainder(chooser: Chooser, model: Model, refitted: Chooser, law: Fit, colu
     return next((gain for gain in gains if refitted.passes(gain) and gain.total > worth), None)
 
 
-def tellable(columns: Columns, problem: Problem, use: np.ndarray) -> Columns:
+def tellable(columns: Columns, problem: Problem, use: np.ndarray, base: Sequence[str] = ()) -> Columns:
     """The columns, with no families but those of which the clusters `use` can tell the shape; of those that are alike
-    but for a size, the one that fits best."""
+    but for a size, the one that fits best beside the parameters `base`, the problem's if none are given."""
     most = float(problem.freedom[use].sum()) / PER_COEFFICIENT
     chooser = Chooser(columns.grams, problem.units, use)
     found: dict[str, Law] = {}
     left: dict[str, float] = {}
     for law in columns.families:
         key = law.among or law.name
-        loss = chooser.fitted(Model(problem.base, (law,), (SPREADS[-1],))) if law.among else 0.0
+        loss = chooser.fitted(Model(tuple(base) or problem.base, (law,), (SPREADS[-1],))) if law.among else 0.0
         if len(law.columns) <= most and loss < left.get(key, np.inf):
             found[key], left[key] = law, loss
     return replace(columns, families=list(found.values()))

@@ -93,7 +93,9 @@ def candidates(problem: GantryProblem, values: Mapping[str, float]) -> list[Cand
         before = _all(problem, now.law)
         found += [Candidate(name, chain, one.law, _all(problem, one.law) - before) for name, one in fits.items()]
         chain, now = (*chain, best), fits[best]
-    before, left = (_mean_square(problem, one.law) for one in (base, now))  # of all samples: lost motion is in reversals
+    before, left = (
+        _mean_square(problem, one.law) for one in (base, now)
+    )  # of all samples: lost motion is in reversals
     return [] if left > MUCH_LEFT and left - 1.0 > (1.0 - SHARE) * (before - 1.0) else found
 
 

@@ -9,12 +9,13 @@ import numpy as np
 from sim2real.diagnose.gantry.encoder import encoder_noise
 from sim2real.diagnose.gantry.orders import Orders, from_commands, from_drive
 from sim2real.diagnose.gantry.response import axis_residuals
-from sim2real.diagnose.gantry.windows import WINDOW, Windows, cut_windows
+from sim2real.diagnose.gantry.windows import FEWEST, WINDOW, Windows, cut_windows
 from sim2real.recording import Recording
 
 FEWEST_WINDOWS = 12  # of WINDOW
 SMALLEST_TRAVEL = 0.01  # m of standard deviation
 ENOUGH_SAMPLES = 10_000  # of the encoders, evenly taken; more would cost time and not tell more
+SPARE = 1.5  # times the fewest samples of a window, that it keeps
 LATEST = 0.05  # s, after which no order that was not recorded is still obeyed
 SMOOTHED = 0.009  # s, over which the path is averaged for its speed
 START_COLUMNS = 3  # of a window and axis, taken out of its residuals
@@ -97,17 +98,23 @@ def read_run(recording: Recording, supply: float, breaks: np.ndarray) -> Run:
     t, p = mallet.t[usable], p[usable]
     lost = np.unique(orders.unknown)
     windows = cut_windows(t, lost)
-    if len(windows.begin) < FEWEST_WINDOWS:
-        seconds, expected = WINDOW * len(windows.begin), WINDOW * FEWEST_WINDOWS
-        raise UnusableError(f"mallet and orders overlap for {seconds:.1f} s, expected {expected:g} s or more")
+    _check_enough(windows)
     if p.std(axis=0).max() < SMALLEST_TRAVEL:
         raise UnusableError("the mallet hardly moves")
     noise = encoder_noise(t, p)
-    stride = max(1, round(len(t) / ENOUGH_SAMPLES))
+    sparsest = int(WINDOW / (float(np.median(np.diff(t))) * SPARE * FEWEST))
+    stride = max(1, min(round(len(t) / ENOUGH_SAMPLES), sparsest))
     t, p = t[::stride].copy(), p[::stride].copy()
     place, speed = smoothed(t, p)
     windows = cut_windows(t, np.concatenate([breaks, lost]))
+    _check_enough(windows)
     return Run(orders, t, p, place, speed, noise.std(speed), windows)
+
+
+def _check_enough(windows: Windows) -> None:
+    if len(windows.begin) < FEWEST_WINDOWS:
+        seconds, expected = WINDOW * len(windows.begin), WINDOW * FEWEST_WINDOWS
+        raise UnusableError(f"mallet and orders overlap for {seconds:.1f} s, expected {expected:g} s or more")
 
 
 def find_orders(recording: Recording, supply: float) -> Orders:

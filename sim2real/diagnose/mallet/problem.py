@@ -70,6 +70,12 @@ class MalletProblem(ContactProblem[Blows]):
         blur = blur.reshape(-1, 1)
         return allowing_for(self._drift / blur, rows / blur)
 
+    def with_recoil(self, values: Mapping[str, float], impulses: np.ndarray) -> np.ndarray:
+        """See `ContactProblem.with_recoil`: the mallet gives way to the puck's change along the normal."""
+        recoiling = impulses.copy()
+        recoiling[:, 2] = -values.get("mallet_give", 0.0) * impulses[:, 0]
+        return recoiling
+
     def columns(self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None) -> Columns:
         """See `Problem.columns`."""
         return mallet_columns(self, values, free)

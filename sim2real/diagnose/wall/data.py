@@ -28,24 +28,25 @@ class Bounces(Contacts):
     since: np.ndarray
 
 
-def bounces(impacts: list[Impact], g: Geometry) -> Bounces:
-    """The clear bounces off walls and posts among `impacts`, in order of time."""
+def bounces(impacts: list[Impact], g: Geometry, apart: np.ndarray) -> Bounces:
+    """The clear bounces off walls and posts among `impacts`, in order of time. What is usual is asked of none in the
+    clusters `apart`."""
     rows = {k: row for k, impact in enumerate(impacts) if (row := _row(impact, g)) is not None}
     every = contacts_of(Bounces, list(rows.values()), impacts, {})
-    usual = are_usual(every)
+    usual = are_usual(every, np.isin(every.cluster, apart))
     number = np.array(list(rows), int)[usual]
     return chained(kept(every, usual), number, np.array([impact.chain for impact in impacts], int))
 
 
-def are_usual(every: Bounces) -> np.ndarray:
+def are_usual(every: Bounces, apart: np.ndarray) -> np.ndarray:
     """Which bounces (n,) are no hits at a wall of a restitution quite unusual for it: there something else was hit as
-    well. A wall that was hit a few times has a usual restitution of its own."""
+    well. A wall that was hit a few times has a usual restitution of its own, told by those not kept `apart` (n,)."""
     restitution = every.split(every.after)[:, 0] / every.closing
     wall, usual = every.kind != bounce.POST, np.zeros(len(every))
-    for kind in KINDS.values():
+    for kind in np.unique(every.kind[wall]):
         here = every.kind == kind
-        own = here if here.sum() >= FEWEST else wall
-        usual[here] = np.median(restitution[own]) if here.any() else 0.0
+        own = here & ~apart if (here & ~apart).sum() >= FEWEST else wall & ~apart
+        usual[here] = np.median(restitution[own]) if own.any() else np.median(restitution[wall])
     return ~wall | (np.abs(restitution - usual) < UNUSUAL)
 
 

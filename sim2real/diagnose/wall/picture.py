@@ -40,7 +40,7 @@ def parting(problem: WallProblem, found: Explained) -> Parting:
     before, after = (_misses(problem, values) * std for values in (found.baseline.values, found.final.values))
     if found.unlisted is not None:
         components, weights = list(acted_on(found.unlisted)), shares(d, found.unlisted)
-        after[:, components] -= speeds(d)[:, components] * (weights @ found.theta[-weights.shape[1] :])[:, None]
+        after[:, components] -= speeds(d)[:, components] * (weights @ found.coefficients)[:, None]
     by = {label: column for label, column in coordinates(d).values()}
     return Parting(
         "velocity after the bounce", "m/s", ("normal", "along the wall"), before, after, std, by,
@@ -150,5 +150,5 @@ def _kept(problem: WallProblem, found: Explained, at: int, speeds: np.ndarray):
     if found.unlisted is None:
         return plain, columns, spread
     weights = shares(problem.data, found.unlisted) * float(at in acted_on(found.unlisted))
-    smooth = weights @ found.theta[-weights.shape[1] :]
+    smooth = weights @ found.coefficients
     return plain + smooth, np.concatenate([columns, weights], axis=1), found.theta_covariance

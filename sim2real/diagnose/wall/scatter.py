@@ -72,7 +72,7 @@ def _foretold(problem: WallProblem, found: Explained) -> np.ndarray:
     if found.unlisted is not None:
         components, weights = list(acted_on(found.unlisted)), shares(d, found.unlisted)
         going = np.stack([d.closing, d.sliding], axis=1)[:, components]
-        after[:, components] += going * (weights @ found.theta[-weights.shape[1] :])[:, None]
+        after[:, components] += going * (weights @ found.coefficients)[:, None]
     return after
 
 

@@ -8,7 +8,8 @@ import pytest
 
 from puckpilot import main
 from puckpilot_env.effects_file import effect_values
-from sim2real.diagnose.diagnosis import diagnose, judged
+from sim2real.diagnose.diagnosis import diagnose
+from sim2real.diagnose.explaining import judged
 from sim2real.diagnose.finding import Account, Finding, Proof
 from sim2real.diagnose.summary import summary
 from sim2real.recording import Stream, read_recording

@@ -52,7 +52,7 @@ def test_a_law_that_its_own_proof_speaks_against_is_not_told():
     assert found.findings == () and found.lost
     assert Diagnosis((found,)).verdict == "undetermined"
     assert found.proof is not None and found.proof.after_m == found.proof.before_m
-    assert found.doubt == "table_tilt would fit, but does not foretell untouched launches any better"
+    assert found.doubt == "table_tilt would fit, but untouched launches do not bear it out"
 
 
 @pytest.mark.parametrize("there", [1.0 / 3.0, 0.51])

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from sim2real.diagnose.account import account
-from sim2real.diagnose.engine.explain import bare, explain
+from sim2real.diagnose.engine.choose import Law
+from sim2real.diagnose.engine.explain import bare, explain, without
 from sim2real.diagnose.engine.proving import Proved, prove
 from tests.sim2real.diagnose.engine.linear_problem import LAUNCHES, SHIPPED, LinearProblem
 
@@ -61,7 +64,9 @@ def test_with_a_law_silenced_and_most_left_the_others_go_as_well() -> None:
     """Beside the drag that untouched launches do not have, the tilt explains little of what else they have."""
     truth = {name: 10.0 * value for name, value in TILT.items()} | {"linear_drag": in_untouched(2.0 * DRAG, -3.0)}
     _, said = proved(truth)
-    assert {law.name for law in said.silenced} == {"table_tilt", "linear_drag"}
+    assert [law.name for law in said.silenced] == ["linear_drag"] and [law.name for law in said.others] == [
+        "table_tilt"
+    ]
     assert said.found.law is said.found.baseline and said.without == {}
 
 
@@ -99,3 +104,24 @@ def test_a_law_shows_beside_numbers_that_each_launch_has_of_its_own() -> None:
     (tilt,) = (one for one in told.findings if one.mechanism == "table_tilt")
     size = 50.0 * np.hypot(TILT["tilt_x"], TILT["tilt_y"])
     assert tilt.before == pytest.approx(np.hypot(1.0, size), rel=0.1)
+
+
+class _Curved(LinearProblem):
+    """A likeness that the simulator has: its columns are taken anew about it, so that its law's numbers move."""
+
+    def columns(self, values, free, use):
+        found = super().columns(values, free, use)
+        shape = Law(
+            "push by place", ("tilt_x", "tilt_y"), "position", switch=lambda theta: dict(zip(TILT, theta, strict=True))
+        )
+        return replace(found, listed=[law for law in found.listed if law.name != "table_tilt"], families=[shape])
+
+
+def test_what_is_left_without_a_law_is_one_fit() -> None:
+    """The numbers beside a family are those about which its columns were taken."""
+    problem = _Curved({**TILT, "linear_drag": DRAG})
+    found = explain(problem, SHIPPED, USE)
+    assert {law.name for law in found.model.laws} == {"linear_drag", "push by place"}
+    rest = without(problem, found, next(law for law in found.model.laws if law.name == "linear_drag"))
+    assert rest.smooth is not None and rest.law is rest.smooth.law
+    assert [law.name for law in rest.model.laws] == ["push by place"] and rest.unlisted is rest.model.laws[0]

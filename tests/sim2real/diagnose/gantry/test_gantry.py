@@ -15,8 +15,10 @@ from sim2real.diagnose.engine.explain import explain
 from sim2real.diagnose.engine.fit import fit
 from sim2real.diagnose.engine.proving import prove
 from sim2real.diagnose.finding import Account
-from sim2real.diagnose.gantry.problem import gantry_problem
-from sim2real.diagnose.gantry.run import UnusableError
+from sim2real.diagnose.gantry import run as run_module
+from sim2real.diagnose.gantry.problem import GantryProblem, gantry_problem
+from sim2real.diagnose.gantry.run import Run, UnusableError
+from sim2real.diagnose.gantry.windows import FEWEST, WINDOW
 from sim2real.diagnose.sanity import UndeterminedError
 from sim2real.nominal import parameters
 from sim2real.recording import Recording, Stream, read_recording
@@ -106,6 +108,26 @@ def test_motors_that_heed_a_plan_at_the_next_tick_lack_nothing(
     recording = recorded(tmp_path, law)
     assert gantry_problem([recording], parameters(recording))[0].ticked().runs[0].orders.tick == tick
     assert [one.mechanism for one in diagnosed(recording).findings] == names
+    apart = gantry_problem([recording], parameters(recording))[0].proved_on(0, 2)
+    spoilt = [spoil(run, apart.proof) for run in apart.runs]
+    assert GantryProblem(spoilt, parameters(recording), apart.proof).ticked().runs[0].orders.tick == tick
+
+
+def spoil(run: Run, clusters: np.ndarray) -> Run:
+    """The run with a path in these clusters that no motor made."""
+    seen, windows = run.seen.copy(), run.windows
+    for begin, end in zip(windows.begin, windows.end, strict=True):
+        if windows.cluster[np.searchsorted(windows.begin, begin)] in clusters:
+            seen[begin:end] += np.random.default_rng(0).normal(0.0, 0.01, (end - begin, 2))
+    return replace(run, seen=seen)
+
+
+def test_a_long_log_keeps_windows_that_can_be_told(plain: Recording, monkeypatch: pytest.MonkeyPatch) -> None:
+    """However few samples are wanted, a window keeps enough."""
+    monkeypatch.setattr(run_module, "ENOUGH_SAMPLES", 100)
+    (run,) = gantry_problem([plain], parameters(plain))[0].runs
+    assert len(run.windows.begin) >= SECONDS / WINDOW - 2
+    assert (run.windows.end - run.windows.begin).min() >= FEWEST
 
 
 @pytest.mark.parametrize(

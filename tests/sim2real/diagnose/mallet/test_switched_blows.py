@@ -16,6 +16,7 @@ from puckpilot_env.physics.advance import PUCK
 from puckpilot_env.physics.rebound import strike
 from sim2real.diagnose.contact_laws import COMPONENTS, UNIT
 from sim2real.diagnose.diagnosis import diagnose
+from sim2real.diagnose.engine import gram
 from sim2real.diagnose.files import write
 from sim2real.diagnose.mallet.data import Blows
 from sim2real.diagnose.mallet.families import FAMILIES
@@ -78,6 +79,20 @@ def test_where_a_mallet_recoils_it_recoils_from_the_further_impulse_too():
     found = problem.predicted({**give, **switched_on("mallet's restitution by time", data, theta)})
     expected = problem.predicted(give) + more[:, None] * [1.0, 0.0, -0.1]
     np.testing.assert_allclose(found, expected, atol=1e-9)
+
+
+@pytest.mark.parametrize("give", [0.0, 0.1])
+def test_a_family_s_columns_are_what_the_simulator_changes_by(give):
+    """Recoil and all, of a mallet that is heavy or light: the columns times coefficients are the residuals' change."""
+    data = random_blows(40)
+    problem, values = MalletProblem(data, 1, DEFAULTS), {"mallet_restitution": 0.7, "mallet_give": give}
+    columns = problem.columns(values, (), None)
+    law = next(one for one in columns.families if one.name == "mallet's restitution by time")
+    theta = np.linspace(-0.5, 0.5, len(law.columns))
+    index = columns.grams.columns(law.columns)
+    claimed = gram.losses(columns.grams, index, theta, np.arange(len(data)))
+    left = problem.residuals({**values, **law.switch(theta)}, (), np.arange(1)).r
+    np.testing.assert_allclose(claimed, (left**2).reshape(-1, 3).sum(axis=1), rtol=1e-6)
 
 
 def test_every_family_is_switched_on_by_its_law():

@@ -67,7 +67,19 @@ def test_a_wall_unlike_the_others_is_kept_and_a_lone_odd_bounce_is_not() -> None
     after = data.after.copy()
     after[:6, 1] = 0.45 * data.closing[:6]  # the wall x0
     after[20, 1] = 0.3 * data.closing[20]
-    assert list(np.flatnonzero(~are_usual(replace(data, after=after)))) == [20]
+    odd = replace(data, after=after)
+    assert list(np.flatnonzero(~are_usual(odd, np.zeros(COUNT, bool)))) == [20]
+
+
+def test_what_is_usual_is_not_told_by_bounces_kept_apart() -> None:
+    """A third of them, all of which lose much more: they are left out themselves, and take no other along."""
+    data = bounces_of(lambda x: np.full(COUNT, 0.9))
+    apart = np.arange(COUNT) % 3 == 0
+    after = data.after.copy()
+    after[apart, 1] *= 0.3
+    usual = are_usual(replace(data, after=after), apart)
+    assert np.array_equal(usual, ~apart)
+    assert are_usual(replace(data, after=after), np.ones(COUNT, bool)).any()  # with none to ask, all are asked
 
 
 def test_no_spin_is_carried_past_a_contact_that_is_left_out() -> None:
