@@ -21,8 +21,8 @@ from tests.sim2real.diagnose.engine.linear_problem import LAUNCHES, SHIPPED, Lin
 CAMERA = Camera(noise=0.0006, rate=120.0)
 
 
-def _diagnosis(folder, law: Law) -> Diagnosis:
-    make_recording(folder, law, "launches", 7, 80.0, camera=CAMERA)
+def _diagnosis(folder, law: Law, seconds: float = 80.0) -> Diagnosis:
+    make_recording(folder, law, "launches", 7, seconds, camera=CAMERA)
     return diagnose([read_recording(folder)], [], {}, lambda stage, share: None)
 
 
@@ -69,6 +69,14 @@ def test_walls_that_tire_get_a_slope(tmp_path):
     assert one.parameters["slope"].value == pytest.approx(-0.003, rel=0.02)
     assert "both components" in one.formula
     assert float(one.formula.split("wall_restitution ")[1]) == pytest.approx(0.85, abs=0.001)
+
+
+def test_friction_that_breathes_is_a_wave_in_time(tmp_path):
+    one = _diagnosis(tmp_path / "table", Law(breathing=0.4, breathing_period=9.3), 40.0).findings[0]
+    assert (one.mechanism, one.depends_on) == ("unlisted", ("time",))
+    assert one.parameters["wave"].value == pytest.approx(9.3, rel=0.01)
+    assert abs(one.parameters["size"].value) == pytest.approx(0.4 * Law().friction, rel=0.05)
+    assert one.values["unlisted_00"] == pytest.approx(9.3, rel=0.05)  # and players meet it
 
 
 class _Nameless(LinearProblem):
