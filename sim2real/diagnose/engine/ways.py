@@ -15,7 +15,7 @@ from sim2real.diagnose.problem import Columns, Problem
 
 PER_COEFFICIENT = 7.0  # residuals, below which a smooth law would follow the noise
 REMAINDER = 0.1  # share of what the listed laws foretell better that a law on top of them must add
-BEYOND = 1.0 / 3.0  # of what the listed laws leave beyond noise, that it must explain as well
+BEYOND = 0.25  # of what the listed laws leave beyond noise, that it must explain as well
 MOSTLY = 2.0 / 3.0  # of what a family alone explains; listed laws that explain as much are no stand-ins,
 FEW = 2  # unless there are more of them than one table may have
 TOGETHER = 3  # laws, a family and others that are looked for beside it
