@@ -27,6 +27,7 @@ TOLD = 1e-3  # the same of one of them, once they are
 AT_LEAST = 0.001  # of a size; a smaller error is not told
 WRONG_SIZE = 0.022  # of a size; a larger error is that of the size stated, not of the camera,
 BENT = 0.05  # unless the map is bent in a way that no wrong size makes: then one larger than this
+BENDING = 0.005  # of a shear or of the other size: a smaller one may come with a wrong size
 STRETCHED = 0.75  # of what the lines are off by beyond noise, that a map must explain unless it is beyond doubt:
 BEYOND_DOUBT = 1e-12  # a stretch explains nearly all, but a few touches that are none may hide that
 KNOWN, ROUGHLY = 0.003, 0.01  # errors of a scale above which the lines do not tell it, or not even a wrong size
@@ -109,7 +110,7 @@ def _bent(values: np.ndarray, std: np.ndarray) -> bool:
     """Whether a map is surely sheared, or stretched by different shares along both axes: who measures a table wrongly
     errs in one size, or in both alike."""
     x, y, _ = values
-    sure = np.abs(values) > AT_LEAST + 3 * std
+    sure = np.abs(values) > BENDING + 3 * std
     return bool(sure[2] or (sure[0] and sure[1] and abs(x - y) > AT_LEAST + 3 * np.hypot(std[0], std[1])))
 
 

@@ -32,6 +32,7 @@ def test_a_wrong_size_is_told_from_a_stretched_map_and_from_too_few_touches(tabl
         ((0.03, 0.0, 0.0), True),  # one size
         ((0.03, 0.03, 0.0), True),  # a tape that is too short
         ((0.03, 0.01, 0.0), False),
+        ((0.03, 0.005, 0.005), True),  # a slight bend beside it
         ((0.03, 0.0, 0.01), False),  # sheared
         ((0.06, 0.0, 0.01), True),
     ],
