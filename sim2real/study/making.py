@@ -10,8 +10,21 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 Progress = Callable[[int, int], None]
-ROOT = Path(__file__).resolve().parents[2]
 MAKER = "tests.reality.make_cases"
+
+
+def has_maker(root: Path) -> bool:
+    """Whether the independent table is in a folder."""
+    return (root / "tests" / "reality" / "make_cases.py").is_file()
+
+
+def checkout(around: Path, here: Path) -> Path:
+    """The clone that a study runs: the one `around` this file or, where that is an installation without tests, the one
+    that it is called in, `here`."""
+    return here if has_maker(here) and not has_maker(around) else around
+
+
+ROOT = checkout(Path(__file__).resolve().parents[2], Path.cwd())
 
 
 @dataclass(frozen=True)
@@ -34,10 +47,10 @@ def make_cases(plan: Plan, folder: Path, workers: int, progress: Progress, root:
 
     What is there already stays. ValueError, in one line, where there is no maker or it refuses the plan.
     """
-    if not (root / "tests" / "reality" / "make_cases.py").is_file():
+    if not has_maker(root):
         raise ValueError(
-            f"the study needs the independent table in tests/reality, which is not in {root}; run it from a checkout "
-            "that is installed with pip install -e '.[test]'"
+            f"the study needs the independent table in tests/reality, which is not in {root}; run it in a clone of the "
+            "repository"
         )
     command = [
         sys.executable, "-m", MAKER, "--cases", str(plan.cases), "--seed", str(plan.seed), "--out",

@@ -13,7 +13,7 @@ import pytest
 
 from sim2real.commands import study
 from sim2real.study.confusion import Confusion
-from sim2real.study.making import Plan, make_cases
+from sim2real.study.making import Plan, checkout, make_cases
 
 SCRIPT = """
 import json, pathlib, sys
@@ -92,6 +92,15 @@ def test_silence_is_no_mistaken_name(said: str, title: str):
     counts = Confusion(("table_tilt",), (said, "table_tilt"), ((2, 3),))
     told = study._confusion(SimpleNamespace(confusion=counts))  # pyright: ignore[reportArgumentType] - all it reads
     assert told.title.startswith(title)
+
+
+def test_an_installed_study_runs_the_clone_that_it_is_called_in(tmp_path: Path):
+    installed, clone = tmp_path / "site-packages", tmp_path / "clone"
+    (clone / "tests" / "reality").mkdir(parents=True)
+    (clone / "tests" / "reality" / "make_cases.py").touch()
+    assert checkout(installed, clone) == clone
+    assert checkout(clone, installed) == checkout(clone, clone) == clone
+    assert checkout(installed, tmp_path) == installed  # which is refused by name
 
 
 def test_what_cannot_be_studied_is_said_in_one_line(tmp_path: Path):
