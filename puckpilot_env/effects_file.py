@@ -71,7 +71,8 @@ def described(path: str | PathLike[str], apart_from: Iterable[str] = ()) -> list
 
 def _read(content: Mapping[str, Any]) -> dict[str, float]:
     if content.get("format") != FORMAT:
-        raise ValueError(f"format is {content.get('format')!r}; expected {FORMAT!r}")
+        said = f"format is {content['format']!r}" if "format" in content else "there is no line with its format"
+        raise ValueError(f'{said}; expected the line format = "{FORMAT}"')
     _refuse_unknown(content, ("format", "parameters", "effects"), "entry")
     values = {name: _number(name, value) for name, value in _section(content, "parameters").items()}
     refuse_not_simulated(values)

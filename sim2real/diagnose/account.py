@@ -80,12 +80,13 @@ def _rms(problem: Problem, found: Explained, proof: np.ndarray) -> float:
 def _listed(found: Explained, law: Law, before: float, after: float) -> Finding:
     effect = EFFECTS[law.name]
     fitted = found.final
-    rows = [name for name in law.rows if name in fitted.free]
+    own = {name: value for name, value in law.start.items() if name in law.rows}
+    own |= {name: fitted.values[name] for name in law.rows if name in fitted.free}
     also, rivals = compare(found.chooser, found.model, law, found.screen)
     return Finding(
         effect.regime, law.name, also, effect.depends_on, effect.law, labelled(law, fitted),
         chance(found.chooser, found.model, law, found.screen), before, after, whereabouts(law, fitted.values),
-        {**law.start, **{name: fitted.values[name] for name in rows}}, rivals,
+        own, rivals,
     )  # fmt: skip
 
 

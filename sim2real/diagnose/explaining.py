@@ -61,7 +61,7 @@ def explain_regime(
 def judged(told: Account, clear: bool) -> Account:
     """An account of contacts, but nothing is told by it that leaves much unexplained where the glides' law, by which
     contacts are told, is not a `clear` one."""
-    if clear or not told.unexplained:
+    if clear or not (told.unexplained or told.lost):
         return told
     return replace(told, findings=(), undetermined=TOO_ROUGH)
 

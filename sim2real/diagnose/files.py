@@ -93,6 +93,7 @@ def effects_toml(diagnosis: Diagnosis) -> str:
         taken = {} if effect.not_simulated else effect.rows
         numbers = [f"{key} = {near[row.name]!r}" for key, row in taken.items() if row.name in near]
         lines += ["", *_comments(name, near), f"[effects.{name}]", *numbers] if numbers else []
+    lines += [f"# in a formula, fitted for itself: {one.formula}" for one in diagnosis.findings if _is_table(one)]
     lines += [f"{NOT_SWITCHED} {_size(name, value)}" for name, value in diagnosis.sizes.items() if name not in values]
     lines += [f"{NOT_SWITCHED} {_name(one)}" for one in diagnosis.findings if not _simulated(one)]
     return "\n".join(lines) + "\n"
@@ -106,6 +107,11 @@ def _comments(name: str, values: Mapping[str, float]) -> list[str]:
     table = [[cell.strip() for cell in line.split("|")] for line in (MODULES[name].__doc__ or "").splitlines()]
     meaning = next(row[2:4] for row in table if len(row) > 3 and kind in row[1].split(", "))
     return [f"# {TABLES[name]} that has no name: {meaning[0]}; its numbers c00, c01, ...: {meaning[1]}"]
+
+
+def _is_table(one: Finding) -> bool:
+    """Whether players meet a finding as a table of numbers, with which its proof was made."""
+    return one.mechanism == "unlisted" and _simulated(one)
 
 
 def _simulated(one: Finding) -> bool:

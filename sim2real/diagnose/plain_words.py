@@ -77,6 +77,11 @@ def piece(regime: str) -> str:
     return PIECES.get(regime, LAUNCH)[0]
 
 
+def piece_words(regime: str) -> str:
+    """What is kept apart in a regime, in the plural."""
+    return PIECES.get(regime, LAUNCH)[1]
+
+
 def pieces(account: Account) -> str:
     """How many untouched pieces a regime was tried on."""
     assert account.proof is not None

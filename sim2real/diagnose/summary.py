@@ -99,7 +99,8 @@ def _numbers(one: Finding) -> str:
 
 
 def _baseline(each: Account) -> str:
-    return f"  {each.regime}: " + ", ".join(f"{name} {_interval(value)}" for name, value in each.baseline.items())
+    numbers = ", ".join(f"{name} {_interval(value)}" for name, value in each.baseline.items())
+    return f"  {each.regime}{' (undetermined)' if each.undetermined else ''}: {numbers}"
 
 
 def _interval(one: Estimate) -> str:

@@ -61,7 +61,7 @@ def test_a_file_is_told_in_lines(tmp_path: Path) -> None:
     "old, new, told",
     [
         ("puckpilot-effects/1", "puckpilot-effects/2", "format is 'puckpilot-effects/2'; expected"),
-        ('format = "puckpilot-effects/1"', "", "format is None; expected"),
+        ('format = "puckpilot-effects/1"', "", "there is no line with its format; expected the line"),
         ("[parameters]", "[parameter]", "unknown entry 'parameter'; did you mean 'parameters'?"),
         ("friction =", "frictoin =", "unknown parameter 'frictoin'; did you mean 'friction'?"),
         ("0.09", "9.0", "parameter 'friction' is 9.0; expected a number in [0, 5] m/s^2"),

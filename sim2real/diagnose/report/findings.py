@@ -5,7 +5,7 @@ from __future__ import annotations
 from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.engine.twins import NULL, PERMUTED
 from sim2real.diagnose.finding import Finding, Rival
-from sim2real.diagnose.plain_words import are_weights, chance, explained
+from sim2real.diagnose.plain_words import are_weights, chance, explained, piece_words
 from sim2real.diagnose.report import words
 from sim2real.diagnose.report.draw import curve_picture
 from sim2real.diagnose.report.shapes import shape_in_words
@@ -88,7 +88,7 @@ def _proof(one: Finding) -> str:
     else:
         what = f"residuals of the {text(one.regime)}, in units of what noise alone leaves, fall"
     return words.paragraph(
-        f"On launches that no fit saw, {what} {fall}. Chance that noise alone gains as much: "
+        f"On {piece_words(one.regime)} that no fit saw, {what} {fall}. Chance that noise alone gains as much: "
         f"{text(chance(one.p_value))}."
     )
 
@@ -105,10 +105,11 @@ def _twins(one: Finding) -> str:
     table = words.table(note, ("data", "without the law", "with it", "the search names something"), rows, (1, 2, 3))
     return table + words.paragraph(
         "A null twin is the simulator with its refitted numbers and fresh noise; a permutation twin is the recording's "
-        "own misses, each glide's or bounce's with a sign drawn by lot. Neither holds a law: the law should gain "
-        "nothing in either. In null twins the search should name nothing as well: one name among six is an accident "
-        "that happens, more of them speak against the name found in the recording. The misses of a permutation twin "
-        "are as large and as smooth as what the recording lacks, so that a search takes some of them for other laws."
+        "own misses, each piece's with a sign drawn by lot. Neither holds a law: with it no less should be left than "
+        "without it, in either; that is the test. In null twins the search should name nothing as well: one name among "
+        "six is an accident that happens, more of them speak against the name found in the recording. The misses of a "
+        "permutation twin are as large and as smooth as what the recording lacks, so that a search takes some of them "
+        "for other laws."
     )
 
 
