@@ -42,6 +42,9 @@ def read_baseline(path: Path) -> dict[str, float]:
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise ValueError(f"{path}: not a TOML file ({error}); expected lines like 'friction = 0.1'") from error
     if found.get("format") == EFFECTS_FORMAT:
+        unknown = [name for name in found if name not in ("format", "parameters", "effects")]
+        if unknown:
+            raise ValueError(f"{path}: unknown entry '{unknown[0]}'; expected [parameters] alone")
         if found.get("effects"):
             names = ", ".join(found["effects"])
             raise ValueError(

@@ -87,7 +87,10 @@ def summary(diagnosis: Diagnosis, written: Sequence[Path], asked: Asked = PLAIN)
     if diagnosis.next_recording:
         lines.append(f"  next: {diagnosis.next_recording}")
     lines += [f"  note: {remark}" for remark in diagnosis.remarks]
-    return [*lines[: MOST_LINES - 1], "wrote " + ", ".join(map(str, written))]
+    if len(lines) >= MOST_LINES:
+        more = counted(len(lines) - MOST_LINES + 2, "line", "lines")
+        lines = [*lines[: MOST_LINES - 2], f"  … and {more} more, which report.html has"]
+    return [*lines, "wrote " + ", ".join(map(str, written))]
 
 
 def _numbers(one: Finding) -> str:

@@ -66,3 +66,11 @@ def test_ten_lines_count_and_give_units_as_print_has_them():
     lines = summary(_found(TILT), [Path("a")])
     assert any("1 [0.9, 1.1] V s³" in line for line in lines)
     assert any(line.endswith("(1 untouched piece)") for line in lines)
+
+
+def test_what_does_not_fit_into_ten_lines_is_counted():
+    walls = [Account("wall", (), {}, True, None, f"reason {k}") for k in range(12)]
+    lines = summary(Diagnosis(tuple(walls)), [])
+    assert len(lines) == 10 and lines[8] == "  … and 5 lines more, which report.html has"
+    few = summary(Diagnosis(tuple(walls[:8])), [])
+    assert len(few) == 10 and few[8].endswith("reason 7")
