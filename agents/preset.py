@@ -57,6 +57,7 @@ class Preset:
     most: int
     later: tuple[Change, ...] = ()
     beside: tuple[Beside, ...] = ()
+    init_scale: float | None = None
 
     def at(self, steps: int) -> Preset:
         """What holds after so many steps."""

@@ -26,10 +26,11 @@ from agents.policy import OUTPUTS, Policy
 from agents.ppo import FinalStatePPO
 from agents.preset import Preset
 
-# In rsl-rl's words, and how a player without exploration brings the network's outputs into -1 to 1.
-DISTRIBUTIONS: dict[str, tuple[dict[str, Any], str]] = {
-    "TanhNormal": ({"class_name": TanhNormal}, "tanh"),
-    "Gaussian": ({"class_name": "GaussianDistribution", "init_std": 0.5, "std_type": "log"}, "clip"),
+# In rsl-rl's words, its name for how boldly an untrained network explores, and how a player without exploration brings
+# the network's outputs into -1 to 1.
+DISTRIBUTIONS: dict[str, tuple[dict[str, Any], str, str]] = {
+    "TanhNormal": ({"class_name": TanhNormal}, "init_scale", "tanh"),
+    "Gaussian": ({"class_name": "GaussianDistribution", "init_std": 0.5, "std_type": "log"}, "init_std", "clip"),
 }
 
 
@@ -92,7 +93,7 @@ class SelfPlayRunner(OnPolicyRunner):
         weights = [layer.weight.detach().cpu().numpy().copy() for layer in layers]
         biases = [layer.bias.detach().cpu().numpy().copy() for layer in layers]
         weights[-1], biases[-1] = weights[-1][:OUTPUTS], biases[-1][:OUTPUTS]
-        squash = DISTRIBUTIONS[self._distribution][1]
+        *_, squash = DISTRIBUTIONS[self._distribution]
         return Policy(Network(weights, biases), self.env.reading.scaling, tuple(columns), about, squash)
 
 
@@ -100,13 +101,15 @@ def _config(preset: Preset) -> dict[str, Any]:
     """A preset in rsl-rl's words."""
     _check(preset)
     network = {"class_name": MLPModel, "hidden_dims": list(preset.hidden), "activation": "relu"}
+    distribution, boldness, _ = DISTRIBUTIONS[preset.distribution]
+    bold = {} if preset.init_scale is None else {boldness: preset.init_scale}
     algorithm: dict[str, Any] = {"class_name": FinalStatePPO, **preset.ppo}
     if preset.flip == "augment":
         algorithm["symmetry_cfg"] = {"data_augmentation_func": "agents.flip:augment", "use_data_augmentation": True}
     return {
         "num_steps_per_env": preset.steps,
         "obs_groups": {"actor": [POLICY], "critic": [POLICY, PRIVILEGED]},
-        "actor": {**network, "distribution_cfg": dict(DISTRIBUTIONS[preset.distribution][0])},
+        "actor": {**network, "distribution_cfg": {**distribution, **bold}},
         "critic": network,
         "algorithm": algorithm,
     }

@@ -47,17 +47,39 @@ def take_up(training: Training) -> None:
 
 
 def learn_on(training: Training, start: Path) -> None:
-    """Begin with the networks of the run in `start`, and nothing else of it. ValueError for one that does not fit."""
+    """Begin with the networks of the run in the folder `start`, or with a policy's file, which has no critic; nothing
+    else of it is taken. ValueError for one that does not fit."""
+    if start.is_dir():
+        _read(RunFolder(start).checkpoint, lambda kept: _use_networks(training, start, kept["learner"]))
+    else:
+        _use_policy(training, start)
 
-    def use(kept: Mapping[str, Any]) -> None:
-        known = load_policy(RunFolder(start).policy).columns
-        learner, alg = kept["learner"], training.runner.alg
-        for part, network in (("actor_state_dict", alg.actor), ("critic_state_dict", alg.critic)):
-            inputs = network.state_dict()[FIRST].shape[1]
-            learner[part] = widened(learner[part], known, training.columns, inputs)
-        alg.load(learner, {"actor": True, "critic": True}, True)
 
-    _read(RunFolder(start).checkpoint, use)
+def _use_networks(training: Training, start: Path, learner: dict[str, Any]) -> None:
+    known, alg = load_policy(RunFolder(start).policy).columns, training.runner.alg
+    for part, network in (("actor_state_dict", alg.actor), ("critic_state_dict", alg.critic)):
+        inputs = network.state_dict()[FIRST].shape[1]
+        learner[part] = widened(learner[part], known, training.columns, inputs)
+    alg.load(learner, {"actor": True, "critic": True}, True)
+
+
+def _use_policy(training: Training, path: Path) -> None:
+    """How boldly a policy explored is not in its file: the rows of the last layer for that stay as they are."""
+    policy, actor, reading = load_policy(path), training.runner.alg.actor, training.hall.reading
+    if not policy.scaling.reads_alike(policy.columns, reading.scaling, training.columns):
+        raise ValueError(f"{path} reads its columns in other units, or acts within other bounds, than this version")
+    weights = dict(actor.state_dict())
+    names = [name for name in weights if name.startswith("mlp.")]
+    given = [array for layer in zip(policy.network.weights, policy.network.biases, strict=True) for array in layer]
+    if len(names) != len(given):
+        raise ValueError(f"{path} has {len(given) // 2} layers; the preset's network has {len(names) // 2}")
+    known = {name: torch.from_numpy(array) for name, array in zip(names, given, strict=True)}
+    known = widened(known, policy.columns, training.columns, weights[FIRST].shape[1])
+    for name, tensor in known.items():
+        rows = weights[name][: len(tensor)] if name in names[-2:] else weights[name]
+        if rows.shape != tensor.shape:
+            raise ValueError(f"{path} has a layer of {tuple(tensor.shape)}; the preset's has {tuple(rows.shape)}")
+        rows.copy_(tensor)
 
 
 def _read(checkpoint: Path, use: Callable[[Mapping[str, Any]], None]) -> None:

@@ -45,6 +45,15 @@ class Scaling:
         """The scaling of these columns, and of actions within these bounds (2, 4)."""
         return cls(*_of_columns(columns), *action_bounds.copy())
 
+    def reads_alike(self, columns: Sequence[str], other: Scaling, others: Sequence[str]) -> bool:
+        """Whether the other scaling, of the columns `others`, reads the columns that both have as this does, and acts
+        alike."""
+        both = [(columns.index(name), others.index(name)) for name in columns if name in others]
+        own, its = (np.array(indices, np.int64) for indices in zip(*both, strict=True))
+        pairs = [(getattr(self, name)[own], getattr(other, name)[its]) for name in ("centre", "span", "flip")]
+        pairs += [(self.low, other.low), (self.high, other.high)]
+        return all(np.array_equal(here, there) for here, there in pairs)
+
     def seen(self, observations: Array) -> Array:
         """What a network sees of observations (n, d); a new array."""
         return np.divide(observations - self.centre, self.span, dtype=np.float32)

@@ -25,9 +25,16 @@ def new_settings(args: argparse.Namespace) -> Settings:
         name: default if getattr(args, name) is None else getattr(args, name) for name, default in DEFAULTS.items()
     }
     effects = effect_values(asked["effects"]) if asked["effects"] else None
-    start = str(Path(args.start).resolve()) if args.start else None
+    start = str(_start(args.start)) if args.start else None
     variant, preset = find_variant(asked["variant"]).id, find_preset(asked["preset"])
     return Settings(variant, asked["seed"], asked["threads"], preset, effects, start=start)
+
+
+def _start(name: str) -> Path:
+    """A run's folder, all of whose networks are taken, or else a policy's file."""
+    from agents.policy import policy_file
+
+    return (Path(name) if Path(name).is_dir() else policy_file(name)).resolve()
 
 
 def kept_settings(args: argparse.Namespace, folder: RunFolder) -> Settings:

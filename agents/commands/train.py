@@ -39,7 +39,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--resume", action="store_true", help="go on with the run in DIR; options that it contradicts are refused"
     )
-    parser.add_argument("--start", metavar="DIR", help="begin with the networks of the run in DIR")
+    parser.add_argument(
+        "--start", metavar="RUN", help="begin with the networks of a run's folder, or with a policy, by name or file"
+    )
     parser.add_argument("--variant", metavar="ID", help="what is played (default match-v0)")
     parser.add_argument("--seed", type=int, help="seed of everything random (default 0)")
     parser.add_argument("--threads", type=int, metavar="K", help="threads to learn on (default 1)")

@@ -7,9 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
-from tiny import training
+from tiny import TINY, training
 
 from agents.policy import PolicyPlayer, load_policy
+from agents.preset import Preset, read_preset
 from agents.widen import FIRST, widened
 from baselines.player import Seat
 from puckpilot_env.tables import Tables
@@ -24,6 +25,8 @@ def test_inputs_go_by_their_names_and_new_ones_move_nothing() -> None:
     assert new[FIRST].tolist() == [[2.0, 0.0, 1.0, 7.0], [4.0, 0.0, 3.0, 8.0]]
     wider = widened(old, ["a", "b"], ["a", "b", "c"], 6)  # the critic sees two more
     assert wider[FIRST].tolist() == [[1.0, 2.0, 0.0, 7.0, 0.0, 0.0], [3.0, 4.0, 0.0, 8.0, 0.0, 0.0]]
+    less = widened(old, ["a", "b"], ["b"], 2)
+    assert less[FIRST].tolist() == [[2.0, 7.0], [4.0, 8.0]]
     with pytest.raises(ValueError, match="has 1 inputs beside its columns; expected 0 at most"):
         widened(old, ["a", "b"], ["a", "b"], 2)
     assert new["mlp.0.bias"] is old["mlp.0.bias"] and old[FIRST].shape == (2, 3)
@@ -55,13 +58,51 @@ def test_what_was_learned_is_played_on_and_learned_on(first: Path, tmp_path: Pat
     assert not np.array_equal(after, acts[0])
 
 
-def test_a_variant_that_shows_less_is_refused(first: Path, tmp_path: Path) -> None:
+def test_a_variant_that_shows_less_is_played_as_a_policy_plays_it(first: Path, tmp_path: Path) -> None:
     training(tmp_path / "more", variant=MORE, start=first).round()
-    with pytest.raises(ValueError, match="reads seen, gantry_c5_x") as error:
-        training(tmp_path / "less", variant=SEEN, start=tmp_path / "more")
-    assert "\n" not in str(error.value)
+    training(tmp_path / "less", variant=SEEN, start=tmp_path / "more")
+    assert_acts_alike(tmp_path / "more" / "policy.npz", tmp_path / "less" / "selves" / "self-0.npz", SEEN)
+
+
+def test_a_policy_alone_is_enough_to_begin_with(first: Path, tmp_path: Path) -> None:
+    """It plays what the policy plays, and explores as a new network does, which the file does not know."""
+    begun = training(tmp_path / "run", variant=MORE, start=first / "policy.npz", preset=named("init_scale = 0.3"))
+    assert_acts_alike(first / "policy.npz", tmp_path / "run" / "selves" / "self-0.npz", MORE)
+    seen = begun.hall.get_observations()
+    begun.runner.alg.actor(seen, stochastic_output=True)
+    scale = begun.runner.alg.actor.output_std.detach()
+    assert float(scale.min()) > 0.25 and float(scale.max()) < 0.35
+    begun.round()
+    with pytest.raises(ValueError, match=r"has a layer of \(16, 28\); the preset's has \(24, 28\)$"):
+        training(tmp_path / "wide", variant=MORE, start=first / "policy.npz", preset=named("hidden = [24]"))
+    with pytest.raises(ValueError, match=r"has 2 layers; the preset's network has 3$"):
+        training(tmp_path / "deep", variant=MORE, start=first / "policy.npz", preset=named("hidden = [16, 16]"))
+
+
+def test_a_policy_that_reads_in_other_units_is_refused(first: Path, tmp_path: Path) -> None:
+    policy = load_policy(first / "policy.npz")
+    policy.scaling.span[2] *= 2.0
+    policy.save(tmp_path / "other.npz")
+    with pytest.raises(ValueError, match="reads its columns in other units"):
+        training(tmp_path / "run", variant=SEEN, start=tmp_path / "other.npz")
+
+
+def named(line: str) -> Preset:
+    """The tiny preset with a line of its network."""
+    return read_preset(TINY.replace("hidden = [16]", line if "hidden" in line else f"hidden = [16]\n{line}"), "named")
+
+
+def assert_acts_alike(one: Path, other: Path, variant: str) -> None:
+    """Both play the very same where the variant's columns are shown."""
+    tables = Tables(variant, 4, seed=3)
+    observation = np.ascontiguousarray(tables.observations[:, 0])
+    players = [PolicyPlayer(load_policy(path), Seat.from_tables(tables)) for path in (one, other)]
+    acts = [player.act(observation) for player in players]
+    assert np.ptp(acts[0], axis=0).max() > 0.0
+    np.testing.assert_array_equal(acts[0], acts[1])
 
 
 def test_a_folder_without_a_run_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "nothing").mkdir()
     with pytest.raises(ValueError, match="no checkpoint at"):
         training(tmp_path / "new", start=tmp_path / "nothing")
