@@ -28,14 +28,13 @@ def advice(problem: Problem, found: Explained, findings: Sequence[Finding], use:
         purpose = f"to see whether {law.name} is there"
     else:
         return ""
-    return f"{purpose}, record {_pieces(problem, found, law, others, use)}{EFFECTS[law.name].excited_by}"
+    return f"{purpose}, record {_pieces(problem, found, law, others, use) or EFFECTS[law.name].excited_by}"
 
 
 def _pieces(problem: Problem, found: Explained, law: Law, others: Sequence[str], use: np.ndarray) -> str:
-    """The pieces that tell most of a law beside the columns `others`, in words, to be followed by where it shows."""
+    """The pieces that tell most of a law beside the columns `others`, in words; "" where all tell alike."""
     grams, units = found.screen.grams, problem.units.of(use)
     own = [name for name in law.columns if name not in others]
     theta = gram.solve(grams, grams.columns([*others, *own]), units)[len(others) :]
     told = information(grams, units, own, theta, others)
-    words = most_telling(told, {name: of[units] for name, of in problem.units.kinds.items()}, problem.units.name)
-    return f"{words}; it shows in " if words else ""
+    return most_telling(told, {name: of[units] for name, of in problem.units.kinds.items()}, problem.units.name)

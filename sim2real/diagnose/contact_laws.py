@@ -96,6 +96,11 @@ def acted_on(law: Law) -> tuple[int, ...]:
     return next(axes for name, axes in COMPONENTS.items() if what.endswith(name))
 
 
+def shape_of(law: Law) -> str:
+    """The name of what a smooth law is a function of, in its regime's families."""
+    return law.name.split(" by ", 1)[1]
+
+
 def _impulses(data: Contacts, weights: np.ndarray, axes: Sequence[int], each: int) -> np.ndarray:
     """Velocities (n, each, k) that shares `weights` (n, k) of the closing (0) or sliding (1) speed add."""
     columns = np.zeros((len(data), each, weights.shape[1]))

@@ -81,6 +81,12 @@ class ContactProblem(ABC, Generic[C]):
         return Residuals(both[here, 0], both[here, 1:], cluster[here], unit[here])
 
     @property
+    def std(self) -> np.ndarray:
+        """Noise (n, each) [m/s] of what is seen less what is foretold."""
+        inverse = np.linalg.inv(self._whiten)
+        return np.sqrt(np.einsum("nij,nij->ni", inverse, inverse))
+
+    @property
     def unit_of_rows(self) -> np.ndarray:
         """The contact (each n,) that each row is of."""
         return np.repeat(np.arange(len(self.data)), self.each)

@@ -16,7 +16,7 @@ from sim2real.diagnose.encoders import read_encoders
 from sim2real.diagnose.engine.explain import Explained
 from sim2real.diagnose.engine.fit import given
 from sim2real.diagnose.explaining import explain_regime, judged, too_little
-from sim2real.diagnose.finding import Account, Finding, Proof, Sight
+from sim2real.diagnose.finding import MUCH, Account, Finding, Proof, Sight
 from sim2real.diagnose.gantry.problem import gantry_problem
 from sim2real.diagnose.gantry.run import UnusableError
 from sim2real.diagnose.glide.data import join
@@ -38,6 +38,8 @@ from sim2real.nominal import parameters, stated_sizes
 from sim2real.recording import Recording
 
 Progress = Callable[[str, float], None]
+CLOSED = "nothing further is needed to name what was recorded; record again to see whether it lasts"
+OPEN = "no single recording is known to settle what is open: more launches all over the table, slow and fast, tell more"
 
 
 @dataclass(frozen=True)
@@ -73,9 +75,18 @@ class Diagnosis:
 
     @property
     def next_recording(self) -> str:
-        """What to record next, in one sentence; "" where nothing is open."""
-        open_ones = (each.next_recording for each in self.accounts if each.next_recording)
-        return self.remedy or next(open_ones, "")
+        """What to record next, in one sentence."""
+        return next(iter(self.advice), OPEN if self.is_open else CLOSED)
+
+    @property
+    def advice(self) -> list[str]:
+        """What could be recorded to settle what is open, as far as that is known."""
+        return [one for one in (self.remedy, *(each.next_recording for each in self.accounts)) if one]
+
+    @property
+    def is_open(self) -> bool:
+        """Whether anything is left to settle."""
+        return bool(self.verdict == "undetermined" or self.advice or any(each.unexplained for each in self.accounts))
 
     @property
     def untold(self) -> list[Account]:
@@ -85,7 +96,7 @@ class Diagnosis:
     @property
     def remarks(self) -> list[str]:
         """What should be known beside the verdict, a sentence each."""
-        untold = [f"{each.regime}: undetermined, {each.undetermined}" for each in self.untold]
+        untold = [f"{each.regime}: undetermined, {each.undetermined}{_missed_by(each)}" for each in self.untold]
         doubts = [f"{each.regime}: {each.doubt}" for each in self.accounts if each.doubt]
         left = [f"{each.regime}: {each.unexplained}" for each in self.accounts if each.unexplained]
         return [*self.notes, *untold, *doubts, *left]
@@ -95,6 +106,12 @@ class Diagnosis:
         """Held-out residuals over the regimes with findings, or over all where there are none."""
         lacking = [each for each in self.accounts if each.findings] or self.accounts
         return pooled([each.proof for each in lacking if each.proof is not None])
+
+
+def _missed_by(each: Account) -> str:
+    """By how much untouched launches are missed, where that is worth a word."""
+    many = each.times_noise
+    return f"; what is refitted misses untouched launches by {many:.2g} times the noise" if many and many > MUCH else ""
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from puckpilot_env.physics.effects import EFFECTS, MODULES
 from puckpilot_env.whole_file import write_text_whole
 from sim2real.diagnose.asked import PLAIN, Asked
 from sim2real.diagnose.diagnosis import Diagnosis
-from sim2real.diagnose.finding import Curve, Estimate, Finding
+from sim2real.diagnose.finding import Account, Curve, Estimate, Finding
 
 FORMAT = "puckpilot-diagnosis/1"
 # An effect that is a table of numbers, in words
@@ -36,6 +36,7 @@ def as_dict(diagnosis: Diagnosis) -> dict[str, Any]:
         "verdict": diagnosis.verdict,
         "baseline": {"parameters": {name: _estimate(one) for name, one in baseline.items()}},
         "findings": [_finding(one) for one in diagnosis.findings],
+        "regimes": [_regime(one) for one in diagnosis.accounts],
         "heldout": None if proof is None else asdict(proof),
         "next_recording": diagnosis.next_recording,
     }
@@ -60,10 +61,27 @@ def _finding(one: Finding) -> dict[str, Any]:
             "before": one.before,
             "after": one.after,
             "unit": "rms in units of the sensor's noise",
-            **{f"{name}_twin": asdict(twin) for name, twin in one.twins.items()},
+            **{f"{name}_twin": _known(asdict(twin)) for name, twin in one.twins.items()},
         },
     }
     return words if one.curve is None else {**words, "curve": _curve(one.curve)}
+
+
+def _regime(one: Account) -> dict[str, Any]:
+    """What a regime says for itself."""
+    words = {
+        "regime": one.regime,
+        "verdict": one.verdict,
+        "reason": one.undetermined or None,
+        "heldout": None if one.proof is None else asdict(one.proof),
+        "doubt": one.doubt or None,
+        "next_recording": one.next_recording or None,
+    }
+    return _known(words)
+
+
+def _known(words: dict[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in words.items() if value is not None}
 
 
 def _curve(one: Curve) -> dict[str, Any]:
@@ -77,13 +95,15 @@ def _estimate(one: Estimate) -> dict[str, Any]:
 
 
 def effects_toml(diagnosis: Diagnosis) -> str:
-    """The table's stated sizes, the refitted baseline and all that was found, as the simulator takes it: each fitted
-    number within its range.
+    """The table's stated sizes, and the refitted baseline and all that was found of the regimes that can tell, as the
+    simulator takes it: each fitted number within its range.
 
-    What it has no place for is named in a comment, such as a clock that drifts, since its players have one clock.
+    What it has no place for is named in a comment, such as a clock that drifts, since its players have one clock; and
+    so are the numbers of a regime that cannot tell.
     """
     values = {name: value for name, value in diagnosis.sizes.items() if BY_NAME[name].within(value) == value}
-    values |= {name: one.value for each in diagnosis.accounts for name, one in each.baseline.items()}
+    told = [each for each in diagnosis.accounts if not each.undetermined]
+    values |= {name: one.value for each in told for name, one in each.baseline.items()}
     for one in diagnosis.findings:
         values |= one.values
     near = {name: BY_NAME[name].within(value) for name, value in values.items()}
@@ -96,7 +116,19 @@ def effects_toml(diagnosis: Diagnosis) -> str:
     lines += [f"# in a formula, fitted for itself: {one.formula}" for one in diagnosis.findings if _is_table(one)]
     lines += [f"{NOT_SWITCHED} {_size(name, value)}" for name, value in diagnosis.sizes.items() if name not in values]
     lines += [f"{NOT_SWITCHED} {_name(one)}" for one in diagnosis.findings if not _simulated(one)]
+    lines += [_not_told(each) for each in diagnosis.untold]
+    if diagnosis.verdict == "undetermined":
+        lines.append(
+            "# the diagnosis could not tell what is missing: beyond these lines this is the simulator as it was"
+        )
     return "\n".join(lines) + "\n"
+
+
+def _not_told(each: Account) -> str:
+    """What a regime that cannot tell leaves as it was, and what was fitted all the same."""
+    numbers = ", ".join(f"{name} = {one.value:.5g}" for name, one in each.baseline.items())
+    fitted = f"; fitted all the same: {numbers}" if numbers else ""
+    return f"# the {each.regime} is left as it was ({each.undetermined}){fitted}"
 
 
 def _comments(name: str, values: Mapping[str, float]) -> list[str]:

@@ -29,7 +29,7 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Proof:
-    """Residuals on pieces that no fit ever saw: rms [m] before and after, and what the sensor's noise alone leaves."""
+    """Residuals on pieces that no fit ever saw: rms [m] before and after, and what noise alone leaves."""
 
     before_m: float
     after_m: float
@@ -68,7 +68,8 @@ class Curve:
 
 @dataclass(frozen=True)
 class Parting:
-    """Where recording and simulator part: what each of `n` pieces has more than a law foretells, seen less foretold.
+    """Where recording and simulator part: what each of `n` things (`of`, in the plural) has more than a law foretells,
+    seen less foretold.
 
     `before`, `after` (n, c) in `unit`, under the refitted baseline and under the final law; `std` (n, c): what the
     sensor's noise makes of them; `components`: their `c` names. `by`: what they may depend on, label with unit to (n,).
@@ -76,6 +77,7 @@ class Parting:
     which the second is to the left; None where the pieces have no place.
     """
 
+    of: str
     what: str
     unit: str
     components: tuple[str, ...]
@@ -110,12 +112,12 @@ class Sight:
 @dataclass(frozen=True)
 class Twin:
     """A control of a proof, in which nothing is to be found: rms residuals as a finding's, before and after, and in how
-    many of so many drawn twins a search named something."""
+    many `of` so many drawn twins a search `named` something, None where that would tell nothing."""
 
     before: float
     after: float
-    named: int
-    of: int
+    named: int | None = None
+    of: int | None = None
 
 
 @dataclass(frozen=True)
@@ -162,9 +164,24 @@ class Account:
     lost: bool = False
 
     @property
+    def verdict(self) -> str:
+        """As a diagnosis's, of this regime alone."""
+        if self.findings:
+            return "missing_physics"
+        if self.undetermined or self.lost:
+            return "undetermined"
+        return "agrees" if self.shipped else "parameters_only"
+
+    @property
+    def times_noise(self) -> float | None:
+        """What the final law leaves of untouched pieces, over what noise alone would; None where nothing was tried."""
+        one = self.proof
+        return None if one is None or not one.floor_m or not one.pieces else one.after_m / one.floor_m
+
+    @property
     def unexplained(self) -> str:
         """How much more than noise is left of untouched pieces by what is told, in words; "" where hardly any is."""
-        if self.undetermined or self.proof is None or self.proof.after_m < MUCH * self.proof.floor_m:
+        times = self.times_noise
+        if self.undetermined or self.proof is None or times is None or times < MUCH:
             return ""
-        times = self.proof.after_m / self.proof.floor_m
         return f"{1e3 * self.proof.after_m:.2g} mm of untouched pieces stay unexplained, {times:.2g} times the noise"

@@ -12,10 +12,15 @@ from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.explain import Explained
 from sim2real.diagnose.finding import Account, Finding, Parting
 from sim2real.diagnose.formula import Formula
+from sim2real.diagnose.gantry.problem import GantryProblem
+from sim2real.diagnose.gantry.readable import is_readable
+from sim2real.diagnose.gantry.readable import readable as gantry_formula
 from sim2real.diagnose.glide import picture as glides
 from sim2real.diagnose.glide.problem import GlideProblem
 from sim2real.diagnose.glide.readable import readable as glide_formula
-from sim2real.diagnose.plain_words import piece
+from sim2real.diagnose.mallet.problem import MalletProblem
+from sim2real.diagnose.mallet.readable import readable as mallet_formula
+from sim2real.diagnose.plain_words import piece, piece_words
 from sim2real.diagnose.problem import Problem
 from sim2real.diagnose.wall import picture as bounces
 from sim2real.diagnose.wall.problem import WallProblem
@@ -33,6 +38,12 @@ def illustrated(problem: Problem, found: Explained, account: Account, use: np.nd
         case WallProblem():
             parting = bounces.parting(problem, found)
             findings = [_wall_finding(problem, found, one, use) for one in account.findings]
+        case GantryProblem():
+            parting = _by_launch(problem, found)
+            findings = [_gantry_finding(problem, found, one, use) for one in account.findings]
+        case MalletProblem():
+            parting = _by_launch(problem, found)
+            findings = [_mallet_finding(problem, found, one, use) for one in account.findings]
         case _:
             parting, findings = _by_launch(problem, found), account.findings
     return replace(account, findings=tuple(findings), parting=parting)
@@ -56,6 +67,20 @@ def _wall_finding(problem: WallProblem, found: Explained, one: Finding, use: np.
     return replace(one, curve=curve, formula=_said(problem, found, formula, use), parameters=formula.parameters)
 
 
+def _mallet_finding(problem: MalletProblem, found: Explained, one: Finding, use: np.ndarray) -> Finding:
+    if found.unlisted is None or one.mechanism != "unlisted":
+        return one
+    formula, curve = mallet_formula(problem, found, found.unlisted, use)
+    return replace(one, curve=curve, formula=_said(problem, found, formula, use), parameters=formula.parameters)
+
+
+def _gantry_finding(problem: GantryProblem, found: Explained, one: Finding, use: np.ndarray) -> Finding:
+    if found.unlisted is None or one.mechanism != "unlisted" or not is_readable(found.unlisted):
+        return one
+    formula, curve = gantry_formula(problem, found, found.unlisted, use)
+    return replace(one, curve=curve, formula=_said(problem, found, formula, use), parameters=formula.parameters)
+
+
 def _said(problem: Problem, found: Explained, formula: Formula, use: np.ndarray) -> str:
     """A formula with the numbers that the rest of the law has beside it, and how rough it is if it is."""
     fitted = zip(found.final.free, formula.moved, strict=True)
@@ -73,7 +98,9 @@ def _by_launch(problem: Problem, found: Explained) -> Parting:
     sizes = [np.sqrt(np.maximum(some[live], 0.0) / problem.freedom[live])[:, None] for some in (before, after)]
     std = 1.0 / np.sqrt(2.0 * problem.freedom[live])[:, None]
     by = {f"{piece(problem.regime)}, in order of time": live.astype(float)}
-    return Parting("rms residual", "times the noise", ("rms",), sizes[0], sizes[1], std, by)
+    return Parting(
+        piece_words(problem.regime), "rms residual", "times the noise", ("rms",), sizes[0], sizes[1], std, by
+    )
 
 
 def _squares(problem: Problem, values: Mapping[str, float]) -> np.ndarray:

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable
 
 from puckpilot_env.physics.effects import MODULES
-from sim2real.diagnose.finding import Account, Estimate, Proof
+from sim2real.diagnose.finding import Account, Estimate
 
 FAULTS = {  # of the camera that are parameters of the simulator and no effects
     "camera_delay": "The camera's frames are stamped late: each shows the table as it was delay_s before its stamp.",
@@ -86,8 +86,3 @@ def pieces(account: Account) -> str:
     """How many untouched pieces a regime was tried on."""
     assert account.proof is not None
     return counted(account.proof.pieces, *PIECES.get(account.regime, LAUNCH))
-
-
-def times_noise(proof: Proof | None) -> float | None:
-    """What the final law leaves of untouched pieces, over what noise alone would; None where nothing was tried."""
-    return None if proof is None or not proof.floor_m or not proof.pieces else proof.after_m / proof.floor_m

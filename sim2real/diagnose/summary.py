@@ -15,7 +15,6 @@ from sim2real.diagnose.plain_words import (
     counted,
     digits_of,
     left_over,
-    times_noise,
     unit_words,
     with_gist,
 )
@@ -25,19 +24,25 @@ MOST_LINES = 10
 
 def sentence(diagnosis: Diagnosis, asked: Asked = PLAIN) -> str:
     """The verdict in one sentence."""
-    if diagnosis.verdict == "missing_physics":
-        return _lacking(diagnosis.findings)
     if diagnosis.verdict == "undetermined":
-        reasons = [diagnosis.reason, *(each.undetermined for each in diagnosis.accounts)]
-        why = next((r for r in reasons if r), "nothing in it tells")
-        return f"{_capital(asked.these)} cannot tell whether physics is missing: {why}."
+        return _cannot_tell(diagnosis, asked)
     untold = " and ".join(each.regime for each in diagnosis.untold)
-    return _explained(diagnosis, asked) + (f" (Of the {untold} it cannot tell.)" if untold else "")
+    told = _lacking(diagnosis.findings) if diagnosis.findings else _explained(diagnosis, asked)
+    return told + (f" (Of the {untold} it cannot tell.)" if untold else "")
+
+
+def _cannot_tell(diagnosis: Diagnosis, asked: Asked) -> str:
+    lost = " and ".join(each.regime for each in diagnosis.accounts if each.lost)
+    if lost:
+        return f"Something is missing in the {lost}, but {asked.these} cannot tell what."
+    reasons = [diagnosis.reason, *(each.undetermined for each in diagnosis.accounts)]
+    why = next((r for r in reasons if r), "nothing in it tells")
+    return f"{_capital(asked.these)} cannot tell whether physics is missing: {why}."
 
 
 def _explained(diagnosis: Diagnosis, asked: Asked) -> str:
     """That nothing is missing, and the regimes in which more than noise is left all the same."""
-    left = {each.regime: times_noise(each.proof) for each in diagnosis.accounts}
+    left = {each.regime: each.times_noise for each in diagnosis.accounts}
     more = [f"in the {regime} {left_over(many)}" for regime, many in left.items() if many and many > TO_THE_NOISE]
     if diagnosis.verdict == "parameters_only":
         said = f"The simulator's law explains {asked.these}, with other numbers than {_own(asked)}"
@@ -72,20 +77,20 @@ def _name(one: Finding) -> str:
 
 
 def summary(diagnosis: Diagnosis, written: Sequence[Path], asked: Asked = PLAIN) -> list[str]:
-    """At most MOST_LINES lines: the verdict, each finding, the baseline's numbers, the proof, the files."""
+    """At most MOST_LINES lines: the verdict, each finding, the proof, what to do next, the baseline's numbers, notes,
+    the files."""
     lines = [sentence(diagnosis, asked)]
-    lines += [f"  {one.mechanism}: {_numbers(one)}" for one in diagnosis.findings[:3]]
-    lines += [_baseline(each) for each in diagnosis.accounts if each.baseline]
+    lines += [f"  {one.mechanism}: {_numbers(one)}" for one in diagnosis.findings]
     proof = diagnosis.proof
     if proof is not None:
         found = f"{1e3 * proof.after_m:.2f} mm with the law, " if diagnosis.findings else ""
         tried = counted(proof.pieces, "untouched piece", "untouched pieces")
         lines.append(
             f"  held out: {1e3 * proof.before_m:.2f} mm with the refitted baseline, {found}"
-            f"{1e3 * proof.floor_m:.2f} mm is what the sensors' noise alone leaves ({tried})"
+            f"{1e3 * proof.floor_m:.2f} mm is what noise alone leaves ({tried})"
         )
-    if diagnosis.next_recording:
-        lines.append(f"  next: {diagnosis.next_recording}")
+    lines.append(f"  next: {diagnosis.next_recording}")
+    lines += [_baseline(each) for each in diagnosis.accounts if each.baseline]
     lines += [f"  note: {remark}" for remark in diagnosis.remarks]
     if len(lines) >= MOST_LINES:
         more = counted(len(lines) - MOST_LINES + 2, "line", "lines")

@@ -21,12 +21,13 @@ NULL, PERMUTED = "null", "permutation"
 def twins(
     grams: Grams, units: Units, model: Model, listed: Sequence[Law], use: np.ndarray, proof: np.ndarray
 ) -> dict[str, Twin]:
-    """What twins of a recording say, by name: of the laws of `model`, fitted to the twins of the clusters `use` and
-    tried on those of `proof`; and of a search among the `listed` laws, and those of the model (a wave at the length
-    that was found), for what they lack.
+    """What twins of a recording say, by name, of the laws of `model`, fitted to the twins of the clusters `use` and
+    tried on those of `proof`.
 
-    A null twin is the sensor's noise about the baseline. In a permutation twin the residuals of every piece keep their
-    size, but their signs are drawn, piece by piece.
+    A null twin is the sensor's noise about the baseline; a search among the `listed` laws, and those of the model (a
+    wave at the length that was found), should find nothing in it. In a permutation twin the residuals of every launch
+    keep their size, but their signs are drawn, launch by launch: they are as smooth as what is missing, so that a
+    search would take some of them for other laws, and is not asked.
     """
     laws = list({law.columns: law for law in (*model.laws, *listed)}.values())
     every = Model(model.base, tuple([*model.laws, *listed]), (1.0,) * (len(model.laws) + len(listed)))
@@ -40,8 +41,11 @@ def twins(
     for name, draw in drawn.items():
         some = [draw(rng) for _ in range(DRAWS)]
         before, after = np.mean([list(_tried(one, units, model, use, proof)) for one in some], axis=0)
-        named = sum(_names(one, units, model, laws, use) for one in some)
-        found[name] = Twin(float(before), float(after), named, DRAWS)
+        found[name] = Twin(float(before), float(after))
+        if name == NULL:
+            found[name] = replace(
+                found[name], named=sum(_names(one, units, model, laws, use) for one in some), of=DRAWS
+            )
     return found
 
 

@@ -7,6 +7,8 @@ own terms (volts, speed, acceleration) could do as well is left to them.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -37,63 +39,115 @@ DEPENDS = {
 }
 
 
+@dataclass(frozen=True)
+class Signals:
+    """What an axis did through all runs, each (n,): time [s], place [m], speed [m/s], its size and rate, volts asked
+    for, their size and that of both axes together [V], the heading [°], ones; and `memories` (n, k)."""
+
+    t: np.ndarray
+    place: np.ndarray
+    v: np.ndarray
+    rate: np.ndarray
+    u: np.ndarray
+    load: np.ndarray
+    angle: np.ndarray
+    memories: np.ndarray
+
+    @property
+    def pace(self) -> np.ndarray:
+        return np.abs(self.v)
+
+    @property
+    def order(self) -> np.ndarray:
+        return np.abs(self.u)
+
+    @property
+    def one(self) -> np.ndarray:
+        return np.ones(len(self.t))
+
+
 def families(problem: GantryProblem, p: np.void) -> tuple[list[Law], np.ndarray]:
     """The families, and their columns of the residuals (rows, k) at the law `p`."""
-    inputs, laws = _inputs(problem.runs)
-    blocks = []
-    for run, volts in zip(problem.runs, inputs, strict=True):
-        paths = np.zeros_like(volts)
+    volts, laws = _volts(problem.runs)
+    return laws, -answers(problem, p, volts)
+
+
+def answers(problem: GantryProblem, p: np.void, volts: np.ndarray) -> np.ndarray:
+    """What extra volts (n, 2, k) on the axes through all runs add to the path: (rows, k), in units of the noise."""
+    blocks, first = [], 0
+    for run in problem.runs:
+        mine, paths = volts[first : first + len(run.t)], np.zeros((len(run.t), *volts.shape[1:]))
+        first += len(run.t)
         for axis in range(2):
-            out = np.zeros(volts[:, axis].shape)
-            sampled_response(p, axis, volts[:, axis].copy(), run.t, run.windows.begin, run.windows.end, out)
+            out = np.zeros(mine[:, axis].shape)
+            sampled_response(p, axis, mine[:, axis].copy(), run.t, run.windows.begin, run.windows.end, out)
             paths[:, axis] = out
-        blocks.append(-run.residuals(p, extra=paths)[:, 1:])
-    return laws, np.concatenate(blocks)
+        blocks.append(run.residuals(p, extra=paths)[:, 1:])
+    return np.concatenate(blocks)
 
 
-def _inputs(runs: tuple[Run, ...]) -> tuple[list[np.ndarray], list[Law]]:
-    """For each run the volts (n, 2, k) of every column, of rms 1 V; and the laws that they make up."""
-    ends = np.cumsum([len(run.t) for run in runs])
+def volts_of(runs: Sequence[Run], law: Law) -> np.ndarray:
+    """Volts (n, 2, k) of the columns of one family."""
+    volts, laws = _volts(runs)
+    first = sum(len(one.columns) for one in laws[: [one.name for one in laws].index(law.name)])
+    return volts[:, :, first : first + len(law.columns)]
+
+
+def _volts(runs: Sequence[Run]) -> tuple[np.ndarray, list[Law]]:
+    """Through all runs the volts (n, 2, k) of every column, of rms 1 V; and the laws that they make up."""
     columns, laws = [], []
-    shapes = [_shapes(runs, axis) for axis in range(2)]
+    both = [signals(runs, axis) for axis in range(2)]
+    shapes, given = [_shapes(one) for one in both], [_baseline(one) for one in both]
     for name, depends in DEPENDS.items():
         made = []
         for axis, letter in enumerate("xy"):
-            own = _independent(shapes[axis][name], shapes[axis]["baseline"])
-            both = np.zeros((len(own), 2, own.shape[1]))
-            both[:, axis] = own
-            columns.append(both)
+            own = _independent(shapes[axis][name], given[axis])
+            placed = np.zeros((len(own), 2, own.shape[1]))
+            placed[:, axis] = own
+            columns.append(placed)
             made += [f"{name} {letter}{k}" for k in range(own.shape[1])]
         laws.append(Law(name, tuple(made), depends))
-    return np.split(np.concatenate(columns, axis=2), ends[:-1]), laws
+    return np.concatenate(columns, axis=2), laws
 
 
-def _shapes(runs: tuple[Run, ...], axis: int) -> dict[str, np.ndarray]:
-    """By name of a family, volts (n, k) on an axis through all runs; and what the baseline has, as "baseline"."""
-    parts = [_signals(run, axis) for run in runs]
-    t, place, v, a, u, load, angle, *memories = (np.concatenate(part) for part in zip(*parts, strict=True))
-    speeds, volts = spread_hats(np.abs(v), KNOTS), np.hstack([spread_hats(np.abs(u), KNOTS), spread_hats(load, KNOTS)])
-    turns = np.column_stack([f(k * angle) for k in range(1, HARMONICS + 1) for f in (np.cos, np.sin)])
-    times = hats(t, np.linspace(t.min(), t.max(), TIME_KNOTS))
+def _shapes(s: Signals) -> dict[str, np.ndarray]:
+    """By name of a family, volts (n, k) on an axis through all runs."""
+    speeds, volts = spread_hats(s.pace, KNOTS), np.hstack([spread_hats(s.order, KNOTS), spread_hats(s.load, KNOTS)])
+    turns = np.column_stack([f(k * np.radians(s.angle)) for k in range(1, HARMONICS + 1) for f in (np.cos, np.sin)])
+    times, places = hats(s.t, np.linspace(s.t.min(), s.t.max(), TIME_KNOTS)), spread_hats(s.place, KNOTS)
+    v, u = s.v[:, None], s.u[:, None]
     return {
-        "baseline": np.column_stack([u, v, a]),
-        "force by place": spread_hats(place, KNOTS),
-        "loss by place": spread_hats(place, KNOTS) * v[:, None],
-        "loss by speed": np.column_stack([speeds * v[:, None], np.tanh(v / GRIP)]),
-        "pull by volts": volts * u[:, None],
-        "loss by time": times * v[:, None],
-        "pull by time": times * u[:, None],
-        "loss by heading": turns * v[:, None],
-        "pull by history": np.column_stack(memories),
+        "force by place": places,
+        "loss by place": places * v,
+        "loss by speed": np.column_stack([speeds * v, np.tanh(s.v / GRIP)]),
+        "pull by volts": volts * u,
+        "loss by time": times * v,
+        "pull by time": times * u,
+        "loss by heading": turns * v,
+        "pull by history": s.memories,
     }
+
+
+def baseline_volts(runs: Sequence[Run], axis: int) -> np.ndarray:
+    """The volts (n, 3) that the baseline's own terms have on an axis."""
+    return _baseline(signals(runs, axis))
+
+
+def _baseline(s: Signals) -> np.ndarray:
+    return np.column_stack([s.u, s.v, s.rate])
+
+
+def signals(runs: Sequence[Run], axis: int) -> Signals:
+    """What an axis did through all runs, in order."""
+    return Signals(*(np.concatenate(part) for part in zip(*(_signals(run, axis) for run in runs), strict=True)))
 
 
 def _signals(run: Run, axis: int) -> list[np.ndarray]:
     now = np.maximum(np.searchsorted(run.orders.t, run.t, side="right") - 1, 0)
     u, load, v = run.orders.volts[now, axis], run.orders.load[now], run.speed[:, axis]
-    angle = np.arctan2(run.speed[:, 1], run.speed[:, 0])
-    memories = [_faded(run.t, q, memory) for q in (u, v) for memory in MEMORIES]
-    return [run.t, run.place[:, axis], v, np.gradient(v, run.t), u, load, angle, *memories]
+    angle = np.degrees(np.arctan2(run.speed[:, 1], run.speed[:, 0]))
+    memories = np.column_stack([_faded(run.t, q, memory) for q in (u, v) for memory in MEMORIES])
+    return [run.t, run.place[:, axis], v, np.gradient(v, run.t), u, load, angle, memories]
 
 
 @array_kernel

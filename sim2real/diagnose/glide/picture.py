@@ -36,7 +36,7 @@ def parting(problem: GlideProblem, found: Explained) -> Parting:
     )
     std = np.stack([np.hypot(*(axes * some.std).T) for axes in (seen.along, seen.across)], axis=1)
     return Parting(
-        "acceleration", "m/s²", ("along the motion", "to its left"), first, last, std,
+        "stretches of motion", "acceleration", "m/s²", ("along the motion", "to its left"), first, last, std,
         {label: column(seen) for label, column in COORDINATES.values()},
         seen.place, seen.along, (float(seen.size[0]), float(seen.size[1])),
     )  # fmt: skip
@@ -71,7 +71,9 @@ def listed_curve(problem: GlideProblem, found: Explained, mechanism: str) -> Cur
 
 
 def smooth_curve(problem: GlideProblem, found: Explained, law: Law, formula: Formula, looks: list[View]) -> Curve:
-    """An unlisted law and its readable formula, from that side of `looks` from which the law is largest."""
+    """An unlisted law and its readable formula, from that side of `looks` from which the law is largest; the data are
+    as far off the curve as they are off the whole law, which turns and changes within a stretch as no mean of it
+    does."""
     frames = problem.motion(problem.linearised(found.mended)[0])
     block = FAMILIES[law.name][1](frames)
     spread = found.theta_covariance[-len(law.columns) :, -len(law.columns) :]
@@ -80,10 +82,11 @@ def smooth_curve(problem: GlideProblem, found: Explained, law: Law, formula: For
     some = windows(problem.data, SHORT_SPAN if law.family == "history" else None)
     seen = motion(problem, some, found.mended)
     std = np.hypot(*(look.direction(seen) * some.std).T)
-    lacking = missing(problem, some, found.mended, -pull if found.switched() else None)
-    points = binned(look.coordinate(seen), look.of(seen, lacking), std)
+    left = missing(problem, some, found.mended, _untraced(problem, found))
+    points = binned(look.coordinate(seen), look.of(seen, left), std)
     x = look.coordinate(frames)
     shape = binned(x, look.of(frames, pull), even, LAW_BINS)
+    points = replace(points, y=points.y + np.interp(points.x, shape.x, shape.y))
     columns = np.einsum("na,nak->nk", look.direction(frames), block)
     whole = formula.form.field(formula.values) + _beside(found, formula, frames)
     said = over(shape.members, x, look.of(frames, whole), even)

@@ -75,7 +75,6 @@ DIRECTIONS: dict[str, tuple[str, Column]] = {
     "y": ("along y", fixed(0.0, 1.0)),
 }
 LISTED = {  # mechanism: coordinate and direction that show it best
-    "table_tilt": ("heading", "along"),
     "linear_drag": ("speed", "along"),
     "air_drift": ("time", "along"),
     "friction_anisotropy": ("heading", "along"),
@@ -100,6 +99,8 @@ def _names(mechanism: str, values: Mapping[str, float]) -> tuple[str, str]:
     if mechanism == "table_warp":
         axis = "x" if abs(values["warp_xx"]) > abs(values["warp_yy"]) else "y"
         return axis, axis
+    if mechanism == "table_tilt":  # the same for whoever goes where
+        return "heading", "x" if abs(values["tilt_x"]) > abs(values["tilt_y"]) else "y"
     return LISTED[mechanism]
 
 

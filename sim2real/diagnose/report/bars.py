@@ -7,7 +7,7 @@ from sim2real.diagnose.report.words import number, text
 
 ROW, LEFT, WIDTH = 24, 266, 700
 ROOM = 110  # for the numbers beside the bars
-NOISE = "what the sensor's noise alone leaves"
+NOISE = "what noise alone leaves"
 
 
 LAWS = ("refitted baseline", "with the law")
@@ -16,7 +16,7 @@ FAULTS = ("as recorded", "corrected")
 
 def proof_bars(proof: Proof, title: str, found: bool, names: tuple[str, str] = LAWS) -> str:
     """Bars of the rms [mm] on untouched pieces, before and, if something was `found`, after, by these `names`; and what
-    the sensor's noise alone leaves."""
+    noise alone leaves."""
     rows = [(names[0], proof.before_m, "#D55E00"), (names[1], proof.after_m, "#0072B2"),
             (NOISE, proof.floor_m, "#767676")]  # fmt: skip
     if not found:

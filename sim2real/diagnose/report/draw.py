@@ -34,7 +34,8 @@ def curve_picture(curve: Curve, told: str) -> str:
         chart.band(curve.x, curve.low, curve.high, AFTER)
         chart.line(curve.x, curve.y, AFTER, thick=2.2)
         chart.points(curve.data_x, curve.data_y, error, INK)
-    chart.name("recording", INK)
+    if len(curve.data_x):
+        chart.name("recording", INK)
     if curve.formula is not None:
         chart.line(curve.x, curve.formula, BEFORE, dashed=True, thick=2.0)
         chart.name("formula", BEFORE)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from puckpilot_env.physics.effects import EFFECTS
-from sim2real.diagnose.engine.twins import NULL, PERMUTED
 from sim2real.diagnose.finding import Finding, Rival
 from sim2real.diagnose.plain_words import are_weights, chance, explained, piece_words
 from sim2real.diagnose.report import words
@@ -12,9 +11,12 @@ from sim2real.diagnose.report.shapes import shape_in_words
 from sim2real.diagnose.report.words import number, text
 
 SHOWN = 5  # rivals before the rest is folded away
-TWINS = {NULL: "null twin", PERMUTED: "permutation twin"}
 WORSE = ((0.0, "no worse"), (9.0, "a tie"), (30.0, "a little"), (100.0, "clearly"), (1000.0, "far"))
 HOPELESS = "hopelessly"
+UNDRAWN = (
+    "The law with its 95 % band, and its formula, both less what the baseline's own numbers could do. Nothing recorded "
+    "stands beside it: the path answers to volts over a while, and is no measure of those of a moment."
+)
 
 
 def finding_section(one: Finding, index: int) -> str:
@@ -22,7 +24,7 @@ def finding_section(one: Finding, index: int) -> str:
     title = f"{index}. {text(one.mechanism)}, in the regime {text(one.regime)}"
     body = words.paragraph(text(_law_in_words(one))) + f'<code class="law">{text(one.formula)}</code>'
     body += words.paragraph(_where(one)) + _ambiguous(one) + _parameters(one)
-    body += _curve(one) + _proof(one) + _twins(one) + _rivals(one.rivals)
+    body += _curve(one) + _proof(one) + _rivals(one.rivals)
     return words.section(f"finding-{index}", title, body)
 
 
@@ -74,11 +76,11 @@ def _curve(one: Finding) -> str:
         f"{number(max(curve.y))}"
     )
     caption = (
-        "The law with its 95 % band, and what the recording shows once all else that was fitted is taken off: means "
-        "of whole stretches of motion, ±2 standard errors. What the axis does not show is held fixed, or the mean is "
+        "The law with its 95 % band, and the recording: as far off the curve as whole stretches of motion are off all "
+        "that was fitted, means with ±2 standard errors. What the axis does not show is held fixed, or the mean is "
         "taken over it; where the law depends on too much for that, what was seen is drawn against what it foretells."
     )
-    return words.picture(curve_picture(curve, alt), caption, "curve")
+    return words.picture(curve_picture(curve, alt), caption if len(curve.data_x) else UNDRAWN, "curve")
 
 
 def _proof(one: Finding) -> str:
@@ -90,26 +92,6 @@ def _proof(one: Finding) -> str:
     return words.paragraph(
         f"On {piece_words(one.regime)} that no fit saw, {what} {fall}. Chance that noise alone gains as much: "
         f"{text(chance(one.p_value))}."
-    )
-
-
-def _twins(one: Finding) -> str:
-    if not one.twins:
-        return ""
-    rows = [["the recording", number(one.before), number(one.after), "yes"]]
-    rows += [
-        [TWINS[name], number(twin.before), number(twin.after), f"in {twin.named} of {twin.of}"]
-        for name, twin in one.twins.items()
-    ]
-    note = "The same laws and the same search in twins: what is left of untouched launches, in units of the noise"
-    table = words.table(note, ("data", "without the law", "with it", "the search names something"), rows, (1, 2, 3))
-    return table + words.paragraph(
-        "A null twin is the simulator with its refitted numbers and fresh noise; a permutation twin is the recording's "
-        "own misses, each piece's with a sign drawn by lot. Neither holds a law: with it no less should be left than "
-        "without it, in either; that is the test. In null twins the search should name nothing as well: one name among "
-        "six is an accident that happens, more of them speak against the name found in the recording. The misses of a "
-        "permutation twin are as large and as smooth as what the recording lacks, so that a search takes some of them "
-        "for other laws."
     )
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from sim2real.diagnose.asked import PLAIN, Asked
 from sim2real.diagnose.diagnosis import Diagnosis
 from sim2real.diagnose.finding import Account
-from sim2real.diagnose.plain_words import TO_THE_NOISE, left_over, times_noise
+from sim2real.diagnose.plain_words import TO_THE_NOISE, left_over
 from sim2real.diagnose.report import words
 from sim2real.diagnose.report.bars import proof_bars
 from sim2real.diagnose.report.findings import finding_section
@@ -18,9 +18,6 @@ from sim2real.diagnose.report.style import CSS
 from sim2real.diagnose.report.words import number, text
 from sim2real.diagnose.summary import sentence
 from sim2real.diagnose.untested import untested
-
-ALWAYS = "Nothing further is needed to name what was recorded; record again to see whether it lasts."
-OPEN = "No single recording is known to settle it: more launches, all over the table and at all speeds, tell more."
 
 
 def page(diagnosis: Diagnosis, asked: Asked = PLAIN) -> str:
@@ -58,7 +55,7 @@ def _overview(diagnosis: Diagnosis, missing: dict[str, str]) -> str:
         body += words.paragraph(f"Nothing can be said: {text(diagnosis.reason)}.") + _list(diagnosis.notes)
     if diagnosis.accounts:
         head = ("regime", "missing", "refitted baseline", "with the law", "tried on")
-        caption = "What is left of untouched launches, in units of what the sensor's noise alone leaves (1 is perfect)"
+        caption = "What is left of untouched launches, in units of what noise alone leaves (1 is perfect)"
         body += words.table(caption, head, rows, (2, 3, 4))
     if diagnosis.proof is not None:
         found = bool(diagnosis.findings)
@@ -84,7 +81,7 @@ def _not_tested(why: str) -> str:
 
 
 def _sizes(each: Account) -> tuple[str, ...]:
-    after = times_noise(each.proof)
+    after = each.times_noise
     if after is None or each.proof is None:
         return NO_SIZES
     before = number(each.proof.before_m / each.proof.floor_m)
@@ -92,14 +89,11 @@ def _sizes(each: Account) -> tuple[str, ...]:
 
 
 def _next(diagnosis: Diagnosis) -> str:
-    open_ones = [diagnosis.remedy, *(one.next_recording for one in diagnosis.accounts)]
-    body = _list((one for one in open_ones if one), "next")
-    named = {each.regime: times_noise(each.proof) for each in diagnosis.accounts if each.findings}
+    body = _list(diagnosis.advice or [diagnosis.next_recording], "next")
+    named = {each.regime: each.times_noise for each in diagnosis.accounts if each.findings}
     more = [f"in the {name} {left_over(many)}" for name, many in named.items() if many and many > TO_THE_NOISE]
     if more:
         body += words.paragraph(text(f"What is named does not explain all: {'; '.join(more)}."))
-    if not body:
-        body = words.paragraph(OPEN if diagnosis.verdict == "undetermined" else ALWAYS)
     return words.section("next", "What to do next", body)
 
 

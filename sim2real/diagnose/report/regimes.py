@@ -8,10 +8,11 @@ import numpy as np
 
 from sim2real.diagnose.asked import Asked
 from sim2real.diagnose.finding import Account, Parting, Proof
-from sim2real.diagnose.plain_words import TO_THE_NOISE, left_over, pieces, times_noise, with_gist
+from sim2real.diagnose.plain_words import TO_THE_NOISE, left_over, pieces, with_gist
 from sim2real.diagnose.report import words
 from sim2real.diagnose.report.bars import FAULTS, LAWS, proof_bars
 from sim2real.diagnose.report.draw import map_pictures, parting_pictures, unchanged
+from sim2real.diagnose.report.twins import twins_table
 from sim2real.diagnose.report.words import number, text
 from sim2real.diagnose.untested import NO_PATH
 
@@ -38,7 +39,7 @@ def _proof(one: Account, proof: Proof) -> str:
         said = f"Rms of all that the faults make wrong, together and in metres, on {pieces(one)} that no fit saw; "
         said += "each finding tells of its own, in units of each miss's error."
     bars = proof_bars(proof, title, found, FAULTS if one.regime == "sensing" else LAWS)
-    return f"<h3>Proof on untouched data</h3>{words.paragraph(text(said))}{bars}"
+    return f"<h3>Proof on untouched data</h3>{words.paragraph(text(said))}{bars}{twins_table(one)}"
 
 
 def _baseline(one: Account, asked: Asked) -> str:
@@ -70,7 +71,7 @@ def _says(one: Account, asked: Asked, missing: Mapping[str, str]) -> str:
 
 def _rest(one: Account, after: str) -> str:
     """A sentence on what is left of untouched pieces, where that is more than noise."""
-    many = times_noise(one.proof)
+    many = one.times_noise
     return f" {after}, {left_over(many)}." if many and many > TO_THE_NOISE else ""
 
 
@@ -113,7 +114,7 @@ def _parting(one: Parting) -> str:
 
 
 def _how_to_read(one: Parting) -> str:
-    means = f"Means of {len(one.before)} pieces, ±2 standard errors"
+    means = f"Means of {len(one.before)} {one.of}, ±2 standard errors"
     if one.components == ("rms",):
         return f"{means}; noise alone lies on one."
     return f"Seen less foretold, {means[:1].lower()}{means[1:]}; what is explained lies on zero."

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from puckpilot_env.physics.effects.unlisted_bounce import KNOTS, RIPPLES, WAVES
-from sim2real.diagnose.contact_laws import UNIT
+from sim2real.diagnose.contact_laws import UNIT, shape_of
 from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.piecewise import memory_hats, ripples, spread_hats
 from sim2real.diagnose.wall.data import KINDS, Bounces
@@ -73,11 +73,6 @@ FAMILIES: dict[str, tuple[str, Callable[[Bounces], np.ndarray]]] = {
     "time since a contact": ("history", lambda d: memory_hats(d.since, KNOTS)),
     **{name: ("position", _one_wave(length)) for name, length in ONE_WAVE.items()},
 }
-
-
-def shape_of(law: Law) -> str:
-    """The name in FAMILIES of what a smooth law is a function of."""
-    return law.name.split(" by ", 1)[1]
 
 
 def shares(data: Bounces, law: Law) -> np.ndarray:

@@ -8,10 +8,10 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from puckpilot_env.physics.effects import EFFECTS
-from sim2real.diagnose.contact_laws import contact_columns
+from sim2real.diagnose.contact_laws import contact_columns, shape_of
 from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.problem import Columns
-from sim2real.diagnose.wall.families import FAMILIES, ONE_WAVE, shape_of
+from sim2real.diagnose.wall.families import FAMILIES, ONE_WAVE
 from sim2real.diagnose.wall.switched import switched_on
 
 if TYPE_CHECKING:

@@ -36,14 +36,14 @@ class View:
 
 def parting(problem: WallProblem, found: Explained) -> Parting:
     """Velocities after each bounce that the refitted baseline and the final law do not foretell."""
-    d, std = problem.data, _std(problem)
+    d, std = problem.data, problem.std
     before, after = (_misses(problem, values) * std for values in (found.baseline.values, found.final.values))
     if found.unlisted is not None:
         components, weights = list(acted_on(found.unlisted)), shares(d, found.unlisted)
         after[:, components] -= speeds(d)[:, components] * (weights @ found.coefficients)[:, None]
     by = {label: column for label, column in coordinates(d).values()}
     return Parting(
-        "velocity after the bounce", "m/s", ("normal", "along the wall"), before, after, std, by,
+        "bounces", "velocity after the bounce", "m/s", ("normal", "along the wall"), before, after, std, by,
         d.place, d.normal, problem.size,
     )  # fmt: skip
 
@@ -91,13 +91,6 @@ def speeds(d: Bounces) -> np.ndarray:
     return np.stack([d.closing, d.sliding], axis=1)
 
 
-def _std(problem: WallProblem) -> np.ndarray:
-    """Noise (n, 2) [m/s] of the velocity after less the one foretold."""
-    white = problem.whitened(np.tile(np.eye(2), (len(problem.data), 1, 1))).reshape(-1, 2, 2)
-    inverse = np.linalg.inv(white)
-    return np.sqrt(np.einsum("nij,nij->ni", inverse, inverse))
-
-
 def _misses(problem: WallProblem, values: Mapping[str, float]) -> np.ndarray:
     """Residuals (n, 2) of a law in units of the noise."""
     return problem.residuals(values, (), np.arange(problem.clusters)).r.reshape(-1, 2)
@@ -112,7 +105,7 @@ def _curve(problem: WallProblem, found: Explained, view: View, formula: Formula 
         use &= ~d.lost  # of pucks whose spin is known, if there are any
     safe = np.where(use, going, np.nan)
     law, columns, spread = _kept(problem, found, at, safe)
-    seen, std = d.split(d.after)[:, at] / safe, _std(problem)[:, at] / np.abs(safe)
+    seen, std = d.split(d.after)[:, at] / safe, problem.std[:, at] / np.abs(safe)
     x, rows = view.coordinate[use], np.flatnonzero(use)
     rough = not view.ticks and is_rough(x, law[rows], std[rows])
     x_label, y_label = view.label, KEPT[at]

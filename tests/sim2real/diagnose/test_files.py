@@ -7,8 +7,8 @@ import pytest
 from puckpilot_env import Tables
 from puckpilot_env.effects_file import effect_values
 from sim2real.diagnose.diagnosis import Diagnosis, diagnose
-from sim2real.diagnose.files import effects_toml
-from sim2real.diagnose.finding import Account, Estimate, Finding
+from sim2real.diagnose.files import as_dict, effects_toml
+from sim2real.diagnose.finding import Account, Estimate, Finding, Proof
 from sim2real.recording import read_recording
 from tests.reality.camera import Camera
 from tests.reality.law import Law
@@ -66,6 +66,41 @@ def test_what_has_no_place_in_the_simulator_is_named(tmp_path):
     drift = dataclasses.replace(PLAIN, mechanism="clock_drift", depends_on=("time",), values={})
     assert _taken(tmp_path, drift) == {}
     assert "# not in the simulator: clock_drift of the sensing" in (tmp_path / "effects.toml").read_text()
+
+
+def test_a_regime_that_cannot_tell_is_left_as_it_was(tmp_path):
+    numbers = {"wall_restitution": Estimate(0.69, 0.6, 0.8, "1")}
+    unsure = Account("wall", (), numbers, False, None, undetermined="too few bounces")
+    sure = Account("glide", (), {"friction": Estimate(0.09, 0.08, 0.1, "m/s^2")}, False, None)
+    file = tmp_path / "effects.toml"
+    file.write_text(effects_toml(Diagnosis((unsure, sure))))
+    assert effect_values(file) == {"friction": 0.09}
+    left = "# the wall is left as it was (too few bounces); fitted all the same: wall_restitution = 0.69"
+    assert left in file.read_text().splitlines() and "could not tell" not in file.read_text()
+    file.write_text(effects_toml(Diagnosis((unsure,))))
+    assert effect_values(file) == {}
+    assert "# the diagnosis could not tell what is missing" in file.read_text()
+
+
+def test_every_regime_says_for_itself_what_it_has():
+    proof = Proof(0.004, 0.001, 0.0009, 7)
+    found = as_dict(
+        Diagnosis(
+            (
+                Account("glide", (PLAIN,), {}, False, proof),
+                Account("wall", (), {}, False, None, undetermined="too few bounces", next_recording="more"),
+                Account("mallet", (), {}, True, proof, doubt="mallet_give would fit"),
+                Account("gantry", (), {}, False, proof),
+            )
+        )
+    )
+    numbers = {"before_m": 0.004, "after_m": 0.001, "floor_m": 0.0009, "pieces": 7}
+    assert found["regimes"] == [
+        {"regime": "glide", "verdict": "missing_physics", "heldout": numbers},
+        {"regime": "wall", "verdict": "undetermined", "reason": "too few bounces", "next_recording": "more"},
+        {"regime": "mallet", "verdict": "agrees", "heldout": numbers, "doubt": "mallet_give would fit"},
+        {"regime": "gantry", "verdict": "parameters_only", "heldout": numbers},
+    ]
 
 
 def test_players_meet_the_table_s_own_sizes_on_it(tmp_path):

@@ -32,12 +32,23 @@ def _curve(found: Diagnosis):
     return curve
 
 
-def test_a_tilt_is_a_wave_over_the_heading(tmp_path):
-    curve = _curve(_diagnosis(tmp_path / "table", Law(tilt_x=0.015, tilt_y=-0.01)))
-    for x, y, error in ((curve.x, curve.y, 0.0004), (curve.data_x, curve.data_y, 0.004)):
-        angle = np.radians(x)
-        assert np.abs(y - (0.015 * np.cos(angle) - 0.01 * np.sin(angle))).max() < error
+def test_a_tilt_is_the_same_for_every_heading(tmp_path):
+    curve = _curve(_diagnosis(tmp_path / "table", Law(tilt_x=0.01, tilt_y=-0.015)))
+    assert curve.x_label.startswith("heading") and "along y" in curve.y_label
+    for y, error in ((curve.y, 0.0004), (curve.data_y, 0.004)):
+        assert np.abs(y + 0.015).max() < error
     assert (curve.low <= curve.y).all() and (curve.y <= curve.high).all()
+    assert np.ptp(curve.x) > 300.0
+
+
+def test_a_force_that_turns_is_drawn_where_its_law_is(tmp_path):
+    """The force changes and turns within a stretch, so that the mean over it is smaller than what is in its middle."""
+    curve = _curve(_diagnosis(tmp_path / "table", Law(vortex=0.1, vortex_size=0.35)))
+    assert "round it" in curve.y_label
+    r = curve.data_x / 0.35
+    true = 0.1 * r * np.exp(0.5 - 0.5 * r**2)
+    assert (np.abs(curve.data_y - true) < 1.5 * curve.data_error + 0.005).all()
+    assert true.max() > 0.09
 
 
 def test_restitution_is_a_line_over_the_speed(tmp_path):
@@ -69,6 +80,49 @@ def test_walls_that_tire_get_a_slope(tmp_path):
     assert one.parameters["slope"].value == pytest.approx(-0.003, rel=0.02)
     assert "both components" in one.formula
     assert float(one.formula.split("wall_restitution ")[1]) == pytest.approx(0.85, abs=0.001)
+
+
+def test_a_mallet_that_tires_gets_a_slope(tmp_path):
+    law = Law(mallet_warming=-0.004, mallet_restitution=0.85)
+    make_recording(tmp_path / "table", law, "rally", 7, 80.0, camera=Camera(noise=0.0006, rate=150.0))
+    found = diagnose([read_recording(tmp_path / "table")], [], {}, lambda stage, share: None)
+    one = found.findings[0]
+    assert (one.regime, one.mechanism, one.depends_on) == ("mallet", "unlisted", ("time",))
+    assert one.parameters["slope"].value == pytest.approx(-0.004, rel=0.05)
+    assert float(one.formula.split("mallet_restitution ")[1]) == pytest.approx(0.85, abs=0.01)
+    curve = _curve(found)
+    assert curve.formula == pytest.approx(curve.y, abs=0.01)
+    assert (np.abs(curve.data_y - np.interp(curve.data_x, curve.x, curve.y)) < 3.0 * curve.data_error).all()
+
+
+SPEED_LOSS = 2.0 * Law().a3 / Law().pulley_radius  # V s/m, of either axis
+
+
+def test_a_gantry_rough_by_place_gets_a_wave_in_volts(tmp_path):
+    make_recording(tmp_path / "table", Law(rough=0.3, rough_length=0.4), "gantry", 7, 60.0)
+    found = diagnose([read_recording(tmp_path / "table")], [], {}, lambda stage, share: None)
+    one = found.findings[0]
+    assert (one.regime, one.depends_on) == ("gantry", ("position",))
+    assert one.formula.startswith("extra volts = ") and "times the speed, on both axes" in one.formula
+    size, wave, shift = (one.parameters[name].value for name in ("size", "wave", "shift"))
+    assert size == pytest.approx(0.3 * SPEED_LOSS, rel=0.02)
+    assert wave == pytest.approx(0.4, rel=0.01)
+    assert np.cos(2.0 * np.pi * shift / wave) < -0.98  # it takes where the law, a loss, gives
+    assert f"a3 {Law().a3:.3g}"[:-1] in one.formula
+    curve = _curve(found)
+    expected = 0.3 * SPEED_LOSS * np.sin(2.0 * np.pi * (curve.x - shift) / wave)
+    assert curve.formula is not None
+    for drawn in (curve.y, curve.formula):
+        assert np.corrcoef(drawn, expected)[0, 1] > 0.98
+    assert "no measure of those of a moment" in page(found)
+
+
+def test_a_gantry_that_loses_more_at_speed_gets_a_square(tmp_path):
+    make_recording(tmp_path / "table", Law(cubic_loss=0.1), "gantry", 7, 60.0)
+    one = diagnose([read_recording(tmp_path / "table")], [], {}, lambda stage, share: None).findings[0]
+    assert (one.regime, one.depends_on) == ("gantry", ("speed",))
+    assert "|v|^2 V s/m times the speed, on both axes" in one.formula
+    assert one.parameters["slope"].value == pytest.approx(-0.1 * SPEED_LOSS, rel=0.03)
 
 
 def test_friction_that_breathes_is_a_wave_in_time(tmp_path):

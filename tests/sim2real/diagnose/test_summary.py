@@ -71,6 +71,41 @@ def test_ten_lines_count_and_give_units_as_print_has_them():
 def test_what_does_not_fit_into_ten_lines_is_counted():
     walls = [Account("wall", (), {}, True, None, f"reason {k}") for k in range(12)]
     lines = summary(Diagnosis(tuple(walls)), [])
-    assert len(lines) == 10 and lines[8] == "  … and 5 lines more, which report.html has"
-    few = summary(Diagnosis(tuple(walls[:8])), [])
-    assert len(few) == 10 and few[8].endswith("reason 7")
+    assert len(lines) == 10 and lines[8] == "  … and 6 lines more, which report.html has"
+    few = summary(Diagnosis(tuple(walls[:7])), [])
+    assert len(few) == 10 and few[8].endswith("reason 6")
+
+
+def test_findings_and_what_to_do_next_come_before_the_baseline():
+    numbers = {"friction": Estimate(0.1, 0.09, 0.11, "m/s^2")}
+    found = (TILT, RUB, LAW, LATE, HELD)
+    accounts = [Account(f"glide {k}", found if k == 0 else (), numbers, False, None) for k in range(6)]
+    lines = summary(Diagnosis(tuple(accounts)), [])
+    assert [line.split(":")[0].strip() for line in lines[1:6]] == [
+        one.mechanism for one in Diagnosis(tuple(accounts)).findings
+    ]
+    assert lines[6].startswith("  next: nothing further is needed")
+
+
+LOST = Account("glide", (), {}, False, Proof(0.01, 0.01, 0.001, 2), undetermined="who knows", lost=True)
+
+
+def test_what_is_missing_but_not_known_is_said_so():
+    assert sentence(Diagnosis((LOST,))) == "Something is missing in the glide, but this recording cannot tell what."
+    note = next(line for line in summary(Diagnosis((LOST,)), []) if "note" in line)
+    assert (
+        note
+        == "  note: glide: undetermined, who knows; what is refitted misses untouched launches by 10 times the noise"
+    )
+
+
+def test_regimes_that_cannot_tell_are_named_beside_what_is_missing():
+    both = Diagnosis((Account("glide", (TILT,), {}, False, None), Account("wall", (), {}, True, None, "few bounces")))
+    assert sentence(both) == "The simulator lacks table_tilt (the table is not level). (Of the wall it cannot tell.)"
+
+
+def test_what_is_open_is_never_said_to_be_closed():
+    wide = Account("gantry", (TILT,), {}, False, Proof(0.1, 0.01, 0.001, 2))
+    assert Diagnosis((wide,)).next_recording.startswith("no single recording is known")
+    asking = Account("wall", (), {}, True, None, "few bounces", next_recording="record more bounces")
+    assert Diagnosis((wide, asking)).next_recording == "record more bounces"

@@ -12,7 +12,7 @@ X = np.linspace(0.1, 0.9, 7)
 PATCH = {"patch_x": 0.5, "patch_y": 0.3, "patch_radius": 0.35, "patch_extra": 0.2}
 BASE = {"friction": 0.1, "drag": 0.2}
 LAWS = {  # mechanism: its parameters, and what it adds along the view's direction at the coordinate x, by hand
-    "table_tilt": ({"tilt_x": 0.02, "tilt_y": -0.01}, lambda h: 0.02 * np.cos(h) - 0.01 * np.sin(h)),
+    "table_tilt": ({"tilt_x": 0.02, "tilt_y": -0.01}, lambda h: np.full_like(h, 0.02)),
     "linear_drag": ({"linear_drag": 0.05}, lambda v: -0.05 * v),
     "air_drift": ({"air_drift": 0.01}, lambda t: -0.1 * 0.01 * t),
     "side_force": ({"side_force": 0.03}, lambda v: 0.03 * v),

@@ -71,7 +71,9 @@ def _parting(n: int = 60) -> Parting:
     by = {"speed [m/s]": rng.uniform(0, 2, n), "time [s]": np.full(n, np.nan)}
     place = rng.uniform((0, 0), (2, 1), (n, 2))
     std = np.full((n, 2), 0.01)
-    return Parting("acceleration", "m/s²", ("along", "left"), before, after, std, by, place, axis, (2.0, 1.0))
+    return Parting(
+        "stretches", "acceleration", "m/s²", ("along", "left"), before, after, std, by, place, axis, (2.0, 1.0)
+    )
 
 
 def _glide(findings=(), shipped=False, undetermined="", further="", parting=None) -> Account:
