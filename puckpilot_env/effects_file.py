@@ -43,7 +43,11 @@ def effect_values(effects: Effects | None) -> dict[str, float]:
     try:
         return _read(tomllib.loads(path.read_text(encoding="utf-8")))
     except OSError as error:
-        raise ValueError(f"cannot read effects from '{path}': {error.strerror or error}") from None
+        words = f"cannot read effects from '{path}': {error.strerror or error}"
+        raise ValueError(f"{words}; expected a file such as effects.toml of puckpilot diagnose") from None
+    except tomllib.TOMLDecodeError as error:
+        words = f"{path}: not a TOML file ({error})"
+        raise ValueError(f"{words}; expected lines like 'tilt_x = 0.02' below [effects.table_tilt]") from None
     except ValueError as error:  # of TOML and of text among them
         raise ValueError(f"{path}: {' '.join(str(error).split())}") from None
 

@@ -38,7 +38,8 @@ def read_baseline(path: Path) -> dict[str, float]:
     try:
         found = tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
-        raise ValueError(f"cannot read the baseline '{path}': {error.strerror or error}") from error
+        words = f"cannot read the baseline '{path}': {error.strerror or error}"
+        raise ValueError(f"{words}; expected a TOML file of lines like 'friction = 0.1'") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise ValueError(f"{path}: not a TOML file ({error}); expected lines like 'friction = 0.1'") from error
     if found.get("format") == EFFECTS_FORMAT:

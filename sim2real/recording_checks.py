@@ -62,7 +62,8 @@ def _section(file: Path, meta: dict[str, Any], key: str) -> dict[str, Any]:
             continue
         number = isinstance(value, int | float) and not isinstance(value, bool)
         if not number or not 0 < value <= largest:
-            reason = f"{key}.{field} is {str(value)[:40]!r}, expected a number in 0 … {largest:g} or null"
+            span = f"a number above 0 and up to {largest:g} {field.rsplit('_')[-1]}"
+            reason = f"{key}.{field} is {json.dumps(value)[:40]}, expected {span}, or null where it is not known"
             raise RecordingError(file, reason)
     return section
 

@@ -68,7 +68,8 @@ def make_cases(plan: Plan, folder: Path, workers: int, progress: Progress, root:
             progress(len(labels), plan.cases)
         said = maker.stderr.read().strip()
     if maker.returncode:
-        raise ValueError(f"no cases were made: {said.splitlines()[-1] if said else f'exit {maker.returncode}'}")
+        why = said.splitlines()[-1].split("error: ", 1)[-1] if said else f"exit {maker.returncode}"
+        raise ValueError(f"no cases were made: {why}")
     return labels
 
 
