@@ -31,6 +31,7 @@ TABLE = np.dtype(
     [
         ("puck", PUCK),
         ("mallets", MALLET, 2),  # with their gantries and plans
+        ("orders", np.float64, (2, 2, 3)),  # that are on their way, of player, axis: signed volts [V], t1, t2 [s]
         ("gantry_scale", np.float64, (2, 2, 3)),  # C5, C6, C7 relative to the parameters', of player, axis
         ("frame_phase", np.float64),  # frame j is exposed at (j + frame_phase)/frame_rate
         ("last_frame", np.int64),  # newest frame taken

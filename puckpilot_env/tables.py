@@ -83,6 +83,7 @@ class Tables:
         values = {**effect_values(effects), **(parameters or {})}
         refuse_not_simulated(values)
         variant = _without_draws(_with_timing(variant, period, max_cycles), values)
+        _check_delay(variant, values)
         self.variant = variant
         self.threads = min(int(threads), int(tables))
         self.autoreset = autoreset
@@ -236,6 +237,13 @@ def _with_timing(variant: Variant, period: float | None, max_cycles: int | None)
             raise ValueError(f"the limit of steps is {max_cycles!r}; expected a whole number from 1 to {MOST_STEPS:,}")
         variant = replace(variant, step_limit=int(max_cycles))
     return variant
+
+
+def _check_delay(variant: Variant, values: Mapping[str, float]) -> None:
+    """ValueError, in one line, for orders that would come later than the next ones are given."""
+    delay = values.get("command_delay", 0.0)
+    if delay >= variant.period:
+        raise ValueError(f"command_delay is {delay:g} s; expected less than the period of {variant.period:g} s")
 
 
 def _without_draws(variant: Variant, values: Mapping[str, float]) -> Variant:

@@ -10,10 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from puckpilot_env import state
 from puckpilot_env.game.sensing import EXACT, MOST_WANTED, SHOT_COLUMNS
-from puckpilot_env.game.step import plan_both, play, play_and_film
+from puckpilot_env.game.step import plan_both, play_and_film, play_step
 from puckpilot_env.kernel import announce_compilation, array_kernel
 from puckpilot_env.physics.advance import EVENT_COLUMNS
-from puckpilot_env.physics.mallet import settle
 from puckpilot_env.tables import Tables
 
 
@@ -37,9 +36,7 @@ def trace_step(moments, p, rules, frames, actions, times, scored):
         if times[i] >= rule.period and rule.sensing != EXACT:
             scored[i] = play_and_film(table, p[0], rule, frames, rewards, log, film)
         else:
-            scored[i] = play(table, p[0], rule, times[i], rewards, log, film[:0])
-        settle(table.mallets[0], times[i])
-        settle(table.mallets[1], times[i])
+            scored[i] = play_step(table, p[0], rule, times[i], rewards, log, film[:0])
         table.time += times[i]
 
 

@@ -44,8 +44,10 @@ def build_gantries(table, p):
 def place_mallet(table, p, k, x, y):
     """Put player `k`'s mallet at rest at `(x, y)` [m] of its own frame."""
     x, y = mirror.place(k, x, y, p)
-    mallet.place_axis(table.mallets[k].x, x, 0.0, 0.0)
-    mallet.place_axis(table.mallets[k].y, y, 0.0, 0.0)
+    for a in range(2):
+        axis = table.mallets[k].x if a == 0 else table.mallets[k].y
+        mallet.place_axis(axis, x if a == 0 else y, 0.0, 0.0)
+        axis.volts = 0.0  # of late orders, those before are forgotten
 
 
 @kernel

@@ -16,7 +16,9 @@ MOST_CROSSINGS = 200  # of the middle line in one stretch; a puck that jitters t
 
 @kernel
 def plan_both(table, p, actions, rewards):
-    """Both players' plans, and what J.3 charges for them. actions: float32 (2, 4) in each player's own frame."""
+    """Both players' plans, and what J.3 charges for them. actions: float32 (2, 4) in each player's own frame. Where
+    orders are late, the mallets go on with those before, and the table keeps what is on its way."""
+    late = compose.delay(p) > 0.0
     for k in range(2):
         mallet = table.mallets[k]
         x_f, y_f = mirror.place(k, actions[k, 0], actions[k, 1], p)
@@ -28,9 +30,19 @@ def plan_both(table, p, actions, rewards):
             vx *= 1.0 + p.action_noise * dx
             vy *= 1.0 + p.action_noise * dy
         area = mirror.area(k, p)
-        plan_mallet(mallet, x_f, y_f, vx, vy, area, p.max_voltage)
-        if compose.loses(p):
-            drive.weaken(mallet, p, area, p.max_voltage)
+        if late:
+            drive.note(mallet, table.orders[k])
+            _plan(mallet, x_f, y_f, vx, vy, area, p)
+            drive.exchange(mallet, table.orders[k], area, p.max_voltage)
+        else:
+            _plan(mallet, x_f, y_f, vx, vy, area, p)
+
+
+@kernel
+def _plan(mallet, x_f, y_f, vx, vy, area, p):
+    plan_mallet(mallet, x_f, y_f, vx, vy, area, p.max_voltage)
+    if compose.loses(p):
+        drive.weaken(mallet, p, area, p.max_voltage)
 
 
 @kernel
@@ -54,8 +66,48 @@ def play(table, p, rule, until, rewards, log, film):
 
 
 @kernel
+def _first_after(film, moment):
+    """The first shot of `film` that is later than `moment` [s]; from then on that is their times' zero."""
+    first = 0
+    while first < film.shape[0] and film[first, 0] <= moment:
+        first += 1
+    for i in range(first, film.shape[0]):
+        film[i, 0] -= moment
+    return first
+
+
+@kernel
+def play_step(table, p, rule, until, rewards, log, film):
+    """`play` for a step up to `until` [s], with both mallets' places in the shots of `film`; afterwards the mallets are
+    where they are then."""
+    delay = min(compose.delay(p), until)
+    over, rest, first = False, until, 0
+    if delay > 0.0:
+        over = play(table, p, rule, delay, rewards, log, film)
+        sensing.shoot_mallets(table.mallets, film)
+        rest -= delay
+        first = _first_after(film, delay)
+        for k in range(2):
+            settle(table.mallets[k], delay)
+            drive.exchange(table.mallets[k], table.orders[k], mirror.area(k, p), p.max_voltage)
+        table.time += delay
+        table.held += delay
+    if not over:
+        over = play(table, p, rule, rest, rewards, log, film[first:])
+    sensing.shoot_mallets(table.mallets, film[first:])
+    for k in range(2):
+        settle(table.mallets[k], rest)
+        if delay > 0.0:
+            drive.carry_on(table.mallets[k], rest)
+    if delay > 0.0:
+        table.time -= delay
+        table.held -= delay
+    return over
+
+
+@kernel
 def play_and_film(table, p, rule, frames, rewards, log, film):
-    """`play` for a whole step, and the camera frames exposed meanwhile that some decision will look at."""
+    """`play_step`, and the camera frames exposed meanwhile that some decision will look at."""
     first, wanted = sensing.wanted_frames(table, p, rule.sensing, rule.period)
     shots, held = 0, 0
     frame, left = first, wanted
@@ -67,8 +119,7 @@ def play_and_film(table, p, rule, frames, rewards, log, film):
             held |= repeats << shots
             shots += 1
         frame, left = frame + 1, left >> 1
-    over = play(table, p, rule, rule.period, rewards, log, film[:shots])
-    sensing.shoot_mallets(table.mallets, film[:shots])
+    over = play_step(table, p, rule, rule.period, rewards, log, film[:shots])
     shots, frame, left = 0, first, wanted
     while left:
         if left & 1:
@@ -99,11 +150,9 @@ def step_table(table, p, rule, frames, actions, rewards, log, film):
     table.ending = rules.RUNNING
     plan_both(table, p, actions, rewards)
     if rule.sensing == sensing.EXACT:
-        scored = play(table, p, rule, rule.period, rewards, log, film[:0])
+        scored = play_step(table, p, rule, rule.period, rewards, log, film[:0])
     else:
         scored = play_and_film(table, p, rule, frames, rewards, log, film)
-    settle(table.mallets[0], rule.period)
-    settle(table.mallets[1], rule.period)
     table.steps += 1
     table.time = table.steps * rule.period
     table.held += rule.period

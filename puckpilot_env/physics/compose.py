@@ -17,6 +17,7 @@ An effect's file has the hooks of its regime, every one a kernel; those that it 
 | sensing | `camera_map(p)` | (xx, xy, yx, yy): how far off x and y are seen for each metre of x and of y |
 | gantry | `loses(p)` | whether less arrives at the motors than a plan asks for; goes with the next |
 | gantry | `delivered(p, volts, load)` | volts at a motor from those so far; `load` = abs(V_x) + abs(V_y) as asked for |
+| gantry | `delay(p)` | how long after its decision a plan starts [s], less than the time between two decisions |
 
 `t` [s] is the time of the episode, (x, y) [m] a place, spin [rad/s] counter-clockwise, `closing` [m/s] > 0 the normal
 speed before; the tangent is the normal turned counter-clockwise. Impulses are per unit mass of the puck.
@@ -135,6 +136,14 @@ def _camera_map(first: Hook, second: Hook) -> Hook:
     return both
 
 
+def _delay(first: Hook, second: Hook) -> Hook:
+    @inner
+    def both(p):
+        return first(p) + second(p)
+
+    return both
+
+
 def _delivered(first: Hook, second: Hook) -> Hook:
     @inner
     def both(p, volts, load):
@@ -156,3 +165,4 @@ mallet_shares = reduce(_mallet_shares, _hooks("mallet_shares"))
 camera_map = reduce(_camera_map, _hooks("camera_map"))
 loses = reduce(_either, _hooks("loses"))
 delivered = reduce(_delivered, _hooks("delivered"))
+delay = reduce(_delay, _hooks("delay"))

@@ -1,7 +1,8 @@
-"""What the motors do with a plan when less arrives than it asks for: its times, with the volts that are left.
+"""What the motors do with orders that are not a plan from where the mallet is: they are weaker than planned, or late.
 
-A plan is safe with its own volts. With fewer the mallet may still run when it was to stand, up to the rail that ends
-its area, which stops the axis dead.
+A plan is safe with its own volts, at its own time. With others the mallet may still run when it was to stand, up to
+the rail that ends its area, which stops the axis dead. Orders are what is sent of a plan, (2 axes, 3): signed volts,
+t1, t2.
 """
 
 from __future__ import annotations
@@ -24,6 +25,37 @@ def weaken(mallet, p, area, max_voltage):
     limit = 2.0 * (max_voltage - SMALLEST_VOLTAGE)
     _weaken_axis(mallet.x, compose.delivered(p, mallet.x.volts, load), area[0], area[1], limit)
     _weaken_axis(mallet.y, compose.delivered(p, mallet.y.volts, load), area[2], area[3], limit)
+
+
+@kernel
+def note(mallet, orders):
+    """Write down the orders of a mallet's plan."""
+    for a in range(2):
+        axis = mallet.x if a == 0 else mallet.y
+        orders[a, 0], orders[a, 1], orders[a, 2] = axis.volts, axis.t1, axis.t2
+
+
+@kernel
+def exchange(mallet, orders, area, max_voltage):
+    """Let a mallet follow `orders` from where it is; they are then those that it followed. The others as in
+    `plan_mallet`."""
+    limit = 2.0 * (max_voltage - SMALLEST_VOLTAGE)
+    for a in range(2):
+        axis = mallet.x if a == 0 else mallet.y
+        volts, t1, t2 = orders[a, 0], orders[a, 1], orders[a, 2]
+        orders[a, 0], orders[a, 1], orders[a, 2] = axis.volts, axis.t1, axis.t2
+        axis.t1, axis.t2, axis.halt = t1, t2, math.inf
+        _weaken_axis(axis, volts, area[2 * a], area[2 * a + 1], limit)
+
+
+@kernel
+def carry_on(mallet, elapsed):
+    """Make the orders those that are left after `elapsed` [s], for a mallet whose modes are those of then already."""
+    for a in range(2):
+        axis = mallet.x if a == 0 else mallet.y
+        if elapsed >= axis.halt:
+            axis.volts = 0.0
+        axis.t1, axis.t2 = max(axis.t1 - elapsed, 0.0), max(axis.t2 - elapsed, 0.0)
 
 
 @kernel

@@ -45,7 +45,7 @@ HOOKS = {
     "corner": ("restitution",),
     "mallet": ("mallet_restitution", "mallet_impulse", "mallet_tangent", "mallet_shares"),
     "sensing": ("camera_map",),
-    "gantry": ("loses", "delivered"),
+    "gantry": ("loses", "delivered", "delay"),
 }
 
 

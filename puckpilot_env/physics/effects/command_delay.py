@@ -1,8 +1,12 @@
-"""A plan starts late; until then the one before it goes on."""
+"""A plan starts late; until then the one before it goes on.
+
+The plan is made from where the mallet is at the decision, as if it began there.
+"""
 
 from __future__ import annotations
 
 from puckpilot_env.effect import Effect, Parameter
+from puckpilot_env.kernel import inner
 
 _SOURCE = "serial link and control loop: a few milliseconds"
 
@@ -13,5 +17,10 @@ EFFECT = Effect(
     depends_on=("command",),
     excited_by="plans that change while the mallet moves, with the encoders' and the plans' clocks in step",
     source="transport delay",
-    not_simulated="its plans begin where the mallet is when they are made",
 )
+
+
+@inner
+def delay(p):
+    """How long after its decision a plan starts [s]."""
+    return p.command_delay

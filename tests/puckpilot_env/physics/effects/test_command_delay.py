@@ -1,0 +1,111 @@
+"""Orders that reach the motors late: the mallets' paths against the reference, also in the camera's frames."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from puckpilot_env import Tables
+from puckpilot_env.physics.mallet import place_now
+from tests.puckpilot_env.physics.table_driver import areas, plan_both, record
+from tests.reality import Law, run
+
+DELAY, STEPS = 0.055, 14
+LATE = {"command_delay": {"delay_s": DELAY}}
+CLEAN = {"camera_noise": 0.0, "camera_error": 0.0, "beam_noise": 0.0, "dropped_frames": 0.0, "held_frames": 0.0}
+
+
+def gentle(tables: Tables, rng: np.random.Generator) -> np.ndarray:
+    """Actions (n, 2, 4) that keep clear of the rails, which no reference has."""
+    actions = np.empty((len(tables), 2, 4), np.float32)
+    actions[..., 0], actions[..., 1] = rng.uniform((0.3, 0.3), (0.7, 0.7), (len(tables), 2, 2)).transpose(2, 0, 1)
+    actions[..., 2:] = rng.uniform(2.0, 5.0, (len(tables), 2, 2))
+    return actions
+
+
+def played(variant: str, **parameters: float) -> tuple[Tables, np.ndarray, np.ndarray, list[list]]:
+    """A table after STEPS; where the mallets were (steps + 1, 2, 2); its plans as they were made, of either mallet."""
+    tables, rng, p = Tables(variant, 1, seed=3, effects=LATE, parameters=parameters), np.random.default_rng(5), record()
+    places, plans = [_places(tables)], [[], []]
+    for step in range(STEPS):
+        actions = gentle(tables, rng)
+        requests = actions[0].astype(float)
+        requests[1, :2] = (p.length, p.width) - requests[1, :2]
+        copy = tables.states.copy().view(np.recarray)[0]
+        plan_both(copy.mallets, requests, areas(p), p.max_voltage)
+        for k, m in enumerate(copy.mallets):
+            plans[k].append((0.1 * step, (m.x.volts, m.y.volts, m.x.t1, m.y.t1, m.x.t2, m.y.t2)))
+        tables.step(actions)
+        places.append(_places(tables))
+    return tables, np.array(places), np.arange(STEPS + 1) * 0.1, plans
+
+
+def _places(tables: Tables) -> list[tuple[float, float]]:
+    return [place_now(mallet) for mallet in tables.states.view(np.recarray)[0].mallets]
+
+
+def test_mallets_go_where_the_reference_goes() -> None:
+    _, places, times, plans = played("match-v0")
+    for late, apart in ((DELAY, 0.0), (0.0, 0.01)):
+        trace = run(Law(command_delay=late), None, places[0], plans, times[-1], 2e-5)
+        seen = np.array([[np.interp(times, trace.t, path[:, c]) for c in (0, 3)] for path in trace.mallets])
+        furthest = np.abs(seen.transpose(2, 0, 1) - places).max()
+        assert furthest < 1e-6 if late else furthest > apart
+
+
+def test_the_camera_sees_both_stretches_of_a_step() -> None:
+    tables, places, times, plans = played("match-sensors-v0", **CLEAN)
+    trace = run(Law(command_delay=DELAY), None, places[0], plans, times[-1], 2e-5)
+    state, frames, rate = tables.states[0], tables._frames[0], float(tables.params["frame_rate"][0])
+    newest, into_step = int(state["last_frame"]), set()
+    for number in range(newest - 11, newest + 1):
+        frame, t = frames[number & (len(frames) - 1)], (number + state["frame_phase"]) / rate
+        expected = [[np.interp(t, trace.t, path[:, c]) for c in (0, 3)] for path in trace.mallets]
+        seen = [(frame["mallets"][k]["x"], frame["mallets"][k]["y"]) for k in range(2)]
+        if np.abs(np.array(seen) - expected).max() < 1e-5:  # others were not taken: in their places are older ones
+            into_step.add(round(t - times[-2], 3))
+    assert len(into_step) == 5 and min(into_step) < DELAY < max(into_step)
+
+
+def test_a_turned_table_plays_the_same_game() -> None:
+    tables, turned = (Tables("match-v0", 16, seed=3, effects=LATE) for _ in range(2))
+    rng, (low, high) = np.random.default_rng(1), tables.action_bounds
+    for step in range(60):
+        actions = np.clip(rng.uniform(low, high, (16, 2, 4)).astype(np.float32), low, high)
+        turned.restore(tables.snapshot())
+        turned.turn()
+        tables.step(actions)
+        turned.step(np.ascontiguousarray(actions[:, ::-1]))
+        if step < 5:  # later pucks hang on the last digits
+            np.testing.assert_allclose(tables.observations, turned.observations[:, ::-1], atol=1e-4)
+        for axis in "xy":
+            there = turned.states["mallets"][axis]["slow"][:, ::-1]
+            np.testing.assert_allclose(tables.states["mallets"][axis]["slow"], -there, atol=1e-9)
+
+
+def test_no_mallet_leaves_its_half() -> None:
+    tables, bounds = Tables("match-v0", 64, seed=3, effects={"command_delay": {"delay_s": 0.09}}), areas(record())
+    rng, (low, high) = np.random.default_rng(1), tables.action_bounds
+    for _ in range(120):
+        tables.step(np.clip(rng.uniform(low, high, (64, 2, 4)).astype(np.float32), low, high))
+        for axis, first in (("x", 0), ("y", 2)):
+            modes = tables.states["mallets"][axis]
+            place = modes["rest"] + modes["slow"] + modes["fast"]
+            assert (place >= bounds[:, first] - 1e-8).all() and (place <= bounds[:, first + 1] + 1e-8).all()
+
+
+def test_a_new_episode_knows_no_orders_of_the_one_before() -> None:
+    tables, rng = Tables("match-v0", 1, seed=3, effects=LATE), np.random.default_rng(5)
+    for _ in range(3):
+        tables.step(gentle(tables, rng))
+    tables.reset(4)
+    still = gentle(tables, rng)
+    home = _places(tables)
+    still[0, :, 0], still[0, :, 1] = home[0]  # where both are, each in its own frame
+    tables.step(still)
+    np.testing.assert_allclose(_places(tables), home, atol=1e-6)
+
+
+def test_orders_later_than_the_next_are_refused() -> None:
+    with pytest.raises(ValueError, match=r"^command_delay is 0.055 s; expected less than the period of 0.02 s$"):
+        Tables("match-v0", 1, effects=LATE, period=0.02)
