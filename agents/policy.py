@@ -21,7 +21,7 @@ from baselines.player import Player, Seat
 from puckpilot_env.whole_file import write_whole
 
 FORMAT = "puckpilot-policy-1"
-SHIPPED = Path(__file__).parent / "policies"  # a file there is a policy, and its name is the policy's name
+SHIPPED = Path(__file__).parent / "policies"  # NAME.npz there is a policy; see `of_variant` for what may lie beside it
 PREFIX = "policy:"  # may stand before a policy's name; a script's name without it is the script
 OUTPUTS = 4  # of target x, y and voltages x, y, before they are squashed
 MOST_BYTES = 1 << 28  # of all arrays; a network of eight layers of 2048 is half of it
@@ -118,7 +118,7 @@ class PolicyPlayer(Player):
 
 def policy_names() -> list[str]:
     """Names of the shipped policies."""
-    return sorted(path.stem for path in SHIPPED.glob("*.npz"))
+    return sorted(path.stem for path in SHIPPED.glob("*.npz") if "." not in path.stem)
 
 
 def is_policy(name: str) -> bool:
@@ -148,11 +148,24 @@ def policy_file(name: str) -> Path:
     return file
 
 
+def of_variant(file: Path, variant: str) -> Path:
+    """The file that plays a variant for the policy of `file`, NAME.npz: NAME.VARIANT.npz where it lies beside it, as
+    champion.attack-v0.npz does, or else the file itself."""
+    own = file.with_name(f"{file.stem}.{variant.rsplit('/', 1)[-1]}.npz")
+    return own if own.exists() else file
+
+
 def find_policy(name: str) -> Policy:
     """The policy that is named so; see `policy_file`. ValueError, in one line, for one that cannot be loaded."""
     return load_policy(policy_file(name))
 
 
 def find_policy_player(name: str) -> Callable[[Seat], Player]:
-    """What makes the player of this policy for a seat; see `policy_file`."""
-    return partial(PolicyPlayer, find_policy(name))
+    """What makes the player of this policy for a seat, as it plays the seat's variant; see `policy_file`."""
+    file = policy_file(name)
+    load_policy(file)  # a broken one is told of now
+    return partial(_seated, file)
+
+
+def _seated(file: Path, seat: Seat) -> Player:
+    return PolicyPlayer(load_policy(of_variant(file, seat.variant)), seat)

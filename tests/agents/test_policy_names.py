@@ -6,16 +6,17 @@ import json
 import shutil
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
 
 import pytest
 from some_policy import made
 
 from agents import policy as policy_module
 from agents.commands import train
-from agents.policy import find_policy, is_policy, policy_file
+from agents.policy import PolicyPlayer, find_policy, is_policy, policy_file
 from baselines import find_player, full_name
+from baselines.player import Seat
 from puckpilot import main
+from puckpilot_env.tables import Tables
 
 SPELLINGS = ["policy:ours", "ours", "policy:run/policy.npz", "run/policy.npz", "policy:run", "run", "./run/"]
 WRONG = {
@@ -70,8 +71,8 @@ def refused(capsys: pytest.CaptureFixture[str], *words: str) -> str:
 @pytest.mark.parametrize("name", SPELLINGS)
 def test_one_policy_by_all_its_names(name: str) -> None:
     assert is_policy(name) and find_policy(name).about["seed"] == 9
-    player: Any = find_player(name)
-    assert player.args[0].about["seed"] == 9
+    player = find_player(name)(Seat.from_tables(Tables("defence-v0", 1)))
+    assert isinstance(player, PolicyPlayer) and player.policy.about["seed"] == 9
     assert full_name(name) == f"policy:{name.removeprefix('policy:')}"
 
 
@@ -132,6 +133,16 @@ def test_a_shipped_name_is_the_shipped_policy_whatever_lies_here(here: Path) -> 
     (here / "ours").mkdir()
     made(seed=3).save(here / "ours" / "policy.npz")
     assert find_policy("ours").about["seed"] == 9 and find_policy("./ours").about["seed"] == 3
+
+
+def test_a_variant_may_have_a_file_of_its_own_beside(here: Path) -> None:
+    made(seed=3).save(here / "run" / "policy.attack-v0.npz")
+    made(seed=4).save(here.parent / "shipped" / "ours.attack-v0.npz")
+    for name, seed in (("run", 3), ("run/policy.npz", 3), ("ours", 4)):
+        for variant, expected in (("attack-v0", seed), ("puckpilot/attack-v0", seed), ("defence-v0", 9)):
+            player = find_player(name)(Seat.from_tables(Tables(variant, 1)))
+            assert isinstance(player, PolicyPlayer) and player.policy.about["seed"] == expected
+    assert policy_module.policy_names() == ["ours"]
 
 
 def test_shipped_policies_are_listed(tmp_path: Path) -> None:
