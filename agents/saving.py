@@ -56,18 +56,24 @@ def learn_on(training: Training, start: Path) -> None:
 
 
 def _use_networks(training: Training, start: Path, learner: dict[str, Any]) -> None:
-    known, alg = load_policy(RunFolder(start).policy).columns, training.runner.alg
+    known, alg = _alike(training, RunFolder(start).policy).columns, training.runner.alg
     for part, network in (("actor_state_dict", alg.actor), ("critic_state_dict", alg.critic)):
         inputs = network.state_dict()[FIRST].shape[1]
         learner[part] = widened(learner[part], known, training.columns, inputs)
     alg.load(learner, {"actor": True, "critic": True}, True)
 
 
+def _alike(training: Training, path: Path) -> Policy:
+    """The policy of a file; ValueError if it reads or acts in other units than the one that is trained."""
+    policy = load_policy(path)
+    if not policy.scaling.reads_alike(policy.columns, training.hall.reading.scaling, training.columns):
+        raise ValueError(f"{path} reads its columns in other units, or acts within other bounds, than this version")
+    return policy
+
+
 def _use_policy(training: Training, path: Path) -> None:
     """How boldly a policy explored is not in its file: the rows of the last layer for that stay as they are."""
-    policy, actor, reading = load_policy(path), training.runner.alg.actor, training.hall.reading
-    if not policy.scaling.reads_alike(policy.columns, reading.scaling, training.columns):
-        raise ValueError(f"{path} reads its columns in other units, or acts within other bounds, than this version")
+    policy, actor = _alike(training, path), training.runner.alg.actor
     weights = dict(actor.state_dict())
     names = [name for name in weights if name.startswith("mlp.")]
     given = [array for layer in zip(policy.network.weights, policy.network.biases, strict=True) for array in layer]

@@ -18,7 +18,10 @@ def widened(
     old = weights[FIRST]
     more = old.shape[1] - len(known)
     if len(wanted) + more > inputs:
-        raise ValueError(f"the network has {more} inputs beside its columns; expected {inputs - len(wanted)} at most")
+        raise ValueError(
+            f"the network to begin with has {more} inputs beside its columns; expected {inputs - len(wanted)} at most, "
+            "as this preset's has"
+        )
     new = zeros(old.shape[0], inputs, dtype=old.dtype)
     for column, name in enumerate(known):
         if name in wanted:

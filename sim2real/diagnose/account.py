@@ -21,11 +21,15 @@ from sim2real.diagnose.labels import labelled
 from sim2real.diagnose.problem import Problem
 from sim2real.diagnose.where import whereabouts
 
+ENOUGH = 4  # untouched launches, to say that numbers of a law that does not explain them are better than others
 LOST = "something is missing, but these data do not tell what"
 
 
-def account(problem: Problem, proved: Proved, use: np.ndarray, proof: np.ndarray) -> Account:
-    """What a regime says: what the engine found on the clusters `use`, and what stands of it, `proved` on `proof`."""
+def account(
+    problem: Problem, proved: Proved, shipped: Mapping[str, float], use: np.ndarray, proof: np.ndarray
+) -> Account:
+    """What a regime says: what the engine found on the clusters `use`, from the simulator's own numbers `shipped`, and
+    what stands of it, `proved` on `proof`."""
     found = proved.found
     before, after = (_rms(problem, one, proof) for one in (bare(found), found))
     findings = _findings(problem, proved, use, proof, after)
@@ -42,13 +46,18 @@ def account(problem: Problem, proved: Proved, use: np.ndarray, proof: np.ndarray
         next_recording=advice(problem, found, findings, use),
         doubt=_doubt(proved),
         lost=lost,
+        better=len(proof) >= ENOUGH and _soft(problem, found.baseline.values, proof) < _soft(problem, shipped, proof),
     )
 
 
 def _unseen(problem: Problem, found: Explained, proof: np.ndarray) -> bool:
     """Whether far more than noise is left of untouched launches; single bounces may be odd."""
-    left, _ = soft_loss(problem, problem.residuals(found.law.values, (), proof))
+    left = _soft(problem, found.law.values, proof)
     return left > MUCH**2 * max(float(problem.freedom[proof].sum()), 1.0)
+
+
+def _soft(problem: Problem, values: Mapping[str, float], proof: np.ndarray) -> float:
+    return soft_loss(problem, problem.residuals(values, (), proof))[0]
 
 
 def _findings(

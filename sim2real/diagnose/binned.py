@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim2real.diagnose.interval import NORMAL_REACH
+from sim2real.diagnose.interval import reach_of_launches
 
 FEWEST = 4  # pieces of a bin
 DRAWN = 80  # places at which a smooth law is drawn
@@ -68,11 +68,12 @@ def singles(x: np.ndarray) -> np.ndarray:
     return np.arange(len(x)) == at[:, None]
 
 
-def half_band(bins: Binned, std: np.ndarray, columns: np.ndarray, spread: np.ndarray) -> np.ndarray:
-    """Half widths (b,) of the 95 % band of binned `columns` (n, k) whose coefficients have the covariance `spread`."""
+def half_band(bins: Binned, std: np.ndarray, columns: np.ndarray, spread: np.ndarray, launches: int) -> np.ndarray:
+    """Half widths (b,) of the 95 % band of binned `columns` (n, k) whose coefficients have the covariance `spread`, as
+    told by so many launches."""
     weight = bins.members / std**2
     mean = (weight / weight.sum(axis=1, keepdims=True)) @ columns
-    return NORMAL_REACH * np.sqrt(np.maximum(np.einsum("bi,ij,bj->b", mean, spread, mean), 0.0))
+    return reach_of_launches(launches) * np.sqrt(np.maximum(np.einsum("bi,ij,bj->b", mean, spread, mean), 0.0))
 
 
 def _mean(x: np.ndarray, y: np.ndarray, std: np.ndarray) -> tuple[float, float, float]:

@@ -10,7 +10,7 @@ from sim2real.diagnose.contact_laws import acted_on
 from sim2real.diagnose.contact_problem import ContactProblem
 from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.engine.explain import Explained
-from sim2real.diagnose.forms import Axis, Direction, Form, form, profiles
+from sim2real.diagnose.forms import Axis, Direction, form, profiles
 from sim2real.diagnose.formula import Formula, Rest, find_formula
 
 NORMAL = 0
@@ -34,7 +34,7 @@ def contact_formula(
             side = Direction("change", "", f"{words} of {name}" if name else words, push * here[:, None])
             made = [form(one, there, [side], "1") for one in profiles(there, "1")]
             forms |= {one.name: (one, here) for one in made}
-    best = find_formula(_rest(problem, found, use), [one for one, _ in forms.values()], _none)
+    best = find_formula(_rest(problem, found, use), [one for one, _ in forms.values()])
     return best, forms[best.form.name][1]
 
 
@@ -46,7 +46,3 @@ def _rest(problem: ContactProblem, found: Explained, use: np.ndarray) -> Rest:
         return problem.allowing(values, now, problem.whitened(problem.with_recoil(values, velocities)))
 
     return Rest(left.r, left.jacobian, left.cluster, use, respond)
-
-
-def _none(form: Form, shape: np.ndarray) -> tuple[Form, ...]:
-    return ()

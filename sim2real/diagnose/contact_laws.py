@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from sim2real.diagnose.contact_data import Contacts
     from sim2real.diagnose.contact_problem import ContactProblem
 
+SLOWEST = 0.1  # m/s of a component; the share kept of a slower one is noise
 UNIT = 0.1  # of a restitution, what a coefficient of 1 stands for
 GROWTH = 1.2  # of a friction, between the two columns that show how its effect changes with its size
 

@@ -15,8 +15,8 @@ from sim2real.diagnose.contacts import geometry
 from sim2real.diagnose.encoders import read_encoders
 from sim2real.diagnose.engine.explain import Explained
 from sim2real.diagnose.engine.fit import given
-from sim2real.diagnose.explaining import explain_regime, judged, too_little
-from sim2real.diagnose.finding import MUCH, Account, Finding, Proof, Sight
+from sim2real.diagnose.explaining import explain_regime, too_little
+from sim2real.diagnose.finding import MUCH, TO_THE_NOISE, Account, Finding, Proof, Sight
 from sim2real.diagnose.gantry.problem import gantry_problem
 from sim2real.diagnose.gantry.run import UnusableError
 from sim2real.diagnose.glide.data import join
@@ -86,7 +86,8 @@ class Diagnosis:
     @property
     def is_open(self) -> bool:
         """Whether anything is left to settle."""
-        return bool(self.verdict == "undetermined" or self.advice or any(each.unexplained for each in self.accounts))
+        left = any((each.times_noise or 0.0) > TO_THE_NOISE or each.doubt for each in self.accounts)
+        return bool(self.verdict == "undetermined" or self.advice or left)
 
     @property
     def untold(self) -> list[Account]:
@@ -185,13 +186,12 @@ def _puck(data: Cut, sights: Sequence[Sight], values: dict[str, float], progress
     progress("bounces", 0.6)
     impacts = [find_impacts(pieces, glides, states, k) for k, pieces in enumerate(data.pieces)]
     hits = known_apart(bounces([hit for some in impacts for hit in some], geometry(data.recordings[0]), proof), proof)
-    yield judged(explain_regime(WallProblem(hits, glides.clusters, law), law, proof, tables, *rests_on)[1], rests_on[1])
+    yield explain_regime(WallProblem(hits, glides.clusters, law), law, proof, tables, *rests_on)[1]
     progress("blows", 0.75)
     struck = _blows(data.recordings, impacts)
     if struck is not None:
         struck = known_apart(struck, proof)
-        blows_told = explain_regime(MalletProblem(struck, glides.clusters, law), law, proof, tables, *rests_on)[1]
-        yield judged(blows_told, rests_on[1])
+        yield explain_regime(MalletProblem(struck, glides.clusters, law), law, proof, tables, *rests_on)[1]
 
 
 def _gantry(data: Cut, values: dict[str, float], progress: Progress) -> list[Account]:

@@ -9,8 +9,8 @@ import numpy as np
 
 from sim2real.diagnose.account import account
 from sim2real.diagnose.agreement import Part, check_agreement
-from sim2real.diagnose.engine.explain import Explained, explain
-from sim2real.diagnose.engine.proving import prove
+from sim2real.diagnose.engine.explain import Explained, bare, explain
+from sim2real.diagnose.engine.proving import Proved, prove
 from sim2real.diagnose.finding import Account
 from sim2real.diagnose.illustrate import illustrated
 from sim2real.diagnose.problem import Problem
@@ -37,7 +37,8 @@ def explain_regime(
     proved: bool = True,
 ) -> tuple[Explained | None, Account, bool]:
     """What stands of a problem (None where there is too little data), its account, and whether a law by name, or none,
-    explains what was fitted. What the regime rests on: `clear` to those who fit, and `proved` by untouched launches."""
+    explains what was fitted. What the regime rests on: `clear` to those who fit, and `proved` by untouched launches; if
+    it is not, nothing is told that leaves much unexplained."""
     live = np.flatnonzero(problem.freedom > 0)
     use, apart = np.setdiff1d(live, proof), np.intersect1d(live, proof)
     if len(use) + len(apart) < FEWEST_LAUNCHES or not len(apart) or problem.freedom[use].sum() < FEWEST_RESIDUALS:
@@ -49,21 +50,16 @@ def explain_regime(
     else:
         found = explain(problem, shipped, use, clear)
     stands = prove(problem, found, apart, proved)
-    told = account(problem, stands, use, apart)
-    if told.lost and not told.next_recording:
+    told = account(problem, stands, shipped, use, apart)
+    if not proved and (told.unexplained or told.lost):
+        stands = Proved(bare(stands.found), {})
+        told = replace(account(problem, stands, shipped, use, apart), undetermined=TOO_ROUGH, lost=False)
+    elif (told.lost or told.unexplained) and not told.next_recording:
         told = replace(told, next_recording=f"record more {MORE_OF[problem.regime]}")
     if isinstance(problem, WallProblem) and problem.scatter.any():
         told = replace(told, doubt="; ".join(filter(None, (told.doubt, _scattering(problem)))))
     known = found.unlisted is None and not found.lost
     return stands.found, illustrated(problem, stands.found, told, use), known
-
-
-def judged(told: Account, clear: bool) -> Account:
-    """An account of contacts, but nothing is told by it that leaves much unexplained where the glides' law, by which
-    contacts are told, is not a `clear` one."""
-    if clear or not (told.unexplained or told.lost):
-        return told
-    return replace(told, findings=(), undetermined=TOO_ROUGH)
 
 
 def too_little(regime: str) -> Account:

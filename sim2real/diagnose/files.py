@@ -10,12 +10,13 @@ from typing import Any
 
 from puckpilot_env.effects_file import FORMAT as EFFECTS_FORMAT
 from puckpilot_env.effects_file import NOT_SWITCHED
-from puckpilot_env.parameters import BY_NAME, EFFECT_ROWS, TABLE
+from puckpilot_env.parameters import BY_NAME, EFFECT_ROWS, TABLE, make_records
 from puckpilot_env.physics.effects import EFFECTS, MODULES
 from puckpilot_env.whole_file import write_text_whole
 from sim2real.diagnose.asked import PLAIN, Asked
 from sim2real.diagnose.diagnosis import Diagnosis
 from sim2real.diagnose.finding import Account, Curve, Estimate, Finding
+from sim2real.diagnose.untested import untested
 
 FORMAT = "puckpilot-diagnosis/1"
 # An effect that is a table of numbers, in words
@@ -24,6 +25,7 @@ TABLES = {
     "unlisted_bounce": "a change of what bounces keep of their speed (share 1: normal, 2: along the wall, 3: both)",
     "unlisted_blow": "a change of what pucks keep of their speed past a mallet (share 1: normal, 2: along, 3: both)",
 }
+GANTRY = ("a1", "a2", "a3", "b1", "b2", "b3")
 REMEMBERS = "a table does not know when its puck last touched something"
 
 
@@ -36,7 +38,7 @@ def as_dict(diagnosis: Diagnosis) -> dict[str, Any]:
         "verdict": diagnosis.verdict,
         "baseline": {"parameters": {name: _estimate(one) for name, one in baseline.items()}},
         "findings": [_finding(one) for one in diagnosis.findings],
-        "regimes": [_regime(one) for one in diagnosis.accounts],
+        "regimes": _regimes(diagnosis),
         "heldout": None if proof is None else asdict(proof),
         "next_recording": diagnosis.next_recording,
     }
@@ -67,11 +69,19 @@ def _finding(one: Finding) -> dict[str, Any]:
     return words if one.curve is None else {**words, "curve": _curve(one.curve)}
 
 
+def _regimes(diagnosis: Diagnosis) -> list[dict[str, Any]]:
+    """What each regime says; of those that were not tested, why not."""
+    missing = untested(diagnosis)
+    told = [_regime(one) for one in diagnosis.accounts if one.regime not in missing]
+    return [*told, *({"regime": name, "verdict": "untested", "reason": why} for name, why in missing.items())]
+
+
 def _regime(one: Account) -> dict[str, Any]:
     """What a regime says for itself."""
     words = {
         "regime": one.regime,
         "verdict": one.verdict,
+        "baseline": {name: _estimate(value) for name, value in one.baseline.items()} or None,
         "reason": one.undetermined or None,
         "heldout": None if one.proof is None else asdict(one.proof),
         "doubt": one.doubt or None,
@@ -95,18 +105,18 @@ def _estimate(one: Estimate) -> dict[str, Any]:
 
 
 def effects_toml(diagnosis: Diagnosis) -> str:
-    """The table's stated sizes, and the refitted baseline and all that was found of the regimes that can tell, as the
-    simulator takes it: each fitted number within its range.
+    """The table's stated sizes, the refitted baseline and all that was found, as the simulator takes it: each fitted
+    number within its range, and none that together would make no table.
 
     What it has no place for is named in a comment, such as a clock that drifts, since its players have one clock; and
-    so are the numbers of a regime that cannot tell.
+    so are regimes that cannot tell, of which numbers are taken that foretell untouched launches better than its own.
     """
     values = {name: value for name, value in diagnosis.sizes.items() if BY_NAME[name].within(value) == value}
-    told = [each for each in diagnosis.accounts if not each.undetermined]
+    told = [each for each in diagnosis.accounts if each.better or not each.undetermined]
     values |= {name: one.value for each in told for name, one in each.baseline.items()}
     for one in diagnosis.findings:
         values |= one.values
-    near = {name: BY_NAME[name].within(value) for name, value in values.items()}
+    near, apart = _together({name: BY_NAME[name].within(value) for name, value in values.items()}, diagnosis.sizes)
     plain = [row.name for row in TABLE if row.name in near and row not in EFFECT_ROWS]
     lines = [f'format = "{EFFECTS_FORMAT}"', "", "[parameters]", *(f"{name} = {near[name]!r}" for name in plain)]
     for name, effect in EFFECTS.items():
@@ -116,6 +126,7 @@ def effects_toml(diagnosis: Diagnosis) -> str:
     lines += [f"# in a formula, fitted for itself: {one.formula}" for one in diagnosis.findings if _is_table(one)]
     lines += [f"{NOT_SWITCHED} {_size(name, value)}" for name, value in diagnosis.sizes.items() if name not in values]
     lines += [f"{NOT_SWITCHED} {_name(one)}" for one in diagnosis.findings if not _simulated(one)]
+    lines += [f"{NOT_SWITCHED} {apart}"] if apart else []
     lines += [_not_told(each) for each in diagnosis.untold]
     if diagnosis.verdict == "undetermined":
         lines.append(
@@ -124,10 +135,29 @@ def effects_toml(diagnosis: Diagnosis) -> str:
     return "\n".join(lines) + "\n"
 
 
+def _together(values: Mapping[str, float], sizes: Mapping[str, float]) -> tuple[Mapping[str, float], str]:
+    """Those of `values` that make a table together, and in words which were left out for that: the sizes or, if that
+    is not enough, the gantry's numbers."""
+    out, why = dict(values), []
+    for some in (sizes, GANTRY):
+        try:
+            make_records(1, out)
+            break
+        except ValueError as error:
+            gone = [name for name in out if name in some]
+            out = {name: value for name, value in out.items() if name not in some}
+            why += [f"{', '.join(f'{name} {values[name]:.5g}' for name in gone)}: {error}"] if gone else []
+    return out, "; ".join(why)
+
+
 def _not_told(each: Account) -> str:
-    """What a regime that cannot tell leaves as it was, and what was fitted all the same."""
+    """What becomes of a regime that cannot tell."""
     numbers = ", ".join(f"{name} = {one.value:.5g}" for name, one in each.baseline.items())
-    fitted = f"; fitted all the same: {numbers}" if numbers else ""
+    if each.better and numbers:
+        return (
+            f"# the {each.regime} is not explained by its numbers above ({each.undetermined}), only better than before"
+        )
+    fitted = f"; fitted all the same, no better: {numbers}" if numbers else ""
     return f"# the {each.regime} is left as it was ({each.undetermined}){fitted}"
 
 

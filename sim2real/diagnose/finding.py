@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+TO_THE_NOISE = 1.3  # times what noise alone leaves, up to which residuals are called noise
 MUCH = 3.0  # times the noise, and what is left is worth a word
 
 
@@ -149,7 +150,8 @@ class Account:
     """What one regime of the recording says. `undetermined` gives the reason why it cannot tell, "" if it can.
 
     `baseline`: the refitted parameters of the baseline law; `shipped`: whether the simulator's own numbers do as well.
-    `doubt`: what the data hint at without telling it surely, "" where nothing. `lost`: whether no law explains it.
+    `better`: whether these foretell untouched launches better than the simulator's own. `doubt`: what the data hint at
+    without telling it surely, "" where nothing. `lost`: whether no law explains it.
     """
 
     regime: str
@@ -162,6 +164,7 @@ class Account:
     parting: Parting | None = None
     doubt: str = ""
     lost: bool = False
+    better: bool = False
 
     @property
     def verdict(self) -> str:

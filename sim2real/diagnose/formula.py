@@ -163,7 +163,14 @@ class Search:
         return Fitted(form, shape, amplitude, gained, numbers * float(np.log(len(self._r))) - gained)
 
 
-def find_formula(rest: Rest, forms: Sequence[Form], joined: Callable[[Form, np.ndarray], Sequence[Form]]) -> Formula:
+def no_more(form: Form, shape: np.ndarray) -> Sequence[Form]:
+    """No further forms."""
+    return ()
+
+
+def find_formula(
+    rest: Rest, forms: Sequence[Form], joined: Callable[[Form, np.ndarray], Sequence[Form]] = no_more
+) -> Formula:
     """The form that explains best what is left: of those that explain NEARLY as much as any, the one of fewest numbers.
 
     `joined`: further forms to try from a fitted one, at its shape.

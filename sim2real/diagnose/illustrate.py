@@ -10,7 +10,7 @@ import numpy as np
 from puckpilot_env.parameters import BY_NAME
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.explain import Explained
-from sim2real.diagnose.finding import Account, Finding, Parting
+from sim2real.diagnose.finding import Account, Curve, Finding, Parting
 from sim2real.diagnose.formula import Formula
 from sim2real.diagnose.gantry.problem import GantryProblem
 from sim2real.diagnose.gantry.readable import is_readable
@@ -56,7 +56,7 @@ def _glide_finding(problem: GlideProblem, found: Explained, one: Finding, use: n
         return replace(one, curve=glides.listed_curve(problem, found, one.mechanism))
     formula, looks = glide_formula(problem, found, found.unlisted, use)
     curve = glides.smooth_curve(problem, found, found.unlisted, formula, looks)
-    return replace(one, curve=curve, formula=_said(problem, found, formula, use), parameters=formula.parameters)
+    return _with(one, curve, formula, _said(problem, found, formula, use))
 
 
 def _wall_finding(problem: WallProblem, found: Explained, one: Finding, use: np.ndarray) -> Finding:
@@ -64,28 +64,33 @@ def _wall_finding(problem: WallProblem, found: Explained, one: Finding, use: np.
         return replace(one, curve=bounces.listed_curve(problem, found, one.mechanism))
     formula, view = wall_formula(problem, found, found.unlisted, use)
     curve = bounces.smooth_curve(problem, found, formula, view)
-    return replace(one, curve=curve, formula=_said(problem, found, formula, use), parameters=formula.parameters)
+    return _with(one, curve, formula, _said(problem, found, formula, use))
 
 
 def _mallet_finding(problem: MalletProblem, found: Explained, one: Finding, use: np.ndarray) -> Finding:
     if found.unlisted is None or one.mechanism != "unlisted":
         return one
     formula, curve = mallet_formula(problem, found, found.unlisted, use)
-    return replace(one, curve=curve, formula=_said(problem, found, formula, use), parameters=formula.parameters)
+    return _with(one, curve, formula, _said(problem, found, formula, use))
 
 
 def _gantry_finding(problem: GantryProblem, found: Explained, one: Finding, use: np.ndarray) -> Finding:
     if found.unlisted is None or one.mechanism != "unlisted" or not is_readable(found.unlisted):
         return one
     formula, curve = gantry_formula(problem, found, found.unlisted, use)
-    return replace(one, curve=curve, formula=_said(problem, found, formula, use), parameters=formula.parameters)
+    return _with(one, curve, formula, _said(problem, found, formula, use))
+
+
+def _with(one: Finding, curve: Curve, formula: Formula, said: str) -> Finding:
+    return replace(one, curve=curve, formula=said, parameters=formula.parameters)
 
 
 def _said(problem: Problem, found: Explained, formula: Formula, use: np.ndarray) -> str:
     """A formula with the numbers that the rest of the law has beside it, and how rough it is if it is."""
     fitted = zip(found.final.free, formula.moved, strict=True)
-    beside = [f"{name} {found.final.values[name] + by:.4g} {BY_NAME[name].unit}" for name, by in fitted]
-    said = f"{formula.words}; with {', '.join(beside)}".replace(" 1,", ",").removesuffix(" 1")
+    numbers = [(f"{name} {found.final.values[name] + by:.4g}", BY_NAME[name].unit) for name, by in fitted]
+    beside = [number if unit == "1" else f"{number} {unit}" for number, unit in numbers]
+    said = f"{formula.words}; with {', '.join(beside)}"
     share = formula.gained / max(found.gained(problem.units.of(use)), formula.gained)
     return said if share > ROUGH else f"{said} (roughly: it explains {100 * share:.0f} % of what the smooth law does)"
 

@@ -13,7 +13,6 @@ FAULTS = {  # of the camera that are parameters of the simulator and no effects
     "camera_delay": "The camera's frames are stamped late: each shows the table as it was delay_s before its stamp.",
     "held_frames": "The camera repeats itself: some frames show the last position again in place of a new one.",
 }
-TO_THE_NOISE = 1.3  # times what the noise alone leaves, up to which residuals are called noise
 LEAST_P = 1e-300  # no chance is told to be smaller
 LAUNCH = ("launch", "launches")
 PIECES = {"gantry": ("stretch of some seconds", "stretches of some seconds")}

@@ -7,14 +7,14 @@ from pathlib import Path
 
 from sim2real.diagnose.asked import PLAIN, Asked
 from sim2real.diagnose.diagnosis import Diagnosis
-from sim2real.diagnose.finding import Account, Estimate, Finding
+from sim2real.diagnose.finding import TO_THE_NOISE, Account, Estimate, Finding
 from sim2real.diagnose.plain_words import (
-    TO_THE_NOISE,
     are_weights,
     clause,
     counted,
     digits_of,
     left_over,
+    pieces,
     unit_words,
     with_gist,
 )
@@ -26,9 +26,12 @@ def sentence(diagnosis: Diagnosis, asked: Asked = PLAIN) -> str:
     """The verdict in one sentence."""
     if diagnosis.verdict == "undetermined":
         return _cannot_tell(diagnosis, asked)
-    untold = " and ".join(each.regime for each in diagnosis.untold)
     told = _lacking(diagnosis.findings) if diagnosis.findings else _explained(diagnosis, asked)
-    return told + (f" (Of the {untold} it cannot tell.)" if untold else "")
+    lost = " and ".join(each.regime for each in diagnosis.accounts if each.lost)
+    untold = " and ".join(each.regime for each in diagnosis.untold if not each.lost)
+    beside = [f"something is missing in the {lost} too, but it cannot tell what"] if lost else []
+    beside += [f"of the {untold} it cannot tell"] if untold else []
+    return f"{told} ({_capital('; '.join(beside))}.)" if beside else told
 
 
 def _cannot_tell(diagnosis: Diagnosis, asked: Asked) -> str:
@@ -81,17 +84,11 @@ def summary(diagnosis: Diagnosis, written: Sequence[Path], asked: Asked = PLAIN)
     the files."""
     lines = [sentence(diagnosis, asked)]
     lines += [f"  {one.mechanism}: {_numbers(one)}" for one in diagnosis.findings]
-    proof = diagnosis.proof
-    if proof is not None:
-        found = f"{1e3 * proof.after_m:.2f} mm with the law, " if diagnosis.findings else ""
-        tried = counted(proof.pieces, "untouched piece", "untouched pieces")
-        lines.append(
-            f"  held out: {1e3 * proof.before_m:.2f} mm with the refitted baseline, {found}"
-            f"{1e3 * proof.floor_m:.2f} mm is what noise alone leaves ({tried})"
-        )
+    lines += [_held_out(each) for each in diagnosis.accounts if each.findings or not diagnosis.findings]
     lines.append(f"  next: {diagnosis.next_recording}")
     lines += [_baseline(each) for each in diagnosis.accounts if each.baseline]
     lines += [f"  note: {remark}" for remark in diagnosis.remarks]
+    lines = [line for line in lines if line]
     if len(lines) >= MOST_LINES:
         more = counted(len(lines) - MOST_LINES + 2, "line", "lines")
         lines = [*lines[: MOST_LINES - 2], f"  … and {more} more, which report.html has"]
@@ -104,6 +101,16 @@ def _numbers(one: Finding) -> str:
     shown = list(one.parameters.items())[:3]
     more = f" and {len(one.parameters) - 3} more" if len(one.parameters) > 3 else ""
     return f"{one.formula}; " + ", ".join(f"{name} {_interval(value)}" for name, value in shown) + more
+
+
+def _held_out(each: Account) -> str:
+    """How far untouched launches of a regime are missed; "" where none was kept."""
+    if each.proof is None or not each.proof.pieces:
+        return ""
+    before, after, floor = (1e3 * size for size in (each.proof.before_m, each.proof.after_m, each.proof.floor_m))
+    found = f", {after:.2f} mm with what was found" if each.findings else ""
+    baseline = "as recorded" if each.regime == "sensing" else "with the refitted baseline"
+    return f"  held out, {each.regime}: {before:.2f} mm {baseline}{found}; noise alone {floor:.2f} mm ({pieces(each)})"
 
 
 def _baseline(each: Account) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -83,8 +84,12 @@ def test_a_policy_that_reads_in_other_units_is_refused(first: Path, tmp_path: Pa
     policy = load_policy(first / "policy.npz")
     policy.scaling.span[2] *= 2.0
     policy.save(tmp_path / "other.npz")
-    with pytest.raises(ValueError, match="reads its columns in other units"):
-        training(tmp_path / "run", variant=SEEN, start=tmp_path / "other.npz")
+    run = tmp_path / "other"
+    shutil.copytree(first, run)
+    policy.save(run / "policy.npz")
+    for start in (tmp_path / "other.npz", run):
+        with pytest.raises(ValueError, match="reads its columns in other units"):
+            training(tmp_path / "run", variant=SEEN, start=start)
 
 
 def named(line: str) -> Preset:

@@ -177,7 +177,8 @@ def without(problem: Problem, found: Explained, law: Law) -> Explained:
 def bare(found: Explained) -> Explained:
     """The same with no law but the baseline."""
     model = Model(found.model.base)
-    return replace(found, model=model, law=found.baseline, smooth=None, theta_covariance=np.zeros((0, 0)))
+    none = np.zeros((0, 0))
+    return replace(found, model=model, law=found.baseline, smooth=None, theta_covariance=none, doubtful=None)
 
 
 def _covariance(problem: Problem, smooth: Smooth | None, use: np.ndarray) -> np.ndarray:

@@ -1,4 +1,5 @@
-"""Controls of a proof: the same search and the same laws, where by construction nothing is to be found."""
+"""Controls of a proof: the same laws, and a search among them and all that have a name, where by construction nothing
+is to be found."""
 
 from __future__ import annotations
 
@@ -30,7 +31,7 @@ def twins(
     search would take some of them for other laws, and is not asked.
     """
     laws = list({law.columns: law for law in (*model.laws, *listed)}.values())
-    every = Model(model.base, tuple([*model.laws, *listed]), (1.0,) * (len(model.laws) + len(listed)))
+    every = Model(model.base, tuple(laws), (1.0,) * len(laws))
     inner = _only(grams, every.columns(grams)[0])
     rest = _without(inner, inner.columns(model.base), units, use)
     drawn: Mapping[str, Callable[[np.random.Generator], Grams]] = {

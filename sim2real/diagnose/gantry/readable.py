@@ -23,10 +23,10 @@ AXES = {"both axes": (0, 1), "x": (0,), "y": (1,)}
 # by the last word of a family's name: coordinates in a formula and on a picture, by the names of `families.Signals`
 COORDINATES = {
     "place": (("place", "p", "m", "place along the axis [m]"),),
-    "speed": (("pace", "|v|", "m/s", "speed of the axis [m/s]"),),
+    "speed": (("pace", "speed", "m/s", "speed of the axis [m/s]"),),
     "volts": (
-        ("order", "|V|", "V", "volts of the axis [V]"),
-        ("load", "V_all", "V", "volts of both axes together [V]"),
+        ("order", "volts", "V", "volts of the axis [V]"),
+        ("load", "volts_of_both", "V", "volts of both axes together [V]"),
     ),
     "time": (("t", "t", "s", "time [s]"),),
     "heading": (("angle", "heading", "deg", "heading [°]"),),
@@ -71,7 +71,7 @@ def readable(problem: GantryProblem, found: Explained, law: Law, use: np.ndarray
             made = [form(one, axis, [way], unit) for one in shapes or profiles(axis, unit)]
             forms |= {one.name: (one, side) for one in made}
     rest = _rest(problem, found, use, {})
-    best = find_formula(rest, [one for one, _ in forms.values()], lambda one, shape: ())
+    best = find_formula(rest, [one for one, _ in forms.values()])
     settled = _settled(problem, found, use, best)
     return settled, _curve(problem, found, law, settled, forms[best.form.name][1])
 
@@ -95,7 +95,7 @@ def _settled(problem: GantryProblem, found: Explained, use: np.ndarray, first: F
     best, moved = first, dict.fromkeys(found.final.free, 0.0)
     for _ in range(ROUNDS):
         moved = {name: moved[name] + float(by) for (name, by) in zip(moved, best.moved, strict=True)}
-        best = find_formula(_rest(problem, found, use, moved), [best.form], lambda one, shape: ())
+        best = find_formula(_rest(problem, found, use, moved), [best.form])
     whole = np.array(list(moved.values())) + best.moved
     return replace(best, moved=whole, gained=first.gained)
 
@@ -119,7 +119,7 @@ def _curve(problem: GantryProblem, found: Explained, law: Law, formula: Formula,
     std = 1.0 / np.abs(by)  # of volts on what they go with, where all volts are known alike
     rows = columns[here] / by[:, None]
     shape = binned(side.u[here], rows @ found.coefficients, std, BINS)
-    half = half_band(shape, std, rows, spread)
+    half = half_band(shape, std, rows, spread, found.law.clusters)
     none = np.zeros(0)
     return Curve(
         side.label, f"extra {DRIVERS[law.name.split()[0]][2]}", shape.x, shape.y, shape.y - half, shape.y + half,

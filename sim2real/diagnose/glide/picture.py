@@ -19,7 +19,7 @@ from sim2real.diagnose.glide.forces import accelerations
 from sim2real.diagnose.glide.problem import GlideProblem
 from sim2real.diagnose.glide.views import COORDINATES, View, listed_view, varied
 from sim2real.diagnose.glide.windows import missing, motion, windows
-from sim2real.diagnose.interval import NORMAL_REACH
+from sim2real.diagnose.interval import reach_of_launches
 
 SHORT_SPAN = 0.3  # s of a window, where what happens soon after a contact matters
 LAW_BINS = 30  # of a law's curve, which has no noise
@@ -65,7 +65,9 @@ def listed_curve(problem: GlideProblem, found: Explained, mechanism: str) -> Cur
     for k, (name, size) in enumerate(zip(free, np.sqrt(np.diag(spread)), strict=True)):
         aside = _aside(name, values[name], size)
         slopes[:, k] = (added(grid, {**values, name: aside}) - law) / (aside - values[name])
-    half = NORMAL_REACH * np.sqrt(np.maximum(np.einsum("gi,ij,gj->g", slopes, spread, slopes), 0.0))
+    half = reach_of_launches(found.law.clusters) * np.sqrt(
+        np.maximum(np.einsum("gi,ij,gj->g", slopes, spread, slopes), 0.0)
+    )
     drawn = replace(points, y=points.y + added(points.x, values))
     return _curve(look, replace(points, x=grid, y=law), half, drawn)
 
@@ -90,14 +92,17 @@ def smooth_curve(problem: GlideProblem, found: Explained, law: Law, formula: For
     columns = np.einsum("na,nak->nk", look.direction(frames), block)
     whole = formula.form.field(formula.values) + _beside(found, formula, frames)
     said = over(shape.members, x, look.of(frames, whole), even)
-    return replace(_curve(look, shape, half_band(shape, even, columns, spread), points), formula=said.y)
+    return replace(
+        _curve(look, shape, half_band(shape, even, columns, spread, found.law.clusters), points), formula=said.y
+    )
 
 
 def _beside(found: Explained, formula: Formula, frames: Motion) -> np.ndarray:
-    """The force (n, 2) by which the baseline's braking changes beside a formula."""
-    moved = dict(zip(found.final.free, formula.moved, strict=True))
-    more = moved["friction"] + moved["drag"] * (frames.velocity**2).sum(axis=1)
-    return -more[:, None] * frames.along
+    """The force (n, 2) by which what was fitted changes beside a formula."""
+    moved = dict(zip(found.final.free, map(float, formula.moved), strict=True))
+    values = {**found.final.values, **{name: found.final.values[name] + by for name, by in moved.items()}}
+    more = accelerations(values, frames) - accelerations(found.final.values, frames)
+    return more - moved.get("drag", 0.0) * (frames.velocity**2).sum(axis=1)[:, None] * frames.along
 
 
 def _untraced(problem: GlideProblem, found: Explained) -> np.ndarray | None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from sim2real.diagnose.binned import binned, half_band, over, singles
-from sim2real.diagnose.contact_formula import contact_formula
-from sim2real.diagnose.contact_laws import UNIT, acted_on, shape_of
+from sim2real.diagnose.contact_formula import CHANGES, contact_formula
+from sim2real.diagnose.contact_laws import SLOWEST, UNIT, acted_on, shape_of
 from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.engine.explain import Explained
 from sim2real.diagnose.finding import Curve
@@ -15,7 +15,6 @@ from sim2real.diagnose.formula import Formula
 from sim2real.diagnose.mallet.families import COORDINATES, FAMILIES
 from sim2real.diagnose.mallet.problem import MalletProblem
 
-SLOWEST = 0.1  # m/s of a component; the share kept of a slower one is noise
 # by a family's coordinate: its symbol and unit in a formula, and its label
 NAMES = {
     "speed": ("v_n", "m/s", "closing speed [m/s]"),
@@ -24,7 +23,6 @@ NAMES = {
     "place across the table": ("y", "m", "y [m]"),
     "time": ("t", "s", "time [s]"),
 }
-ADDED = ("added to the restitution", "added to the share of the tangential speed kept")
 
 
 def readable(problem: MalletProblem, found: Explained, law: Law, use: np.ndarray) -> tuple[Formula, Curve]:
@@ -50,8 +48,8 @@ def _curve(problem: MalletProblem, found: Explained, law: Law, formula: Formula,
     said = (beside - problem.predicted(values) + formula.form.field(formula.values))[here, at] / going
     points, shape = binned(u[here], seen, std), over(singles(u[here]), u[here], added, std)
     spread = found.theta_covariance[-len(law.columns) :, -len(law.columns) :]
-    half = half_band(shape, std, columns, spread)
+    half = half_band(shape, std, columns, spread, found.law.clusters)
     return Curve(
-        label, ADDED[at], shape.x, shape.y, shape.y - half, shape.y + half, points.x, points.y, points.error,
+        label, CHANGES[at], shape.x, shape.y, shape.y - half, shape.y + half, points.x, points.y, points.error,
         formula=over(shape.members, u[here], said, std).y,
     )  # fmt: skip

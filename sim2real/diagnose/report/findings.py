@@ -13,6 +13,7 @@ from sim2real.diagnose.report.words import number, text
 SHOWN = 5  # rivals before the rest is folded away
 WORSE = ((0.0, "no worse"), (9.0, "a tie"), (30.0, "a little"), (100.0, "clearly"), (1000.0, "far"))
 HOPELESS = "hopelessly"
+SEEN = {"glide": "whole stretches of motion", "wall": "bounces", "corner": "bounces", "mallet": "blows"}
 UNDRAWN = (
     "The law with its 95 % band, and its formula, both less what the baseline's own numbers could do. Nothing recorded "
     "stands beside it: the path answers to volts over a while, and is no measure of those of a moment."
@@ -29,7 +30,7 @@ def finding_section(one: Finding, index: int) -> str:
 
 
 def _law_in_words(one: Finding) -> str:
-    depends = f"It depends on {' and '.join(one.depends_on)}." if one.depends_on else ""
+    depends = f"What it does to the motion depends on {' and '.join(one.depends_on)}." if one.depends_on else ""
     told = explained(one.mechanism)
     if one.mechanism == "unlisted":
         told = "No mechanism that the simulator knows explains this."
@@ -75,12 +76,14 @@ def _curve(one: Finding) -> str:
         f"{one.mechanism}: {curve.y_label} against {curve.x_label}; the law goes from {number(min(curve.y))} to "
         f"{number(max(curve.y))}"
     )
+    if one.regime == "gantry":
+        return words.picture(curve_picture(curve, alt), UNDRAWN, "curve")
     caption = (
-        "The law with its 95 % band, and the recording: as far off the curve as whole stretches of motion are off all "
+        f"The law with its 95 % band, and the recording: as far off the curve as {SEEN[one.regime]} are off all "
         "that was fitted, means with ±2 standard errors. What the axis does not show is held fixed, or the mean is "
         "taken over it; where the law depends on too much for that, what was seen is drawn against what it foretells."
     )
-    return words.picture(curve_picture(curve, alt), caption if len(curve.data_x) else UNDRAWN, "curve")
+    return words.picture(curve_picture(curve, alt), caption, "curve")
 
 
 def _proof(one: Finding) -> str:

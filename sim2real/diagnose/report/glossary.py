@@ -9,7 +9,7 @@ WORDS = {
     "launch": "an unbroken run of the puck, from a push until it rests or is taken away; it is kept whole.",
     "held out": "kept from every fit, untouched; only what foretells such launches better is believed.",
     "noise": "what the sensors err by, and what no two bounces or blows of a real table have in common.",
-    "twin": "a copy of the recording in which, by construction, nothing is missing: a control of the search.",
+    "twin": "a copy of the recording in which, by construction, nothing is missing: a control of the proof.",
 }
 
 

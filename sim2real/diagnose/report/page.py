@@ -6,8 +6,8 @@ from collections.abc import Iterable
 
 from sim2real.diagnose.asked import PLAIN, Asked
 from sim2real.diagnose.diagnosis import Diagnosis
-from sim2real.diagnose.finding import Account
-from sim2real.diagnose.plain_words import TO_THE_NOISE, left_over
+from sim2real.diagnose.finding import TO_THE_NOISE, Account
+from sim2real.diagnose.plain_words import left_over
 from sim2real.diagnose.report import words
 from sim2real.diagnose.report.bars import proof_bars
 from sim2real.diagnose.report.findings import finding_section
@@ -59,7 +59,7 @@ def _overview(diagnosis: Diagnosis, missing: dict[str, str]) -> str:
         body += words.table(caption, head, rows, (2, 3, 4))
     if diagnosis.proof is not None:
         found = bool(diagnosis.findings)
-        over = "Over the regimes that lack something:" if found else "Over all regimes:"
+        over = "Over the regimes in which something is named:" if found else "Over all regimes:"
         body += words.paragraph(over) + proof_bars(diagnosis.proof, "Held-out residuals", found)
     return words.section("overview", "How far simulator and recording are apart", body)
 

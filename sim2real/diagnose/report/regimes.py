@@ -7,8 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from sim2real.diagnose.asked import Asked
-from sim2real.diagnose.finding import Account, Parting, Proof
-from sim2real.diagnose.plain_words import TO_THE_NOISE, left_over, pieces, with_gist
+from sim2real.diagnose.finding import TO_THE_NOISE, Account, Parting, Proof
+from sim2real.diagnose.plain_words import left_over, pieces, with_gist
 from sim2real.diagnose.report import words
 from sim2real.diagnose.report.bars import FAULTS, LAWS, proof_bars
 from sim2real.diagnose.report.draw import map_pictures, parting_pictures, unchanged

@@ -32,6 +32,9 @@ svg.bars { max-width: 36rem; }
 .before { color: var(--before); font-weight: 600; } .after { color: var(--after); font-weight: 600; }
 details { margin: 0.4rem 0; } summary { cursor: pointer; }
 .panels svg { max-width: 26rem; }
+@media (max-width: 40rem) { table { font-size: 0.8rem; } td { overflow-wrap: anywhere; }
+  th, td { padding-right: 0.5rem; } .n { white-space: normal; }
+  figure { overflow-x: auto; } .curve svg { min-width: 30rem; } svg.bars { min-width: 26rem; } }
 @media print { .panels { grid-template-columns: 1fr 1fr; }
   body { font-size: 11pt; max-width: none; padding: 0; }
   h2, h3, caption { break-after: avoid; }

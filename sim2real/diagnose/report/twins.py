@@ -12,7 +12,8 @@ HEAD = ("data", "without the laws", "with them", "the search names something")
 READ = (
     "A null twin is the simulator with its refitted numbers and fresh noise. A permutation twin is the recording's own "
     "misses, each launch's with a sign drawn by lot. Neither holds a law, so the test is that with the laws no less is "
-    "left of either than without them. A search should name nothing in null twins: once in six is an accident that "
+    "left of either than without them. A search, among laws with a name and those that were found, should name nothing "
+    "in null twins: once in six is an accident that "
     "happens, more often speaks against what it names in the recording. In a permutation twin it is not asked, since "
     "what the recording lacks is still in there, turned round."
 )

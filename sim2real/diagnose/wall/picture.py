@@ -10,7 +10,7 @@ import numpy as np
 from puckpilot_env.parameters import BY_NAME
 from puckpilot_env.physics import bounce
 from sim2real.diagnose.binned import binned, half_band, is_rough, over, singles
-from sim2real.diagnose.contact_laws import acted_on
+from sim2real.diagnose.contact_laws import SLOWEST, acted_on
 from sim2real.diagnose.engine.explain import Explained
 from sim2real.diagnose.finding import Curve, Parting
 from sim2real.diagnose.formula import Formula
@@ -18,7 +18,6 @@ from sim2real.diagnose.wall.data import KINDS, Bounces
 from sim2real.diagnose.wall.families import shares
 from sim2real.diagnose.wall.problem import WallProblem
 
-SLOWEST = 0.1  # m/s of a component; the share kept of a slower one is noise
 NORMAL, TANGENT = 0, 1
 KEPT = ("share of the normal speed kept", "share of the tangential speed kept")
 PLACES = (*KINDS, "posts")
@@ -115,7 +114,7 @@ def _curve(problem: WallProblem, found: Explained, view: View, formula: Formula 
     if view.ticks:
         points = over(np.array([x == k for k in range(len(view.ticks)) if (x == k).any()]), x, seen[rows], std[rows])
     shape = over(points.members if rough or view.ticks else singles(x), x, law[rows], std[rows])
-    half = half_band(shape, std[rows], columns[rows], spread)
+    half = half_band(shape, std[rows], columns[rows], spread, found.law.clusters)
     said = None
     if formula is not None:
         moved = zip(found.final.free, formula.moved, strict=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from puckpilot_env.physics import bounce
 from sim2real.diagnose.contact_formula import contact_formula
 from sim2real.diagnose.contact_laws import acted_on
 from sim2real.diagnose.engine.choose import Law
@@ -25,7 +26,9 @@ def readable(problem: WallProblem, found: Explained, law: Law, use: np.ndarray) 
     label, values = coordinates(d)[law.family]
     places = {"": np.ones(len(d), bool)}
     if law.family == "position":
-        few = {name: d.kind == kind for name, kind in KINDS.items()}
-        places |= {f"the wall {name}": here for name, here in few.items() if here.sum() >= FEWEST}
+        walls = {f"the wall {name}": d.kind == kind for name, kind in KINDS.items()}
+        told = np.isin(d.cluster, use)
+        places = {"": d.kind != bounce.POST}
+        places |= {name: here for name, here in walls.items() if (here & told).sum() >= FEWEST}
     best, here = contact_formula(problem, found, law, use, Axis(*NAMES[law.family], values), places)
     return best, View(label, np.where(here, values, np.nan), acted_on(law)[0])

@@ -38,8 +38,8 @@ def test_errors_cover_the_noise_and_the_scatter():
 def test_the_band_is_that_of_the_coefficients():
     x = np.array([0.0, 0.0, 1.0, 1.0])
     bins = over(np.array([x == 0.0, x == 1.0]), x, x, np.ones(4))
-    half = half_band(bins, np.ones(4), np.stack([np.ones(4), x], axis=1), np.diag([0.04, 0.09]))
-    assert half == pytest.approx(1.96 * np.sqrt([0.04, 0.13]))
+    half = half_band(bins, np.ones(4), np.stack([np.ones(4), x], axis=1), np.diag([0.04, 0.09]), 5)
+    assert half == pytest.approx(2.776 * np.sqrt([0.04, 0.13]), rel=1e-3)  # Student's t of 4 degrees of freedom
 
 
 def test_a_law_of_more_than_the_axis_shows_is_rough():

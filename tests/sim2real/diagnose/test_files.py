@@ -8,12 +8,13 @@ from puckpilot_env import Tables
 from puckpilot_env.effects_file import effect_values
 from sim2real.diagnose.diagnosis import Diagnosis, diagnose
 from sim2real.diagnose.files import as_dict, effects_toml
-from sim2real.diagnose.finding import Account, Estimate, Finding, Proof
+from sim2real.diagnose.finding import Account, Estimate, Finding, Proof, Sight
 from sim2real.recording import read_recording
 from tests.reality.camera import Camera
 from tests.reality.law import Law
 from tests.reality.record import make_recording
 
+SEEN = Sight("table", 9.0, 900, 0.001, 0.001, 0.0, 0.0, 0.0, 9, 9, 9, 0)
 PLAIN = Finding("sensing", "held_frames", (), (), "", {}, 1e-9, 2.0, 1.0, values={"held_frames": 0.1})
 
 
@@ -75,32 +76,68 @@ def test_a_regime_that_cannot_tell_is_left_as_it_was(tmp_path):
     file = tmp_path / "effects.toml"
     file.write_text(effects_toml(Diagnosis((unsure, sure))))
     assert effect_values(file) == {"friction": 0.09}
-    left = "# the wall is left as it was (too few bounces); fitted all the same: wall_restitution = 0.69"
+    left = "# the wall is left as it was (too few bounces); fitted all the same, no better: wall_restitution = 0.69"
     assert left in file.read_text().splitlines() and "could not tell" not in file.read_text()
     file.write_text(effects_toml(Diagnosis((unsure,))))
     assert effect_values(file) == {}
     assert "# the diagnosis could not tell what is missing" in file.read_text()
+    file.write_text(effects_toml(Diagnosis((dataclasses.replace(unsure, better=True),))))
+    assert effect_values(file) == {"wall_restitution": 0.69}
+    assert (
+        "# the wall is not explained by its numbers above (too few bounces), only better than before"
+        in file.read_text()
+    )
+
+
+def test_numbers_that_make_no_table_together_are_left_out_and_named(tmp_path):
+    sizes = {"length": 1.05, "width": 0.55}
+    far = {"a1": Estimate(1e-3, 1e-3, 1e-3, "V s^3"), "friction": Estimate(0.09, 0.09, 0.09, "m/s^2")}
+    file = tmp_path / "effects.toml"
+    for wrong, numbers in ((sizes, {}), ({}, far), (sizes, far)):
+        told = {"friction": far["friction"], **numbers}
+        file.write_text(effects_toml(Diagnosis((Account("glide", (), told, False, None),), sizes=wrong)))
+        assert effect_values(file) == {"friction": 0.09}
+        Tables("match-v0", 1, effects=file)
+        assert ("# not in the simulator: length 1.05, width 0.55: the table is too small" in file.read_text()) == bool(
+            wrong
+        )
+        assert ("a1 0.001: gantry axis x is not overdamped" in file.read_text()) == bool(numbers)
 
 
 def test_every_regime_says_for_itself_what_it_has():
     proof = Proof(0.004, 0.001, 0.0009, 7)
+    numbers = {"wall_restitution": Estimate(0.69, 0.6, 0.8, "1")}
     found = as_dict(
         Diagnosis(
             (
                 Account("glide", (PLAIN,), {}, False, proof),
-                Account("wall", (), {}, False, None, undetermined="too few bounces", next_recording="more"),
+                Account("wall", (), numbers, False, None, undetermined="too few bounces", next_recording="more"),
                 Account("mallet", (), {}, True, proof, doubt="mallet_give would fit"),
                 Account("gantry", (), {}, False, proof),
-            )
+            ),
+            sights=(SEEN,),
         )
     )
-    numbers = {"before_m": 0.004, "after_m": 0.001, "floor_m": 0.0009, "pieces": 7}
+    shown = {"before_m": 0.004, "after_m": 0.001, "floor_m": 0.0009, "pieces": 7}
     assert found["regimes"] == [
-        {"regime": "glide", "verdict": "missing_physics", "heldout": numbers},
-        {"regime": "wall", "verdict": "undetermined", "reason": "too few bounces", "next_recording": "more"},
-        {"regime": "mallet", "verdict": "agrees", "heldout": numbers, "doubt": "mallet_give would fit"},
-        {"regime": "gantry", "verdict": "parameters_only", "heldout": numbers},
+        {"regime": "glide", "verdict": "missing_physics", "heldout": shown},
+        {
+            "regime": "wall",
+            "verdict": "undetermined",
+            "reason": "too few bounces",
+            "next_recording": "more",
+            "baseline": {"wall_restitution": {"value": 0.69, "low": 0.6, "high": 0.8, "unit": "1"}},
+        },
+        {"regime": "mallet", "verdict": "agrees", "heldout": shown, "doubt": "mallet_give would fit"},
+        {"regime": "gantry", "verdict": "parameters_only", "heldout": shown},
     ]
+
+
+def test_what_was_not_tested_is_no_agreement():
+    alone = as_dict(Diagnosis((Account("sensing", (), {}, True, None), Account("gantry", (), {}, True, None))))
+    told = {one["regime"]: one["verdict"] for one in alone["regimes"]}
+    assert told == {"gantry": "agrees", **dict.fromkeys(("sensing", "glide", "wall", "mallet"), "untested")}
+    assert "no camera frame shows a puck" in alone["regimes"][1]["reason"]
 
 
 def test_players_meet_the_table_s_own_sizes_on_it(tmp_path):

@@ -108,20 +108,25 @@ def test_a_gantry_rough_by_place_gets_a_wave_in_volts(tmp_path):
     assert size == pytest.approx(0.3 * SPEED_LOSS, rel=0.02)
     assert wave == pytest.approx(0.4, rel=0.01)
     assert np.cos(2.0 * np.pi * shift / wave) < -0.98  # it takes where the law, a loss, gives
-    assert f"a3 {Law().a3:.3g}"[:-1] in one.formula
+    assert float(one.formula.split("a3 ")[1].split()[0]) == pytest.approx(Law().a3, rel=0.005)
     curve = _curve(found)
-    expected = 0.3 * SPEED_LOSS * np.sin(2.0 * np.pi * (curve.x - shift) / wave)
+    expected = -0.3 * SPEED_LOSS * np.sin(2.0 * np.pi * curve.x / 0.4)
     assert curve.formula is not None
-    for drawn in (curve.y, curve.formula):
+    for drawn in (curve.y, curve.formula):  # less a constant, and more, that the baseline could do
         assert np.corrcoef(drawn, expected)[0, 1] > 0.98
+        assert np.ptp(drawn) == pytest.approx(np.ptp(expected), rel=0.15)
     assert "no measure of those of a moment" in page(found)
 
 
 def test_a_gantry_that_loses_more_at_speed_gets_a_square(tmp_path):
     make_recording(tmp_path / "table", Law(cubic_loss=0.1), "gantry", 7, 60.0)
-    one = diagnose([read_recording(tmp_path / "table")], [], {}, lambda stage, share: None).findings[0]
+    found = diagnose([read_recording(tmp_path / "table")], [], {}, lambda stage, share: None)
+    one, curve = found.findings[0], _curve(found)
+    fast = curve.x > 0.5
+    slope, _ = np.polyfit(curve.x[fast] ** 2, curve.y[fast], 1)  # the constant is the baseline's
+    assert slope == pytest.approx(-0.1 * SPEED_LOSS, rel=0.15)
     assert (one.regime, one.depends_on) == ("gantry", ("speed",))
-    assert "|v|^2 V s/m times the speed, on both axes" in one.formula
+    assert "speed^2 V s/m times the speed, on both axes" in one.formula
     assert one.parameters["slope"].value == pytest.approx(-0.1 * SPEED_LOSS, rel=0.03)
 
 
@@ -145,7 +150,7 @@ def test_launches_are_shown_under_the_law_that_was_found_smooth_part_and_all():
     problem, launches = _Nameless({"tilt_x": 0.02, "tilt_y": -0.03}), np.arange(LAUNCHES)
     use, apart = launches[launches % 4 > 0], launches[launches % 4 == 0]
     found = explain(problem, SHIPPED, use)
-    told = illustrated(problem, found, account(problem, prove(problem, found, apart), use, apart), use)
+    told = illustrated(problem, found, account(problem, prove(problem, found, apart), SHIPPED, use, apart), use)
     assert [one.mechanism for one in told.findings] == ["unlisted"]
     assert told.parting is not None and told.proof is not None
     for shown, proved in ((told.parting.before, told.proof.before_m), (told.parting.after, told.proof.after_m)):

@@ -65,7 +65,10 @@ def test_agreement_is_to_the_noise_only_where_noise_alone_is_left():
 def test_ten_lines_count_and_give_units_as_print_has_them():
     lines = summary(_found(TILT), [Path("a")])
     assert any("1 [0.9, 1.1] V s³" in line for line in lines)
-    assert any(line.endswith("(1 untouched piece)") for line in lines)
+    assert (
+        "  held out, glide: 10.00 mm with the refitted baseline, 1.00 mm with what was found; noise alone 1.00 mm "
+        "(1 launch)" in lines
+    )
 
 
 def test_what_does_not_fit_into_ten_lines_is_counted():
@@ -87,6 +90,11 @@ def test_findings_and_what_to_do_next_come_before_the_baseline():
     assert lines[6].startswith("  next: nothing further is needed")
 
 
+def test_faults_of_the_sensors_are_held_out_as_recorded():
+    late = Diagnosis((Account("sensing", (LATE,), {}, False, Proof(0.02, 0.004, 0.001, 6)),))
+    assert any("held out, sensing: 20.00 mm as recorded, 4.00 mm with" in line for line in summary(late, []))
+
+
 LOST = Account("glide", (), {}, False, Proof(0.01, 0.01, 0.001, 2), undetermined="who knows", lost=True)
 
 
@@ -101,11 +109,22 @@ def test_what_is_missing_but_not_known_is_said_so():
 
 def test_regimes_that_cannot_tell_are_named_beside_what_is_missing():
     both = Diagnosis((Account("glide", (TILT,), {}, False, None), Account("wall", (), {}, True, None, "few bounces")))
-    assert sentence(both) == "The simulator lacks table_tilt (the table is not level). (Of the wall it cannot tell.)"
+    lacks = "The simulator lacks table_tilt (the table is not level)."
+    assert sentence(both) == f"{lacks} (Of the wall it cannot tell.)"
+    odd = replace(LOST, regime="mallet")
+    assert sentence(Diagnosis((*both.accounts, odd))) == (
+        f"{lacks} (Something is missing in the mallet too, but it cannot tell what; of the wall it cannot tell.)"
+    )
 
 
 def test_what_is_open_is_never_said_to_be_closed():
     wide = Account("gantry", (TILT,), {}, False, Proof(0.1, 0.01, 0.001, 2))
     assert Diagnosis((wide,)).next_recording.startswith("no single recording is known")
+    for left in (
+        replace(wide, proof=Proof(0.1, 0.0015, 0.001, 2)),
+        replace(wide, proof=None, doubt="a tilt would fit"),
+    ):
+        assert Diagnosis((left,)).next_recording.startswith("no single recording is known")
+    assert Diagnosis((replace(wide, proof=Proof(0.1, 0.0012, 0.001, 2)),)).next_recording.startswith("nothing further")
     asking = Account("wall", (), {}, True, None, "few bounces", next_recording="record more bounces")
     assert Diagnosis((wide, asking)).next_recording == "record more bounces"

@@ -17,7 +17,7 @@ TILT = {"tilt_x": 0.02, "tilt_y": -0.03}
 
 def _account(truth, noise: float = 1.0, likeness: bool = False) -> Account:
     problem = LinearProblem(truth, noise, likeness=likeness)
-    return account(problem, prove(problem, explain(problem, SHIPPED, USE), PROOF), USE, PROOF)
+    return account(problem, prove(problem, explain(problem, SHIPPED, USE), PROOF), SHIPPED, USE, PROOF)
 
 
 def test_the_simulator_s_own_numbers_agree():
@@ -87,7 +87,7 @@ def test_a_proof_that_does_not_feel_a_law_says_nothing_against_it():
     for seed in range(4):
         problem = LinearProblem(TILT, seed=seed)
         problem.feel_nothing(PROOF, ("tilt_x", "tilt_y"))
-        found = account(problem, prove(problem, explain(problem, SHIPPED, USE), PROOF), USE, PROOF)
+        found = account(problem, prove(problem, explain(problem, SHIPPED, USE), PROOF), SHIPPED, USE, PROOF)
         verdicts.append([one.mechanism for one in found.findings])
     assert verdicts == 4 * [["table_tilt"]]
 

@@ -98,7 +98,7 @@ def test_a_law_shows_beside_numbers_that_each_launch_has_of_its_own() -> None:
     found = explain(problem, SHIPPED, USE)
     said = prove(problem, found, PROOF)
     assert {law.name for law in said.found.model.laws} == {"table_tilt", "side force by spin"} and not said.silenced
-    told = account(problem, said, USE, PROOF)
+    told = account(problem, said, SHIPPED, USE, PROOF)
     assert {one.mechanism: round(one.after, 1) for one in told.findings} == {"table_tilt": 1.0, "side_force": 1.0}
     (tilt,) = (one for one in told.findings if one.mechanism == "table_tilt")
     size = 50.0 * np.hypot(TILT["tilt_x"], TILT["tilt_y"])

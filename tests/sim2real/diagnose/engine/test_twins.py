@@ -43,8 +43,16 @@ def test_too_rich_a_law_is_seen_to_lose_on_noise():
     assert twin.after / twin.before == pytest.approx(expected, rel=0.02)
 
 
+def test_a_search_of_twins_finds_what_is_in_them(monkeypatch):
+    """Noise that holds a law, which the true noise of twins does not."""
+    planted = gram.moved(_grams(), np.array([1]), np.array([0.5]))
+    monkeypatch.setattr("sim2real.diagnose.engine.twins._noise", lambda grams, units, rng: planted)
+    twin = twins(_grams(), UNITS, ONE, [], USE, PROOF)[NULL]
+    assert (twin.named, twin.of) == (6, 6)
+
+
 def test_the_search_among_twins_is_among_all_laws_of_a_name(monkeypatch):
-    """Each size at which a law is looked for, as many as in the search of the recording itself."""
+    """Each size at which a law is looked for."""
     sizes = [Law("push", (f"push {k}" if k else "push",)) for k in range(4)]
     searched, honest = [], Chooser.add
 

@@ -41,8 +41,9 @@ def diagnosed(recording: Recording) -> Account:
     problem = gantry_problem([recording], values)[0].proved_on(0, 4).ticked()
     proof = problem.proof
     use = np.setdiff1d(np.arange(problem.clusters), proof)
-    found = explain(problem, {name: values[name] for name in problem.base}, use)
-    return account(problem, prove(problem, found, proof), use, proof)
+    shipped = {name: values[name] for name in problem.base}
+    found = explain(problem, shipped, use)
+    return account(problem, prove(problem, found, proof), shipped, use, proof)
 
 
 @pytest.mark.parametrize(
