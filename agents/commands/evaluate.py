@@ -4,6 +4,9 @@ It meets every script in paired games of match-v0, match-randomized-v0 and the d
 scripts; drills, where the two seats have different jobs, give how often it did its own: shots kept out, attacks scored.
 Then what it asks of the gantry is measured, how long it thinks, and how its win rate falls when the table is seen late
 or noisily.
+
+Several policies, such as those of one recipe and five seeds, are compared with the scripts alone: their shares of
+decisive games (in drills, of jobs done) and the interquartile mean over them, with a bootstrap interval.
 """
 
 from __future__ import annotations
@@ -17,7 +20,9 @@ VARIANTS = ("match-v0", "match-randomized-v0", "drills")
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
-    parser.add_argument("policy", metavar="POLICY", help="a policy by name, .npz file or run's folder; or a script")
+    parser.add_argument(
+        "policies", nargs="+", metavar="POLICY", help="a policy by name, .npz file or run's folder; or a script"
+    )
     parser.add_argument(
         "--games", type=int, default=100, metavar="N", help="games against each script, half from either seat (100)"
     )
@@ -44,7 +49,9 @@ def run(args: argparse.Namespace) -> int:
         raise ValueError(f"--games is {args.games}; expected an even number from 2 on: each start is played twice")
     if args.workers < 1:
         raise ValueError(f"--workers is {args.workers}; expected 1 or more")
-    name, hampered = full_name(args.policy), full_name(args.hampered)
+    if len(args.policies) > 1:
+        return _over_seeds(args)
+    name, hampered = full_name(args.policies[0]), full_name(args.hampered)
     opponents = list(dict.fromkeys(full_name(player) for player in args.against or player_names()))
     asked = (name, opponents, _variants(args.variants), args.games, args.seed)
     own = games_of(*asked)
@@ -63,6 +70,31 @@ def run(args: argparse.Namespace) -> int:
     print_meetings(name, rows)
     print_ratings(name, args.games, rated)
     print_deployability(deployability, robustness)
+    return 0
+
+
+def _over_seeds(args: argparse.Namespace) -> int:
+    from agents.meetings import games_of, meeting_row, play_all
+    from agents.over_seeds import rows_over_seeds
+    from baselines import full_name, player_names
+    from baselines.commands.options import progress_bar
+
+    names = list(dict.fromkeys(full_name(policy) for policy in args.policies))
+    if len(names) < len(args.policies):
+        raise ValueError(f"the same policy is given twice among {', '.join(args.policies)}; expected each once")
+    opponents = list(dict.fromkeys(full_name(player) for player in args.against or player_names()))
+    own = {name: games_of(name, opponents, _variants(args.variants), args.games, args.seed) for name in names}
+    with progress_bar("meetings") as progress:
+        every = [game for games in own.values() for game in games]
+        played = play_all(every, progress, workers=args.workers, cluster=args.cluster)
+    met = {name: [meeting_row(game, played[game]) for game in games] for name, games in own.items()}
+    rows = rows_over_seeds(met, args.seed)
+    if args.json:
+        print(json.dumps({"players": names, "meetings": met, "over_seeds": rows}, indent=1))
+        return 0
+    from agents.commands.evaluate_tables import print_over_seeds
+
+    print_over_seeds(names, args.games, rows)
     return 0
 
 

@@ -47,6 +47,16 @@ def print_meetings(name: str, rows: Sequence[dict[str, Any]]) -> None:
         _show(table)
 
 
+def print_over_seeds(names: Sequence[str], games: int, rows: Sequence[dict[str, Any]]) -> None:
+    """What several runs reach, one beside the other, and their interquartile mean."""
+    title = f"share of decisive games won, or in drills of jobs done, of {games} games each: {', '.join(names)}"
+    table = _table(title, *(str(k) for k in range(1, len(names) + 1)), "IQM", "95 %")
+    for row in rows:
+        shares = ["-" if share is None else f"{100 * share:.1f} %" for share in row["shares"]]
+        table.add_row(*_who(row), *shares, *(_share(row["iqm"]) if row["iqm"] else ("-", "-")))
+    _show(table)
+
+
 def print_ratings(name: str, games: int, rated: Sequence[Rated]) -> None:
     """The payoff matrix and the ratings of each match variant."""
     for one in rated:

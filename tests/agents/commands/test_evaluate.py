@@ -52,6 +52,21 @@ def test_tables_show_jobs_in_drills_and_ratings_in_matches(capsys: pytest.Captur
     assert ranked[0] == "follower" and sorted(ranked) == sorted(PLAYERS)
 
 
+def test_several_policies_stand_side_by_side(capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["evaluate", "follower", "goalie", "--games", "4", "--against", "still", "--variants", "match-v0", "drills"]
+    assert main([*words, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["players"] == ["follower", "goalie"]
+    assert [row["variant"] for row in found["over_seeds"]] == [
+        f"puckpilot/{one}-v0" for one in ("match", "defence", "attack")
+    ] + ["all"]
+    alone = play("match-v0", "follower", "still", 4, 0)
+    assert found["over_seeds"][0]["shares"][0] == alone.wins[0] / max(sum(alone.wins), 1)
+    assert main(words) == 0
+    told = capsys.readouterr().out
+    assert "IQM" in told and "follower, goalie" in told
+
+
 @pytest.mark.parametrize(
     "words",
     [
@@ -66,6 +81,7 @@ def test_tables_show_jobs_in_drills_and_ratings_in_matches(capsys: pytest.Captur
         ["goalie", "--hampered", "nobody"],
         ["goalie", "--variants", "chess-v0"],
         ["goalie", "--seed", "-1"],
+        ["goalie", "goalie"],
         [],
     ],
     ids=" ".join,
