@@ -7,7 +7,8 @@ import pytest
 from puckpilot_env import Tables
 from puckpilot_env.effects_file import effect_values
 from sim2real.diagnose.diagnosis import Diagnosis, diagnose
-from sim2real.diagnose.files import as_dict, effects_toml
+from sim2real.diagnose.effects_toml import effects_toml
+from sim2real.diagnose.files import as_dict
 from sim2real.diagnose.finding import Account, Estimate, Finding, Proof, Sight
 from sim2real.recording import read_recording
 from tests.reality.camera import Camera
