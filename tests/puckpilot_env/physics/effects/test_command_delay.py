@@ -83,17 +83,6 @@ def test_a_turned_table_plays_the_same_game() -> None:
             np.testing.assert_allclose(tables.states["mallets"][axis]["slow"], -there, atol=1e-9)
 
 
-def test_no_mallet_leaves_its_half() -> None:
-    tables, bounds = Tables("match-v0", 64, seed=3, effects={"command_delay": {"delay_s": 0.09}}), areas(record())
-    rng, (low, high) = np.random.default_rng(1), tables.action_bounds
-    for _ in range(120):
-        tables.step(np.clip(rng.uniform(low, high, (64, 2, 4)).astype(np.float32), low, high))
-        for axis, first in (("x", 0), ("y", 2)):
-            modes = tables.states["mallets"][axis]
-            place = modes["rest"] + modes["slow"] + modes["fast"]
-            assert (place >= bounds[:, first] - 1e-8).all() and (place <= bounds[:, first + 1] + 1e-8).all()
-
-
 def test_a_new_episode_knows_no_orders_of_the_one_before() -> None:
     tables, rng = Tables("match-v0", 1, seed=3, effects=LATE), np.random.default_rng(5)
     for _ in range(3):

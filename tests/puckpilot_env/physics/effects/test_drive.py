@@ -74,9 +74,18 @@ def test_the_rail_stops_a_mallet_that_brakes_too_weakly() -> None:
     assert stopped >= 2
 
 
-@pytest.mark.parametrize("sag, lost", [(0.02, 0.0), (0.0, 2.0), (0.2, 6.0)])
-def test_no_mallet_leaves_its_half_in_a_game(sag: float, lost: float) -> None:
-    tables = Tables("match-v0", 64, seed=3, effects={"voltage_sag": {"sag": sag}, "motor_deadband": {"V": lost}})
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"voltage_sag": 0.02},
+        {"motor_deadband": 2.0},
+        {"voltage_sag": 0.2, "motor_deadband": 6.0},
+        {"command_delay": 0.09},
+    ],
+    ids=str,
+)
+def test_no_mallet_leaves_its_half_in_a_game(values: dict[str, float]) -> None:
+    tables = Tables("match-v0", 64, seed=3, parameters=values)
     rng, (low, high) = np.random.default_rng(1), tables.action_bounds
     bounds = areas(record())
     for _ in range(120):
