@@ -31,7 +31,10 @@ OPTIONS = {
         "--threads",
     ],
     "evaluate": ["--games", "--against", "--variants", "--hampered", "--seed", "--workers", "--cluster", "--json"],
-    "exploit": ["--steps", "--out", "--preset", "--variant", "--games", "--seed", "--threads", "--json"],
+    "exploit": [
+        "--steps", "--responses", "--out", "--preset", "--variant", "--games", "--seed", "--threads", "--workers",
+        "--cluster", "--json",
+    ],  # fmt: skip
     "export": ["--out"],
     "bench": ["--tables", "--threads", "--seconds", "--against", "--dicts", "--startup", "--json"],
     "compare": ["--json", "--out"],
