@@ -1,0 +1,7 @@
+"""The microcontroller's program, and where its files are."""
+
+from pathlib import Path
+
+FOLDER = Path(__file__).parent
+PROTOCOL = FOLDER / "protocol.toml"
+ELF = FOLDER / "puckpilot-f103.elf"  # what is flashed
