@@ -6,6 +6,7 @@ import random
 from collections.abc import Callable
 
 import unicorn
+from unicorn.unicorn_py3.unicorn import Uc
 
 from sim2real.emulate.cortex_m import CortexM
 from sim2real.emulate.rcc import Rcc
@@ -30,7 +31,7 @@ class Blocks:
         self._resumed: dict[int, int] = {}  # by depth of exceptions: where code goes on that has had its time
         cpu.uc.hook_add(unicorn.UC_HOOK_BLOCK, self._begins)
 
-    def _begins(self, uc: unicorn.Uc, address: int, size: int, _: object) -> None:
+    def _begins(self, uc: Uc, address: int, size: int, _: object) -> None:
         depth = len(self._cpu.nvic.active)
         if self._resumed.get(depth) == address:
             del self._resumed[depth]
@@ -46,7 +47,7 @@ class Blocks:
                 end = max(end, following)
         self._wait(end)
 
-    def _length(self, uc: unicorn.Uc, address: int, size: int) -> int:
+    def _length(self, uc: Uc, address: int, size: int) -> int:
         """Instructions in a block, counted once: those of 32 bits begin with 0b11101, 0b11110 or 0b11111."""
         code = bytes(uc.mem_read(address, size))
         at = count = 0

@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import unicorn
 from unicorn import arm_const as arm
-from unicorn.unicorn_py3.unicorn import uclib
+from unicorn.unicorn_py3.unicorn import Uc, UcError, uclib
 
 from sim2real.emulate.elf import Elf
 from sim2real.emulate.nvic import HARD_FAULT, Nvic
@@ -62,9 +62,7 @@ class CortexM:
         self.faults: list[tuple[int, str]] = []  # where and why the program was wrong
         self.asleep = self.locked = False
         self._why = ""
-        self.uc = uc = unicorn.Uc(
-            unicorn.UC_ARCH_ARM, unicorn.UC_MODE_THUMB | unicorn.UC_MODE_MCLASS, arm.UC_CPU_ARM_CORTEX_M3
-        )
+        self.uc = uc = Uc(unicorn.UC_ARCH_ARM, unicorn.UC_MODE_THUMB | unicorn.UC_MODE_MCLASS, arm.UC_CPU_ARM_CORTEX_M3)
         uc.mem_map(FLASH, FLASH_SIZE, unicorn.UC_PROT_READ | unicorn.UC_PROT_EXEC)
         uc.mem_map(RAM, RAM_SIZE, unicorn.UC_PROT_READ | unicorn.UC_PROT_WRITE)
         for base, size in ((_PERIPHERALS, _PERIPHERALS_SIZE), (_SYSTEM, _SYSTEM_SIZE)):
@@ -90,7 +88,7 @@ class CortexM:
         if self.deliverable() is not None:
             self.stop()
 
-    def _interrupted(self, uc: unicorn.Uc, number: int, _: object) -> None:
+    def _interrupted(self, uc: Uc, number: int, _: object) -> None:
         self._why = "return" if number == _EXCEPTION_RETURN else f"fault: exception {number}"
         uc.emu_stop()
 
@@ -128,7 +126,7 @@ class CortexM:
         self._why = ""
         try:
             self.uc.emu_start(self.program_counter | 1, _NOWHERE, count=most)
-        except unicorn.UcError as error:
+        except UcError as error:
             self._why = f"fault: {error}"
         if self._why == "return":
             self._leave()
@@ -147,7 +145,7 @@ class CortexM:
         try:
             self.uc.mem_write(stack, _FRAME.pack(*values[:_PSR], values[_PSR] | odd << 9))
             vector = struct.unpack("<I", self.uc.mem_read(FLASH + 4 * number, 4))[0]
-        except unicorn.UcError:
+        except UcError:
             self.locked = self.asleep = True  # no stack left: lockup
             return
         values[_SP], values[_PC] = stack, vector & ~1

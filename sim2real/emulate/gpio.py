@@ -6,9 +6,12 @@ from collections.abc import Callable
 
 from sim2real.emulate.registers import Peripheral
 
+_PULLED = 8  # four bits of a pin in CRL or CRH; an output has one of the lower two set, one that is lent the upper
+
 
 class Port(Peripheral):
-    """GPIOA or GPIOB; `changed` is called after each write."""
+    """GPIOA or GPIOB; `changed` is called after each write. The masks have a bit for each pin: `driven` by ODR or
+    `lent` to a peripheral as an output, `high` or `low` as ODR has it by driving or pulling."""
 
     offsets = ("CRL", "CRH", "", "ODR", "BSRR", "BRR")
     start = {"CRL": 0x44444444, "CRH": 0x44444444}  # noqa: RUF012
@@ -16,6 +19,12 @@ class Port(Peripheral):
     def __init__(self, letter: str, base: int, changed: Callable[[], None]) -> None:
         self.name, self.base, self._changed = f"GPIO{letter}", base, changed
         super().__init__()
+
+    def reset(self) -> None:
+        """As after a reset: every pin floats."""
+        super().reset()
+        self._modes()
+        self._levels()
 
     def set(self, register: str, value: int) -> None:
         """See `Peripheral`."""
@@ -26,25 +35,21 @@ class Port(Peripheral):
             values["ODR"] &= ~value
         else:
             values[register] = value
+            self._modes()
+        self._levels()
         self._changed()
 
     def get(self, register: str) -> int:
         """BSRR and BRR read as 0."""
         return 0 if register in ("BSRR", "BRR") else self.values[register]
 
-    def _mode(self, pin: int) -> int:
-        return self.values["CRL" if pin < 8 else "CRH"] >> 4 * (pin & 7) & 15
+    def _modes(self) -> None:
+        config = self.values["CRH"] << 32 | self.values["CRL"]
+        modes = [config >> 4 * pin & 15 for pin in range(16)]
+        self.driven = sum(1 << pin for pin, mode in enumerate(modes) if mode & 3 and not mode & 8)
+        self.lent = sum(1 << pin for pin, mode in enumerate(modes) if mode & 3 and mode & 8)
+        self._pulled = sum(1 << pin for pin, mode in enumerate(modes) if mode == _PULLED)
 
-    def driven(self, pin: int) -> bool:
-        """Whether the pin is an output that ODR rules."""
-        return bool(self._mode(pin) & 3) and not self._mode(pin) & 8
-
-    def lent(self, pin: int) -> bool:
-        """Whether the pin is a peripheral's output."""
-        return bool(self._mode(pin) & 3) and bool(self._mode(pin) & 8)
-
-    def level(self, pin: int) -> bool | None:
-        """High or low, as ODR has it by driving or pulling; None if it floats or is lent."""
-        if self.driven(pin) or self._mode(pin) == 8:
-            return bool(self.values["ODR"] >> pin & 1)
-        return None
+    def _levels(self) -> None:
+        held, levels = self.driven | self._pulled, self.values["ODR"]
+        self.high, self.low = held & levels, held & ~levels

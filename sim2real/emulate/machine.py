@@ -60,7 +60,9 @@ class Machine:
         self.resets: list[tuple[float, str]] = []  # when and why
         self._build(crystal)
         self._bitten = False
-        self.blocks = Blocks(self.cpu, self.rcc, self.timeline, self._pass_until, fuzz) if timed or fuzz is not None else None
+        self.blocks: Blocks | None = None
+        if timed or fuzz is not None:
+            self.blocks = Blocks(self.cpu, self.rcc, self.timeline, self._pass_until, fuzz)
         self.step_us = step_us
         self._stepping = self._stepped = False
         self._over = 0  # tick at which the step that `step_us` stretches is over
@@ -90,7 +92,12 @@ class Machine:
             self.flash, self.port_a, self.port_b, self.pwm_timer, self.counter, self.systick, self.spi, self.usart,
             self.dma, self.watchdog,
         )  # fmt: skip
-        self._by_page = {one.base >> 10: one for one in (self.rcc, *self._peripherals) if one is not self.systick}
+        self._registers = {
+            one.base + 4 * index: (one, name)
+            for one in (self.rcc, *self._peripherals)
+            for index, name in enumerate(one.offsets)
+            if name
+        }
 
     # --- from outside ---
 
@@ -210,18 +217,24 @@ class Machine:
             self._over = self.timeline.now + round(self.step_us * PER_US)
         self._stepping = bool(self.step_us) and not self._pass_until(self._over)
 
-    def _find(self, address: int) -> Peripheral:
+    def _known(self, act: str, address: int, size: int) -> tuple[Peripheral, str] | None:
+        """The peripheral at an address and the register's name; None for the NVIC's."""
+        known = self._registers.get(address)
+        if known is not None and size == 4 and known[0].clocked:
+            return known
         if address >> 12 == self.nvic.base >> 12:
-            return self.systick if address & 0xFF0 == 0x010 else self.nvic
-        found = self._by_page.get(address >> 10)
-        if found is None:
-            raise NotModelledError(f"access to 0x{address:08X}: nothing is modelled there")
-        return found
+            return None
+        name = f" ({known[0].name}_{known[1]})" if known else ""
+        why = "its clock is off in RCC" if known and not known[0].clocked else "not modelled"
+        raise NotModelledError(f"{act} of {size} bytes at 0x{address:08X}{name}: {why}")
 
     def _read(self, address: int, size: int) -> int:
-        one = self._find(address)
-        return one.read(address - one.base, size)
+        known = self._known("read", address, size)
+        return known[0].get(known[1]) if known else self.nvic.read(address, size)
 
     def _write(self, address: int, size: int, value: int) -> None:
-        one = self._find(address)
-        one.write(address - one.base, value, size)
+        known = self._known("write", address, size)
+        if known:
+            known[0].set(known[1], value)
+        else:
+            self.nvic.write(address, value, size)

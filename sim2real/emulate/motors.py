@@ -37,5 +37,5 @@ class Motors:
 
     def _duty(self, motor: int) -> float:
         pin = PWM_PINS[motor]
-        high = self._timer.duty(motor) if self._port.lent(pin) else float(self._port.level(pin) or 0)
-        return high if self._port.level(DIRECTION_PINS[motor]) or not high else -high
+        high = self._timer.duty(motor) if self._port.lent >> pin & 1 else float(self._port.high >> pin & 1)
+        return high if self._port.high >> DIRECTION_PINS[motor] & 1 or not high else -high

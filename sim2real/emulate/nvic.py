@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sim2real.emulate.registers import Peripheral
+from sim2real.emulate.registers import NotModelledError
 
 NMI, HARD_FAULT, SYSTICK = 2, 3, 15
 INTERRUPT = 16  # exception number of interrupt 0
@@ -11,10 +11,10 @@ _ENABLE, _DISABLE, _PRIORITY, _SYSTEM_PRIORITY = 0x100, 0x180, 0x400, 0xD18
 _INTERRUPTS = 43
 
 
-class Nvic(Peripheral):
+class Nvic:
     """Pending, enabled and active exceptions; only the upper 4 bits of a priority count, as on the STM32F1."""
 
-    name, base = "NVIC", 0xE000E000
+    base = 0xE000E000
 
     def __init__(self) -> None:
         self.reset()
@@ -61,17 +61,19 @@ class Nvic(Peripheral):
         if number in self.high:
             self.pending.add(number)
 
-    def read(self, offset: int, size: int) -> int:
-        """See `Peripheral`."""
+    def read(self, address: int, size: int) -> int:
+        """What the program reads."""
+        offset = address - self.base
         if _ENABLE <= offset < _ENABLE + 8:
             first = INTERRUPT + (offset - _ENABLE) * 8
             return sum(1 << bit for bit in range(32) if first + bit in self.enabled)
         if size == 1 and (number := self._byte(offset)) is not None:
             return self.level(number)
-        raise self.unknown("read", offset, size)
+        raise NotModelledError(f"read of {size} bytes at 0x{address:08X} (NVIC): not modelled")
 
-    def write(self, offset: int, value: int, size: int) -> None:
-        """See `Peripheral`."""
+    def write(self, address: int, value: int, size: int) -> None:
+        """What the program writes."""
+        offset = address - self.base
         if size == 4 and (_ENABLE <= offset < _ENABLE + 8 or _DISABLE <= offset < _DISABLE + 8):
             base = _ENABLE if offset < _DISABLE else _DISABLE
             named = {INTERRUPT + (offset - base) * 8 + bit for bit in range(32) if value >> bit & 1}
@@ -79,7 +81,7 @@ class Nvic(Peripheral):
         elif size == 1 and (number := self._byte(offset)) is not None:
             self.priority[number] = value & 0xF0
         else:
-            raise self.unknown("write", offset, size)
+            raise NotModelledError(f"write of {size} bytes at 0x{address:08X} (NVIC): not modelled")
 
     @staticmethod
     def _byte(offset: int) -> int | None:

@@ -20,7 +20,7 @@ CRYSTAL_MHZ = 8
 class Flash(Peripheral):
     """Wait states."""
 
-    name, base, offsets, start = "FLASH", 0x40022000, ("ACR",), {"ACR": 0x30}  # noqa: RUF012
+    name, base, offsets, start = "FLASH", 0x40022000, ("ACR",), {"ACR": 0x30}
 
 
 class Rcc(Peripheral):
@@ -41,6 +41,7 @@ class Rcc(Peripheral):
         """As after a reset by `cause`."""
         super().reset()
         self.values["CSR"] = CAUSES[cause]
+        self._configure(0)
         self._ready.clear()
         self._switch()
 
@@ -48,19 +49,13 @@ class Rcc(Peripheral):
         for register, bit, peripheral in self.gates:
             peripheral.clocked = bool(self.values[register] >> bit & 1)
 
-    @property
-    def megahertz(self) -> int:
-        """Of the core, and of timers on both buses."""
-        config = self.values["CFGR"]
-        if not config & 8:
-            return 8
-        source = CRYSTAL_MHZ if config >> 16 & 1 else 4
-        return source * ((config >> 18 & 15) + 2)
-
-    @property
-    def cycle(self) -> int:
-        """Ticks of a cycle of the core."""
-        return PER_US // self.megahertz
+    def _configure(self, config: int) -> None:
+        """CFGR is `config`, and the core's clock what it says; timers on both buses have the same."""
+        self.values["CFGR"] = config
+        self.megahertz = 8
+        if config & 8:
+            self.megahertz = (CRYSTAL_MHZ if config >> 16 & 1 else 4) * ((config >> 18 & 15) + 2)
+        self.cycle = PER_US // self.megahertz  # ticks
 
     def get(self, register: str) -> int:
         """A look at CR takes until what is awaited is there: the program looks again and again."""
@@ -103,7 +98,7 @@ class Rcc(Peripheral):
     def _set_config(self, value: int) -> None:
         if value & 3 not in (0, 2) or value & ~_CFGR_KNOWN or value >> 8 & 7 not in (0, 4):
             raise NotModelledError(f"RCC_CFGR = 0x{value:08X}: expected HSI or PLL, and only APB1 divided, by 2")
-        self.values["CFGR"] = value & ~0xC | (value & 3) << 2
+        self._configure(value & ~0xC | (value & 3) << 2)
         if value & 2 and not self.values["CR"] & _PLLRDY:
             raise NotModelledError("the core is switched to a PLL that is not ready")
         if self.megahertz > 36 and not value >> 8 & 4:
@@ -116,5 +111,5 @@ class Rcc(Peripheral):
         self.crystal = False
         told = bool(self.values["CR"] & _CSSON)
         self.values["CR"] &= ~(_HSEON | _HSERDY | _PLLON | _PLLRDY | _CSSON)
-        self.values["CFGR"] &= ~0xF
+        self._configure(self.values["CFGR"] & ~0xF)
         return told

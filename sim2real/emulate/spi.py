@@ -13,8 +13,9 @@ from sim2real.emulate.timeline import Timeline
 _CR1 = 0x0B45  # mode 1, master, 16 bits, software's chip select, on; bits 3 to 5 are the divider
 _DIVIDER = 0x38
 _FASTEST = 10.0  # MHz that the encoder takes
-_CLOCK, _OUT = 5, 7  # pins of port A
-SELECTS = (4, 3)  # pins of port A, of encoders 0 and 1
+_PINS = 1 << 5 | 1 << 7  # of port A: clock and out
+_ENCODER = {1 << 4: 0, 1 << 3: 1}  # by the pin of port A that selects it
+_SELECTS = 1 << 4 | 1 << 3
 
 
 class Spi(Peripheral):
@@ -39,11 +40,11 @@ class Spi(Peripheral):
 
     def select(self) -> None:
         """A chip select may have changed: a frame that is cut off is an error."""
-        low = [number for number, pin in enumerate(SELECTS) if self._port.level(pin) is False]
-        selected = low[0] if len(low) == 1 else None
+        low = self._port.low & _SELECTS
+        selected = _ENCODER.get(low)
         if selected != self._selected and self._timeline.now < self._over:
             raise NotModelledError("a chip select changes in the middle of a frame")
-        if len(low) > 1:
+        if low == _SELECTS:
             raise NotModelledError("both encoders are selected at once")
         self._selected = selected
 
@@ -77,7 +78,7 @@ class Spi(Peripheral):
     def _begin(self, value: int) -> None:
         if self._command is not None or self.values["CR1"] == 0:
             raise NotModelledError("SPI1_DR is written before the last frame is over, or while SPI1 is off")
-        if not (self._port.lent(_CLOCK) and self._port.lent(_OUT)):
+        if self._port.lent & _PINS != _PINS:
             raise NotModelledError("SPI1 sends though its pins PA5 and PA7 are not lent to it")
         divider = 2 << ((self.values["CR1"] & _DIVIDER) >> 3)
         if self._rcc.megahertz / divider > _FASTEST:

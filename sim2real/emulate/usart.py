@@ -59,7 +59,7 @@ class Usart(Peripheral):
     @property
     def heard(self) -> bool:
         """Whether what it sends comes out at its pin."""
-        return self._port.lent(_SENDS)
+        return bool(self._port.lent >> _SENDS & 1)
 
     def send(self, data: bytes) -> None:
         """The host sends `data`, after what it already sends."""
@@ -79,7 +79,7 @@ class Usart(Peripheral):
         if self._line:
             self._expect()
         on = _CR1_UE | _CR1_RE
-        if self.values["CR1"] & on != on or self._port.lent(_HEARS) or self._port.driven(_HEARS):
+        if self.values["CR1"] & on != on or (self._port.lent | self._port.driven) >> _HEARS & 1:
             return
         if self._flags & _RXNE:
             self._flags |= _OVERRUN
