@@ -1,0 +1,85 @@
+#include "encoder.h"
+
+#define SET_BY_FAULT 0x4000u
+#define VALUE 0x3FFFu
+#define QUICKEST 1320 /* of a turn in a tick: 12 % more than a free motor at 24 V */
+#define FEW_ZEROS 3   /* a mallet may rest at angle 0: more of them in a row are looked into */
+
+void encoder_start(struct encoder *encoder) {
+    *encoder = (struct encoder){.awaited = ENCODER_NOTHING, .sent = ENCODER_NOTHING};
+}
+
+static bool even(uint16_t word) {
+    word ^= word >> 8;
+    word ^= word >> 4;
+    word ^= word >> 2;
+    word ^= word >> 1;
+    return (word & 1) == 0;
+}
+
+static void doubt(struct encoder *encoder, enum fault why) {
+    if (encoder->bad == ENCODER_PATIENCE) {
+        encoder->fault = why;
+    } else {
+        encoder->bad++;
+    }
+}
+
+static void take_angle(struct encoder *encoder, uint16_t angle) {
+    int32_t step = 0;
+    if (encoder->seen) {
+        int32_t ticks = encoder->bad + 1;
+        step = (angle - encoder->raw) & VALUE;
+        step -= step >= ENCODER_TURN / 2 ? ENCODER_TURN : 0;
+        if (step > QUICKEST * ticks || step < -QUICKEST * ticks) {
+            doubt(encoder, FAULT_ENCODER_JUMP);
+            return;
+        }
+        encoder->turned += step;
+        encoder->step = step / ticks;
+    } else {
+        encoder->turned = angle;
+        encoder->seen = true;
+    }
+    encoder->raw = angle;
+    encoder->bad = 0;
+}
+
+static void understand(struct encoder *encoder, uint16_t answer) {
+    if (answer == 0xFFFF) {
+        doubt(encoder, FAULT_ENCODER_STUCK);
+    } else if (!even(answer)) {
+        doubt(encoder, FAULT_ENCODER_PARITY);
+    } else if (encoder->awaited == ENCODER_HEALTH && answer == 0) {
+        encoder->fault = FAULT_ENCODER_STUCK; /* after so many zeros no doubt is left */
+    } else if (answer & SET_BY_FAULT) {
+        doubt(encoder, FAULT_ENCODER_ERROR);
+    } else if (encoder->awaited == ENCODER_ANGLE) {
+        take_angle(encoder, answer & VALUE);
+    }
+}
+
+static uint16_t next_command(const struct encoder *encoder, uint16_t answer) {
+    bool waits = encoder->sent == ENCODER_ERRORS || encoder->awaited == ENCODER_ERRORS;
+    if ((answer & SET_BY_FAULT) && answer != 0xFFFF && !waits) {
+        return ENCODER_ERRORS;
+    }
+    return encoder->zeros == FEW_ZEROS + 1 ? ENCODER_HEALTH : ENCODER_ANGLE;
+}
+
+uint16_t encoder_take(struct encoder *encoder, uint16_t answer) {
+    if (encoder->awaited == ENCODER_NOTHING) {
+        answer = 1; /* what it says means nothing; neither is it a zero */
+    } else {
+        encoder->zeros = answer == 0 ? encoder->zeros % (FEW_ZEROS + 1) + 1 : 0;
+        understand(encoder, answer);
+    }
+    uint16_t command = next_command(encoder, answer);
+    encoder->awaited = encoder->sent;
+    encoder->sent = command;
+    return command;
+}
+
+int32_t encoder_angle(const struct encoder *encoder) {
+    return encoder->turned + encoder->step * encoder->bad;
+}
