@@ -1,5 +1,7 @@
 #include "encoder.h"
 
+#include <stdlib.h>
+
 #define SET_BY_FAULT 0x4000u
 #define VALUE 0x3FFFu
 #define QUICKEST 1320 /* of a turn in a tick: 12 % more than a free motor at 24 V */
@@ -25,13 +27,16 @@ static void doubt(struct encoder *encoder, enum fault why) {
     }
 }
 
+/* From one good angle to the next a motor turns no farther than it can, and about as it did before. */
+static bool possible(const struct encoder *encoder, int32_t step, int32_t ticks) {
+    return abs(step) <= QUICKEST * ticks && abs(step - encoder->step * ticks) <= QUICKEST;
+}
+
 static void take_angle(struct encoder *encoder, uint16_t angle) {
-    int32_t step = 0;
     if (encoder->seen) {
-        int32_t ticks = encoder->bad + 1;
-        step = (angle - encoder->raw) & VALUE;
+        int32_t ticks = encoder->bad + 1, step = (angle - encoder->raw) & VALUE;
         step -= step >= ENCODER_TURN / 2 ? ENCODER_TURN : 0;
-        if (step > QUICKEST * ticks || step < -QUICKEST * ticks) {
+        if (!possible(encoder, step, ticks)) {
             doubt(encoder, FAULT_ENCODER_JUMP);
             return;
         }

@@ -69,6 +69,7 @@ static int take_home(struct robot *robot, const struct home *home) {
             return REFUSAL_NO_ENCODERS;
         }
         robot->offset[i] = angle[i] - RADIANS * (float)encoder_angle(encoder);
+        robot->place[i] = place[i];
     }
     robot->homed = true;
     if (robot->state == STATE_UNHOMED) {
