@@ -22,7 +22,13 @@ static int take_hello(struct robot *robot, const struct hello *hello) {
     robot->greeted = hello->major == PROTOCOL_MAJOR && hello->schema == PROTOCOL_SCHEMA;
     robot->answers_hello = true;
     robot->token = hello->token;
-    return robot->greeted ? OBEYED : REFUSAL_WRONG_VERSION;
+    if (robot->greeted) {
+        return OBEYED;
+    }
+    if (robot->state == STATE_ARMED) {
+        enter(robot, STATE_IDLE); /* another host took over, and would not be understood */
+    }
+    return REFUSAL_WRONG_VERSION;
 }
 
 static int take_config(struct robot *robot, const struct config *config) {

@@ -105,6 +105,11 @@ def test_another_version_is_not_armed_for(wrong: dict):
     assert answer[0].schema == messages.SCHEMA and bench.state == State.IDLE
 
 
+def test_a_host_of_another_version_in_mid_game_lets_go(playing: Bench):
+    playing.send(hello(major=3))
+    assert playing.tick().pwm == (0, 0) and playing.state == State.IDLE
+
+
 def raw(message: object, at: int, form: str, value: object) -> bytes:
     """The message's frame with a number put into its body that no host of ours would send."""
     number, whole = messages.FORMATS[type(message)]
