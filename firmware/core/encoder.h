@@ -1,7 +1,7 @@
 /* An AS5147 magnetic encoder on SPI: what to ask it, and what its answers say, over turns and through faults.
  *
- * An answer belongs to the command before the one that it comes with. Its bit 15 makes the number of ones even, bit 14
- * says that something was wrong, and 14 bits are the value: of an angle, of ENCODER_TURN a turn. */
+ * Bit 15 of an answer makes the number of ones even, bit 14 says that something was wrong, and 14 bits are the value:
+ * of an angle, of ENCODER_TURN a turn. An encoder answers in the frame after a command; boards see to that. */
 #ifndef ENCODER_H
 #define ENCODER_H
 
@@ -21,7 +21,7 @@ enum encoder_command {
 };
 
 struct encoder {
-    uint16_t awaited, sent; /* the commands whose answers come next, and after that */
+    uint16_t asked;         /* enum encoder_command, whose answer comes next */
     int32_t turned;         /* the last good angle, over turns, of ENCODER_TURN */
     int32_t step;           /* how far it turned in a tick, of late */
     uint16_t raw;           /* the last good angle, within its turn */
@@ -31,7 +31,7 @@ struct encoder {
     uint8_t fault;          /* enum fault: why its answers are not believed any more */
 };
 
-/* Take the answer to what is awaited, and say what to send next. `fault` is set when there is no hope. */
+/* Take the answer to what was asked, and say what to ask next. `fault` is set when there is no hope. */
 uint16_t encoder_take(struct encoder *encoder, uint16_t answer);
 
 /* Forget a fault; the angle is unknown until a good one comes. Also how it starts. */

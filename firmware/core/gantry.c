@@ -1,13 +1,13 @@
 #include "gantry.h"
 
-#include <math.h>
+#include "curves.h"
 
 bool axis_make(struct axis *axis, float c5, float c6, float c7, float radius) {
     float discriminant = c6 * c6 - 4.0f * c5 * c7;
     if (!(discriminant > 0.0f)) {
         return false;
     }
-    float fast_rate = (c6 + sqrtf(discriminant)) / (2.0f * c5);
+    float fast_rate = (c6 + root(discriminant)) / (2.0f * c5);
     float slow_rate = c7 / (c5 * fast_rate);
     float spread = c5 * (fast_rate - slow_rate), half = 0.5f * radius;
     axis->slow_rate = slow_rate;
@@ -32,7 +32,7 @@ void pulley_angles(const float place[2], float radius, float angle[2]) {
 bool motor_volts(const float axes[2], float most, float motors[2]) {
     motors[0] = 0.5f * (axes[0] - axes[1]);
     motors[1] = 0.5f * (-axes[0] - axes[1]);
-    float greater = fmaxf(fabsf(motors[0]), fabsf(motors[1]));
+    float greater = magnitude(motors[magnitude(motors[1]) > magnitude(motors[0])]);
     if (!(greater > most)) {
         return false;
     }

@@ -1,7 +1,6 @@
 #include "obey.h"
 
-#include <math.h>
-
+#include "curves.h"
 #include "safety.h"
 #include "wire.h"
 
@@ -141,7 +140,7 @@ static int take_traj(struct robot *robot, const struct traj *traj) {
     if (traj->t1[0] > traj->t2[0] || traj->t1[1] > traj->t2[1]) {
         return REFUSAL_SWITCH_ORDER;
     }
-    if (fabsf(traj->volts[0]) + fabsf(traj->volts[1]) > 2.0f * config->most_volts) {
+    if (magnitude(traj->volts[0]) + magnitude(traj->volts[1]) > 2.0f * config->most_volts) {
         return REFUSAL_TOO_MANY_VOLTS;
     }
     if (ahead < -LATEST) {

@@ -1,6 +1,6 @@
 #include "path.h"
 
-#include "exponential.h"
+#include "curves.h"
 
 #define SECONDS 1e-6f /* of a microsecond */
 #define ROUNDING 1e-4f /* m: more than single precision and the fast mode are off by, less than matters */

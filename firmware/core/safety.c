@@ -1,8 +1,5 @@
 #include "safety.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 #define OVER_EDGE 0.005f  /* m beyond its area, at which the mallet is stopped */
 #define STRONG (PWM_FULL / 6) /* duty at which a motor that is free turns */
 #define UNMOVED 2         /* of a turn in a tick: less is the encoder's noise */
@@ -50,9 +47,13 @@ void recover(struct robot *robot) {
     enter(robot, robot->homed ? STATE_IDLE : STATE_UNHOMED);
 }
 
+static bool beyond(int32_t value, int32_t most) {
+    return value > most || value < -most;
+}
+
 static enum fault frozen(struct robot *robot) {
     for (int i = 0; i < 2; i++) {
-        bool driven = abs(robot->pwm[i]) > STRONG && abs(robot->encoders[i].step) < UNMOVED;
+        bool driven = beyond(robot->pwm[i], STRONG) && !beyond(robot->encoders[i].step, UNMOVED - 1);
         robot->driven[i] = driven ? robot->driven[i] + 1 : 0;
         if (robot->driven[i] > FROZEN_TICKS) {
             return FAULT_ENCODER_FROZEN;

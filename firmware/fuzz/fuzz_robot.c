@@ -109,7 +109,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     uint8_t line[512];
     uint32_t zeros[ROBOT_ZEROS];
     int32_t angles[2] = {100, 200};
-    uint16_t before[2] = {0, 0};
     uint32_t now = 0xFFFF0000u;
 
     robot_start(&robot, 0, 1);
@@ -127,8 +126,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
             }
             for (int i = 0; i < 2; i++) {
                 angles[i] += out.pwm[i] / 8;
-                in.answers[i] = answer(before[i], angles[i]);
-                before[i] = out.commands[i];
+                in.answers[i] = answer(out.commands[i], angles[i]);
             }
             if (quiet == 0 && flags & 4) {
                 draw(&input, in.answers, sizeof in.answers);

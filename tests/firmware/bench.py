@@ -26,18 +26,16 @@ def with_parity(word: int) -> int:
 
 
 class Encoder:
-    """An AS5147: answers the command before. `spoil` changes answers, or the angle in them."""
+    """An AS5147, asked twice by its board. `spoil` changes its answers."""
 
     def __init__(self) -> None:
-        self.command = 0
         self.spoil: Callable[[int], int] = lambda answer: answer
         self.frozen: int | None = None
 
     def exchange(self, command: int, angle: float) -> int:
-        """Take a command, give the answer to the one before; angle [turns]."""
+        """The answer to a command; angle [turns]."""
         value = int(np.floor(angle * TURN)) % TURN if self.frozen is None else self.frozen
-        answer = {ANGLE: value, HEALTH: 0x0180, ERRORS: 0}.get(self.command, 0)
-        self.command = command
+        answer = {ANGLE: value, HEALTH: 0x0180, ERRORS: 0}.get(command, 0)
         return self.spoil(with_parity(answer))
 
 

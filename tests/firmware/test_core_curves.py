@@ -1,4 +1,4 @@
-"""The core's exponential and logarithm against the C library's in double precision."""
+"""The core's curves against the C library's in double precision."""
 
 from __future__ import annotations
 
@@ -23,6 +23,11 @@ def test_decay():
     for x in EVERYWHERE:
         assert of("decay", x) == pytest.approx(math.exp(-x), rel=4e-7 + 1.2e-7 * float(x))
     assert of("decay", 80.0) == 0.0 == of("decay", math.inf)
+
+
+def test_root():
+    for x in [*EVERYWHERE[1:], 1e-12, 1e6, 7.1e-5]:
+        assert of("root", x) == pytest.approx(math.sqrt(float(np.float32(x))), rel=2e-7)
 
 
 def test_log_above():

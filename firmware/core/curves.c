@@ -1,4 +1,4 @@
-#include "exponential.h"
+#include "curves.h"
 
 #include <stdint.h>
 #include <string.h>
@@ -38,4 +38,14 @@ float log_above(float z) {
     series = series * square + 1.0f / 3.0f;
     series = series * square + 1.0f;
     return (float)doublings * 0.693147181f + 2.0f * s * series;
+}
+
+float root(float x) {
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    float guess = of_bits((bits >> 1) + 0x1FC00000u); /* half the exponent: at most 6 % off */
+    for (int i = 0; i < 3; i++) {
+        guess = 0.5f * (guess + x / guess);
+    }
+    return guess;
 }
