@@ -1,0 +1,67 @@
+"""Time and interrupts between any two blocks of code: a look at every block, which is slow but misses nothing."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+
+import unicorn
+
+from sim2real.emulate.cortex_m import CortexM
+from sim2real.emulate.rcc import Rcc
+from sim2real.emulate.timeline import PER_US, Timeline
+
+CYCLES = 1.5  # of an instruction, on average, with two wait states of the flash
+_RARELY = 0.01  # blocks that last until the next event, when fuzzing
+_NEAR = 30  # us within which that event must be
+
+
+class Blocks:
+    """Charges each block its time as it begins. `rounds`: instructions of each round of the main loop so far."""
+
+    def __init__(
+        self, cpu: CortexM, rcc: Rcc, timeline: Timeline, wait: Callable[[int], bool], fuzz: int | None
+    ) -> None:
+        self._cpu, self._rcc, self._timeline, self._wait = cpu, rcc, timeline, wait
+        self._random = None if fuzz is None else random.Random(fuzz)
+        self.rounds: list[int] = []
+        self._count = 0
+        self._lengths: dict[tuple[int, int], int] = {}
+        self._resumed: dict[int, int] = {}  # by depth of exceptions: where code goes on that has had its time
+        cpu.uc.hook_add(unicorn.UC_HOOK_BLOCK, self._begins)
+
+    def _begins(self, uc: unicorn.Uc, address: int, size: int, _: object) -> None:
+        depth = len(self._cpu.nvic.active)
+        if self._resumed.get(depth) == address:
+            del self._resumed[depth]
+            return
+        count = self._lengths.get((address, size)) or self._length(uc, address, size)
+        if not depth:
+            self._count += count
+        now = self._timeline.now
+        end = now + round(count * CYCLES * self._rcc.cycle)
+        if self._random is not None and self._random.random() < _RARELY:
+            following = self._timeline.next()
+            if following is not None and following < now + _NEAR * PER_US:
+                end = max(end, following)
+        self._wait(end)
+
+    def _length(self, uc: unicorn.Uc, address: int, size: int) -> int:
+        """Instructions in a block, counted once: those of 32 bits begin with 0b11101, 0b11110 or 0b11111."""
+        code = bytes(uc.mem_read(address, size))
+        at = count = 0
+        while at < size:
+            at += 4 if code[at + 1] >> 3 in (0b11101, 0b11110, 0b11111) else 2
+            count += 1
+        self._lengths[address, size] = count
+        return count
+
+    def stopped(self, address: int) -> None:
+        """The processor stops at `address`, in or before a block that has its time already."""
+        self._resumed[len(self._cpu.nvic.active)] = address
+
+    def slept(self, stepped: bool) -> None:
+        """A round of the main loop is over; it counts if it made a step."""
+        if stepped:
+            self.rounds.append(self._count)
+        self._count = 0

@@ -1,0 +1,173 @@
+"""A Cortex-M3 in Unicorn: runs code, and enters and leaves exceptions as the processor does (ARMv7-M manual, B1.5)."""
+
+from __future__ import annotations
+
+import ctypes
+import struct
+from collections.abc import Callable
+
+import unicorn
+from unicorn import arm_const as arm
+from unicorn.unicorn_py3.unicorn import uclib
+
+from sim2real.emulate.elf import Elf
+from sim2real.emulate.nvic import HARD_FAULT, Nvic
+
+FLASH, FLASH_SIZE = 0x08000000, 0x10000
+RAM, RAM_SIZE = 0x20000000, 0x5000
+_PERIPHERALS, _PERIPHERALS_SIZE = 0x40000000, 0x24000
+_SYSTEM, _SYSTEM_SIZE = 0xE000E000, 0x1000
+_NOWHERE = 0xFFFFFFFE  # an address that is never reached
+_RETURN_TO_THREAD, _RETURN_TO_HANDLER = 0xFFFFFFF9, 0xFFFFFFF1
+_EXCEPTION_RETURN = 8  # Unicorn's number for a jump to one of these
+_WFI, _CPSIE = b"\x30\xbf", b"\x62\xb6"
+_THUMB = 1 << 24
+_FRAME = struct.Struct("<8I")
+_LR, _PC, _PSR, _SP = 5, 6, 7, 8  # places in `_Registers`
+
+
+class _Registers:
+    """R0 to R3, R12, LR, PC, xPSR, SP, read and written at once: by Unicorn's Python calls it would take 10 times
+    as long."""
+
+    IDS = (
+        arm.UC_ARM_REG_R0, arm.UC_ARM_REG_R1, arm.UC_ARM_REG_R2, arm.UC_ARM_REG_R3, arm.UC_ARM_REG_R12,
+        arm.UC_ARM_REG_LR, arm.UC_ARM_REG_PC, arm.UC_ARM_REG_XPSR, arm.UC_ARM_REG_SP,
+    )  # fmt: skip
+
+    def __init__(self, handle: object) -> None:
+        size = len(self.IDS)
+        self._handle, self._size = handle, size
+        self._ids = (ctypes.c_int * size)(*self.IDS)
+        self._values = (ctypes.c_uint32 * size)()
+        start = ctypes.addressof(self._values)
+        self._places = (ctypes.c_void_p * size)(*(start + 4 * index for index in range(size)))
+
+    def read(self) -> list[int]:
+        uclib.uc_reg_read_batch(self._handle, self._ids, self._places, self._size)
+        return list(self._values)
+
+    def write(self, values: list[int]) -> None:
+        self._values[:] = values
+        uclib.uc_reg_write_batch(self._handle, self._ids, self._places, self._size)
+
+
+class CortexM:
+    """The processor. `read(address, size)` and `write(address, size, value)` are its way to the peripherals."""
+
+    def __init__(
+        self, elf: Elf, nvic: Nvic, read: Callable[[int, int], int], write: Callable[[int, int, int], None]
+    ) -> None:
+        self.nvic = nvic
+        self.faults: list[tuple[int, str]] = []  # where and why the program was wrong
+        self.asleep = self.locked = False
+        self._why = ""
+        self.uc = uc = unicorn.Uc(
+            unicorn.UC_ARCH_ARM, unicorn.UC_MODE_THUMB | unicorn.UC_MODE_MCLASS, arm.UC_CPU_ARM_CORTEX_M3
+        )
+        uc.mem_map(FLASH, FLASH_SIZE, unicorn.UC_PROT_READ | unicorn.UC_PROT_EXEC)
+        uc.mem_map(RAM, RAM_SIZE, unicorn.UC_PROT_READ | unicorn.UC_PROT_WRITE)
+        for base, size in ((_PERIPHERALS, _PERIPHERALS_SIZE), (_SYSTEM, _SYSTEM_SIZE)):
+            uc.mmio_map(
+                base, size,
+                lambda _, offset, width, base: read(base + offset, width), base,
+                lambda _, offset, width, value, base: write(base + offset, width, value), base,
+            )  # fmt: skip
+        uc.hook_add(unicorn.UC_HOOK_INTR, self._interrupted)
+        for segment in elf.segments:
+            uc.mem_write(segment.address, segment.data)
+            if segment.executable:
+                self._watch_unmasking(segment.address, segment.data)
+        self._registers = _Registers(uc._uch)
+
+    def _watch_unmasking(self, address: int, code: bytes) -> None:
+        """Stop after each `cpsie i` if an interrupt waits for it."""
+        for at in range(0, len(code) - 1, 2):
+            if code[at : at + 2] == _CPSIE:
+                self.at(address + at + 2, self._unmasked)
+
+    def _unmasked(self) -> None:
+        if self.deliverable() is not None:
+            self.stop()
+
+    def _interrupted(self, uc: unicorn.Uc, number: int, _: object) -> None:
+        self._why = "return" if number == _EXCEPTION_RETURN else f"fault: exception {number}"
+        uc.emu_stop()
+
+    def at(self, address: int, what: Callable[[], None]) -> None:
+        """Have `what` called whenever the program comes to `address`; again, if it calls `stop`."""
+        self.uc.hook_add(unicorn.UC_HOOK_CODE, lambda *_: what(), begin=address, end=address)
+
+    def reset(self) -> None:
+        """Begin at the reset vector; memory stays as it is."""
+        stack, start = struct.unpack("<2I", self.uc.mem_read(FLASH, 8))
+        self._registers.write([0, 0, 0, 0, 0, 0xFFFFFFFF, start & ~1, _THUMB, stack])
+        self.uc.reg_write(arm.UC_ARM_REG_PRIMASK, 0)
+        self.nvic.reset()
+        self.asleep = self.locked = False
+
+    def stop(self) -> None:
+        """Make `run` come back before the next instruction; inside a peripheral's read, which is then repeated."""
+        self._why = self._why or "stop"
+        self.uc.emu_stop()
+
+    def deliverable(self) -> int | None:
+        """The exception that is to be entered now, or None."""
+        number = self.nvic.next() if self.nvic.pending else None
+        if number is None or self.locked or (number > HARD_FAULT and self.uc.reg_read(arm.UC_ARM_REG_PRIMASK) & 1):
+            return None
+        return number
+
+    @property
+    def program_counter(self) -> int:
+        """Where it stands."""
+        return self._registers.read()[_PC]
+
+    def run(self, most: int) -> str:
+        """Run on until it sleeps ("sleep"), was stopped ("stop"), or `most` instructions are done ("slice")."""
+        self._why = ""
+        try:
+            self.uc.emu_start(self.program_counter | 1, _NOWHERE, count=most)
+        except unicorn.UcError as error:
+            self._why = f"fault: {error}"
+        if self._why == "return":
+            self._leave()
+        elif self._why.startswith("fault"):
+            self._fault(self._why)
+        elif not self._why:
+            self.asleep = bytes(self.uc.mem_read(self.program_counter - 2, 2)) == _WFI
+            return "sleep" if self.asleep else "slice"
+        return self._why
+
+    def enter(self, number: int) -> None:
+        """Take an exception: save the frame on the stack, and go to its vector."""
+        values = self._registers.read()
+        odd = values[_SP] >> 2 & 1
+        stack = values[_SP] - 32 - 4 * odd
+        try:
+            self.uc.mem_write(stack, _FRAME.pack(*values[:_PSR], values[_PSR] | odd << 9))
+            vector = struct.unpack("<I", self.uc.mem_read(FLASH + 4 * number, 4))[0]
+        except unicorn.UcError:
+            self.locked = self.asleep = True  # no stack left: lockup
+            return
+        values[_SP], values[_PC] = stack, vector & ~1
+        values[_LR] = _RETURN_TO_HANDLER if self.nvic.active else _RETURN_TO_THREAD
+        values[_PSR] = values[_PSR] & 0xF8000000 | _THUMB | number
+        self._registers.write(values)
+        self.nvic.enter(number)
+        self.asleep = False
+
+    def _leave(self) -> None:
+        stack = self._registers.read()[_SP]
+        frame = list(_FRAME.unpack(self.uc.mem_read(stack, 32)))
+        odd = frame[_PSR] >> 9 & 1
+        self.nvic.leave()
+        frame[_PSR] &= ~(1 << 9)
+        self._registers.write([*frame, stack + 32 + 4 * odd])
+
+    def _fault(self, why: str) -> None:
+        self.faults.append((self.program_counter, why))
+        if any(self.nvic.level(number) < 0 for number in self.nvic.active):
+            self.locked = self.asleep = True  # a fault in the fault handler: lockup
+        else:
+            self.enter(HARD_FAULT)

@@ -1,0 +1,91 @@
+"""Which exception is served next: NVIC, with the priorities of system exceptions (ARMv7-M manual, B1.5 and B3.4)."""
+
+from __future__ import annotations
+
+from sim2real.emulate.registers import Peripheral
+
+NMI, HARD_FAULT, SYSTICK = 2, 3, 15
+INTERRUPT = 16  # exception number of interrupt 0
+_HIGHEST = {NMI: -2, HARD_FAULT: -1}
+_ENABLE, _DISABLE, _PRIORITY, _SYSTEM_PRIORITY = 0x100, 0x180, 0x400, 0xD18
+_INTERRUPTS = 43
+
+
+class Nvic(Peripheral):
+    """Pending, enabled and active exceptions; only the upper 4 bits of a priority count, as on the STM32F1."""
+
+    name, base = "NVIC", 0xE000E000
+
+    def __init__(self) -> None:
+        self.reset()
+
+    def reset(self) -> None:
+        """As after a reset: nothing enabled, pending or active."""
+        self.enabled = {NMI, HARD_FAULT, SYSTICK}
+        self.pending: set[int] = set()
+        self.active: list[int] = []
+        self.high: set[int] = set()  # interrupts whose line is held
+        self.priority: dict[int, int] = dict(_HIGHEST)
+
+    def line(self, interrupt: int, high: bool) -> None:
+        """A peripheral holds its interrupt line, or lets go."""
+        number = INTERRUPT + interrupt
+        if high and number not in self.high:
+            self.high.add(number)
+            self.pending.add(number)
+        elif not high:
+            self.high.discard(number)
+
+    def level(self, number: int) -> int:
+        """Priority of an exception; lower is more urgent."""
+        return self.priority.get(number, 0)
+
+    def next(self) -> int | None:
+        """The pending exception that would interrupt what runs now, if nothing is masked."""
+        ready = self.pending & self.enabled
+        if not ready:
+            return None
+        best = min(ready, key=lambda number: (self.level(number), number))
+        if self.active and self.level(best) >= min(map(self.level, self.active)):
+            return None
+        return best
+
+    def enter(self, number: int) -> None:
+        """An exception begins to be served."""
+        self.pending.discard(number)
+        self.active.append(number)
+
+    def leave(self) -> None:
+        """The exception served last ends; it comes again if its line is still held."""
+        number = self.active.pop()
+        if number in self.high:
+            self.pending.add(number)
+
+    def read(self, offset: int, size: int) -> int:
+        """See `Peripheral`."""
+        if _ENABLE <= offset < _ENABLE + 8:
+            first = INTERRUPT + (offset - _ENABLE) * 8
+            return sum(1 << bit for bit in range(32) if first + bit in self.enabled)
+        if size == 1 and (number := self._byte(offset)) is not None:
+            return self.level(number)
+        raise self.unknown("read", offset, size)
+
+    def write(self, offset: int, value: int, size: int) -> None:
+        """See `Peripheral`."""
+        if size == 4 and (_ENABLE <= offset < _ENABLE + 8 or _DISABLE <= offset < _DISABLE + 8):
+            base = _ENABLE if offset < _DISABLE else _DISABLE
+            named = {INTERRUPT + (offset - base) * 8 + bit for bit in range(32) if value >> bit & 1}
+            self.enabled = self.enabled | named if base == _ENABLE else self.enabled - named
+        elif size == 1 and (number := self._byte(offset)) is not None:
+            self.priority[number] = value & 0xF0
+        else:
+            raise self.unknown("write", offset, size)
+
+    @staticmethod
+    def _byte(offset: int) -> int | None:
+        """The exception whose priority stands at `offset`."""
+        if _PRIORITY <= offset < _PRIORITY + _INTERRUPTS:
+            return INTERRUPT + offset - _PRIORITY
+        if _SYSTEM_PRIORITY <= offset < _SYSTEM_PRIORITY + 12:
+            return 4 + offset - _SYSTEM_PRIORITY
+        return None

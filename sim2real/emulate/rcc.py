@@ -1,0 +1,120 @@
+"""The clock tree (RCC), the flash's wait states, and what the clocks are switched on for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from sim2real.emulate.registers import NotModelledError, Peripheral
+from sim2real.emulate.timeline import PER_US, Timeline
+
+_HSIRDY, _HSEON, _HSERDY = 1 << 1, 1 << 16, 1 << 17
+_CSSON, _PLLON, _PLLRDY = 1 << 19, 1 << 24, 1 << 25
+_CFGR_KNOWN = 0x3D070F
+_CSR_RMVF = 1 << 24
+CAUSES = {"power": 0x0C000000, "pin": 0x04000000, "watchdog": 0x24000000}  # reset flags in CSR
+_HSE_START, _PLL_START = 1000 * PER_US, 100 * PER_US
+_POLL = PER_US // 4  # what a look at a crystal that does not start takes
+CRYSTAL_MHZ = 8
+
+
+class Flash(Peripheral):
+    """Wait states."""
+
+    name, base, offsets, start = "FLASH", 0x40022000, ("ACR",), {"ACR": 0x30}  # noqa: RUF012
+
+
+class Rcc(Peripheral):
+    """Oscillators, PLL, dividers, and the reset's cause. `crystal`: whether the 8 MHz crystal starts."""
+
+    name, base = "RCC", 0x40021000
+    offsets = ("CR", "CFGR", "", "", "", "AHBENR", "APB2ENR", "APB1ENR", "", "CSR")
+    start = {"CR": 0x83, "AHBENR": 0x14}  # noqa: RUF012
+
+    def __init__(self, timeline: Timeline, wait: Callable[[int], bool], flash: Flash) -> None:
+        self._timeline, self._wait, self._flash = timeline, wait, flash
+        self.crystal = True
+        self.gates: list[tuple[str, int, Peripheral]] = []  # register, bit, what it switches on
+        self._ready: dict[int, int] = {}  # flag: tick at which it comes
+        super().__init__()
+
+    def reset(self, cause: str = "power") -> None:
+        """As after a reset by `cause`."""
+        super().reset()
+        self.values["CSR"] = CAUSES[cause]
+        self._ready.clear()
+        self._switch()
+
+    def _switch(self) -> None:
+        for register, bit, peripheral in self.gates:
+            peripheral.clocked = bool(self.values[register] >> bit & 1)
+
+    @property
+    def megahertz(self) -> int:
+        """Of the core, and of timers on both buses."""
+        config = self.values["CFGR"]
+        if not config & 8:
+            return 8
+        source = CRYSTAL_MHZ if config >> 16 & 1 else 4
+        return source * ((config >> 18 & 15) + 2)
+
+    @property
+    def cycle(self) -> int:
+        """Ticks of a cycle of the core."""
+        return PER_US // self.megahertz
+
+    def get(self, register: str) -> int:
+        """A look at CR takes until what is awaited is there: the program looks again and again."""
+        if register == "CR":
+            if self._ready:
+                self._await()
+            elif self.values["CR"] & _HSEON and not self.values["CR"] & _HSERDY:
+                self._wait(self._timeline.now + _POLL)
+        return self.values[register]
+
+    def _await(self) -> None:
+        flag = min(self._ready, key=lambda one: self._ready[one])
+        if self._wait(self._ready[flag]):
+            self.values["CR"] |= flag
+            del self._ready[flag]
+
+    def set(self, register: str, value: int) -> None:
+        """See `Peripheral`."""
+        before = self.values[register]
+        if register == "CR":
+            kept = before & (_HSERDY | _PLLRDY)
+            self.values["CR"] = value & ~(_HSERDY | _PLLRDY) | _HSIRDY | kept
+            if value & ~before & _HSEON and self.crystal:
+                self._ready[_HSERDY] = self._timeline.now + _HSE_START
+            if value & ~before & _PLLON:
+                self._check_pll()
+                self._ready[_PLLRDY] = self._timeline.now + _PLL_START
+        elif register == "CFGR":
+            self._set_config(value)
+        elif register == "CSR":
+            self.values["CSR"] = 0 if value & _CSR_RMVF else before
+        else:
+            self.values[register] = value
+            self._switch()
+
+    def _check_pll(self) -> None:
+        if self.values["CFGR"] >> 16 & 1 and not self.values["CR"] & _HSERDY:
+            raise NotModelledError("the PLL is switched on at a crystal that does not run")
+
+    def _set_config(self, value: int) -> None:
+        if value & 3 not in (0, 2) or value & ~_CFGR_KNOWN or value >> 8 & 7 not in (0, 4):
+            raise NotModelledError(f"RCC_CFGR = 0x{value:08X}: expected HSI or PLL, and only APB1 divided, by 2")
+        self.values["CFGR"] = value & ~0xC | (value & 3) << 2
+        if value & 2 and not self.values["CR"] & _PLLRDY:
+            raise NotModelledError("the core is switched to a PLL that is not ready")
+        if self.megahertz > 36 and not value >> 8 & 4:
+            raise NotModelledError(f"{self.megahertz} MHz on APB1: it takes 36")
+        if self.megahertz > 72 or (self.megahertz > 48 and self._flash.values["ACR"] & 7 < 2):
+            raise NotModelledError(f"{self.megahertz} MHz with FLASH_ACR = 0x{self._flash.values['ACR']:X}: too fast")
+
+    def crystal_fails(self) -> bool:
+        """The crystal stops, in the middle of a run. Whether the program is told by an NMI (clock security)."""
+        self.crystal = False
+        told = bool(self.values["CR"] & _CSSON)
+        self.values["CR"] &= ~(_HSEON | _HSERDY | _PLLON | _PLLRDY | _CSSON)
+        self.values["CFGR"] &= ~0xF
+        return told
