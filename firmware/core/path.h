@@ -1,0 +1,36 @@
+/* The way of an axis that a trajectory asks for, in closed form (report E.2). */
+#ifndef PATH_H
+#define PATH_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "gantry.h"
+#include "messages.h"
+
+/* While one voltage holds: the modes [m] when it began. */
+struct leg {
+    uint32_t begin; /* us since the path began */
+    float volts;
+    float rest, slow, fast;
+};
+
+#define LEGS 3 /* volts, reversed, none */
+
+struct path {
+    struct leg legs[LEGS];
+};
+
+/* The path of axis number which (0 x, 1 y) of a trajectory. */
+void path_make(struct path *path, const struct axis *axis, const struct traj *traj, int which);
+
+/* Place [m] at a time [us] since the path began. */
+float path_place(const struct path *path, const struct axis *axis, uint32_t time);
+
+/* Mean voltage from a time [us] on for duration [us]. */
+float path_volts(const struct path *path, uint32_t time, uint32_t duration);
+
+/* Whether it stays inside [low, high] [m], to infinity. */
+bool path_inside(const struct path *path, const struct axis *axis, float low, float high);
+
+#endif

@@ -1,0 +1,162 @@
+#include "robot.h"
+
+#include <string.h>
+
+#include "obey.h"
+#include "robot_state.h"
+#include "safety.h"
+
+#define BOOT_TICKS 20 /* that the encoders are watched before they are believed */
+#define TELEMETRY_TICKS 2
+
+void robot_start(struct robot *robot, uint32_t cause, uint32_t boots) {
+    memset(robot, 0, sizeof *robot);
+    robot->boots = boots;
+    robot->state = STATE_BOOT;
+    encoder_start(&robot->encoders[0]);
+    encoder_start(&robot->encoders[1]);
+    tell(robot, NOTICE_BOOTED, cause);
+}
+
+static void read_encoders(struct robot *robot, const struct robot_input *in, struct robot_output *out) {
+    float angle[2];
+    for (int i = 0; i < 2; i++) {
+        out->commands[i] = encoder_take(&robot->encoders[i], in->answers[i]);
+        angle[i] = robot->offset[i] + RADIANS * (float)encoder_angle(&robot->encoders[i]);
+    }
+    if (robot->homed) {
+        mallet_place(angle, robot->config.pulley_radius, robot->place);
+    }
+}
+
+static void listen(struct robot *robot, const struct robot_input *in) {
+    struct frame frame;
+    uint16_t zeros = 0;
+    for (uint16_t i = 0; i < in->count; i++) {
+        uint8_t byte = in->bytes[i];
+        uint32_t when = byte == 0 && zeros < ROBOT_ZEROS ? in->zeros[zeros++] : in->now;
+        switch (frame_take(&robot->receiver, byte, &frame)) {
+        case FRAME_GOOD: obey(robot, &frame, when); break;
+        case FRAME_DAMAGED: robot->damaged++; break;
+        default: break;
+        }
+    }
+}
+
+static void leave_boot(struct robot *robot) {
+    if (robot->state == STATE_BOOT && robot->ticks > BOOT_TICKS && robot->encoders[0].seen && robot->encoders[1].seen) {
+        enter(robot, STATE_UNHOMED);
+    }
+}
+
+/* Let the newest trajectory begin whose time has come, and end what has lived. */
+static void choose_track(struct robot *robot) {
+    struct track *playing = &robot->playing, *coming = &robot->coming;
+    if (coming->there && (int32_t)(robot->now - coming->traj.apply) >= 0) {
+        *playing = *coming;
+        coming->there = false;
+    }
+    if (playing->there && robot->now - playing->traj.apply > playing->traj.life) {
+        playing->there = false;
+        control_start(&robot->control);
+    }
+}
+
+static void follow(struct robot *robot) {
+    const struct track *playing = &robot->playing;
+    uint32_t time = robot->now - playing->traj.apply;
+    for (int i = 0; i < 2; i++) {
+        robot->path[i] =
+            playing->there ? path_place(&playing->paths[i], &robot->axes[i], time) : robot->place[i];
+    }
+}
+
+static int16_t duty(float volts, float supply) {
+    float share = volts / supply * PWM_FULL;
+    return (int16_t)(share + (share < 0.0f ? -0.5f : 0.5f));
+}
+
+static void drive(struct robot *robot) {
+    const struct track *playing = &robot->playing;
+    robot->pwm[0] = robot->pwm[1] = 0;
+    if (robot->state != STATE_ARMED || !playing->there) {
+        return;
+    }
+    float forward[2], error[2], motors[2];
+    uint32_t time = robot->now - playing->traj.apply;
+    for (int i = 0; i < 2; i++) {
+        forward[i] = path_volts(&playing->paths[i], time, TICK_US);
+        error[i] = robot->path[i] - robot->place[i];
+    }
+    control_volts(&robot->control, &robot->config, forward, error, motors);
+    for (int i = 0; i < 2; i++) {
+        robot->pwm[i] = duty(motors[i], robot->config.supply);
+    }
+}
+
+static void say(struct robot_output *out, enum message id, const void *data) {
+    out->count += (uint16_t)frame_put(out->bytes + out->count, id, data);
+}
+
+static bool room(const struct robot_output *out) {
+    return out->count + FRAME_LONGEST <= ROBOT_SEND;
+}
+
+static void say_telemetry(const struct robot *robot, struct robot_output *out) {
+    struct telemetry telemetry = {
+        .time = robot->now,
+        .state = robot->state,
+        .fault = robot->fault,
+        .pwm = {robot->pwm[0], robot->pwm[1]},
+        .angle = {robot->encoders[0].raw, robot->encoders[1].raw},
+        .sequence = robot->playing.there ? robot->playing.traj.sequence : 0,
+        .damaged = robot->damaged,
+        .lost = robot->lost,
+        .longest = robot->longest,
+    };
+    for (int i = 0; i < 2; i++) {
+        telemetry.place[i] = robot->homed ? robot->place[i] : 0.0f;
+        telemetry.path[i] = robot->homed ? robot->path[i] : 0.0f;
+    }
+    say(out, MESSAGE_TELEMETRY, &telemetry);
+}
+
+static void speak(struct robot *robot, struct robot_output *out, uint32_t now) {
+    if (robot->ticks % TELEMETRY_TICKS == 0) {
+        say_telemetry(robot, out);
+    }
+    if (robot->answers_hello && room(out)) {
+        struct hello hello = {PROTOCOL_MAJOR, PROTOCOL_MINOR, PROTOCOL_SCHEMA, robot->token, robot->boots};
+        say(out, MESSAGE_HELLO, &hello);
+        robot->answers_hello = false;
+    }
+    if (robot->answers_ping && room(out)) {
+        robot->pong.sent = now;
+        say(out, MESSAGE_PONG, &robot->pong);
+        robot->answers_ping = false;
+    }
+    while (robot->news_count > 0 && room(out)) {
+        say(out, MESSAGE_EVENT, &robot->news[robot->news_first]);
+        robot->news_first = (robot->news_first + 1) % NEWS;
+        robot->news_count--;
+    }
+}
+
+void robot_step(struct robot *robot, const struct robot_input *in, struct robot_output *out) {
+    robot->now = in->now;
+    robot->ticks++;
+    robot->lost += in->lost;
+    robot->longest = in->took > robot->longest ? in->took : robot->longest;
+    out->count = 0;
+
+    read_encoders(robot, in, out);
+    leave_boot(robot);
+    listen(robot, in);
+    choose_track(robot);
+    follow(robot);
+    watch(robot, in->missed);
+    drive(robot);
+    out->pwm[0] = robot->pwm[0];
+    out->pwm[1] = robot->pwm[1];
+    speak(robot, out, in->now);
+}

@@ -1,0 +1,60 @@
+/* All that the program remembers. */
+#ifndef ROBOT_STATE_H
+#define ROBOT_STATE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "control.h"
+#include "encoder.h"
+#include "frame.h"
+#include "gantry.h"
+#include "messages.h"
+#include "path.h"
+#include "robot.h"
+
+#define RADIANS 3.83495197e-4f /* of a step of an encoder: 2 pi / ENCODER_TURN */
+#define NEWS 8 /* events that wait to be sent; more of them, and the oldest are dropped */
+
+struct track {
+    bool there;
+    struct traj traj;
+    struct path paths[2];
+};
+
+struct robot {
+    uint32_t now;  /* us */
+    uint32_t boots;
+    uint8_t state; /* enum state */
+    uint8_t fault; /* enum fault: the first one since the last clear */
+    uint16_t ticks;
+
+    bool greeted;    /* a hello of the same version and schema came */
+    bool configured;
+    struct config config;
+    struct axis axes[2];
+
+    struct encoder encoders[2];
+    bool homed;
+    float offset[2]; /* rad, of the pulleys */
+    float place[2];  /* m */
+
+    uint32_t heard;        /* us: when the last message came */
+    uint32_t newest;       /* sequence of the newest trajectory */
+    bool numbered;         /* there was one since ARMED */
+    struct track playing, coming;
+    float path[2];         /* m: where the path has the mallet */
+    struct control control;
+    int16_t pwm[2];
+    uint16_t driven[2];    /* ticks that a motor was driven without its encoder moving */
+
+    struct receiver receiver;
+    uint16_t damaged, lost, longest;
+    uint8_t news_first, news_count;
+    struct event news[NEWS];
+    bool answers_hello, answers_ping;
+    uint32_t token;
+    struct pong pong;
+};
+
+#endif

@@ -1,0 +1,92 @@
+"""The firmware's core, built for this machine and driven from here: this side plays the board."""
+
+from __future__ import annotations
+
+import ctypes as c
+import shutil
+import subprocess
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from tempfile import mkdtemp
+
+import pytest
+
+from firmware import FOLDER
+
+SANE = ["-std=c11", "-O2", "-ffp-contract=off", "-Wall", "-Wextra", "-Werror"]
+SEND, ZEROS = 192, 8
+
+
+def compiler() -> str:
+    """A C compiler of this machine."""
+    found = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
+    if not found:
+        pytest.skip("no C compiler here: the core cannot be built for this machine")
+    return found
+
+
+def sources() -> list[str]:
+    """The core's files, and those that make it a library."""
+    return [str(path) for path in sorted([*FOLDER.glob("core/*.c"), FOLDER / "board" / "host" / "library.c"])]
+
+
+@cache
+def library() -> c.CDLL:
+    """The core as a shared library."""
+    built = Path(mkdtemp(prefix="core-")) / "core.so"
+    command = [compiler(), *SANE, "-shared", "-fPIC", "-I", str(FOLDER / "core"), *sources(), "-lm", "-o", str(built)]
+    subprocess.run(command, check=True)
+    return c.CDLL(str(built))
+
+
+class Input(c.Structure):
+    _fields_ = [
+        ("now", c.c_uint32), ("missed", c.c_uint16), ("lost", c.c_uint16), ("answers", c.c_uint16 * 2),
+        ("bytes", c.c_char_p), ("count", c.c_uint16), ("zeros", c.POINTER(c.c_uint32)), ("took", c.c_uint16),
+    ]  # fmt: skip
+
+
+class Output(c.Structure):
+    _fields_ = [
+        ("pwm", c.c_int16 * 2), ("commands", c.c_uint16 * 2), ("count", c.c_uint16), ("bytes", c.c_uint8 * SEND),
+    ]  # fmt: skip
+
+
+@dataclass
+class Step:
+    """What a tick brought."""
+
+    pwm: tuple[int, int]
+    commands: tuple[int, int]
+    sent: bytes
+
+
+@dataclass
+class Core:
+    """A robot from its start on; `step` is one tick."""
+
+    cause: int = 0
+    boots: int = 1
+    robot: c.Array = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.robot = c.create_string_buffer(library().robot_size())
+        library().robot_start(self.robot, self.cause, self.boots)
+
+    def step(
+        self,
+        now: int,
+        answers: tuple[int, int],
+        received: bytes = b"",
+        *,
+        missed: int = 0,
+        lost: int = 0,
+        took: int = 0,
+    ) -> Step:
+        """A tick at `now` [us], at which all that was received came."""
+        stamps = (c.c_uint32 * ZEROS)(*[now] * ZEROS)
+        given = Input(now, missed, lost, (c.c_uint16 * 2)(*answers), received, len(received), stamps, took)
+        out = Output()
+        library().robot_step(self.robot, c.byref(given), c.byref(out))
+        return Step(tuple(out.pwm), tuple(out.commands), bytes(out.bytes[: out.count]))
