@@ -19,7 +19,7 @@ void tick_interrupt(void)
     due++;
 }
 
-_Noreturn void stop(void)
+_Noreturn void halt(void)
 {
     motors_off();
     for (;;)
@@ -79,7 +79,7 @@ static void one_tick(uint16_t missed, struct robot_output *out)
 
 int main(void)
 {
-    static struct robot_output out = {.commands = {READ_ANGLE, READ_ANGLE}};
+    static struct robot_output out;
     uint16_t served = 0;
 
     RCC->APB2ENR = RCC_APB2ENR_GPIOB;
@@ -95,6 +95,7 @@ int main(void)
     counter_start(megahertz);
     usart_start(megahertz);
     robot_start(&robot, cause, boots);
+    out.commands[0] = out.commands[1] = READ_ANGLE;
     tick_start(megahertz);
     for (;;) {
         wait_for_tick(served);

@@ -4,6 +4,8 @@
 
 #include "robot_state.h"
 
+size_t robot_size(void);
+
 size_t robot_size(void) {
     return sizeof(struct robot);
 }
