@@ -26,18 +26,12 @@ _Noreturn void halt(void)
         __asm__ volatile("wfi");
 }
 
-/* Sleeps until a tick that is not yet `served`. With interrupts off between question and sleep none is slept through:
- * a pending one wakes all the same. */
+/* Sleeps until a tick that is not yet `served`. None is slept through: an interrupt between question and WFE sets the
+ * event that lets WFE pass, which WFI would not. */
 static void wait_for_tick(uint16_t served)
 {
-    for (;;) {
-        __asm__ volatile("cpsid i" ::: "memory");
-        if (due != served)
-            break;
-        __asm__ volatile("wfi");
-        __asm__ volatile("cpsie i\n\tisb" ::: "memory");
-    }
-    __asm__ volatile("cpsie i\n\tisb" ::: "memory");
+    while (due == served)
+        __asm__ volatile("wfe");
 }
 
 static void tick_start(uint32_t megahertz)
