@@ -20,19 +20,19 @@ _SYSTEM, _SYSTEM_SIZE = 0xE000E000, 0x1000
 _NOWHERE = 0xFFFFFFFE  # an address that is never reached
 _RETURN_TO_THREAD, _RETURN_TO_HANDLER = 0xFFFFFFF9, 0xFFFFFFF1
 _EXCEPTION_RETURN = 8  # Unicorn's number for a jump to one of these
-_WFI, _CPSIE = b"\x30\xbf", b"\x62\xb6"
+_WFI, _WFE, _NOP, _CPSIE = b"\x30\xbf", b"\x20\xbf", b"\x00\xbf", b"\x62\xb6"
 _THUMB = 1 << 24
 _FRAME = struct.Struct("<8I")
-_LR, _PC, _PSR, _SP = 5, 6, 7, 8  # places in `_Registers`
+_LR, _PC, _PSR, _SP, _MASK = 5, 6, 7, 8, 9  # places in `_Registers`
 
 
 class _Registers:
-    """R0 to R3, R12, LR, PC, xPSR, SP, read and written at once: by Unicorn's Python calls it would take 10 times
+    """R0 to R3, R12, LR, PC, xPSR, SP and PRIMASK, read and written at once: Unicorn's calls for Python take 10 times
     as long."""
 
     IDS = (
         arm.UC_ARM_REG_R0, arm.UC_ARM_REG_R1, arm.UC_ARM_REG_R2, arm.UC_ARM_REG_R3, arm.UC_ARM_REG_R12,
-        arm.UC_ARM_REG_LR, arm.UC_ARM_REG_PC, arm.UC_ARM_REG_XPSR, arm.UC_ARM_REG_SP,
+        arm.UC_ARM_REG_LR, arm.UC_ARM_REG_PC, arm.UC_ARM_REG_XPSR, arm.UC_ARM_REG_SP, arm.UC_ARM_REG_PRIMASK,
     )  # fmt: skip
 
     def __init__(self, handle: object) -> None:
@@ -45,7 +45,7 @@ class _Registers:
 
     def read(self) -> list[int]:
         uclib.uc_reg_read_batch(self._handle, self._ids, self._places, self._size)
-        return list(self._values)
+        return self._values[:]
 
     def write(self, values: list[int]) -> None:
         self._values[:] = values
@@ -61,7 +61,9 @@ class CortexM:
         self.nvic = nvic
         self.faults: list[tuple[int, str]] = []  # where and why the program was wrong
         self.asleep = self.locked = False
+        self._running = self._event = False
         self._why = ""
+        self._waits: set[int] = set()  # addresses of WFI
         self.uc = uc = Uc(unicorn.UC_ARCH_ARM, unicorn.UC_MODE_THUMB | unicorn.UC_MODE_MCLASS, arm.UC_CPU_ARM_CORTEX_M3)
         uc.mem_map(FLASH, FLASH_SIZE, unicorn.UC_PROT_READ | unicorn.UC_PROT_EXEC)
         uc.mem_map(RAM, RAM_SIZE, unicorn.UC_PROT_READ | unicorn.UC_PROT_WRITE)
@@ -75,18 +77,33 @@ class CortexM:
         for segment in elf.segments:
             uc.mem_write(segment.address, segment.data)
             if segment.executable:
-                self._watch_unmasking(segment.address, segment.data)
+                self._watch(segment.address, segment.data)
         self._registers = _Registers(uc._uch)
+        self._state = self._registers.read()  # of a processor that does not run
 
-    def _watch_unmasking(self, address: int, code: bytes) -> None:
-        """Stop after each `cpsie i` if an interrupt waits for it."""
+    def _watch(self, address: int, code: bytes) -> None:
+        """Look after each `cpsie i` whether an interrupt waits for it; make `wfe`, which Unicorn cannot do, a `nop` that
+        is looked at."""
         for at in range(0, len(code) - 1, 2):
-            if code[at : at + 2] == _CPSIE:
+            word = code[at : at + 2]
+            if word == _CPSIE:
                 self.at(address + at + 2, self._unmasked)
+            elif word == _WFI:
+                self._waits.add(address + at)
+            elif word == _WFE:
+                self.uc.mem_write(address + at, _NOP)
+                self.at(address + at, self._wait_for_event)
 
     def _unmasked(self) -> None:
         if self.deliverable() is not None:
             self.stop()
+
+    def _wait_for_event(self) -> None:
+        if self._event:
+            self._event = False
+        else:
+            self._why = "event"
+            self.uc.emu_stop()
 
     def _interrupted(self, uc: Uc, number: int, _: object) -> None:
         self._why = "return" if number == _EXCEPTION_RETURN else f"fault: exception {number}"
@@ -98,70 +115,87 @@ class CortexM:
 
     def reset(self) -> None:
         """Begin at the reset vector; memory stays as it is."""
-        stack, start = struct.unpack("<2I", self.uc.mem_read(FLASH, 8))
-        self._registers.write([0, 0, 0, 0, 0, 0xFFFFFFFF, start & ~1, _THUMB, stack])
-        self.uc.reg_write(arm.UC_ARM_REG_PRIMASK, 0)
+        stack, start, *others = struct.unpack("<59I", self.uc.mem_read(FLASH, 4 * 59))
+        self._vectors = [0, 0, *(vector & ~1 for vector in others)]
+        self._state = [0, 0, 0, 0, 0, 0xFFFFFFFF, start & ~1, _THUMB, stack, 0]
         self.nvic.reset()
-        self.asleep = self.locked = False
+        self.asleep = self.locked = self._event = False
 
     def stop(self) -> None:
         """Make `run` come back before the next instruction; inside a peripheral's read, which is then repeated."""
-        self._why = self._why or "stop"
-        self.uc.emu_stop()
+        if self._running:
+            self._why = self._why or "stop"
+            self.uc.emu_stop()
 
     def deliverable(self) -> int | None:
         """The exception that is to be entered now, or None."""
         number = self.nvic.next() if self.nvic.pending else None
-        if number is None or self.locked or (number > HARD_FAULT and self.uc.reg_read(arm.UC_ARM_REG_PRIMASK) & 1):
+        if number is None or self.locked or (number > HARD_FAULT and self._masked):
             return None
         return number
 
     @property
+    def woken(self) -> bool:
+        """Whether an exception that is pending ends its sleep, though it may be masked."""
+        return bool(self.nvic.pending) and not self.locked and self._why != "event" and self.nvic.next() is not None
+
+    @property
+    def _masked(self) -> bool:
+        return bool((self.uc.reg_read(arm.UC_ARM_REG_PRIMASK) if self._running else self._state[_MASK]) & 1)
+
+    @property
     def program_counter(self) -> int:
         """Where it stands."""
-        return self._registers.read()[_PC]
+        return self._state[_PC]
 
     def run(self, most: int) -> str:
-        """Run on until it sleeps ("sleep"), was stopped ("stop"), or `most` instructions are done ("slice")."""
-        self._why = ""
+        """Run on until it sleeps ("sleep"), was stopped ("stop"), has done `most` instructions ("slice"), or entered or
+        left an exception."""
+        self._why, self._running = "", True
+        self._registers.write(self._state)
         try:
-            self.uc.emu_start(self.program_counter | 1, _NOWHERE, count=most)
+            self.uc.emu_start(self._state[_PC] | 1, _NOWHERE, 0, most)
         except UcError as error:
             self._why = f"fault: {error}"
+        finally:
+            self._running = False
+        self._state = self._registers.read()
         if self._why == "return":
             self._leave()
+        elif self._why == "event":
+            self._state[_PC] += 2
+            self.asleep = True
         elif self._why.startswith("fault"):
             self._fault(self._why)
         elif not self._why:
-            self.asleep = bytes(self.uc.mem_read(self.program_counter - 2, 2)) == _WFI
-            return "sleep" if self.asleep else "slice"
+            self.asleep = self._state[_PC] - 2 in self._waits
+            self._why = "sleep" if self.asleep else "slice"
         return self._why
 
     def enter(self, number: int) -> None:
         """Take an exception: save the frame on the stack, and go to its vector."""
-        values = self._registers.read()
+        values = self._state
         odd = values[_SP] >> 2 & 1
         stack = values[_SP] - 32 - 4 * odd
         try:
             self.uc.mem_write(stack, _FRAME.pack(*values[:_PSR], values[_PSR] | odd << 9))
-            vector = struct.unpack("<I", self.uc.mem_read(FLASH + 4 * number, 4))[0]
         except UcError:
             self.locked = self.asleep = True  # no stack left: lockup
             return
-        values[_SP], values[_PC] = stack, vector & ~1
+        values[_SP], values[_PC] = stack, self._vectors[number]
         values[_LR] = _RETURN_TO_HANDLER if self.nvic.active else _RETURN_TO_THREAD
         values[_PSR] = values[_PSR] & 0xF8000000 | _THUMB | number
-        self._registers.write(values)
         self.nvic.enter(number)
-        self.asleep = False
+        self.asleep, self._event = False, True
 
     def _leave(self) -> None:
-        stack = self._registers.read()[_SP]
+        stack = self._state[_SP]
         frame = list(_FRAME.unpack(self.uc.mem_read(stack, 32)))
         odd = frame[_PSR] >> 9 & 1
-        self.nvic.leave()
         frame[_PSR] &= ~(1 << 9)
-        self._registers.write([*frame, stack + 32 + 4 * odd])
+        self._state = [*frame, stack + 32 + 4 * odd, self._state[_MASK]]
+        self.nvic.leave()
+        self._event = True
 
     def _fault(self, why: str) -> None:
         self.faults.append((self.program_counter, why))

@@ -148,7 +148,7 @@ class Machine:
             number = self.cpu.deliverable()
             if number is not None:
                 self.cpu.enter(number)
-            if self.cpu.asleep and not self._woken():
+            if self.cpu.asleep and not self.cpu.woken:
                 self._sleep(until)
             else:
                 self._compute()
@@ -165,10 +165,6 @@ class Machine:
         return list(self.blocks.rounds)
 
     # --- inside ---
-
-    def _woken(self) -> bool:
-        """Whether an exception wakes it, which a masked one does too."""
-        return not self.cpu.locked and bool(self.nvic.pending) and self.nvic.next() is not None
 
     def _sleep(self, until: int) -> None:
         tick = self.timeline.next()
@@ -189,7 +185,7 @@ class Machine:
             if self.blocks is not None:
                 self.blocks.slept(self._stepped)
             self._stepped = False
-            if self._woken():  # by what was there before it slept: takes a moment all the same
+            if self.cpu.woken:  # by what was there before it slept: takes a moment all the same
                 self._pass_until(self.timeline.now + self.rcc.cycle)
 
     def _pass_until(self, tick: int) -> bool:

@@ -45,10 +45,9 @@ class Nvic:
         ready = self.pending & self.enabled
         if not ready:
             return None
-        best = min(ready, key=lambda number: (self.level(number), number))
-        if self.active and self.level(best) >= min(map(self.level, self.active)):
-            return None
-        return best
+        best = min((self.level(number), number) for number in ready) if len(ready) > 1 else None
+        level, number = best or (self.level(number := next(iter(ready))), number)
+        return None if any(self.level(one) <= level for one in self.active) else number
 
     def enter(self, number: int) -> None:
         """An exception begins to be served."""

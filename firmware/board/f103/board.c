@@ -19,25 +19,19 @@ void tick_interrupt(void)
     due++;
 }
 
-_Noreturn void stop(void)
+_Noreturn void halt(void)
 {
     motors_off();
     for (;;)
         __asm__ volatile("wfi");
 }
 
-/* Sleeps until a tick that is not yet `served`. With interrupts off between question and sleep none is slept through:
- * a pending one wakes all the same. */
+/* Sleeps until a tick that is not yet `served`. None is slept through: an interrupt between question and WFE sets the
+ * event that lets WFE pass, which WFI would not. */
 static void wait_for_tick(uint16_t served)
 {
-    for (;;) {
-        __asm__ volatile("cpsid i" ::: "memory");
-        if (due != served)
-            break;
-        __asm__ volatile("wfi");
-        __asm__ volatile("cpsie i\n\tisb" ::: "memory");
-    }
-    __asm__ volatile("cpsie i\n\tisb" ::: "memory");
+    while (due == served)
+        __asm__ volatile("wfe");
 }
 
 static void tick_start(uint32_t megahertz)
@@ -79,7 +73,7 @@ static void one_tick(uint16_t missed, struct robot_output *out)
 
 int main(void)
 {
-    static struct robot_output out = {.commands = {READ_ANGLE, READ_ANGLE}};
+    static struct robot_output out;
     uint16_t served = 0;
 
     RCC->APB2ENR = RCC_APB2ENR_GPIOB;
@@ -95,6 +89,7 @@ int main(void)
     counter_start(megahertz);
     usart_start(megahertz);
     robot_start(&robot, cause, boots);
+    out.commands[0] = out.commands[1] = READ_ANGLE;
     tick_start(megahertz);
     for (;;) {
         wait_for_tick(served);

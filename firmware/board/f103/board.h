@@ -49,6 +49,6 @@ void usart_start(uint32_t megahertz);
 struct received *usart_take(void); /* valid until the next call */
 void usart_send(const uint8_t *bytes, uint32_t count); /* all of them, or none if they do not fit */
 
-_Noreturn void stop(void);         /* motors off, then wait for the watchdog */
+_Noreturn void halt(void);         /* motors off, then wait for the watchdog */
 
 #endif

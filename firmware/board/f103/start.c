@@ -36,7 +36,7 @@ _Noreturn void reset(void)
     memcpy(data_begin, data_source, (size_t)((char *)data_end - (char *)data_begin));
     memset(bss_begin, 0, (size_t)((char *)bss_end - (char *)bss_begin));
     main();
-    stop();
+    halt();
 }
 
 /* Exception n of the manual is entry n; interrupt n is entry 16 + n. What is not expected stops the motors: hard fault,
@@ -44,9 +44,9 @@ _Noreturn void reset(void)
 typedef void (*vector)(void);
 
 __attribute__((section(".vectors"), used)) static const vector vectors[16 + 43] = {
-    (vector)(uintptr_t)stack_top, reset, stop, stop, stop, stop, stop, stop, stop, stop, stop, stop, stop, stop, stop,
+    (vector)(uintptr_t)stack_top, reset, halt, halt, halt, halt, halt, halt, halt, halt, halt, halt, halt, halt, halt,
     tick_interrupt,
-    stop, stop, stop, stop, stop, stop, stop, stop, stop, stop, stop, stop, stop, stop, sent_interrupt, stop,
-    stop, stop, stop, stop, stop, stop, stop, stop, stop, stop, stop, stop, stop, stop, stop, stop,
-    stop, stop, stop, stop, stop, usart_interrupt, stop, stop, stop, stop, stop,
+    halt, halt, halt, halt, halt, halt, halt, halt, halt, halt, halt, halt, halt, halt, sent_interrupt, halt,
+    halt, halt, halt, halt, halt, halt, halt, halt, halt, halt, halt, halt, halt, halt, halt, halt,
+    halt, halt, halt, halt, halt, usart_interrupt, halt, halt, halt, halt, halt,
 };
