@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes as c
 import shutil
 import subprocess
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -68,18 +69,12 @@ class Core:
         library().robot_start(self.robot, self.cause, self.boots)
 
     def step(
-        self,
-        now: int,
-        answers: tuple[int, int],
-        received: bytes = b"",
-        *,
-        missed: int = 0,
-        lost: int = 0,
-        took: int = 0,
-    ) -> Step:
-        """A tick at `now` [us], at which all that was received came."""
-        stamps = (c.c_uint32 * ZEROS)(*[now] * ZEROS)
-        given = Input(now, missed, lost, (c.c_uint16 * 2)(*answers), received, len(received), stamps, took)
+        self, now: int, answers: tuple[int, int], received: bytes = b"", *, missed: int = 0, lost: int = 0,
+        took: int = 0, stamps: Sequence[int] = (),
+    ) -> Step:  # fmt: skip
+        """A tick at `now` [us], at which all that was received came, unless there are `stamps` of its zeros."""
+        zeros = (c.c_uint32 * ZEROS)(*(stamps or [now] * ZEROS))
+        given = Input(now, missed, lost, (c.c_uint16 * 2)(*answers), received, len(received), zeros, took)
         out = Output()
         library().robot_step(self.robot, c.byref(given), c.byref(out))
         return Step(tuple(out.pwm), tuple(out.commands), bytes(out.bytes[: out.count]))
