@@ -206,31 +206,32 @@ class Machine:
         self._bitten = True
         self.cpu.asleep = False
 
-    def _step_begins(self) -> None:
+    def _step_begins(self, *_: object) -> None:
         """`robot_step` is called: it takes `step_us`, in which interrupts come."""
         self._stepped = True
         if self.step_us and not self._stepping:
             self._over = self.timeline.now + round(self.step_us * PER_US)
         self._stepping = bool(self.step_us) and not self._pass_until(self._over)
 
-    def _known(self, act: str, address: int, size: int) -> tuple[Peripheral, str] | None:
-        """The peripheral at an address and the register's name; None for the NVIC's."""
-        known = self._registers.get(address)
+    def _read(self, _: object, offset: int, size: int, base: int) -> int:
+        known = self._registers.get(base + offset)
         if known is not None and size == 4 and known[0].clocked:
-            return known
-        if address >> 12 == self.nvic.base >> 12:
-            return None
+            return known[0].get(known[1])
+        if base == self.nvic.base:
+            return self.nvic.read(offset, size)
+        raise self._refusal(f"read of {size} bytes", base + offset)
+
+    def _write(self, _: object, offset: int, size: int, value: int, base: int) -> None:
+        known = self._registers.get(base + offset)
+        if known is not None and size == 4 and known[0].clocked:
+            known[0].set(known[1], value)
+        elif base == self.nvic.base:
+            self.nvic.write(offset, value, size)
+        else:
+            raise self._refusal(f"write of {size} bytes", base + offset)
+
+    def _refusal(self, what: str, address: int) -> NotModelledError:
+        known = self._registers.get(address)
         name = f" ({known[0].name}_{known[1]})" if known else ""
         why = "its clock is off in RCC" if known and not known[0].clocked else "not modelled"
-        raise NotModelledError(f"{act} of {size} bytes at 0x{address:08X}{name}: {why}")
-
-    def _read(self, address: int, size: int) -> int:
-        known = self._known("read", address, size)
-        return known[0].get(known[1]) if known else self.nvic.read(address, size)
-
-    def _write(self, address: int, size: int, value: int) -> None:
-        known = self._known("write", address, size)
-        if known:
-            known[0].set(known[1], value)
-        else:
-            self.nvic.write(address, value, size)
+        return NotModelledError(f"{what} at 0x{address:08X}{name}: {why}")
