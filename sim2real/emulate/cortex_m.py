@@ -68,6 +68,7 @@ class CortexM:
         self.asleep = self.locked = False
         self._running = self._event = False
         self._why = ""
+        self._error: Exception | None = None
         self._waits: set[int] = set()  # addresses of WFI
         self.uc = uc = Uc(unicorn.UC_ARCH_ARM, unicorn.UC_MODE_THUMB | unicorn.UC_MODE_MCLASS, arm.UC_CPU_ARM_CORTEX_M3)
         uc.mem_map(FLASH, FLASH_SIZE, unicorn.UC_PROT_READ | unicorn.UC_PROT_EXEC)
@@ -84,8 +85,8 @@ class CortexM:
         self._state = self._registers.read()  # of a processor that does not run
 
     def _watch(self, address: int, code: bytes) -> None:
-        """Look after each `cpsie i` whether an interrupt waits for it; make `wfe`, which Unicorn cannot do, a `nop` that
-        is looked at."""
+        """Look after each `cpsie i` whether an interrupt waits for it; make `wfe`, which Unicorn cannot do, a `nop` at
+        which one is told."""
         for at in range(0, len(code) - 1, 2):
             word = code[at : at + 2]
             if word == _CPSIE:
@@ -130,6 +131,11 @@ class CortexM:
             self._why = self._why or "stop"
             self.uc.emu_stop()
 
+    def fail(self, error: Exception) -> None:
+        """Make `run` raise this."""
+        self._error = error
+        self.uc.emu_stop()
+
     def deliverable(self) -> int | None:
         """The exception that is to be entered now, or None."""
         number = self.nvic.next() if self.nvic.pending else None
@@ -152,8 +158,8 @@ class CortexM:
         return self._state[_PC]
 
     def run(self, most: int) -> str:
-        """Run on until it sleeps ("sleep"), was stopped ("stop"), has done `most` instructions ("slice"), or entered or
-        left an exception."""
+        """Run on until it sleeps ("sleep", "event"), was stopped ("stop"), has done `most` instructions ("slice"; 0 is
+        no limit), returned from an exception, or did something wrong."""
         self._why, self._running = "", True
         self._registers.write(self._state)
         try:
@@ -163,6 +169,8 @@ class CortexM:
         finally:
             self._running = False
         self._state = self._registers.read()
+        if self._error is not None:
+            raise self._error
         if self._why == "return":
             self._leave()
         elif self._why == "event":

@@ -39,7 +39,8 @@ class Machine:
     """An STM32F103C8 with two encoders and two motor drivers, from power-on.
 
     seed: what memory holds at power-on. crystal: whether the 8 MHz crystal starts. step_us: what each call of
-    `robot_step` takes beyond what is modelled. All times are of the microcontroller's own clock [us].
+    `robot_step` takes beyond what is modelled. may_hang: a program that never sleeps is given time too, which costs a
+    quarter of the speed; without it, `run` hangs with the program. Times are of the microcontroller's own clock [us].
     """
 
     def __init__(
@@ -51,6 +52,7 @@ class Machine:
         timed: bool = False,
         fuzz: int | None = None,
         step_us: float = 0.0,
+        may_hang: bool = False,
     ) -> None:
         self.timeline = Timeline()
         program = read_elf(elf)
@@ -60,6 +62,7 @@ class Machine:
         self.resets: list[tuple[float, str]] = []  # when and why
         self._build(crystal)
         self._bitten = False
+        self._slice = _SLICE if may_hang else 0
         self.blocks: Blocks | None = None
         if timed or fuzz is not None:
             self.blocks = Blocks(self.cpu, self.rcc, self.timeline, self._pass_until, fuzz)
@@ -175,7 +178,7 @@ class Machine:
 
     def _compute(self) -> None:
         self.cpu.asleep = False
-        why = self.cpu.run(_SLICE)
+        why = self.cpu.run(self._slice)
         if self.blocks is None:
             if why == "slice":
                 self._pass_until(self.timeline.now + _SLICE_TICKS)
@@ -214,21 +217,28 @@ class Machine:
         self._stepping = bool(self.step_us) and not self._pass_until(self._over)
 
     def _read(self, _: object, offset: int, size: int, base: int) -> int:
-        known = self._registers.get(base + offset)
-        if known is not None and size == 4 and known[0].clocked:
-            return known[0].get(known[1])
-        if base == self.nvic.base:
-            return self.nvic.read(offset, size)
-        raise self._refusal(f"read of {size} bytes", base + offset)
+        try:
+            known = self._registers.get(base + offset)
+            if known is not None and size == 4 and known[0].clocked:
+                return known[0].get(known[1])
+            if base == self.nvic.base:
+                return self.nvic.read(offset, size)
+            raise self._refusal(f"read of {size} bytes", base + offset)
+        except NotModelledError as error:
+            self.cpu.fail(error)
+            return 0
 
     def _write(self, _: object, offset: int, size: int, value: int, base: int) -> None:
-        known = self._registers.get(base + offset)
-        if known is not None and size == 4 and known[0].clocked:
-            known[0].set(known[1], value)
-        elif base == self.nvic.base:
-            self.nvic.write(offset, value, size)
-        else:
-            raise self._refusal(f"write of {size} bytes", base + offset)
+        try:
+            known = self._registers.get(base + offset)
+            if known is not None and size == 4 and known[0].clocked:
+                known[0].set(known[1], value)
+            elif base == self.nvic.base:
+                self.nvic.write(offset, value, size)
+            else:
+                raise self._refusal(f"write of {size} bytes", base + offset)
+        except NotModelledError as error:
+            self.cpu.fail(error)
 
     def _refusal(self, what: str, address: int) -> NotModelledError:
         known = self._registers.get(address)
