@@ -181,7 +181,7 @@ static int take(struct robot *robot, enum message id, const union body *body, ui
     case MESSAGE_HOME: return take_home(robot, &body->home);
     case MESSAGE_ARM: return take_arm(robot);
     case MESSAGE_DISARM: return take_disarm(robot);
-    case MESSAGE_ESTOP: stop(robot, FAULT_ESTOP); return OBEYED;
+    case MESSAGE_ESTOP: raise_fault(robot, FAULT_ESTOP); return OBEYED;
     case MESSAGE_CLEAR: return take_clear(robot);
     case MESSAGE_TRAJ: return take_traj(robot, &body->traj);
     case MESSAGE_PING: return take_ping(robot, &body->ping, received);

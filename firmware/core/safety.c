@@ -26,7 +26,7 @@ static bool place_is_lost(enum fault why) {
     return why >= FAULT_ENCODER_PARITY && why <= FAULT_OFF_PATH;
 }
 
-void stop(struct robot *robot, enum fault why) {
+void raise_fault(struct robot *robot, enum fault why) {
     if (place_is_lost(why)) {
         robot->homed = false;
     }
@@ -97,13 +97,13 @@ void watch(struct robot *robot, uint16_t missed) {
     }
     for (int i = 0; i < 2; i++) {
         if (robot->encoders[i].fault != FAULT_NONE) {
-            stop(robot, robot->encoders[i].fault);
+            raise_fault(robot, robot->encoders[i].fault);
         }
     }
     if (robot->state == STATE_ARMED) {
         enum fault why = reason(robot, missed);
         if (why != FAULT_NONE) {
-            stop(robot, why);
+            raise_fault(robot, why);
         }
     }
 }

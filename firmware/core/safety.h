@@ -11,7 +11,7 @@ void tell(struct robot *robot, enum notice notice, uint32_t detail);
 void enter(struct robot *robot, enum state state);
 
 /* Stop the motors and stay stopped; the first reason is kept. */
-void stop(struct robot *robot, enum fault why);
+void raise_fault(struct robot *robot, enum fault why);
 
 /* Leave FAULT, for IDLE if it is still known where the mallet is. */
 void recover(struct robot *robot);

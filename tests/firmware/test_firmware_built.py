@@ -1,0 +1,65 @@
+"""What is committed is what its sources make: both sides' messages, and the program that is flashed, byte for byte."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from firmware import ELF, FOLDER
+from firmware.definition import Field, read_protocol
+from firmware.generate import stale
+
+FLASH, RAM = 16384, 6144  # bytes that it may take
+
+
+def test_messages_follow_from_the_definition():
+    assert stale(read_protocol()) == []
+
+
+def test_the_program_rebuilds_byte_for_byte(tmp_path: Path):
+    if not shutil.which("arm-none-eabi-gcc"):
+        pytest.skip("arm-none-eabi-gcc is not installed (Debian: gcc-arm-none-eabi): the program is not rebuilt here")
+    version = subprocess.run(["arm-none-eabi-gcc", "-dumpfullversion"], capture_output=True, text=True, check=True)
+    if version.stdout.strip() != "12.2.1":
+        pytest.skip(f"arm-none-eabi-gcc is {version.stdout.strip()}; the program was built with Debian 12's, 12.2.1")
+    copy = tmp_path / "elsewhere"
+    shutil.copytree(FOLDER, copy, ignore=shutil.ignore_patterns("build", "*.elf", "__pycache__"))
+    told = subprocess.run(["make", "-C", str(copy), "f103"], capture_output=True, text=True, check=True)
+    assert "flash" in told.stdout and (copy / ELF.name).read_bytes() == ELF.read_bytes()
+
+
+def test_the_program_fits():
+    """By its own headers: what is loaded into flash, and what lies in RAM without the stack."""
+    data = ELF.read_bytes()
+    start, count = int.from_bytes(data[28:32], "little"), int.from_bytes(data[44:46], "little")
+    flash = ram = 0
+    for at in range(start, start + 32 * count, 32):
+        kind, _, where, _, stored, held = (int.from_bytes(data[at + k : at + k + 4], "little") for k in range(0, 24, 4))
+        if kind == 1:
+            flash += stored
+            ram += held if where >= 0x20000000 else 0
+    assert 4000 < flash <= FLASH and 1000 < ram <= RAM
+
+
+@pytest.mark.parametrize("wrong", [{"type": "f64"}, {"type": "u8", "low": 1}, {"type": "u8", "count": 0}])
+def test_a_field_that_cannot_be_is_refused(wrong: dict):
+    with pytest.raises(ValueError, match="field speed"):
+        Field("speed", **wrong)
+
+
+def test_the_schema_changes_with_what_a_receiver_relies_on(tmp_path: Path):
+    text = (FOLDER / "protocol.toml").read_text()
+    schemas = set()
+    for before, after in (
+        ("", ""), ('"apply", type = "u32"', '"apply", type = "i32"'), ("high = 60.0", "high = 61.0"),
+        ('["ESTOP", "the host said stop"],', ""), ("version = [1, 0]", "version = [2, 0]"),
+    ):  # fmt: skip
+        assert before in text
+        (tmp_path / "protocol.toml").write_text(text.replace(before, after, 1))
+        schemas.add(read_protocol(tmp_path / "protocol.toml").schema)
+    assert len(schemas) == 5
+    (tmp_path / "protocol.toml").write_text(text.replace("the host said stop", "stop, said the host"))
+    assert read_protocol(tmp_path / "protocol.toml").schema == read_protocol().schema
