@@ -60,7 +60,13 @@ class Gantry:
         self._supply, self._radius = float(p["max_voltage"]), float(p["pulley_radius"])
         self._zero = zero
         self.axes = tuple(
-            Axis(*(float(p[f"a{n}"] + sign * p[f"b{n}"]) for n in (1, 2, 3)), self._radius, start)
+            Axis(
+                float(p["a1"] + sign * p["b1"]),
+                float(p["a2"] + sign * p["b2"]),
+                float(p["a3"] + sign * p["b3"]),
+                self._radius,
+                start,
+            )
             for sign, start in zip((-1.0, 1.0), place, strict=True)
         )
         self._since = machine.now * US
