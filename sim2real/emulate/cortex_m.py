@@ -90,12 +90,12 @@ class CortexM:
         for at in range(0, len(code) - 1, 2):
             word = code[at : at + 2]
             if word == _CPSIE:
-                self.at(address + at + 2, self._unmasked)
+                self._hook(address + at + 2, self._unmasked)
             elif word == _WFI:
                 self._waits.add(address + at)
             elif word == _WFE:
                 self.uc.mem_write(address + at, _NOP)
-                self.at(address + at, self._wait_for_event)
+                self._hook(address + at, self._wait_for_event)
 
     def _unmasked(self, *_: object) -> None:
         if self.deliverable() is not None:
@@ -112,9 +112,11 @@ class CortexM:
         self._why = "return" if number == _EXCEPTION_RETURN else f"fault: exception {number}"
         uc.emu_stop()
 
-    def at(self, address: int, what: Callable[..., None]) -> None:
-        """Have `what` called, as Unicorn calls a hook, whenever the program comes to `address`; again, if it calls
-        `stop`."""
+    def at(self, address: int, what: Callable[[], None]) -> None:
+        """Have `what` called whenever the program comes to `address`; again, if it calls `stop`."""
+        self._hook(address, lambda *_: what())
+
+    def _hook(self, address: int, what: Callable[..., None]) -> None:
         self.uc.hook_add(unicorn.UC_HOOK_CODE, what, begin=address, end=address)
 
     def reset(self) -> None:

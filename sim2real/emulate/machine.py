@@ -209,7 +209,7 @@ class Machine:
         self._bitten = True
         self.cpu.asleep = False
 
-    def _step_begins(self, *_: object) -> None:
+    def _step_begins(self) -> None:
         """`robot_step` is called: it takes `step_us`, in which interrupts come."""
         self._stepped = True
         if self.step_us and not self._stepping:
