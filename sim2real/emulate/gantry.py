@@ -24,22 +24,22 @@ class Axis:
         constants = axis_constants(c5, c6, c7, pulley_radius)
         if math.isnan(constants[0]):
             raise ValueError(f"C5, C6, C7 are {c5}, {c6}, {c7}; expected an overdamped gantry: C6^2 > 4 C5 C7, all > 0")
-        self._slow_rate, self._fast_rate, self._rest_gain, self._slow_gain, self._fast_gain = constants
+        self.slow_rate, self.fast_rate, self.rest_gain, self.slow_gain, self.fast_gain = constants
         self.rest, self.slow, self.fast, self.volts = place, 0.0, 0.0, 0.0
 
     def after(self, seconds: float) -> tuple[float, float, float]:
         """Its modes after `seconds` of its volts."""
-        slow_end, fast_end = -self._slow_gain * self.volts, self._fast_gain * self.volts
+        slow_end, fast_end = -self.slow_gain * self.volts, self.fast_gain * self.volts
         return (
-            self.rest + self._rest_gain * self.volts * seconds,
-            slow_end + (self.slow - slow_end) * math.exp(-self._slow_rate * seconds),
-            fast_end + (self.fast - fast_end) * math.exp(-self._fast_rate * seconds),
+            self.rest + self.rest_gain * self.volts * seconds,
+            slow_end + (self.slow - slow_end) * math.exp(-self.slow_rate * seconds),
+            fast_end + (self.fast - fast_end) * math.exp(-self.fast_rate * seconds),
         )
 
     def velocity_after(self, seconds: float) -> float:
         """Its velocity [m/s] after `seconds` of its volts."""
         _, slow, fast = self.after(seconds)
-        return -self._slow_rate * slow - self._fast_rate * fast
+        return -self.slow_rate * slow - self.fast_rate * fast
 
 
 class Gantry:
