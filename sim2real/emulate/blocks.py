@@ -39,13 +39,20 @@ class Blocks:
         count = self._lengths.get((address, size)) or self._length(uc, address, size)
         if not depth:
             self._count += count
-        now = self._timeline.now
-        end = now + round(count * CYCLES * self._rcc.cycle)
-        if self._random is not None and self._random.random() < _RARELY:
-            following = self._timeline.next()
-            if following is not None and following < now + _NEAR * PER_US:
-                end = max(end, following)
-        self._wait(end)
+        self._wait(max(self._timeline.now + round(count * CYCLES * self._rcc.cycle), self._stretched()))
+
+    def _stretched(self) -> int:
+        """Tick until which this block is to last, to see what an interrupt does here; 0 for as long as it does. What
+        nothing may interrupt is not stretched: bytes would be lost that no real delay loses."""
+        active = self._cpu.nvic.active
+        if (
+            self._random is None
+            or self._random.random() >= _RARELY
+            or (active and not self._cpu.nvic.level(active[-1]))
+        ):
+            return 0
+        following = self._timeline.next()
+        return following if following is not None and following < self._timeline.now + _NEAR * PER_US else 0
 
     def _length(self, uc: Uc, address: int, size: int) -> int:
         """Instructions in a block, counted once: those of 32 bits begin with 0b11101, 0b11110 or 0b11111."""

@@ -53,52 +53,55 @@ class _Registers:
 
 
 class CortexM:
-    """The processor. `read(address, size)` and `write(address, size, value)` are its way to the peripherals."""
+    """The processor. `read` and `write` are its way to the peripherals, in the form of Unicorn's callbacks:
+    `(uc, offset, size, base)` and `(uc, offset, size, value, base)`."""
 
     def __init__(
-        self, elf: Elf, nvic: Nvic, read: Callable[[int, int], int], write: Callable[[int, int, int], None]
+        self,
+        elf: Elf,
+        nvic: Nvic,
+        read: Callable[[Uc, int, int, int], int],
+        write: Callable[[Uc, int, int, int, int], None],
     ) -> None:
         self.nvic = nvic
         self.faults: list[tuple[int, str]] = []  # where and why the program was wrong
         self.asleep = self.locked = False
         self._running = self._event = False
         self._why = ""
+        self._error: Exception | None = None
         self._waits: set[int] = set()  # addresses of WFI
         self.uc = uc = Uc(unicorn.UC_ARCH_ARM, unicorn.UC_MODE_THUMB | unicorn.UC_MODE_MCLASS, arm.UC_CPU_ARM_CORTEX_M3)
         uc.mem_map(FLASH, FLASH_SIZE, unicorn.UC_PROT_READ | unicorn.UC_PROT_EXEC)
         uc.mem_map(RAM, RAM_SIZE, unicorn.UC_PROT_READ | unicorn.UC_PROT_WRITE)
         for base, size in ((_PERIPHERALS, _PERIPHERALS_SIZE), (_SYSTEM, _SYSTEM_SIZE)):
-            uc.mmio_map(
-                base, size,
-                lambda _, offset, width, base: read(base + offset, width), base,
-                lambda _, offset, width, value, base: write(base + offset, width, value), base,
-            )  # fmt: skip
+            uc.mmio_map(base, size, read, base, write, base)
         uc.hook_add(unicorn.UC_HOOK_INTR, self._interrupted)
         for segment in elf.segments:
             uc.mem_write(segment.address, segment.data)
             if segment.executable:
                 self._watch(segment.address, segment.data)
         self._registers = _Registers(uc._uch)
+        self._frame = ctypes.create_string_buffer(_FRAME.size)
         self._state = self._registers.read()  # of a processor that does not run
 
     def _watch(self, address: int, code: bytes) -> None:
-        """Look after each `cpsie i` whether an interrupt waits for it; make `wfe`, which Unicorn cannot do, a `nop` that
-        is looked at."""
+        """Look after each `cpsie i` whether an interrupt waits for it; make `wfe`, which Unicorn cannot do, a `nop` at
+        which one is told."""
         for at in range(0, len(code) - 1, 2):
             word = code[at : at + 2]
             if word == _CPSIE:
-                self.at(address + at + 2, self._unmasked)
+                self._hook(address + at + 2, self._unmasked)
             elif word == _WFI:
                 self._waits.add(address + at)
             elif word == _WFE:
                 self.uc.mem_write(address + at, _NOP)
-                self.at(address + at, self._wait_for_event)
+                self._hook(address + at, self._wait_for_event)
 
-    def _unmasked(self) -> None:
+    def _unmasked(self, *_: object) -> None:
         if self.deliverable() is not None:
             self.stop()
 
-    def _wait_for_event(self) -> None:
+    def _wait_for_event(self, *_: object) -> None:
         if self._event:
             self._event = False
         else:
@@ -111,7 +114,10 @@ class CortexM:
 
     def at(self, address: int, what: Callable[[], None]) -> None:
         """Have `what` called whenever the program comes to `address`; again, if it calls `stop`."""
-        self.uc.hook_add(unicorn.UC_HOOK_CODE, lambda *_: what(), begin=address, end=address)
+        self._hook(address, lambda *_: what())
+
+    def _hook(self, address: int, what: Callable[..., None]) -> None:
+        self.uc.hook_add(unicorn.UC_HOOK_CODE, what, begin=address, end=address)
 
     def reset(self) -> None:
         """Begin at the reset vector; memory stays as it is."""
@@ -126,6 +132,11 @@ class CortexM:
         if self._running:
             self._why = self._why or "stop"
             self.uc.emu_stop()
+
+    def fail(self, error: Exception) -> None:
+        """Make `run` raise this."""
+        self._error = error
+        self.uc.emu_stop()
 
     def deliverable(self) -> int | None:
         """The exception that is to be entered now, or None."""
@@ -149,8 +160,8 @@ class CortexM:
         return self._state[_PC]
 
     def run(self, most: int) -> str:
-        """Run on until it sleeps ("sleep"), was stopped ("stop"), has done `most` instructions ("slice"), or entered or
-        left an exception."""
+        """Run on until it sleeps ("sleep", "event"), was stopped ("stop"), has done `most` instructions ("slice"; 0 is
+        no limit), returned from an exception, or did something wrong."""
         self._why, self._running = "", True
         self._registers.write(self._state)
         try:
@@ -160,6 +171,8 @@ class CortexM:
         finally:
             self._running = False
         self._state = self._registers.read()
+        if self._error is not None:
+            raise self._error
         if self._why == "return":
             self._leave()
         elif self._why == "event":
@@ -177,25 +190,25 @@ class CortexM:
         values = self._state
         odd = values[_SP] >> 2 & 1
         stack = values[_SP] - 32 - 4 * odd
-        try:
-            self.uc.mem_write(stack, _FRAME.pack(*values[:_PSR], values[_PSR] | odd << 9))
-        except UcError:
+        _FRAME.pack_into(self._frame, 0, *values[:_PSR], values[_PSR] | odd << 9)
+        if uclib.uc_mem_write(self.uc._uch, stack, self._frame, _FRAME.size):
             self.locked = self.asleep = True  # no stack left: lockup
             return
         values[_SP], values[_PC] = stack, self._vectors[number]
         values[_LR] = _RETURN_TO_HANDLER if self.nvic.active else _RETURN_TO_THREAD
         values[_PSR] = values[_PSR] & 0xF8000000 | _THUMB | number
         self.nvic.enter(number)
-        self.asleep, self._event = False, True
+        self._event = not self.asleep  # else it would only make the loop around WFE turn once more
+        self.asleep = False
 
     def _leave(self) -> None:
         stack = self._state[_SP]
-        frame = list(_FRAME.unpack(self.uc.mem_read(stack, 32)))
+        uclib.uc_mem_read(self.uc._uch, stack, self._frame, _FRAME.size)
+        frame = list(_FRAME.unpack(self._frame))
         odd = frame[_PSR] >> 9 & 1
         frame[_PSR] &= ~(1 << 9)
         self._state = [*frame, stack + 32 + 4 * odd, self._state[_MASK]]
         self.nvic.leave()
-        self._event = True
 
     def _fault(self, why: str) -> None:
         self.faults.append((self.program_counter, why))

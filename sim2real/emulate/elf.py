@@ -69,5 +69,6 @@ def _symbols(raw: bytes, start: int, count: int) -> dict[str, int]:
             name, value, _, info, _, section = _SYMBOL.unpack_from(raw, at)
             if section and info & 15 in (0, 1, 2):  # defined; no type, object or function
                 text = raw[names + name : raw.index(b"\0", names + name)].decode()
-                symbols[text] = value & ~1 if info & 15 == 2 else value
+                if not text.startswith("$"):  # marks of the assembler between code and data
+                    symbols[text] = value & ~1 if info & 15 == 2 else value
     return symbols

@@ -60,19 +60,17 @@ class Nvic:
         if number in self.high:
             self.pending.add(number)
 
-    def read(self, address: int, size: int) -> int:
+    def read(self, offset: int, size: int) -> int:
         """What the program reads."""
-        offset = address - self.base
         if _ENABLE <= offset < _ENABLE + 8:
             first = INTERRUPT + (offset - _ENABLE) * 8
             return sum(1 << bit for bit in range(32) if first + bit in self.enabled)
         if size == 1 and (number := self._byte(offset)) is not None:
             return self.level(number)
-        raise NotModelledError(f"read of {size} bytes at 0x{address:08X} (NVIC): not modelled")
+        raise NotModelledError(f"read of {size} bytes at 0x{self.base + offset:08X} (NVIC): not modelled")
 
-    def write(self, address: int, value: int, size: int) -> None:
+    def write(self, offset: int, value: int, size: int) -> None:
         """What the program writes."""
-        offset = address - self.base
         if size == 4 and (_ENABLE <= offset < _ENABLE + 8 or _DISABLE <= offset < _DISABLE + 8):
             base = _ENABLE if offset < _DISABLE else _DISABLE
             named = {INTERRUPT + (offset - base) * 8 + bit for bit in range(32) if value >> bit & 1}
@@ -80,7 +78,7 @@ class Nvic:
         elif size == 1 and (number := self._byte(offset)) is not None:
             self.priority[number] = value & 0xF0
         else:
-            raise NotModelledError(f"write of {size} bytes at 0x{address:08X} (NVIC): not modelled")
+            raise NotModelledError(f"write of {size} bytes at 0x{self.base + offset:08X} (NVIC): not modelled")
 
     @staticmethod
     def _byte(offset: int) -> int | None:

@@ -4,6 +4,7 @@
  *   'r'  report: see below                 'z'  report zeros' stamps   'd'  ask for DIAAGC from now on
  *   'e'  ask for ERRFL from now on         'h'  hang                   'f'  read where nothing is
  *   'w'  work for some 3 ms                'x'  command with a wrong parity from now on
+ *   'u'  read USART2, which is not modelled
  *   'l'  send 190 bytes                    any other  comes back
  */
 #include "robot.h"
@@ -18,8 +19,9 @@ static void put(struct robot_output *out, const void *what, int size)
 
 static void report(const struct robot *robot, const struct robot_input *in, struct robot_output *out)
 {
-    const uint32_t words[8] = {robot->cause, robot->boots, robot->steps, robot->missed, robot->lost, in->now,
-                               in->answers[0] | (uint32_t)in->answers[1] << 16, robot->longest};
+    const uint32_t words[9] = {robot->cause, robot->boots, robot->steps, robot->missed, robot->lost, in->now,
+                               in->answers[0] | (uint32_t)in->answers[1] << 16, robot->longest,
+                               robot->heard};
     put(out, words, sizeof words);
 }
 
@@ -36,6 +38,7 @@ static void obey(struct robot *robot, uint8_t order, const struct robot_input *i
     case 'x': robot->command = 0x7FFF; break;
     case 'h': for (;;) __asm__ volatile(""); break;
     case 'f': put(out, (const void *)0x60000000u, 4); break;
+    case 'u': put(out, (const void *)0x40004400u, 1); break;
     case 'w': for (int i = 0; i < 40000; i++) __asm__ volatile(""); break;
     case 'l': for (int i = 0; i < 190; i++) { const uint8_t byte = (uint8_t)(i + 1); put(out, &byte, 1); } break;
     default: put(out, &order, 1);
@@ -52,6 +55,7 @@ void robot_step(struct robot *robot, const struct robot_input *in, struct robot_
     robot->steps++;
     robot->missed += in->missed;
     robot->lost += in->lost;
+    robot->heard += in->count;
     if (in->took > robot->longest)
         robot->longest = in->took;
     out->count = 0;

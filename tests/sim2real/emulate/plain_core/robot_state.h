@@ -5,7 +5,7 @@
 #include <stdint.h>
 
 struct robot {
-    uint32_t cause, boots, steps, missed, lost, longest;
+    uint32_t cause, boots, steps, missed, lost, longest, heard;
     uint16_t command;
     int16_t pwm[2];
 };

@@ -1,0 +1,222 @@
+"""The program as it is flashed, on the emulated chip and gantry, from power-on to a mallet that moves and stops."""
+
+from __future__ import annotations
+
+import itertools
+import time
+
+import pytest
+
+from tests.firmware.line import config, frame, hello, read
+from tests.sim2real.emulate.built import built
+
+pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
+
+from puckpilot_env.physics.plan import switching_times
+from sim2real.emulate.gantry import Gantry
+from sim2real.emulate.machine import Machine
+from sim2real.link.messages import (
+    Arm,
+    Clear,
+    Event,
+    Fault,
+    Hello,
+    Home,
+    Notice,
+    Ping,
+    Pong,
+    State,
+    Telemetry,
+    Traj,
+)  # fmt: skip
+
+START, TARGET = (0.1, 0.2), (0.5, 0.6)
+
+
+class Robot:
+    """A machine with a gantry, and a host that pings it every 20 ms."""
+
+    def __init__(self, **options) -> None:
+        self.machine = Machine(built(), **options)
+        self.gantry = Gantry(self.machine, place=START, zero=(1.0, -2.5))
+        self.heard: list = []
+
+    def run(self, duration: float, *messages: object, alive: bool = True) -> list:
+        """Send, go on for so many us, and return what came."""
+        self.machine.send(b"".join(map(frame, messages)))
+        end, before = self.machine.now + duration, len(self.heard)
+        while self.machine.now < end:
+            if alive:
+                self.machine.send(frame(Ping(7)))
+            self.machine.run(min(self.machine.now + 20_000, end))
+        self.heard += read(self.machine.received())
+        return self.heard[before:]
+
+    def armed(self) -> Robot:
+        """From power-on to ARMED."""
+        self.run(30_000)
+        self.run(6000, hello(), config(), Home(*START))
+        self.run(6000, Arm())
+        assert self.telemetry.state == State.ARMED
+        return self
+
+    def goes(self) -> Robot:
+        """On its way from START to TARGET."""
+        plans = [
+            switching_times(axis.rest, axis.slow, to, axis.rest_gain, axis.slow_gain, axis.slow_rate, 8.0)
+            for axis, to in zip(self.gantry.axes, TARGET, strict=True)
+        ]
+        t1, t2 = ((round(1e6 * plans[0][which]), round(1e6 * plans[1][which])) for which in (1, 2))
+        volts = (8.0 * plans[0][0], 8.0 * plans[1][0])
+        begin = self.telemetry.time + 12_000
+        plan = Traj(1, begin, 1_000_000, volts, t1, t2, START, (0.0, 0.0), (0.0, 0.0))
+        self.run(40_000, plan)
+        assert max(map(abs, self.machine.motors.duties)) > 0.1
+        return self
+
+    @property
+    def telemetry(self) -> Telemetry:
+        return [one for one in self.heard if isinstance(one, Telemetry)][-1]
+
+    def events(self, notice: Notice) -> list[int]:
+        return [one.detail for one in self.heard if isinstance(one, Event) and one.code == notice]
+
+
+def test_it_boots_answers_hello_and_tells_how_it_stands_500_times_a_second() -> None:
+    robot = Robot()
+    robot.run(100_000)
+    (reply,) = [one for one in robot.run(5000, hello(token=99)) if isinstance(one, Hello)]
+    assert reply.token == 99 and reply.boots != 0
+    told = [one for one in robot.run(1_000_000) if isinstance(one, Telemetry)]
+    assert len(told) == pytest.approx(500, abs=1)
+    assert {b.time - a.time for a, b in itertools.pairwise(told)} == {2000}
+    assert (told[-1].state, told[-1].damaged, told[-1].lost) == (State.UNHOMED, 0, 0)
+
+
+def test_encoders_are_read_as_they_stand() -> None:
+    robot = Robot()
+    robot.run(40_000)
+    radians = [(START[0] - START[1]) / 0.035306 + 1.0, (-START[0] - START[1]) / 0.035306 - 2.5]
+    assert robot.telemetry.angle == tuple(int(one / 6.283185307179586 * 16384 // 1) % 16384 for one in radians)
+
+
+def test_a_ping_is_stamped_when_its_last_byte_came() -> None:
+    robot = Robot()
+    robot.run(50_400, alive=False)
+    machine = robot.machine
+    offset = machine.now - machine.counter.get("CNT")
+    sent, length = machine.now, len(frame(Ping(3)))
+    (pong,) = [one for one in robot.run(5000, Ping(3), alive=False) if isinstance(one, Pong)]
+    assert pong.received + offset == pytest.approx(sent + 10 * length, abs=2)
+    assert 0 < pong.sent - pong.received <= 1100
+
+
+def test_motors_are_off_until_it_is_armed_and_has_a_path() -> None:
+    robot = Robot().armed()
+    robot.run(100_000)
+    assert robot.machine.pwm == [(0.0, 0.0, 0.0)]
+
+
+def test_the_mallet_goes_where_the_plan_says() -> None:
+    robot = Robot().armed().goes()
+    robot.run(1_000_000)
+    assert robot.gantry.place(robot.machine.now) == pytest.approx(TARGET, abs=1e-3)
+    assert robot.telemetry.place == pytest.approx(TARGET, abs=1e-3)
+    assert (robot.telemetry.state, robot.machine.motors.duties) == (State.ARMED, (0.0, 0.0))
+
+
+@pytest.mark.parametrize("fuzz", [1, 2])
+def test_it_plays_just_so_when_interrupts_come_between_any_two_blocks(fuzz: int) -> None:
+    robot = Robot(fuzz=fuzz).armed().goes()
+    robot.run(150_000)
+    told = robot.telemetry
+    assert (told.state, told.damaged, told.lost) == (State.ARMED, 0, 0)
+    assert told.place == pytest.approx(told.path, abs=1e-3)
+
+
+def test_a_silent_host_stops_it() -> None:
+    robot = Robot().armed().goes()
+    robot.run(110_000, alive=False)
+    assert robot.events(Notice.FAULTED) == [Fault.HOST_SILENT]
+    assert robot.machine.motors.duties == (0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("fault", "meant"),
+    [
+        ("parity", Fault.ENCODER_PARITY), ("error", Fault.ENCODER_ERROR), ("low", Fault.ENCODER_STUCK),
+        ("high", Fault.ENCODER_STUCK), ("jump", Fault.ENCODER_JUMP), ("frozen", Fault.ENCODER_FROZEN),
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("which", [0, 1])
+def test_an_encoder_that_fails_stops_it(which: int, fault: str, meant: Fault) -> None:
+    robot = Robot().armed().goes()
+    robot.machine.encoders[which].fault = fault
+    robot.machine.encoders[which].jump = 6000
+    robot.run(60_000)
+    (told,) = robot.events(Notice.FAULTED)
+    assert told in ((meant, Fault.OFF_PATH) if fault == "frozen" else (meant,))
+    assert robot.machine.motors.duties == (0.0, 0.0)
+
+
+def test_a_mallet_that_is_held_fast_stops_it() -> None:
+    robot = Robot().armed().goes()
+    robot.gantry.block(robot.machine.now)
+    robot.run(200_000)
+    assert robot.events(Notice.FAULTED)[0] in (Fault.OFF_PATH, Fault.ENCODER_FROZEN)
+    assert robot.machine.motors.duties == (0.0, 0.0)
+
+
+def test_a_step_that_takes_too_long_stops_it() -> None:
+    robot = Robot().armed().goes()
+    robot.machine.step_us = 2500.0
+    robot.run(30_000)
+    assert robot.events(Notice.FAULTED) == [Fault.TICK_OVERRUN]
+    assert robot.machine.motors.duties == (0.0, 0.0)
+    robot.machine.step_us = 0.0
+    robot.run(30_000)
+    robot.run(10_000, Clear())
+    assert robot.telemetry.state == State.IDLE
+
+
+def test_a_reset_in_the_middle_of_play_leaves_the_motors_off() -> None:
+    robot = Robot().armed().goes()
+    robot.machine.reset("watchdog")
+    robot.machine.received()
+    duties = robot.machine.motors.duties
+    robot.run(100_000)
+    assert duties == robot.machine.motors.duties == (0.0, 0.0)
+    assert robot.events(Notice.BOOTED)[-1] == 0x24  # IWDGRSTF and PINRSTF
+    assert robot.telemetry.state == State.UNHOMED
+
+
+def _play(**options) -> tuple:
+    robot = Robot(**options).armed().goes()
+    robot.run(100_000)
+    return robot.heard, robot.machine.pwm
+
+
+@pytest.mark.parametrize("options", [{}, {"fuzz": 3}])
+def test_the_same_seed_gives_the_same_play(options: dict) -> None:
+    once = _play(seed=4, **options)
+    assert once == _play(seed=4, **options)
+    assert once[0] != _play(seed=5, **options)[0]
+
+
+def test_a_step_takes_less_than_half_a_tick_on_the_real_processor() -> None:
+    """By instructions counted, at 1.5 cycles each; the most are for a configuration."""
+    robot = Robot(timed=True).armed().goes()
+    assert robot.machine.blocks is not None
+    counts = sorted(robot.machine.blocks.rounds)
+    print(f"instructions of a step: {counts[len(counts) // 2]} as a rule, {counts[-1]} at most")
+    assert len(counts) > 70 and counts[-1] * 1.5 / 72 < 500
+    assert robot.telemetry.lost == 0
+
+
+def test_how_fast_it_is(capsys: pytest.CaptureFixture[str]) -> None:
+    """A figure to read; it depends on the machine."""
+    robot = Robot().armed().goes()
+    start = time.process_time()
+    robot.run(1_000_000)
+    with capsys.disabled():
+        print(f"\nemulated microcontroller: {1.0 / (time.process_time() - start):.1f} times real time")
