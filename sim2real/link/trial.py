@@ -33,7 +33,7 @@ def meet(session: Session, now: Callable[[], float] = time.perf_counter) -> None
 
 def trial(session: Session, pings: int, now: Callable[[], float] = time.perf_counter) -> dict[str, Any]:
     """Ping a board that was met so often; what was found, ready for JSON. ValueError if the port vanishes."""
-    first_sent, first_answered, before = session.pings.sent, session.pings.answered, asdict(session.tally)
+    first_answered, before = session.pings.answered, asdict(session.tally)
     at_first, resets = session.telemetry, session.resets
     end = now() + pings * PERIOD * 1.5 + OVERDUE
     while session.pings.answered - first_answered < pings and now() < end:
@@ -46,7 +46,7 @@ def trial(session: Session, pings: int, now: Callable[[], float] = time.perf_cou
     last = session.telemetry
     found: dict[str, Any] = {
         "protocol": [session.board.major, session.board.minor] if session.board else None,
-        "pings": session.pings.sent - first_sent,
+        "pings": pings,
         "answered": answered,
         "lost": session.pings.lost,
         "round_trip_ms": {"median": _ms(np.median(trips)), "p99": _ms(np.percentile(trips, 99))},
