@@ -145,6 +145,15 @@ def stale(protocol: Protocol) -> list[Path]:
     return [path for path, text in files(protocol).items() if not path.exists() or path.read_text() != text]
 
 
+def write(protocol: Protocol) -> list[Path]:
+    """Write the generated files that are not as they should be; which they were."""
+    wrong = stale(protocol)
+    for path in wrong:
+        path.parent.mkdir(exist_ok=True)
+        write_text_whole(path, files(protocol)[path])
+    return wrong
+
+
 def main() -> int:
     """0: written, or up to date; 1: asked to check, and something is stale."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -154,9 +163,7 @@ def main() -> int:
         for path in wrong:
             print(f"{path} does not follow from {PROTOCOL.name}; run python -m firmware.generate")
         return 1 if wrong else 0
-    for path in wrong:
-        path.parent.mkdir(exist_ok=True)
-        write_text_whole(path, files(protocol)[path])
+    for path in write(protocol):
         print(path)
     return 0
 

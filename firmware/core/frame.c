@@ -49,23 +49,33 @@ static bool open_frame(uint8_t *kept, size_t count, struct frame *frame) {
     return crc == crc_of(kept, length - FRAME_CRC);
 }
 
-enum frame_result frame_take(struct receiver *receiver, uint8_t byte, struct frame *frame) {
-    if (byte != 0) {
-        if (receiver->count == sizeof receiver->kept) {
-            receiver->overlong = true;
-        } else {
-            receiver->kept[receiver->count++] = byte;
-        }
-        return FRAME_OPEN;
-    }
+static enum frame_result end_frame(struct receiver *receiver, struct frame *frame) {
     size_t count = receiver->count;
     bool overlong = receiver->overlong;
     receiver->count = 0;
     receiver->overlong = false;
-    if (count == 0) {
+    if (count == 0 && !overlong) {
         return FRAME_OPEN; /* zeros may stand between frames */
     }
     return !overlong && open_frame(receiver->kept, count, frame) ? FRAME_GOOD : FRAME_DAMAGED;
+}
+
+enum frame_result frame_take(struct receiver *receiver, const uint8_t *bytes, size_t *count, struct frame *frame) {
+    size_t given = *count, length = 0, room = sizeof receiver->kept - receiver->count;
+    uint8_t *to = receiver->kept + receiver->count;
+    while (length < given && bytes[length] != 0) {
+        if (length < room) {
+            to[length] = bytes[length];
+        }
+        length++;
+    }
+    receiver->overlong = receiver->overlong || length > room;
+    receiver->count = (uint8_t)(receiver->count + (length < room ? length : room));
+    if (length == given) {
+        return FRAME_OPEN;
+    }
+    *count = length + 1;
+    return end_frame(receiver, frame);
 }
 
 size_t frame_put(uint8_t *out, enum message id, const void *data) {

@@ -31,8 +31,9 @@ enum frame_result {
     FRAME_DAMAGED, /* it ended, and is none */
 };
 
-/* Take a byte. The frame that FRAME_GOOD gives lies in the receiver until the next byte is taken. */
-enum frame_result frame_take(struct receiver *receiver, uint8_t byte, struct frame *frame);
+/* Take bytes up to the next zero, or all of them: `count` becomes how many were taken. The frame that FRAME_GOOD gives
+ * lies in the receiver until more is taken. */
+enum frame_result frame_take(struct receiver *receiver, const uint8_t *bytes, size_t *count, struct frame *frame);
 
 /* Write a message to out, of FRAME_LONGEST bytes; data: its structure, NULL where it has no fields. How many bytes. */
 size_t frame_put(uint8_t *out, enum message id, const void *data);

@@ -105,7 +105,7 @@ struct home {
 
 struct traj {
     uint32_t sequence; /* greater than of every one before, modulo 2^32 */
-    uint32_t apply; /* us; when it begins, by the board's clock */
+    uint32_t apply; /* us; when it begins, by the board's clock; looking at it takes 7 ms */
     uint32_t life; /* us; after it the motors are off */
     float volts[2]; /* V; of axes x, y, signed */
     uint32_t t1[2]; /* us */

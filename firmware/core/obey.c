@@ -149,9 +149,6 @@ static int take_traj(struct robot *robot, const struct traj *traj) {
     if (ahead > EARLIEST) {
         return REFUSAL_TOO_EARLY;
     }
-    if (!begins_there(robot, traj)) {
-        return REFUSAL_OFF_START;
-    }
     robot->doubted.traj = *traj;
     robot->doubted.there = true;
     robot->vetted = 0;
@@ -160,18 +157,38 @@ static int take_traj(struct robot *robot, const struct traj *traj) {
     return OBEYED;
 }
 
+static bool stays_inside(const struct robot *robot, int axis) {
+    const float *area = axis == 0 ? robot->config.x : robot->config.y;
+    return path_inside(&robot->doubted.paths[axis], &robot->axes[axis], area[0], area[1]);
+}
+
+static void refuse(struct robot *robot, enum refusal why) {
+    robot->doubted.there = false;
+    tell(robot, NOTICE_REFUSED, (uint32_t)why | MESSAGE_TRAJ << 8);
+}
+
 void vet(struct robot *robot) {
     struct track *doubted = &robot->doubted;
     if (!doubted->there) {
         return;
     }
-    int i = robot->vetted++;
-    const float *area = i == 0 ? robot->config.x : robot->config.y;
-    path_make(&doubted->paths[i], &robot->axes[i], &doubted->traj, i);
-    if (!path_inside(&doubted->paths[i], &robot->axes[i], area[0], area[1])) {
-        doubted->there = false;
-        tell(robot, NOTICE_REFUSED, REFUSAL_LEAVES_AREA | MESSAGE_TRAJ << 8);
-    } else if (robot->vetted == 2) {
+    int axis = robot->vetted & 1;
+    switch (robot->vetted++) {
+    case 0: break; /* it came in this tick, which has done enough */
+    case 1:
+    case 2: path_make(&doubted->paths[axis], &robot->axes[axis], &doubted->traj, axis); break;
+    case 3:
+    case 4:
+        if (!stays_inside(robot, axis)) {
+            refuse(robot, REFUSAL_LEAVES_AREA);
+        }
+        break;
+    case 5:
+        if (!begins_there(robot, &doubted->traj)) {
+            refuse(robot, REFUSAL_OFF_START);
+        }
+        break;
+    default:
         robot->coming = *doubted;
         doubted->there = false;
     }

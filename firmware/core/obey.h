@@ -7,7 +7,8 @@
 /* Do what a message asks. received: when its last byte came [us]. */
 void obey(struct robot *robot, const struct frame *frame, uint32_t received);
 
-/* Look at one axis of a trajectory that came in an earlier tick, if that is still to be done. */
+/* Go on looking at the newest trajectory, a part in each tick: all at once would take too long. After six ticks it may
+ * begin. */
 void vet(struct robot *robot);
 
 #endif

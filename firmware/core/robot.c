@@ -31,14 +31,15 @@ static void read_encoders(struct robot *robot, const struct robot_input *in, str
 
 static void listen(struct robot *robot, const struct robot_input *in) {
     struct frame frame;
-    uint16_t zeros = 0;
-    for (uint16_t i = 0; i < in->count; i++) {
-        uint8_t byte = in->bytes[i];
-        uint32_t when = byte == 0 && zeros < ROBOT_ZEROS ? in->zeros[zeros++] : in->now;
-        switch (frame_take(&robot->receiver, byte, &frame)) {
-        case FRAME_GOOD: obey(robot, &frame, when); break;
-        case FRAME_DAMAGED: robot->damaged++; break;
-        default: break;
+    size_t taken = 0;
+    for (uint16_t zeros = 0; taken < in->count; zeros++) {
+        size_t count = in->count - taken;
+        enum frame_result result = frame_take(&robot->receiver, in->bytes + taken, &count, &frame);
+        taken += count;
+        if (result == FRAME_GOOD) {
+            obey(robot, &frame, zeros < ROBOT_ZEROS ? in->zeros[zeros] : in->now);
+        } else if (result == FRAME_DAMAGED) {
+            robot->damaged++;
         }
     }
 }
@@ -151,8 +152,8 @@ void robot_step(struct robot *robot, const struct robot_input *in, struct robot_
 
     read_encoders(robot, in, out);
     leave_boot(robot);
-    vet(robot);
     listen(robot, in);
+    vet(robot);
     choose_track(robot);
     follow(robot);
     watch(robot, in->missed);

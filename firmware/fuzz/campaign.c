@@ -46,8 +46,9 @@ static struct found hear(const uint8_t *line, size_t count, const uint8_t bodies
     struct receiver receiver = {.count = 0};
     struct frame frame;
     struct found found = {0, 0};
-    for (size_t i = 0; i < count; i++) {
-        if (frame_take(&receiver, line[i], &frame) == FRAME_GOOD) {
+    for (size_t at = 0, taken; at < count; at += taken) {
+        taken = count - at;
+        if (frame_take(&receiver, line + at, &taken, &frame) == FRAME_GOOD) {
             int true_one = was_sent(&frame, bodies, sent);
             found.good += true_one;
             found.false_ones += !true_one;
@@ -59,8 +60,9 @@ static struct found hear(const uint8_t *line, size_t count, const uint8_t bodies
 static void keep_plain(const uint8_t *line, size_t count, uint8_t *plain) {
     struct receiver receiver = {.count = 0};
     struct frame frame;
-    for (size_t i = 0; i < count; i++) {
-        if (frame_take(&receiver, line[i], &frame) == FRAME_GOOD) {
+    for (size_t at = 0, taken; at < count; at += taken) {
+        taken = count - at;
+        if (frame_take(&receiver, line + at, &taken, &frame) == FRAME_GOOD) {
             plain[0] = frame.layout->id;
             memcpy(plain + 1, frame.body, frame.layout->size);
         }

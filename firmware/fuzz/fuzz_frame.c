@@ -40,11 +40,12 @@ static void understand(const struct frame *frame) {
 static void hear(const uint8_t *bytes, size_t count) {
     struct receiver receiver = {.count = 0};
     struct frame frame;
-    for (size_t i = 0; i < count; i++) {
-        if (frame_take(&receiver, bytes[i], &frame) == FRAME_GOOD) {
+    for (size_t at = 0, taken; at < count; at += taken) {
+        taken = count - at;
+        if (frame_take(&receiver, bytes + at, &taken, &frame) == FRAME_GOOD) {
             understand(&frame);
         }
-        require(receiver.count <= sizeof receiver.kept);
+        require(taken > 0 && receiver.count <= sizeof receiver.kept);
     }
 }
 

@@ -69,7 +69,7 @@ class Gantry:
             )
             for sign, start in zip((-1.0, 1.0), place, strict=True)
         )
-        self._since = machine.now * US
+        self.since = machine.now * US
         self._blocked = False
         machine.motors.listeners.append(self._drive)
         self._drive(machine.now, *machine.motors.duties)
@@ -84,19 +84,19 @@ class Gantry:
             axis.volts = 0.0 if self._blocked else volts
 
     def _settle(self, now: float) -> None:
-        seconds = now * US - self._since
+        seconds = now * US - self.since
         for axis in self.axes:
             axis.rest, axis.slow, axis.fast = axis.after(seconds)
-        self._since = now * US
+        self.since = now * US
 
     def place(self, now: float) -> tuple[float, float]:
         """Where the mallet is [m] at `now` [us], not before the volts last changed."""
-        x, y = (sum(axis.after(now * US - self._since)) for axis in self.axes)
+        x, y = (sum(axis.after(now * US - self.since)) for axis in self.axes)
         return x, y
 
     def velocity(self, now: float) -> tuple[float, float]:
         """How fast it goes [m/s] at `now` [us]."""
-        x, y = (axis.velocity_after(now * US - self._since) for axis in self.axes)
+        x, y = (axis.velocity_after(now * US - self.since) for axis in self.axes)
         return x, y
 
     def angles(self, now: float) -> tuple[float, float]:

@@ -129,7 +129,7 @@ class Traj:
     """A plan: volts until t1, reversed until t2, then none; from the state that the modes say. The newest wins."""
 
     sequence: int  # greater than of every one before, modulo 2^32
-    apply: int  # us; when it begins, by the board's clock
+    apply: int  # us; when it begins, by the board's clock; looking at it takes 7 ms
     life: int  # us; after it the motors are off
     volts: tuple[float, float]  # V; of axes x, y, signed
     t1: tuple[int, int]  # us

@@ -155,7 +155,7 @@ class Bench:
         return self
 
     def trajectory(self, target: tuple[float, float], volts: tuple[float, float] = (8.0, 8.0), **changed: object):
-        """A plan from where the mallet truly is, beginning in 5 ms."""
+        """A plan from where the mallet truly is, beginning in 10 ms."""
         self.sequence += 1
         plans = [
             switching_times(axis.rest, axis.slow, to, axis.constants[2], axis.constants[3], axis.constants[0], u)
@@ -163,7 +163,7 @@ class Bench:
         ]
         times = [tuple(round(1e6 * plan[which]) for plan in plans) for which in (1, 2)]
         fields = {
-            "sequence": self.sequence, "apply": (self.now + 5000) % 2**32, "life": 1_000_000,
+            "sequence": self.sequence, "apply": (self.now + 10_000) % 2**32, "life": 1_000_000,
             "volts": tuple(sign * u for (sign, *_), u in zip(plans, volts, strict=True)),
             "t1": times[0], "t2": times[1],
             "rest": tuple(axis.rest for axis in self.axes), "slow": tuple(axis.slow for axis in self.axes),

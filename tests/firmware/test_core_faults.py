@@ -165,7 +165,7 @@ def test_a_configuration_must_fit_together(wrong: dict):
         ({"volts": (30.0, -19.0)}, Refusal.TOO_MANY_VOLTS),
         ({"t1": (500_000, 0), "t2": (600_000, 0), "volts": (20.0, 1.0)}, Refusal.LEAVES_AREA),
         ({"t1": (0, 0), "t2": (0, 200_000), "volts": (1.0, 24.0)}, Refusal.LEAVES_AREA),
-        ({"rest": (0.9, 0.9)}, Refusal.OFF_START),
+        ({"rest": (0.3, 0.25)}, Refusal.OFF_START),
         ({"apply": 10_000}, Refusal.TOO_LATE),
         ({"apply": 2_000_000}, Refusal.TOO_EARLY),
     ],

@@ -82,7 +82,7 @@ def test_both_motors_saturated_are_scaled_together():
     """So that the direction stays: the ratio of what both get is that of what was wanted."""
     bench = Bench(config(most_volts=6.0, proportional=(4000.0, 4000.0), off_path=1.0)).armed()
     bench.send(bench.trajectory((0.9, 0.25), volts=(6.0, 6.0), rest=(CORNER[0] + 0.04, CORNER[1] + 0.01)))
-    bench.run(8)
+    bench.run(12)
     left, right = bench.pwm
     assert max(abs(left), abs(right)) == round(6.0 / 24.0 * FULL)
     assert min(abs(left), abs(right)) < 0.9 * max(abs(left), abs(right))  # cut one by one both would be full
