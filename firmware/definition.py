@@ -39,6 +39,8 @@ class Field:
             raise ValueError(f"field {self.name}: type is '{self.type}'; known: {', '.join(TYPES)}")
         if (self.low is None) != (self.high is None) or self.count < 1:
             raise ValueError(f"field {self.name}: expected both low and high, or neither, and a count from 1 on")
+        if self.low is not None and self.type[0] == "i":
+            raise ValueError(f"field {self.name}: a {self.type} has no limits; expected them for u8 to u32 and f32 alone")
 
 
 @dataclass(frozen=True)

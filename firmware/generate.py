@@ -42,7 +42,8 @@ def header(protocol: Protocol) -> str:
     lines += [
         "/* One number of a message, or several: where it is in the structure, and what it may be. */",
         "struct field {", "    uint8_t type; /* enum field_type */", "    uint8_t count;", "    uint16_t offset;",
-        "    float low;", "    float high;", "};", "",
+        "    union limit {", "        float real;", "        uint32_t whole; /* of types without a sign */",
+        "    } low, high;", "};", "",
         "enum field_type {", *(f"    FIELD_{name.upper()}," for name in TYPES), "};", "",
         "struct layout {", "    uint8_t id;", "    uint8_t fields; /* how many */",
         "    uint8_t size; /* bytes of the body */", "    const struct field *field;", "};", "",
@@ -73,10 +74,16 @@ def tables(protocol: Protocol) -> str:
 
 
 def _c_row(message: Message, field: Field) -> str:
-    low = "-FLT_MAX" if field.low is None else f"{float(field.low)!r}f"
-    high = "FLT_MAX" if field.high is None else f"{float(field.high)!r}f"
     at = f"offsetof(struct {message.name}, {field.name})"
-    return f"    {{FIELD_{field.type.upper()}, {field.count}, {at}, {low}, {high}}},"
+    return f"    {{FIELD_{field.type.upper()}, {field.count}, {at}, {_c_limit(field, 0)}, {_c_limit(field, 1)}}},"
+
+
+def _c_limit(field: Field, upper: int) -> str:
+    """The limit, or what limits nothing but numbers that are none."""
+    limit = (field.low, field.high)[upper]
+    if field.type == "f32":
+        return f"{{.real = {('-FLT_MAX', 'FLT_MAX')[upper] if limit is None else f'{float(limit)!r}f'}}}"
+    return f"{{.whole = {('0', 'UINT32_MAX')[upper] if limit is None else f'{int(limit)}u'}}}"
 
 
 def python(protocol: Protocol) -> str:

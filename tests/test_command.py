@@ -49,6 +49,7 @@ OPTIONS = {
     "compare": ["--json", "--out"],
     "diagnose": ["--holdout", "--baseline", "--out", "--json"],
     "study": ["--cases", "--seed", "--out", "--seconds", "--only", "--mechanism", "--peer", "--workers", "--json"],
+    "link": ["--baud", "--seconds", "--pings", "--json"],
 }
 DUMPS = "TypeError: dumps() missing 1 required positional argument: 'obj'"
 HEAVY = ("numba", "pettingzoo", "gymnasium", "matplotlib", "rich", "scipy", "cv2", "torch", "numpy")

@@ -6,7 +6,7 @@ static inline float magnitude(float x) {
     return x < 0.0f ? -x : x;
 }
 
-/* exp(-x) for x >= 0, to 4e-7 + 1.2e-7 x of it; 0 from 80 on. */
+/* exp(-x) for x >= 0, to 1e-7 of it; 0 from 80 on. */
 float decay(float x);
 
 /* log(1 + z) for z >= 0, to 3e-7 of it or 1.3e-7. */

@@ -5,74 +5,74 @@
 #include <stddef.h>
 
 static const struct field hello_fields[] = {
-    {FIELD_U8, 1, offsetof(struct hello, major), -FLT_MAX, FLT_MAX},
-    {FIELD_U8, 1, offsetof(struct hello, minor), -FLT_MAX, FLT_MAX},
-    {FIELD_U32, 1, offsetof(struct hello, schema), -FLT_MAX, FLT_MAX},
-    {FIELD_U32, 1, offsetof(struct hello, token), -FLT_MAX, FLT_MAX},
-    {FIELD_U32, 1, offsetof(struct hello, boots), -FLT_MAX, FLT_MAX},
+    {FIELD_U8, 1, offsetof(struct hello, major), {.whole = 0}, {.whole = UINT32_MAX}},
+    {FIELD_U8, 1, offsetof(struct hello, minor), {.whole = 0}, {.whole = UINT32_MAX}},
+    {FIELD_U32, 1, offsetof(struct hello, schema), {.whole = 0}, {.whole = UINT32_MAX}},
+    {FIELD_U32, 1, offsetof(struct hello, token), {.whole = 0}, {.whole = UINT32_MAX}},
+    {FIELD_U32, 1, offsetof(struct hello, boots), {.whole = 0}, {.whole = UINT32_MAX}},
 };
 
 static const struct field config_fields[] = {
-    {FIELD_F32, 2, offsetof(struct config, c5), 1e-09f, 0.01f},
-    {FIELD_F32, 2, offsetof(struct config, c6), 1e-06f, 1.0f},
-    {FIELD_F32, 2, offsetof(struct config, c7), 0.0001f, 10.0f},
-    {FIELD_F32, 1, offsetof(struct config, pulley_radius), 0.005f, 0.2f},
-    {FIELD_F32, 1, offsetof(struct config, supply), 5.0f, 30.0f},
-    {FIELD_F32, 1, offsetof(struct config, most_volts), 0.1f, 30.0f},
-    {FIELD_F32, 2, offsetof(struct config, x), -5.0f, 5.0f},
-    {FIELD_F32, 2, offsetof(struct config, y), -5.0f, 5.0f},
-    {FIELD_F32, 2, offsetof(struct config, proportional), 0.0f, 10000.0f},
-    {FIELD_F32, 2, offsetof(struct config, integral), 0.0f, 100000.0f},
-    {FIELD_F32, 2, offsetof(struct config, derivative), 0.0f, 1000.0f},
-    {FIELD_F32, 1, offsetof(struct config, off_path), 0.001f, 1.0f},
-    {FIELD_U16, 1, offsetof(struct config, silence), 10.0f, 1000.0f},
+    {FIELD_F32, 2, offsetof(struct config, c5), {.real = 1e-09f}, {.real = 0.01f}},
+    {FIELD_F32, 2, offsetof(struct config, c6), {.real = 1e-06f}, {.real = 1.0f}},
+    {FIELD_F32, 2, offsetof(struct config, c7), {.real = 0.0001f}, {.real = 10.0f}},
+    {FIELD_F32, 1, offsetof(struct config, pulley_radius), {.real = 0.005f}, {.real = 0.2f}},
+    {FIELD_F32, 1, offsetof(struct config, supply), {.real = 5.0f}, {.real = 30.0f}},
+    {FIELD_F32, 1, offsetof(struct config, most_volts), {.real = 0.1f}, {.real = 30.0f}},
+    {FIELD_F32, 2, offsetof(struct config, x), {.real = -5.0f}, {.real = 5.0f}},
+    {FIELD_F32, 2, offsetof(struct config, y), {.real = -5.0f}, {.real = 5.0f}},
+    {FIELD_F32, 2, offsetof(struct config, proportional), {.real = 0.0f}, {.real = 10000.0f}},
+    {FIELD_F32, 2, offsetof(struct config, integral), {.real = 0.0f}, {.real = 100000.0f}},
+    {FIELD_F32, 2, offsetof(struct config, derivative), {.real = 0.0f}, {.real = 1000.0f}},
+    {FIELD_F32, 1, offsetof(struct config, off_path), {.real = 0.001f}, {.real = 1.0f}},
+    {FIELD_U16, 1, offsetof(struct config, silence), {.whole = 10u}, {.whole = 1000u}},
 };
 
 static const struct field home_fields[] = {
-    {FIELD_F32, 1, offsetof(struct home, x), -5.0f, 5.0f},
-    {FIELD_F32, 1, offsetof(struct home, y), -5.0f, 5.0f},
+    {FIELD_F32, 1, offsetof(struct home, x), {.real = -5.0f}, {.real = 5.0f}},
+    {FIELD_F32, 1, offsetof(struct home, y), {.real = -5.0f}, {.real = 5.0f}},
 };
 
 static const struct field traj_fields[] = {
-    {FIELD_U32, 1, offsetof(struct traj, sequence), -FLT_MAX, FLT_MAX},
-    {FIELD_U32, 1, offsetof(struct traj, apply), -FLT_MAX, FLT_MAX},
-    {FIELD_U32, 1, offsetof(struct traj, life), 1000.0f, 5000000.0f},
-    {FIELD_F32, 2, offsetof(struct traj, volts), -60.0f, 60.0f},
-    {FIELD_U32, 2, offsetof(struct traj, t1), 0.0f, 10000000.0f},
-    {FIELD_U32, 2, offsetof(struct traj, t2), 0.0f, 10000000.0f},
-    {FIELD_F32, 2, offsetof(struct traj, rest), -10.0f, 10.0f},
-    {FIELD_F32, 2, offsetof(struct traj, slow), -10.0f, 10.0f},
-    {FIELD_F32, 2, offsetof(struct traj, fast), -1.0f, 1.0f},
+    {FIELD_U32, 1, offsetof(struct traj, sequence), {.whole = 0}, {.whole = UINT32_MAX}},
+    {FIELD_U32, 1, offsetof(struct traj, apply), {.whole = 0}, {.whole = UINT32_MAX}},
+    {FIELD_U32, 1, offsetof(struct traj, life), {.whole = 1000u}, {.whole = 5000000u}},
+    {FIELD_F32, 2, offsetof(struct traj, volts), {.real = -60.0f}, {.real = 60.0f}},
+    {FIELD_U32, 2, offsetof(struct traj, t1), {.whole = 0u}, {.whole = 10000000u}},
+    {FIELD_U32, 2, offsetof(struct traj, t2), {.whole = 0u}, {.whole = 10000000u}},
+    {FIELD_F32, 2, offsetof(struct traj, rest), {.real = -10.0f}, {.real = 10.0f}},
+    {FIELD_F32, 2, offsetof(struct traj, slow), {.real = -10.0f}, {.real = 10.0f}},
+    {FIELD_F32, 2, offsetof(struct traj, fast), {.real = -1.0f}, {.real = 1.0f}},
 };
 
 static const struct field ping_fields[] = {
-    {FIELD_U32, 1, offsetof(struct ping, token), -FLT_MAX, FLT_MAX},
+    {FIELD_U32, 1, offsetof(struct ping, token), {.whole = 0}, {.whole = UINT32_MAX}},
 };
 
 static const struct field pong_fields[] = {
-    {FIELD_U32, 1, offsetof(struct pong, token), -FLT_MAX, FLT_MAX},
-    {FIELD_U32, 1, offsetof(struct pong, received), -FLT_MAX, FLT_MAX},
-    {FIELD_U32, 1, offsetof(struct pong, sent), -FLT_MAX, FLT_MAX},
+    {FIELD_U32, 1, offsetof(struct pong, token), {.whole = 0}, {.whole = UINT32_MAX}},
+    {FIELD_U32, 1, offsetof(struct pong, received), {.whole = 0}, {.whole = UINT32_MAX}},
+    {FIELD_U32, 1, offsetof(struct pong, sent), {.whole = 0}, {.whole = UINT32_MAX}},
 };
 
 static const struct field telemetry_fields[] = {
-    {FIELD_U32, 1, offsetof(struct telemetry, time), -FLT_MAX, FLT_MAX},
-    {FIELD_U8, 1, offsetof(struct telemetry, state), -FLT_MAX, FLT_MAX},
-    {FIELD_U8, 1, offsetof(struct telemetry, fault), -FLT_MAX, FLT_MAX},
-    {FIELD_F32, 2, offsetof(struct telemetry, place), -FLT_MAX, FLT_MAX},
-    {FIELD_F32, 2, offsetof(struct telemetry, path), -FLT_MAX, FLT_MAX},
-    {FIELD_I16, 2, offsetof(struct telemetry, pwm), -FLT_MAX, FLT_MAX},
-    {FIELD_U16, 2, offsetof(struct telemetry, angle), -FLT_MAX, FLT_MAX},
-    {FIELD_U32, 1, offsetof(struct telemetry, sequence), -FLT_MAX, FLT_MAX},
-    {FIELD_U16, 1, offsetof(struct telemetry, damaged), -FLT_MAX, FLT_MAX},
-    {FIELD_U16, 1, offsetof(struct telemetry, lost), -FLT_MAX, FLT_MAX},
-    {FIELD_U16, 1, offsetof(struct telemetry, longest), -FLT_MAX, FLT_MAX},
+    {FIELD_U32, 1, offsetof(struct telemetry, time), {.whole = 0}, {.whole = UINT32_MAX}},
+    {FIELD_U8, 1, offsetof(struct telemetry, state), {.whole = 0}, {.whole = UINT32_MAX}},
+    {FIELD_U8, 1, offsetof(struct telemetry, fault), {.whole = 0}, {.whole = UINT32_MAX}},
+    {FIELD_F32, 2, offsetof(struct telemetry, place), {.real = -FLT_MAX}, {.real = FLT_MAX}},
+    {FIELD_F32, 2, offsetof(struct telemetry, path), {.real = -FLT_MAX}, {.real = FLT_MAX}},
+    {FIELD_I16, 2, offsetof(struct telemetry, pwm), {.whole = 0}, {.whole = UINT32_MAX}},
+    {FIELD_U16, 2, offsetof(struct telemetry, angle), {.whole = 0}, {.whole = UINT32_MAX}},
+    {FIELD_U32, 1, offsetof(struct telemetry, sequence), {.whole = 0}, {.whole = UINT32_MAX}},
+    {FIELD_U16, 1, offsetof(struct telemetry, damaged), {.whole = 0}, {.whole = UINT32_MAX}},
+    {FIELD_U16, 1, offsetof(struct telemetry, lost), {.whole = 0}, {.whole = UINT32_MAX}},
+    {FIELD_U16, 1, offsetof(struct telemetry, longest), {.whole = 0}, {.whole = UINT32_MAX}},
 };
 
 static const struct field event_fields[] = {
-    {FIELD_U32, 1, offsetof(struct event, time), -FLT_MAX, FLT_MAX},
-    {FIELD_U8, 1, offsetof(struct event, code), -FLT_MAX, FLT_MAX},
-    {FIELD_U32, 1, offsetof(struct event, detail), -FLT_MAX, FLT_MAX},
+    {FIELD_U32, 1, offsetof(struct event, time), {.whole = 0}, {.whole = UINT32_MAX}},
+    {FIELD_U8, 1, offsetof(struct event, code), {.whole = 0}, {.whole = UINT32_MAX}},
+    {FIELD_U32, 1, offsetof(struct event, detail), {.whole = 0}, {.whole = UINT32_MAX}},
 };
 
 const struct layout layouts[LAYOUTS] = {

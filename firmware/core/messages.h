@@ -150,8 +150,10 @@ struct field {
     uint8_t type; /* enum field_type */
     uint8_t count;
     uint16_t offset;
-    float low;
-    float high;
+    union limit {
+        float real;
+        uint32_t whole; /* of types without a sign */
+    } low, high;
 };
 
 enum field_type {

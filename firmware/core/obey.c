@@ -152,20 +152,29 @@ static int take_traj(struct robot *robot, const struct traj *traj) {
     if (!begins_there(robot, traj)) {
         return REFUSAL_OFF_START;
     }
-    struct track *coming = &robot->coming;
-    coming->there = false;
-    for (int i = 0; i < 2; i++) {
-        const float *area = i == 0 ? config->x : config->y;
-        path_make(&coming->paths[i], &robot->axes[i], traj, i);
-        if (!path_inside(&coming->paths[i], &robot->axes[i], area[0], area[1])) {
-            return REFUSAL_LEAVES_AREA;
-        }
-    }
-    coming->traj = *traj;
-    coming->there = true;
+    robot->doubted.traj = *traj;
+    robot->doubted.there = true;
+    robot->vetted = 0;
     robot->newest = traj->sequence;
     robot->numbered = true;
     return OBEYED;
+}
+
+void vet(struct robot *robot) {
+    struct track *doubted = &robot->doubted;
+    if (!doubted->there) {
+        return;
+    }
+    int i = robot->vetted++;
+    const float *area = i == 0 ? robot->config.x : robot->config.y;
+    path_make(&doubted->paths[i], &robot->axes[i], &doubted->traj, i);
+    if (!path_inside(&doubted->paths[i], &robot->axes[i], area[0], area[1])) {
+        doubted->there = false;
+        tell(robot, NOTICE_REFUSED, REFUSAL_LEAVES_AREA | MESSAGE_TRAJ << 8);
+    } else if (robot->vetted == 2) {
+        robot->coming = *doubted;
+        doubted->there = false;
+    }
 }
 
 static int take_ping(struct robot *robot, const struct ping *ping, uint32_t received) {

@@ -5,27 +5,37 @@
 #define SECONDS 1e-6f /* of a microsecond */
 #define ROUNDING 1e-4f /* m: more than single precision and the fast mode are off by, less than matters */
 
-/* The modes of a leg so many seconds after its beginning. */
-static void modes_at(const struct leg *leg, const struct axis *axis, float since, struct leg *now) {
-    float slow_end = -axis->slow_gain * leg->volts, fast_end = axis->fast_gain * leg->volts;
-    now->rest = leg->rest + axis->rest_gain * leg->volts * since;
-    now->slow = slow_end + (leg->slow - slow_end) * decay(axis->slow_rate * since);
-    now->fast = fast_end + (leg->fast - fast_end) * decay(axis->fast_rate * since);
+struct modes {
+    float rest, slow, fast; /* m */
+};
+
+static struct modes modes_at(const struct leg *leg, const struct axis *axis, float since) {
+    return (struct modes){
+        .rest = leg->rest + leg->drift * since,
+        .slow = leg->slow_end + leg->slow_left * decay(axis->slow_rate * since),
+        .fast = leg->fast_end + leg->fast_left * decay(axis->fast_rate * since),
+    };
 }
 
-static float place_of(const struct leg *now) {
-    return now->rest + (now->slow + now->fast);
+static struct leg leg_from(const struct modes *modes, const struct axis *axis, uint32_t begin, float volts) {
+    float slow_end = -axis->slow_gain * volts, fast_end = axis->fast_gain * volts;
+    return (struct leg){
+        .begin = begin, .volts = volts, .rest = modes->rest, .drift = axis->rest_gain * volts,
+        .slow_end = slow_end, .slow_left = modes->slow - slow_end,
+        .fast_end = fast_end, .fast_left = modes->fast - fast_end,
+    };
 }
 
 void path_make(struct path *path, const struct axis *axis, const struct traj *traj, int which) {
     struct leg *legs = path->legs;
     float volts = traj->volts[which];
-    legs[0] = (struct leg){0, volts, traj->rest[which], traj->slow[which], traj->fast[which]};
-    legs[1] = (struct leg){.begin = traj->t1[which], .volts = -volts};
-    legs[2] = (struct leg){.begin = traj->t2[which], .volts = 0.0f};
-    for (int i = 1; i < LEGS; i++) {
-        modes_at(&legs[i - 1], axis, (float)(legs[i].begin - legs[i - 1].begin) * SECONDS, &legs[i]);
-    }
+    uint32_t first = traj->t1[which], second = traj->t2[which];
+    struct modes modes = {traj->rest[which], traj->slow[which], traj->fast[which]};
+    legs[0] = leg_from(&modes, axis, 0, volts);
+    modes = modes_at(&legs[0], axis, (float)first * SECONDS);
+    legs[1] = leg_from(&modes, axis, first, -volts);
+    modes = modes_at(&legs[1], axis, (float)(second - first) * SECONDS);
+    legs[2] = leg_from(&modes, axis, second, 0.0f);
 }
 
 static const struct leg *leg_at(const struct path *path, uint32_t time) {
@@ -37,10 +47,9 @@ static const struct leg *leg_at(const struct path *path, uint32_t time) {
 }
 
 float path_place(const struct path *path, const struct axis *axis, uint32_t time) {
-    struct leg now;
     const struct leg *leg = leg_at(path, time);
-    modes_at(leg, axis, (float)(time - leg->begin) * SECONDS, &now);
-    return place_of(&now);
+    struct modes now = modes_at(leg, axis, (float)(time - leg->begin) * SECONDS);
+    return now.rest + (now.slow + now.fast);
 }
 
 float path_volts(const struct path *path, uint32_t time, uint32_t duration) {
@@ -60,23 +69,28 @@ static bool between(float value, float low, float high) {
     return value >= low - ROUNDING && value <= high + ROUNDING;
 }
 
+/* Where a leg begins [m]. */
+static float start_of(const struct leg *leg) {
+    return leg->rest + (leg->slow_end + leg->slow_left + (leg->fast_end + leg->fast_left));
+}
+
 /* Within a leg an axis turns back at most once: where its slow mode, which carries the speed, is zero. */
 static bool turn_inside(const struct leg *leg, const struct leg *next, const struct axis *axis, float low, float high) {
-    float end = -axis->slow_gain * leg->volts;
-    if (leg->slow * end >= 0.0f) {
+    float end = leg->slow_end, slow = end + leg->slow_left;
+    if (slow * end >= 0.0f) {
         return true; /* it does not turn back */
     }
-    float since = log_above(-leg->slow / end) / axis->slow_rate;
+    float since = log_above(-slow / end) / axis->slow_rate;
     if (since >= (float)(next->begin - leg->begin) * SECONDS) {
         return true; /* the leg is over before */
     }
-    return between(leg->rest + axis->rest_gain * leg->volts * since, low, high);
+    return between(leg->rest + leg->drift * since, low, high);
 }
 
 bool path_inside(const struct path *path, const struct axis *axis, float low, float high) {
     const struct leg *legs = path->legs;
     for (int i = 0; i < LEGS; i++) {
-        if (!between(place_of(&legs[i]), low, high)) {
+        if (!between(start_of(&legs[i]), low, high)) {
             return false;
         }
         if (i < LEGS - 1 && !turn_inside(&legs[i], &legs[i + 1], axis, low, high)) {

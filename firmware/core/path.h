@@ -8,11 +8,14 @@
 #include "gantry.h"
 #include "messages.h"
 
-/* While one voltage holds: the modes [m] when it began. */
+/* While one voltage holds, t seconds after it began, the modes are
+ *     rest + drift t,  slow_end + slow_left exp(-slow_rate t),  fast_end + fast_left exp(-fast_rate t) [m]. */
 struct leg {
     uint32_t begin; /* us since the path began */
     float volts;
-    float rest, slow, fast;
+    float rest, drift;
+    float slow_end, slow_left;
+    float fast_end, fast_left;
 };
 
 #define LEGS 3 /* volts, reversed, none */

@@ -151,6 +151,7 @@ void robot_step(struct robot *robot, const struct robot_input *in, struct robot_
 
     read_encoders(robot, in, out);
     leave_boot(robot);
+    vet(robot);
     listen(robot, in);
     choose_track(robot);
     follow(robot);

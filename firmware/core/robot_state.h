@@ -43,6 +43,8 @@ struct robot {
     uint32_t newest;       /* sequence of the newest trajectory */
     bool numbered;         /* there was one since ARMED */
     struct track playing, coming;
+    struct track doubted;  /* the newest, until both its axes were looked at */
+    uint8_t vetted;        /* how many were, one a tick: all at once would take too long */
     float path[2];         /* m: where the path has the mallet */
     struct control control;
     int16_t pwm[2];

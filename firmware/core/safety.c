@@ -16,7 +16,7 @@ void tell(struct robot *robot, enum notice notice, uint32_t detail) {
 
 void enter(struct robot *robot, enum state state) {
     robot->state = state;
-    robot->playing.there = robot->coming.there = false;
+    robot->playing.there = robot->coming.there = robot->doubted.there = false;
     robot->numbered = false;
     robot->driven[0] = robot->driven[1] = 0;
     tell(robot, NOTICE_STATE, state);

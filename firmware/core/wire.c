@@ -1,38 +1,24 @@
 #include "wire.h"
 
-#include <float.h>
 #include <stddef.h>
 #include <string.h>
 
 /* Hosts and boards are little-endian, so numbers are copied as they are. */
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "numbers would have to be turned round");
 
-static const uint8_t sizes[] = {[FIELD_U8] = 1, [FIELD_U16] = 2, [FIELD_U32] = 4,
+static const uint8_t sizes[] = {[FIELD_U8] = 1,  [FIELD_U16] = 2, [FIELD_U32] = 4,
                                 [FIELD_I16] = 2, [FIELD_I32] = 4, [FIELD_F32] = 4};
 
-static float number(enum field_type type, const void *at) {
-    uint16_t half;
-    uint32_t word;
-    int16_t signed_half;
-    int32_t signed_word;
-    float real;
-    switch (type) {
-    case FIELD_U16: memcpy(&half, at, sizeof half); return half;
-    case FIELD_U32: memcpy(&word, at, sizeof word); return (float)word;
-    case FIELD_I16: memcpy(&signed_half, at, sizeof signed_half); return signed_half;
-    case FIELD_I32: memcpy(&signed_word, at, sizeof signed_word); return (float)signed_word;
-    case FIELD_F32: memcpy(&real, at, sizeof real); return real;
-    default: return *(const uint8_t *)at;
+static bool within(const struct field *field, const uint8_t *at) {
+    union limit value = {.whole = 0};
+    if (field->type == FIELD_I16 || field->type == FIELD_I32) {
+        return true; /* these have no limits */
     }
-}
-
-/* Whole numbers without limits of their own may be anything; a real one must at least be a number. */
-static bool within(const struct field *field, const void *at) {
-    if (field->type != FIELD_F32 && field->low == -FLT_MAX) {
-        return true;
+    memcpy(&value, at, sizes[field->type]);
+    if (field->type == FIELD_F32) {
+        return value.real >= field->low.real && value.real <= field->high.real; /* false for no number */
     }
-    float value = number(field->type, at);
-    return value >= field->low && value <= field->high; /* false for no number */
+    return value.whole >= field->low.whole && value.whole <= field->high.whole;
 }
 
 bool wire_read(const struct layout *layout, const uint8_t *body, void *data) {

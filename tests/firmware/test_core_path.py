@@ -23,7 +23,7 @@ class Axis(c.Structure):
 
 
 class Leg(c.Structure):
-    _fields_ = [("begin", c.c_uint32), *((name, c.c_float) for name in ("volts", "rest", "slow", "fast"))]
+    _fields_ = [("begin", c.c_uint32), ("rest_of_it", c.c_float * 7)]  # the core's alone
 
 
 class Path(c.Structure):

@@ -1,0 +1,74 @@
+"""What the board says, in words and as figures."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from enum import IntEnum
+from typing import Any
+
+from sim2real.link.messages import FORMATS, Event, Fault, Notice, Refusal, State
+from sim2real.link.session import Session
+
+_NAMES = {number: kind.__name__.lower() for kind, (number, _) in FORMATS.items()}
+
+
+def name(enum: type[IntEnum], number: int) -> str:
+    """The value's name; the number itself where it has none."""
+    return enum(number).name if number in list(enum) else str(number)
+
+
+def event_words(event: Event) -> str:
+    """An event in a few words."""
+    if event.code == Notice.BOOTED:
+        return f"board started (cause {event.detail})"
+    if event.code == Notice.STATE:
+        return f"board is {name(State, event.detail)}"
+    if event.code == Notice.FAULTED:
+        return f"board stopped: {name(Fault, event.detail)}"
+    if event.code == Notice.REFUSED:
+        asked = event.detail >> 8
+        return f"board refused {_NAMES.get(asked, f'message {asked}')}: {name(Refusal, event.detail & 0xFF)}"
+    return f"event {event.code}, detail {event.detail}"
+
+
+def figures(session: Session) -> dict[str, Any]:
+    """How the session stands, ready for JSON; what the board has not said is None."""
+    telemetry = session.telemetry
+    known = len(session.clock) > 0
+    return {
+        "connected": session.connected,
+        "state": name(State, telemetry.state) if telemetry else None,
+        "fault": name(Fault, telemetry.fault) if telemetry else None,
+        "telemetry": asdict(telemetry) if telemetry else None,
+        "age_s": session.age,
+        "telemetry_hz": session.view.rate,
+        "missing": session.view.missing,
+        "pings": {"sent": session.pings.sent, "answered": session.pings.answered, "lost": session.pings.lost},
+        "frames": asdict(session.tally),
+        "echoes": session.echoes,
+        "resets": session.resets,
+        "reconnects": session.reconnects,
+        "clock_error_us": 1e6 * session.clock.error_s() if known else None,
+        "drift_ppm": 1e6 * session.clock.drift if known else None,
+    }
+
+
+def line(session: Session) -> str:
+    """The same, the most important of it, in one line."""
+    if not session.port_is_open:
+        return "no port"
+    telemetry, silent = session.telemetry, "" if session.connected else "no answer to hello; "
+    if telemetry is None:
+        return f"{silent}no telemetry"
+    now = figures(session)
+    fault = "" if telemetry.fault == Fault.NONE else f" {now['fault']}"
+    clock = "?" if now["clock_error_us"] is None else f"{now['clock_error_us']:.0f} us at {now['drift_ppm']:+.1f} ppm"
+    x, y = telemetry.place
+    path_x, path_y = telemetry.path
+    return (
+        f"{silent}{now['state']}{fault}  place {x:.4f} {y:.4f} m  path {path_x:.4f} {path_y:.4f} m  "
+        f"pwm {telemetry.pwm[0]:+d} {telemetry.pwm[1]:+d}  angle {telemetry.angle[0]} {telemetry.angle[1]}  "
+        f"traj {telemetry.sequence}  age {1e3 * now['age_s']:.0f} ms  missing {now['missing']}  "
+        f"damaged here {session.tally.refused} there {telemetry.damaged}  lost {telemetry.lost}  "
+        f"tick {telemetry.longest} us  clock within {clock}"
+    )

@@ -1,0 +1,204 @@
+"""`puckpilot link` and the port beneath it, end to end, with a board behind a pseudo-terminal."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from fake_board import ARMED, PING, FakeBoard, Terminal
+from reference_wire import SCHEMA, frame
+
+import puckpilot
+from sim2real.link.port import Port, PortError
+
+ROOT = Path(puckpilot.__file__).parent
+
+
+@pytest.fixture
+def terminal(tmp_path):
+    with Terminal(FakeBoard(), tmp_path / "board") as terminal:
+        yield terminal
+
+
+def refused(words: list[str], capsys: pytest.CaptureFixture[str]) -> str:
+    assert puckpilot.main(["link", *words]) == 2
+    printed = capsys.readouterr()
+    assert printed.out == "" and printed.err.count("\n") == 1
+    return printed.err.strip().removeprefix("puckpilot link: ")
+
+
+def test_a_good_board(terminal, capsys):
+    code = puckpilot.main(["link", "test", str(terminal.path), "--pings", "30", "--json"])
+    found = json.loads(capsys.readouterr().out)
+    assert found["bad"] == [] and code == 0
+    assert found["port"] == str(terminal.path) and found["protocol"] == [1, 0]
+    assert found["answered"] == 30 and found["lost"] == 0 and found["pings"] == 30
+    assert 0.0 <= found["round_trip_ms"]["median"] <= found["round_trip_ms"]["p99"]
+    assert 0.0 < found["clock_error_us"] < 5000 and abs(found["drift_ppm"]) < 300
+    assert found["telemetry_hz"] == pytest.approx(500.0, rel=0.01) and found["missing"] == 0
+    assert terminal.board.count(PING) >= 30 and {number for number, _ in terminal.board.heard} == {1, PING}
+
+
+def test_its_words(terminal, capsys):
+    assert puckpilot.main(["link", "test", str(terminal.path), "--pings", "10"]) == 0
+    told = capsys.readouterr().out
+    assert f"{terminal.path}: a board of protocol 1.0\n" in told and "pings: 10 answered, 0 lost\n" in told
+    assert "telemetry: 500 a second, 0 missing\n" in told and told.endswith("all is good\n")
+
+
+def test_a_noisy_line_is_bad_news(terminal, capsys):
+    terminal.todo.append(lambda: setattr(terminal, "damage", 499))
+    assert puckpilot.main(["link", "test", str(terminal.path), "--pings", "20", "--json"]) == 1
+    found = json.loads(capsys.readouterr().out)
+    assert sum(found["refused"].values()) > 5
+    assert any("damaged frames from the board" in line for line in found["bad"])
+
+
+def test_pings_without_an_answer_are_bad_news(terminal, capsys):
+    terminal.board.mute = {PING}
+    assert puckpilot.main(["link", "test", str(terminal.path), "--pings", "5"]) == 1
+    told = capsys.readouterr().out
+    assert "pings: 0 answered" in told and "were never answered: check the cable" in told
+
+
+def test_a_reset_during_the_test_is_bad_news(terminal, capsys):
+    def reset() -> None:
+        if terminal.board.count(PING) < 5:
+            terminal.todo.append(reset)
+            return
+        terminal.board.boots += 1
+        terminal.board.told.append(frame(12, "IBI", 0, 0, 0))
+
+    terminal.todo.append(reset)
+    assert puckpilot.main(["link", "test", str(terminal.path), "--pings", "20"]) == 1
+    assert "bad: the board was reset 1 times" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("board", [FakeBoard(version=(3, 1)), FakeBoard(schema=SCHEMA ^ 1)])
+@pytest.mark.parametrize("action", ["test", "monitor"])
+def test_another_protocol_cannot_be_tested(action, board, tmp_path, capsys):
+    with Terminal(board, tmp_path / "board") as terminal:
+        told = refused([action, str(terminal.path)], capsys)
+    assert told.startswith(
+        f"the board speaks protocol {board.version[0]}.{board.version[1]}, schema {board.schema:08x};"
+    )
+
+
+def test_a_port_that_is_not_there(tmp_path, capsys):
+    path = tmp_path / "none"
+    assert refused(["test", str(path)], capsys) == f"port {path} is not there; plug the board in, or name another port"
+
+
+def test_what_is_no_serial_port(tmp_path, capsys):
+    path = tmp_path / "file"
+    path.write_text("")
+    assert refused(["test", str(path)], capsys) == f"port {path} is no serial port; name another"
+
+
+def test_a_port_that_is_in_use(terminal, capsys):
+    port = Port(str(terminal.path))
+    told = refused(["monitor", str(terminal.path)], capsys)
+    assert told == f"port {terminal.path} is in use by another program; close that first"
+    port.close()
+    assert puckpilot.main(["link", "monitor", str(terminal.path), "--seconds", "0.1"]) == 0
+
+
+def test_a_port_where_nobody_answers(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("sim2real.link.trial.GREETING", 0.3)
+    board = FakeBoard()
+    board.mute, board.telemetry_every = {1, PING}, 1 << 30
+    with Terminal(board, tmp_path / "board") as terminal:
+        told = refused(["test", str(terminal.path)], capsys)
+    assert told == "no answer to hello in 0.3 s (nothing came); is this the board's port, at its baud rate?"
+
+
+def test_a_port_that_vanishes_ends_a_test(terminal, capsys):
+    def unplug() -> None:
+        if terminal.board.count(PING) < 5:
+            terminal.todo.append(unplug)
+        else:
+            terminal.unplug()
+
+    terminal.todo.append(unplug)
+    told = refused(["test", str(terminal.path)], capsys)
+    assert told.startswith(f"the port vanished in the middle of the test (port {terminal.path} has vanished (")
+
+
+def test_a_vanished_port_tells_so_whatever_is_done_with_it(terminal):
+    port = Port(str(terminal.path))
+    terminal.todo.append(terminal.unplug)
+    end = time.perf_counter() + 10.0
+    with pytest.raises(PortError, match="has vanished"):
+        while time.perf_counter() < end:
+            port.read(100)
+    with pytest.raises(PortError, match="has vanished"):
+        port.write(b"x")
+    port.close()
+    port.close()
+    with pytest.raises(PortError, match="has vanished"):
+        port.read(100)
+
+
+def test_the_monitor_outlives_a_vanished_port(terminal, capsys):
+    def at(pings: int, do) -> None:
+        def later() -> None:
+            if terminal.board.count(PING) < pings:
+                terminal.todo.insert(0, later)
+            else:
+                do()
+
+        terminal.todo.append(later)
+
+    at(5, terminal.unplug)
+    terminal.todo += [lambda: None] * 50  # rounds
+    terminal.todo.append(lambda: setattr(terminal.board, "boots", 8))
+    terminal.todo.append(terminal.plug)
+    assert puckpilot.main(["link", "monitor", str(terminal.path), "--seconds", "2.2"]) == 0
+    told = capsys.readouterr().out
+    places = [
+        told.index(words)
+        for words in ("connected to a board", "waiting for it to come back", "the port is back", "the board was reset")
+    ]
+    assert places == sorted(places) and "UNHOMED  place 0.5000 -0.2500 m" in told[places[-1] :]
+
+
+def test_the_monitor_as_json(terminal, capsys):
+    terminal.board.state = ARMED
+    assert puckpilot.main(["link", "monitor", str(terminal.path), "--seconds", "1.3", "--json"]) == 0
+    rows = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    notes = [row["note"] for row in rows if "note" in row]
+    assert notes == ["connected to a board of protocol 1.0", "the board was still armed; disarming it"]
+    last = rows[-1]
+    assert last["connected"] and last["state"] == "IDLE" and last["fault"] == "NONE"
+    assert last["telemetry"]["pwm"] == [10, -20] and last["age_s"] < 1.0
+    assert last["pings"]["answered"] > 5 and last["clock_error_us"] > 0
+    assert len([row for row in rows if "state" in row]) == 2
+
+
+def test_ctrl_c_ends_the_monitor(terminal):
+    words = [sys.executable, "-m", "puckpilot", "link", "monitor", str(terminal.path)]
+    process = subprocess.Popen(words, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert process.stdout is not None
+    assert "connected to a board" in process.stdout.readline()
+    assert "UNHOMED" in process.stdout.readline()
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=20)
+    assert (process.returncode, errors) == (0, "")
+
+
+@pytest.mark.parametrize(
+    "words, told",
+    [
+        (["--seconds", "0"], "--seconds is 0; expected a number above 0, at most 1e6"),
+        (["--seconds", "nan"], "--seconds is nan; expected a number above 0, at most 1e6"),
+        (["--pings", "1"], "--pings is 1; expected a whole number from 2 to 1000"),
+        (["--baud", "0"], "--baud is 0; expected a whole number above 0"),
+    ],
+)
+def test_mistakes(words, told, capsys):
+    assert refused(["monitor", "/dev/none", *words], capsys) == told
