@@ -2,8 +2,8 @@
 
 The processor computes in no time, but for frames over SPI (and `step_us`); it is interrupted where it waits: in sleep
 (WFI, WFE), while it looks at a status again and again, and where it lets interrupts through. `timed=True` gives every
-instruction its time and interrupts it between any two blocks, many times slower; `fuzz=SEED` does so, and now and then lets a block
-last until the next event.
+instruction its time and interrupts it between any two blocks, many times slower; `fuzz=SEED` does so, and now and then
+lets a block last until the next event.
 """
 
 from __future__ import annotations

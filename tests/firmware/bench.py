@@ -119,8 +119,8 @@ class Bench:
         x, y = self.place
         turns = np.array([x - y, -x - y]) / radius / (2 * np.pi)
         plugged = [sign * turns[which] for which, sign in self.wires]
-        pairs = zip(self.encoders, self.commands, plugged, strict=True)
-        return tuple(encoder.exchange(command, angle) for encoder, command, angle in pairs)
+        one, other = self.encoders
+        return one.exchange(self.commands[0], plugged[0]), other.exchange(self.commands[1], plugged[1])
 
     @property
     def place(self) -> tuple[float, float]:

@@ -39,8 +39,8 @@ def test_feedback_brings_a_wrong_gantry_to_its_target():
     bench = Bench().armed()
     bench.send(bench.trajectory(TARGET))
     for axis in bench.axes:
-        slow_rate, fast_rate, *gains = axis.constants
-        axis.constants = (slow_rate, fast_rate, *(1.1 * gain for gain in gains))
+        slow_rate, fast_rate, rest_gain, slow_gain, fast_gain = axis.constants
+        axis.constants = (slow_rate, fast_rate, 1.1 * rest_gain, 1.1 * slow_gain, 1.1 * fast_gain)
     apart = play(bench, 900)
     assert 1e-3 < np.abs(apart).max() < 0.02  # without feedback it would end 5 cm off
     assert bench.place == pytest.approx(TARGET, abs=1e-3)

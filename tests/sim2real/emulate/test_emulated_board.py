@@ -13,6 +13,7 @@ pytest.importorskip("unicorn", reason="unicorn is not installed: the program can
 
 from sim2real.emulate.machine import Machine
 from sim2real.emulate.registers import NotModelledError
+from sim2real.emulate.timeline import PER_US
 
 BOOTED = 3000  # us: by then the clocks run and the first ticks were made
 TEXT = b"BCDEFGHIJK"  # no orders
@@ -244,7 +245,21 @@ def test_interrupts_between_any_two_blocks_change_nothing(fuzz: int) -> None:
     machine.send(sent)
     machine.run(30_000)
     assert machine.received() == sent
-    assert _told(machine)["lost"] == 0
+    told = _told(machine)
+    assert told["lost"] == told["missed"] == 0  # nor is a tick slept through
+
+
+def test_no_tick_is_slept_through_that_comes_just_as_it_falls_asleep() -> None:
+    """A byte wakes it shortly before the tick, at every distance in steps of two cycles."""
+    machine = _machine(timed=True)
+    for early in range(150):
+        machine.run(machine.now + 500)
+        tick = machine.timeline.next()
+        assert tick is not None
+        machine.run(tick / PER_US - 10 - early / 36)
+        machine.send(b"B")
+        machine.run(machine.now + 2000)
+    assert _told(machine)["missed"] == 0
 
 
 def _bytes_of(seed: int, pieces: int, **options) -> tuple[bytes, list]:
