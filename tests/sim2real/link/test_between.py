@@ -8,6 +8,7 @@ import pytest
 from sim2real.link.between import Between
 
 FLOOR, CEILING = np.array([(0.0, -1.0), (10.0, -1.0)]), np.array([(0.0, 1.0), (10.0, 1.0)])
+UP = np.array([0.0, 3.0])
 
 
 @pytest.mark.parametrize("x, half", [(5.0, 1.0), (10.0, 1.0), (20.0, 3.0), (-10.0, 3.0)])
@@ -19,5 +20,5 @@ def test_what_all_lines_span(x, half):
 
 
 def test_the_middle_one():
-    assert Between(FLOOR + (0.0, 3.0), CEILING + (0.0, 3.0), 1.0).middle(0.0) == pytest.approx((3.0, 0.0), abs=1e-5)
-    assert Between(FLOOR + (0.0, 3.0), FLOOR + (0.0, 2.0), 1.0).middle(0.0) is None
+    assert Between(FLOOR + UP, CEILING + UP, 1.0).middle(0.0) == pytest.approx((3.0, 0.0), abs=1e-5)
+    assert Between(FLOOR + UP, FLOOR, 1.0).middle(0.0) is None
