@@ -107,7 +107,8 @@ def _summary(found: dict) -> list[str]:
         trip = found["round_trip_ms"]
         lines += [
             f"round trip: median {trip['median']:.2f} ms, 99 % within {trip['p99']:.2f} ms",
-            f"board's clock: known within {found['clock_error_us']:.0f} us, goes {found['drift_ppm']:+.1f} ppm",
+            f"board's clock: known within {found['clock_error_us']:.0f} us, goes "
+            f"{found['drift_ppm']:+.1f} ppm fast (to {found['drift_error_ppm']:.0f} ppm)",
         ]
     if found["telemetry_hz"] is not None:
         lines += [

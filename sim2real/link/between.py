@@ -33,8 +33,7 @@ class Between:
 
     def span(self, x: float) -> tuple[float, float]:
         """The lowest and the highest y at `x` of all these lines, of which there must be one."""
-        steepest = self._end(self._most)
-        flattest = self._end(-self._most)
+        flattest, steepest = self.slopes()
 
         def high(d: Array) -> Array:
             return self._highest(d) + d * x
@@ -45,6 +44,10 @@ class Between:
         highest = high(np.array([_peak(high, flattest, steepest)]))[0]
         lowest = low(np.array([_peak(lambda d: -low(d), flattest, steepest)]))[0]
         return float(lowest), float(highest)
+
+    def slopes(self) -> tuple[float, float]:
+        """The least and the greatest slope of all these lines, of which there must be one."""
+        return self._end(-self._most), self._end(self._most)
 
     def _lowest(self, slopes: Array) -> Array:
         """Least offset of a line of each slope."""

@@ -40,13 +40,21 @@ class Clock:
         """How much faster the board's clock goes than the host's: 50e-6 gains 50 us in a second."""
         return 1.0 / (1.0 + self._slope) - 1.0
 
+    @property
+    def drift_error(self) -> float:
+        """How far `drift` may be off, whatever the delays were, if it is within MOST_DRIFT; inf without exchanges."""
+        if not self._exchanges:
+            return math.inf
+        flattest, steepest = self._lines().slopes()
+        return max(self._slope - flattest, steepest - self._slope)
+
     def add(self, ping_sent: float, received: int, sent: int, pong_received: float) -> bool:
         """Learn from an exchange: host's stamps [s], board's [us, u32]. False if it cannot be: it ends before it began.
 
         Exchanges come in order. Where no line fits them all, the board's clock has jumped: the older are forgotten.
         """
         spent = _signed(sent - received)
-        if not 0 <= spent * MICRO * (1.0 - MOST_DRIFT) <= pong_received - ping_sent + MICRO:
+        if not 0 <= spent * MICRO <= pong_received - ping_sent + 0.5 * MICRO:  # so that by itself it fits some line
             return False
         received = self._unwrap(received, ping_sent)
         self._exchanges.append((ping_sent, received, received + spent, pong_received))

@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from sim2real.link.clock import MOST_DRIFT
 from sim2real.link.pings import OVERDUE, PERIOD
 from sim2real.link.session import Session
 
 GREETING = 3.0  # s that a board may take to answer hello: some are reset by the opening of their port
 MOST_ROUND_TRIP = 10e-3  # s, the median: a tenth of a decision
 MOST_CLOCK_ERROR = 5e-3  # s
+BAD_CRYSTAL = 150e-6
 
 
 def meet(session: Session, now: Callable[[], float] = time.perf_counter) -> None:
@@ -52,6 +52,7 @@ def trial(session: Session, pings: int, now: Callable[[], float] = time.perf_cou
         "round_trip_ms": {"median": _ms(np.median(trips)), "p99": _ms(np.percentile(trips, 99))},
         "clock_error_us": 1e6 * session.clock.error_s() if answered else None,
         "drift_ppm": 1e6 * session.clock.drift if answered else None,
+        "drift_error_ppm": 1e6 * session.clock.drift_error if answered else None,
         "clock_jumps": session.clock.jumps,
         "telemetry_hz": session.view.rate,
         "missing": session.view.missing,
@@ -91,7 +92,7 @@ def bad_news(found: dict[str, Any]) -> list[str]:
             f"the board's clock is known to {1e-3 * (error or 0):.1f} ms only: see the round trip",
         ),
         (
-            drift is not None and abs(drift) > 0.9e6 * MOST_DRIFT,
+            drift is not None and abs(drift) - found["drift_error_ppm"] > 1e6 * BAD_CRYSTAL,
             f"the board's clock goes wrong by {drift or 0:.0f} ppm: does it run from its crystal?",
         ),
     ]

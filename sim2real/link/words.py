@@ -50,6 +50,7 @@ def figures(session: Session) -> dict[str, Any]:
         "reconnects": session.reconnects,
         "clock_error_us": 1e6 * session.clock.error_s() if known else None,
         "drift_ppm": 1e6 * session.clock.drift if known else None,
+        "drift_error_ppm": 1e6 * session.clock.drift_error if known else None,
     }
 
 

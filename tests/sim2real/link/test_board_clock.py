@@ -6,6 +6,8 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from simulated_line import Line, error_us
 
 from sim2real.link.clock import Clock
@@ -34,6 +36,7 @@ def test_within_a_tenth_of_a_millisecond(seed):
     assert max(map(abs, errors)) <= 100.0
     assert clock.drift == pytest.approx(drift, abs=5e-6)
     assert clock.jumps == 0
+    assert abs(clock.drift - drift) <= clock.drift_error < 50e-6
     assert all(abs(error) <= bound for error, bound in zip(errors, bounds, strict=True))
     assert max(bounds) < 600.0
 
@@ -116,3 +119,17 @@ def test_nothing_is_known_without_an_exchange():
 def test_an_exchange_that_cannot_be_is_refused(exchange):
     clock = Clock()
     assert not clock.add(*exchange) and len(clock) == 0
+
+
+@given(
+    st.lists(
+        st.tuples(st.floats(0, 0.2), st.integers(0, 2**32 - 1), st.integers(0, 3000), st.floats(0, 0.02)), max_size=12
+    )
+)
+def test_no_answers_at_all_upset_it(answers):
+    """Stamps of a board gone mad: each exchange is taken or refused, and the newest taken stays inside its bound."""
+    clock, now = Clock(), 10.0
+    for wait, received, spent, trip in answers:
+        sent, now = now + wait, now + wait + trip
+        if clock.add(sent, received, (received + spent) % 2**32, now):
+            assert sent - clock.error_s(sent) - 2e-6 <= clock.to_host(received) <= now + clock.error_s(now) + 2e-6
