@@ -178,7 +178,7 @@ def _hall(preset: Preset, settings: Settings, seed: int) -> tuple[Hall, list[str
     sizes = [(settings.variant, preset.tables, [*preset.anchors.values(), *preset.earlier])]
     sizes += [(one.variant, one.tables, [*one.anchors.values(), *one.earlier]) for one in preset.beside]
     batches = [
-        Tables(variant, tables, seed=seed + PARTS_APART * part, parameters=settings.effects)
+        Tables(variant, tables, seed=seed + PARTS_APART * part, parameters=settings.effects, threads=settings.threads)
         for part, (variant, tables, _) in enumerate(sizes)
     ]
     for part, tables in enumerate(batches):

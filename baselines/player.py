@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -44,7 +45,7 @@ class Seat:
             seed,
         )
 
-    @property
+    @cached_property
     def parameters(self) -> dict[str, float]:
         """The nominal parameters by name, SI units."""
         return {name: float(self.nominal[name][0]) for name in self.nominal.dtype.names or ()}
