@@ -32,6 +32,7 @@ COMMANDS = {
     "compare": ("sim2real.compare", "where a recording of a table departs from the simulator"),
     "diagnose": ("sim2real.commands.diagnose", "which physics the simulator lacks, with proof on untouched data"),
     "study": ("sim2real.commands.study", "how often a diagnosis is right, on cases with something hidden"),
+    "calibrate": ("sim2real.commands.calibrate", "the physical table's numbers, by a guided procedure"),
     "firmware": ("sim2real.commands.firmware", "the microcontroller's program: what it is, build it, emulate it"),
     "link": ("sim2real.commands.link", "watch or test the line to the microcontroller"),
 }

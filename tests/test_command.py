@@ -49,6 +49,7 @@ OPTIONS = {
     "compare": ["--json", "--out"],
     "diagnose": ["--holdout", "--baseline", "--out", "--json"],
     "study": ["--cases", "--seed", "--out", "--seconds", "--only", "--mechanism", "--peer", "--workers", "--json"],
+    "calibrate": ["--width", "--mallet-radius", "--jig", "--out", "--json"],
     "firmware": ["--port", "--seconds", "--place", "--json"],
     "link": ["--baud", "--seconds", "--pings", "--json"],
 }
