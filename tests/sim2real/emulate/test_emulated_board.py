@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import shutil
 import struct
 from pathlib import Path
 
 import pytest
 
-from tests.sim2real.emulate.built import make, plain
+from tests.sim2real.emulate.built import PLAIN, PLAIN_CORE, make, need_compiler
 
 pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
 
+from firmware import FOLDER
 from sim2real.emulate.machine import Machine
 from sim2real.emulate.registers import NotModelledError
 from sim2real.emulate.timeline import PER_US
@@ -21,7 +23,7 @@ REPORT = ("cause", "boots", "steps", "missed", "lost", "now", "answers", "longes
 
 
 def _machine(**options) -> Machine:
-    machine = Machine(plain(), **options)
+    machine = Machine(PLAIN, **options)
     machine.run(BOOTED)
     assert machine.received() == b""
     return machine
@@ -48,7 +50,7 @@ def test_it_starts_at_72_mhz_from_the_crystal_and_steps_each_millisecond() -> No
 
 
 def test_without_a_crystal_it_runs_at_64_mhz_and_all_times_are_the_same() -> None:
-    machine = Machine(plain(), crystal=False)
+    machine = Machine(PLAIN, crystal=False)
     machine.run(10_000)
     assert machine.rcc.megahertz == 64
     before = _told(machine)
@@ -156,7 +158,7 @@ def test_a_program_that_hangs_is_reset_by_the_watchdog() -> None:
 
 @pytest.mark.parametrize("kilohertz", [30.0, 60.0])
 def test_the_watchdog_lets_a_sound_program_live_however_fast_its_oscillator(kilohertz: float) -> None:
-    machine = Machine(plain())
+    machine = Machine(PLAIN)
     machine.watchdog.kilohertz = kilohertz
     machine.run(200_000)
     assert machine.resets == []
@@ -239,7 +241,7 @@ def test_counting_instructions_needs_a_timed_machine_and_sees_the_work() -> None
 
 @pytest.mark.parametrize("fuzz", range(4))
 def test_interrupts_between_any_two_blocks_change_nothing(fuzz: int) -> None:
-    machine = Machine(plain(), fuzz=fuzz)
+    machine = Machine(PLAIN, fuzz=fuzz)
     machine.run(4000)
     sent = bytes(value for value in range(256) if chr(value) not in "p0arzdexhfwlu") * 4
     machine.send(sent)
@@ -263,7 +265,7 @@ def test_no_tick_is_slept_through_that_comes_just_as_it_falls_asleep() -> None:
 
 
 def _bytes_of(seed: int, pieces: int, **options) -> tuple[bytes, list]:
-    machine = Machine(plain(), seed=seed, **options)
+    machine = Machine(PLAIN, seed=seed, **options)
     machine.encoders[0].angle = lambda now: now * 1e-4
     machine.send(b"arBCr")
     got = b""
@@ -282,16 +284,11 @@ def test_the_same_seed_gives_the_same_bytes_however_the_run_is_cut(options: dict
     assert once[0] != _bytes_of(2, 2, **options)[0]  # boots
 
 
-def test_the_same_sources_give_the_same_program_in_another_folder(tmp_path: Path) -> None:
-    import shutil
-
-    from firmware import FOLDER
-    from tests.sim2real.emulate.built import PLAIN_CORE
-
-    first = plain().read_bytes()
+def test_the_plain_program_rebuilds_byte_for_byte_in_another_folder(tmp_path: Path) -> None:
+    need_compiler()
     copy = tmp_path / "elsewhere"
     for name in ("board", "core", "Makefile"):
         (shutil.copytree if (FOLDER / name).is_dir() else shutil.copy2)(FOLDER / name, copy / name)
     shutil.copytree(PLAIN_CORE, copy / "plain")
     make(tmp_path / "out", copy / "plain", copy)
-    assert (tmp_path / "out" / "program.elf").read_bytes() == first
+    assert (tmp_path / "out" / "program.elf").read_bytes() == PLAIN.read_bytes()

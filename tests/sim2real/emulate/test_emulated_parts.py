@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from tests.sim2real.emulate.built import plain
+from tests.sim2real.emulate.built import PLAIN, need_compiler
 
 pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
 
@@ -69,8 +69,9 @@ def test_faults_of_an_encoder_look_as_they_are_named() -> None:
 
 
 def test_symbols_and_segments_are_those_that_binutils_see() -> None:
-    elf = read_elf(plain())
-    listed = subprocess.run(["arm-none-eabi-nm", str(plain())], capture_output=True, text=True, check=True).stdout
+    need_compiler()
+    elf = read_elf(PLAIN)
+    listed = subprocess.run(["arm-none-eabi-nm", str(PLAIN)], capture_output=True, text=True, check=True).stdout
     lines = [line.split() for line in listed.splitlines()]
     assert {name: int(address, 16) for address, _, name in lines} == elf.symbols
     assert elf.segments[0].address == 0x08000000 and elf.segments[0].executable
@@ -122,14 +123,14 @@ def test_the_more_urgent_exception_is_served_and_interrupts_the_other() -> None:
 
 
 def test_a_peripheral_without_a_clock_is_an_error() -> None:
-    machine = Machine(plain())
+    machine = Machine(PLAIN)
     machine._write(None, 0x12C34, 4, 1, 0x40000000)
     assert "TIM1_CCR1): its clock is off" in str(machine.cpu._error)
 
 
 def test_the_gantry_obeys_its_equation() -> None:
     """Duties that change now and then, against a numerical solution of report E.1, written out once more."""
-    machine = Machine(plain())
+    machine = Machine(PLAIN)
     gantry = Gantry(machine, place=(0.3, 0.4))
     steps = [(1000.0, 0.5, -0.25), (21_500.0, -1.0, 0.125), (52_250.0, 0.0, 0.0), (90_000.0, 0.25, 0.25)]
     for step in steps:

@@ -7,81 +7,12 @@ import time
 
 import pytest
 
-from tests.firmware.line import config, frame, hello, read
-from tests.sim2real.emulate.built import built
-
 pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
 
-from puckpilot_env.physics.plan import switching_times
-from sim2real.emulate.gantry import Gantry
-from sim2real.emulate.machine import Machine
-from sim2real.link.messages import (
-    Arm,
-    Clear,
-    Event,
-    Fault,
-    Hello,
-    Home,
-    Notice,
-    Ping,
-    Pong,
-    State,
-    Telemetry,
-    Traj,
-)  # fmt: skip
-
-START, TARGET = (0.1, 0.2), (0.5, 0.6)
-
-
-class Robot:
-    """A machine with a gantry, and a host that pings it every 20 ms."""
-
-    def __init__(self, **options) -> None:
-        self.machine = Machine(built(), **options)
-        self.gantry = Gantry(self.machine, place=START, zero=(1.0, -2.5))
-        self.heard: list = []
-        self._rest = b""  # of a frame that is not yet over
-
-    def run(self, duration: float, *messages: object, alive: bool = True) -> list:
-        """Send, go on for so many us, and return what came."""
-        self.machine.send(b"".join(map(frame, messages)))
-        end, before = self.machine.now + duration, len(self.heard)
-        while self.machine.now < end:
-            if alive:
-                self.machine.send(frame(Ping(7)))
-            self.machine.run(min(self.machine.now + 20_000, end))
-        whole, zero, self._rest = (self._rest + self.machine.received()).rpartition(b"\0")
-        self.heard += read(whole + zero)
-        return self.heard[before:]
-
-    def armed(self) -> Robot:
-        """From power-on to ARMED."""
-        self.run(30_000)
-        self.run(6000, hello(), config(), Home(*START))
-        self.run(6000, Arm())
-        assert self.telemetry.state == State.ARMED
-        return self
-
-    def goes(self) -> Robot:
-        """On its way from START to TARGET."""
-        plans = [
-            switching_times(axis.rest, axis.slow, to, axis.rest_gain, axis.slow_gain, axis.slow_rate, 8.0)
-            for axis, to in zip(self.gantry.axes, TARGET, strict=True)
-        ]
-        t1, t2 = ((round(1e6 * plans[0][which]), round(1e6 * plans[1][which])) for which in (1, 2))
-        volts = (8.0 * plans[0][0], 8.0 * plans[1][0])
-        begin = self.telemetry.time + 12_000
-        plan = Traj(1, begin, 1_000_000, volts, t1, t2, START, (0.0, 0.0), (0.0, 0.0))
-        self.run(40_000, plan)
-        assert max(map(abs, self.machine.motors.duties)) > 0.1
-        return self
-
-    @property
-    def telemetry(self) -> Telemetry:
-        return [one for one in self.heard if isinstance(one, Telemetry)][-1]
-
-    def events(self, notice: Notice) -> list[int]:
-        return [one.detail for one in self.heard if isinstance(one, Event) and one.code == notice]
+from sim2real.link.messages import Clear, Fault, Hello, Notice, Ping, Pong, State, Telemetry
+from tests.firmware.line import frame, hello
+from tests.sim2real.emulate.preempted import play
+from tests.sim2real.emulate.robot import START, TARGET, Robot
 
 
 def test_it_boots_answers_hello_and_tells_how_it_stands_500_times_a_second() -> None:
@@ -125,6 +56,11 @@ def test_the_mallet_goes_where_the_plan_says() -> None:
     assert robot.gantry.place(robot.machine.now) == pytest.approx(TARGET, abs=1e-3)
     assert robot.telemetry.place == pytest.approx(TARGET, abs=1e-3)
     assert (robot.telemetry.state, robot.machine.motors.duties) == (State.ARMED, (0.0, 0.0))
+
+
+def test_interrupts_in_the_middle_of_anything_change_nothing() -> None:
+    """The whole: `python -m tests.sim2real.emulate.preempted 100000`."""
+    assert play(300, seed=5) >= 300
 
 
 @pytest.mark.parametrize("fuzz", [1, 2])

@@ -1,0 +1,71 @@
+"""The flashed program on the emulated chip, with a gantry on its motors' plugs and a host that pings it."""
+
+from __future__ import annotations
+
+from firmware import ELF
+from puckpilot_env.physics.plan import switching_times
+from sim2real.emulate.gantry import Gantry
+from sim2real.emulate.machine import Machine
+from sim2real.link.messages import Arm, Event, Home, Notice, Ping, State, Telemetry, Traj
+from tests.firmware.line import config, frame, hello, read
+
+START, TARGET = (0.1, 0.2), (0.5, 0.6)
+
+
+class Robot:
+    """A machine with a gantry, and a host that pings it every 20 ms."""
+
+    def __init__(self, **options) -> None:
+        self.machine = Machine(ELF, **options)
+        self.gantry = Gantry(self.machine, place=START, zero=(1.0, -2.5))
+        self.heard: list = []
+        self._sequence = 0
+        self._rest = b""  # of a frame that is not yet over
+
+    def run(self, duration: float, *messages: object, alive: bool = True) -> list:
+        """Send, go on for so many us, and return what came."""
+        self.machine.send(b"".join(map(frame, messages)))
+        end, before = self.machine.now + duration, len(self.heard)
+        while self.machine.now < end:
+            if alive:
+                self.machine.send(frame(Ping(7)))
+            self.machine.run(min(self.machine.now + 20_000, end))
+        whole, zero, self._rest = (self._rest + self.machine.received()).rpartition(b"\0")
+        self.heard += read(whole + zero)
+        return self.heard[before:]
+
+    def armed(self) -> Robot:
+        """From power-on to ARMED."""
+        self.run(30_000)
+        self.run(6000, hello(), config(), Home(*START))
+        self.run(6000, Arm())
+        assert self.telemetry.state == State.ARMED
+        return self
+
+    def sends(self, target: tuple[float, float]) -> None:
+        """A plan from where the mallet rests."""
+        place = self.gantry.place(self.machine.now)
+        plans = [
+            switching_times(here, 0.0, to, axis.rest_gain, axis.slow_gain, axis.slow_rate, 8.0)
+            for axis, here, to in zip(self.gantry.axes, place, target, strict=True)
+        ]
+        t1, t2 = ((round(1e6 * plans[0][which]), round(1e6 * plans[1][which])) for which in (1, 2))
+        volts = (8.0 * plans[0][0], 8.0 * plans[1][0])
+        self._sequence += 1
+        begin = self.telemetry.time + 14_000
+        plan = Traj(self._sequence, begin, 1_000_000, volts, t1, t2, place, (0.0, 0.0), (0.0, 0.0))
+        self.machine.send(frame(plan))
+
+    def goes(self) -> Robot:
+        """On its way from START to TARGET."""
+        self.sends(TARGET)
+        self.run(40_000)
+        assert max(map(abs, self.machine.motors.duties)) > 0.1
+        return self
+
+    @property
+    def telemetry(self) -> Telemetry:
+        return [one for one in self.heard if isinstance(one, Telemetry)][-1]
+
+    def events(self, notice: Notice) -> list[int]:
+        return [one.detail for one in self.heard if isinstance(one, Event) and one.code == notice]
