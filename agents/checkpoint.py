@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -17,8 +18,10 @@ ARRAYS = ("states", "params", "frames", "observations")  # of a snapshot
 
 
 def save_checkpoint(path: Path, contents: Mapping[str, Any]) -> Path:
-    """Write tensors, numbers, texts, lists and dicts to `path`, whole or not at all."""
-    return write_whole(path, lambda draft: torch.save({"format": FORMAT, **contents}, draft))
+    """Write tensors, numbers, texts, lists and dicts to `path`, whole or not at all. OSError where it has no room."""
+    whole = io.BytesIO()  # torch itself tells of a full disk in a way of its own
+    torch.save({"format": FORMAT, **contents}, whole)
+    return write_whole(path, lambda draft: draft.write_bytes(whole.getvalue()))
 
 
 def load_checkpoint(path: Path) -> dict[str, Any]:
@@ -34,14 +37,17 @@ def load_checkpoint(path: Path) -> dict[str, Any]:
     return contents
 
 
-def tables_as_tensors(tables: Tables) -> dict[str, torch.Tensor]:
-    """All tables at an instant, random streams included, as bytes."""
+def tables_as_tensors(tables: Tables) -> dict[str, Any]:
+    """All tables at an instant, random streams included, as bytes, and whose they are."""
     snapshot = tables.snapshot()
-    return {name: torch.from_numpy(_bytes(getattr(snapshot, name))) for name in ARRAYS}
+    return {"variant": tables.variant.id} | {name: torch.from_numpy(_bytes(getattr(snapshot, name))) for name in ARRAYS}
 
 
-def restore_tables(tables: Tables, kept: Mapping[str, torch.Tensor]) -> None:
+def restore_tables(tables: Tables, kept: Mapping[str, Any]) -> None:
     """Put `tables_as_tensors` back. ValueError where they are of other tables."""
+    variant = kept.get("variant", tables.variant.id)  # checkpoints of before did not say
+    if variant != tables.variant.id:
+        raise ValueError(f"the checkpoint is of {variant}; this run plays {tables.variant.id}")
     now = tables.snapshot()
     arrays = {}
     for name in ARRAYS:

@@ -76,15 +76,18 @@ def measure_deployability(first: Contestant, opponent: Contestant, games: int, s
 
 
 class _Watched:
-    """What is noted of player 0 at each step of all tables."""
+    """What is noted of player 0 at each step of the games that are not over."""
 
     def __init__(self) -> None:
         self.actions: list[NDArray[np.float32]] = []
         self.places: list[NDArray[np.float32]] = []
         self.peaks: list[NDArray[np.float64]] = []
+        self.running: list[NDArray[np.bool_]] = []
         self.tables: Tables | None = None
 
     def see(self, tables: Tables, actions: NDArray[np.float32]) -> None:
+        before = self.running[-1] if self.running else np.ones(len(tables), np.bool_)
+        self.running.append(before & ~(tables.terminated | tables.truncated))
         self.tables = tables
         self.actions.append(actions[:, 0].copy())
         self.places.append(tables.observations[:, 0, :2].copy())  # of the mallet
@@ -92,17 +95,18 @@ class _Watched:
 
     def summary(self, player: Contestant) -> Deployability:
         assert self.tables is not None  # a game has at least one step
-        actions, places = np.stack(self.actions), np.stack(self.places)
+        actions, places, running = np.stack(self.actions), np.stack(self.places), np.stack(self.running)
         p = self.tables.nominal[0]
         x, y = places[..., 0], places[..., 1]
         edges = np.stack([x, p["length"] / 2 - x, y, p["width"] - y]).min(axis=0) - p["mallet_radius"]
-        volts = actions[..., 2:] / self.tables.action_bounds[1, 2:]
+        volts = actions[running, 2:] / self.tables.action_bounds[1, 2:]
+        moved = np.linalg.norm(np.diff(actions[..., :2], axis=0), axis=-1)
         return Deployability(
-            wall_margin_m=float(np.percentile(edges, 1)),
+            wall_margin_m=float(np.percentile(edges[running], 1)),
             voltage_share=float(volts.mean()),
             voltage_most=float(volts.max()),
-            acceleration_m_s2=float(np.percentile(self.peaks, 99)),
-            jitter_m=float(np.linalg.norm(np.diff(actions[..., :2], axis=0), axis=-1).mean()),
+            acceleration_m_s2=float(np.percentile(np.stack(self.peaks)[running], 99)),
+            jitter_m=float(moved[running[1:]].mean()),
             decision_us=decision_time(player) * 1e6,
         )
 

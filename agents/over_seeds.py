@@ -47,7 +47,8 @@ def rows_over_seeds(meetings: Mapping[str, Sequence[Mapping[str, Any]]], seed: i
         known = None not in row["shares"]
         row["iqm"] = iqm_estimate(np.transpose([row["shares"]]), seed).as_dict() if known else None
     if len(whole) > 1:
-        both = {"variant": "all", "opponent": "all", "shares": [iqm(own) for own in np.transpose(whole)]}
+        few = "all" if len(whole) == len(rows) else f"{len(whole)} of {len(rows)} that have a share"
+        both = {"variant": "all", "opponent": few, "shares": [iqm(own) for own in np.transpose(whole)]}
         rows.append({**both, "iqm": iqm_estimate(np.transpose(whole), seed).as_dict()})
     return rows
 

@@ -100,16 +100,26 @@ def read_preset(text: str, name: str) -> Preset:
         preset.at(max((change.from_steps for change in later), default=0))  # its rewards are known ones
     except KeyError as error:
         raise ValueError(f"preset {name}: it has no {error.args[0]}") from None
-    except (TypeError, ValueError) as error:  # a text that is no TOML is a ValueError too
+    except (AttributeError, TypeError, ValueError) as error:  # a text that is no TOML is a ValueError too
         raise ValueError(f"preset {name}: {error}") from None
     if preset.flip not in FLIPS:
         raise ValueError(f"preset {name}: flip is {preset.flip!r}; expected one of {', '.join(FLIPS)}")
     if preset.critic not in CRITICS:
         raise ValueError(f"preset {name}: critic is {preset.critic!r}; expected one of {', '.join(CRITICS)}")
+    if preset.flip == "augment" and preset.critic == "state":
+        raise ValueError(f"preset {name}: flip 'augment' does not mirror what a critic of the 'state' sees; use 'rows'")
     if "gamma" not in preset.ppo:
         raise ValueError(f"preset {name}: [ppo] has no gamma, by which shaping and returns are discounted")
     _check_counts(preset, name)
+    _check_numbers(preset, name)
     return preset
+
+
+def _check_numbers(preset: Preset, name: str) -> None:
+    named = {**{key: preset.ppo[key] for key in CHANGEABLE if key in preset.ppo}, **vars(preset.rewards)}
+    for what, number in {**named, "gate": preset.gate}.items():
+        if type(number) not in (int, float):
+            raise ValueError(f"preset {name}: {what} is {number!r}; expected a number")
 
 
 def _change(entry: dict[str, Any]) -> Change:
@@ -128,6 +138,7 @@ def _beside(entry: dict[str, Any]) -> Beside:
 def _check_counts(preset: Preset, name: str) -> None:
     named = [(count, getattr(preset, count)) for count in COUNTS]
     named += [(part, size) for part in ("hidden", "earlier") for size in getattr(preset, part)]
+    named += [(part, preset.ppo[part]) for part in ("num_learning_epochs", "num_mini_batches") if part in preset.ppo]
     named += list(preset.anchors.items())
     for one in preset.beside:
         named += [(f"[[beside]] {one.variant}", size) for size in (one.tables, *one.anchors.values(), *one.earlier)]

@@ -87,6 +87,12 @@ class SelfPlayRunner(OnPolicyRunner):
         acting = collected - begun - played
         return Iteration(losses, played, acting, time.perf_counter() - collected)
 
+    def check_finite(self) -> None:
+        """DivergedError where a number of the networks is none: the last update's losses are from before it."""
+        for name, network in (("actor", self.alg.actor), ("critic", self.alg.critic)):
+            if not all(torch.isfinite(part).all() for part in network.parameters()):
+                raise DivergedError(f"update {self.current_learning_iteration}: weights of the {name}")
+
     def policy(self, columns: Sequence[str], about: dict[str, Any]) -> Policy:
         """What has been learned so far about these columns of observations, as a player without torch."""
         layers = [layer for layer in self.alg.get_policy().mlp.modules() if isinstance(layer, nn.Linear)]

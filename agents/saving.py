@@ -75,6 +75,8 @@ def _use_policy(training: Training, path: Path) -> None:
     """How boldly a policy explored is not in its file: the rows of the last layer for that stay as they are."""
     policy, actor = _alike(training, path), training.runner.alg.actor
     weights = dict(actor.state_dict())
+    if policy.squash != training.policy().squash:
+        raise ValueError(f"{path} squashes its outputs by {policy.squash}; the preset's distribution does otherwise")
     names = [name for name in weights if name.startswith("mlp.")]
     given = [array for layer in zip(policy.network.weights, policy.network.biases, strict=True) for array in layer]
     if len(names) != len(given):

@@ -66,6 +66,8 @@ class Training:
 
     def __init__(self, folder: RunFolder, settings: Settings) -> None:
         preset = against(settings.preset, settings.against) if settings.against else settings.preset
+        if settings.effects:  # a table that leans to a side is no mirror image of itself
+            preset = replace(preset, flip="none")
         self.preset = preset
         torch.set_num_threads(settings.threads)
         seed = settings.seed + RANKS_APART * ranks.rank()
@@ -102,6 +104,7 @@ class Training:
         for member in dict.fromkeys(everyone):
             here = [block for block, one in enumerate(everyone) if one is member]
             member.note(points[here].sum(axis=0), games[here].sum(axis=0))
+        self.runner.check_finite()
         chosen = met[0][len(self.preset.anchors) :]
         if chosen and self.league.wants_new(chosen):
             self._admit(f"self-{len(self.rows) + 1}")

@@ -80,14 +80,14 @@ class Protocol:
 
     @property
     def schema(self) -> int:
-        """A number that changes with anything that a receiver relies on; words and units may change freely."""
-        parts = [f"{one.id}:" + ",".join(map(_relied_on, one.fields)) for one in self.messages]
+        """A number that changes with anything that a receiver relies on; what is only said of it may change freely."""
+        parts = [f"{one.id} {one.name} {one.sender}:" + ",".join(map(_relied_on, one.fields)) for one in self.messages]
         parts += [f"{e.name}:" + ",".join(name for name, _ in e.values) for e in self.enums]
         return zlib.crc32(";".join([str(self.version[0]), *parts]).encode())
 
 
 def _relied_on(field: Field) -> str:
-    return f"{field.type}*{field.count}[{field.low}:{field.high}]"
+    return f"{field.name} {field.type}*{field.count}[{field.low}:{field.high}]{field.unit}"
 
 
 def read_protocol(path: Path = PROTOCOL) -> Protocol:

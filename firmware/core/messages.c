@@ -42,7 +42,7 @@ static const struct field traj_fields[] = {
     {FIELD_U32, 2, offsetof(struct traj, t2), {.whole = 0u}, {.whole = 10000000u}},
     {FIELD_F32, 2, offsetof(struct traj, rest), {.real = -10.0f}, {.real = 10.0f}},
     {FIELD_F32, 2, offsetof(struct traj, slow), {.real = -10.0f}, {.real = 10.0f}},
-    {FIELD_F32, 2, offsetof(struct traj, fast), {.real = -1.0f}, {.real = 1.0f}},
+    {FIELD_F32, 2, offsetof(struct traj, fast), {.real = -0.001f}, {.real = 0.001f}},
 };
 
 static const struct field ping_fields[] = {

@@ -6,7 +6,7 @@
 
 #define PROTOCOL_MAJOR 1
 #define PROTOCOL_MINOR 0
-#define PROTOCOL_SCHEMA 0xB609BEADu
+#define PROTOCOL_SCHEMA 0x262B07D4u
 #define MESSAGE_UNCHECKED 1 /* its CRC begins at 0, that of others at the schema */
 #define MESSAGE_LONGEST 82 /* bytes of a body */
 
@@ -31,7 +31,7 @@ enum fault {
     FAULT_ENCODER_JUMP, /* an encoder's angle moved farther than a motor can turn */
     FAULT_OFF_PATH, /* the mallet is farther from its path than the configuration allows: blocked, swapped or reversed */
     FAULT_OUT_OF_AREA, /* the mallet is outside its area */
-    FAULT_TICK_OVERRUN, /* a control tick was missed, or took too long */
+    FAULT_TICK_OVERRUN, /* a control tick was missed, or the clock does not go on as ticks do */
 };
 
 /* What an event is. */
@@ -57,6 +57,7 @@ enum refusal {
     REFUSAL_OFF_START, /* the path does not begin where the mallet is */
     REFUSAL_TOO_LATE, /* the time to apply it is past */
     REFUSAL_TOO_EARLY, /* the time to apply it is too far ahead */
+    REFUSAL_BUSY, /* one that came less than 7 ms before is still being looked at */
 };
 
 enum message {
@@ -112,7 +113,7 @@ struct traj {
     uint32_t t2[2]; /* us */
     float rest[2]; /* m; where it would coast to */
     float slow[2]; /* m; mode that fades slowly */
-    float fast[2]; /* m; mode that fades fast */
+    float fast[2]; /* m; mode that fades fast; under 1e-4 on this gantry */
 };
 
 struct ping {

@@ -55,6 +55,16 @@ static int take_config(struct robot *robot, const struct config *config) {
     return OBEYED;
 }
 
+static bool encoders_good(const struct robot *robot) {
+    for (int i = 0; i < 2; i++) {
+        const struct encoder *encoder = &robot->encoders[i];
+        if (!encoder->seen || encoder->bad > 0 || encoder->fault != FAULT_NONE) {
+            return false;
+        }
+    }
+    return true;
+}
+
 static int take_home(struct robot *robot, const struct home *home) {
     const struct config *config = &robot->config;
     if (robot->state != STATE_UNHOMED && robot->state != STATE_IDLE) {
@@ -66,14 +76,13 @@ static int take_home(struct robot *robot, const struct home *home) {
     if (home->x < config->x[0] || home->x > config->x[1] || home->y < config->y[0] || home->y > config->y[1]) {
         return REFUSAL_OUT_OF_RANGE;
     }
+    if (!encoders_good(robot)) {
+        return REFUSAL_NO_ENCODERS;
+    }
     float place[2] = {home->x, home->y}, angle[2];
     pulley_angles(place, config->pulley_radius, angle);
     for (int i = 0; i < 2; i++) {
-        const struct encoder *encoder = &robot->encoders[i];
-        if (!encoder->seen || encoder->bad > 0 || encoder->fault != FAULT_NONE) {
-            return REFUSAL_NO_ENCODERS;
-        }
-        robot->offset[i] = angle[i] - RADIANS * (float)encoder_angle(encoder);
+        robot->offset[i] = angle[i] - RADIANS * (float)encoder_angle(&robot->encoders[i]);
         robot->place[i] = place[i];
     }
     robot->homed = true;
@@ -89,6 +98,9 @@ static int take_arm(struct robot *robot) {
     }
     if (robot->state != STATE_IDLE) {
         return REFUSAL_WRONG_STATE;
+    }
+    if (!encoders_good(robot)) {
+        return REFUSAL_NO_ENCODERS;
     }
     control_start(&robot->control);
     enter(robot, STATE_ARMED);
@@ -111,12 +123,13 @@ static int take_clear(struct robot *robot) {
     return OBEYED;
 }
 
-/* Where the mallet will be when a new path begins: on its path, or, without one, where it is. */
+/* Where the mallet will be when a new path begins: on the path that is played then, or else where it is. */
 static void place_then(const struct robot *robot, uint32_t apply, float place[2]) {
     const struct track *playing = &robot->playing;
     uint32_t time = apply - playing->traj.apply;
+    bool on_it = playing->there && (int32_t)time >= 0;
     for (int i = 0; i < 2; i++) {
-        place[i] = playing->there ? path_place(&playing->paths[i], &robot->axes[i], time) : robot->place[i];
+        place[i] = on_it ? path_place(&playing->paths[i], &robot->axes[i], time) : robot->place[i];
     }
 }
 
@@ -136,6 +149,9 @@ static int take_traj(struct robot *robot, const struct traj *traj) {
     }
     if (robot->numbered && (int32_t)(traj->sequence - robot->newest) <= 0) {
         return REFUSAL_OLD_SEQUENCE;
+    }
+    if (robot->doubted.there) {
+        return REFUSAL_BUSY;
     }
     if (traj->t1[0] > traj->t2[0] || traj->t1[1] > traj->t2[1]) {
         return REFUSAL_SWITCH_ORDER;
@@ -189,6 +205,10 @@ void vet(struct robot *robot) {
         }
         break;
     default:
+        if ((int32_t)(doubted->traj.apply - robot->now) < -LATEST) {
+            refuse(robot, REFUSAL_TOO_LATE);
+            break;
+        }
         robot->coming = *doubted;
         doubted->there = false;
     }
@@ -225,9 +245,13 @@ void obey(struct robot *robot, const struct frame *frame, uint32_t received) {
     if (!from_host(id)) {
         return; /* an echo on the line */
     }
+    bool within = wire_read(frame->layout, frame->body, &body);
+    if (id == MESSAGE_HELLO && body.hello.boots != 0) {
+        return; /* a board's, so an echo too */
+    }
     robot->heard = received;
     int refusal = REFUSAL_OUT_OF_RANGE;
-    if (wire_read(frame->layout, frame->body, &body)) {
+    if (within) {
         refusal = take(robot, id, &body, received);
     }
     if (refusal != OBEYED) {

@@ -11,7 +11,7 @@
 
 void robot_start(struct robot *robot, uint32_t cause, uint32_t boots) {
     memset(robot, 0, sizeof *robot);
-    robot->boots = boots;
+    robot->boots = boots != 0 ? boots : 1; /* 0 is a host's */
     robot->state = STATE_BOOT;
     encoder_start(&robot->encoders[0]);
     encoder_start(&robot->encoders[1]);
@@ -56,6 +56,7 @@ static void choose_track(struct robot *robot) {
     if (coming->there && (int32_t)(robot->now - coming->traj.apply) >= 0) {
         *playing = *coming;
         coming->there = false;
+        robot->control.going = false; /* the path may leap a little, which is no speed */
     }
     if (playing->there && robot->now - playing->traj.apply > playing->traj.life) {
         playing->there = false;
@@ -144,6 +145,7 @@ static void speak(struct robot *robot, struct robot_output *out, uint32_t now) {
 }
 
 void robot_step(struct robot *robot, const struct robot_input *in, struct robot_output *out) {
+    robot->before = robot->now;
     robot->now = in->now;
     robot->ticks++;
     robot->lost += in->lost;

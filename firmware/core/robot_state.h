@@ -23,7 +23,7 @@ struct track {
 };
 
 struct robot {
-    uint32_t now;  /* us */
+    uint32_t now, before; /* us: this tick, and the one before */
     uint32_t boots;
     uint8_t state; /* enum state */
     uint8_t fault; /* enum fault: the first one since the last clear */

@@ -42,6 +42,7 @@ void recover(struct robot *robot) {
     for (int i = 0; i < 2; i++) {
         if (robot->encoders[i].fault != FAULT_NONE) {
             encoder_start(&robot->encoders[i]);
+            robot->homed = false;
         }
     }
     enter(robot, robot->homed ? STATE_IDLE : STATE_UNHOMED);
@@ -78,8 +79,9 @@ static enum fault astray(const struct robot *robot) {
 
 /* The first reason not to go on while armed. */
 static enum fault reason(struct robot *robot, uint16_t missed) {
-    if (missed > 0) {
-        return FAULT_TICK_OVERRUN;
+    uint32_t since = robot->now - robot->before;
+    if (missed > 0 || since < TICK_US / 2 || since > TICK_US * 3 / 2) {
+        return FAULT_TICK_OVERRUN; /* a clock that stands still would never tell that the host is silent */
     }
     if (robot->now - robot->heard > robot->config.silence * 1000u) {
         return FAULT_HOST_SILENT;

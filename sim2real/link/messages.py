@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 VERSION = (1, 0)
-SCHEMA = 0xB609BEAD
+SCHEMA = 0x262B07D4
 UNCHECKED = 1  # id of the message whose CRC begins at 0; that of the others at SCHEMA
 
 
@@ -36,7 +36,7 @@ class Fault(IntEnum):
     ENCODER_JUMP = 7  # an encoder's angle moved farther than a motor can turn
     OFF_PATH = 8  # the mallet is farther from its path than the configuration allows: blocked, swapped or reversed
     OUT_OF_AREA = 9  # the mallet is outside its area
-    TICK_OVERRUN = 10  # a control tick was missed, or took too long
+    TICK_OVERRUN = 10  # a control tick was missed, or the clock does not go on as ticks do
 
 
 class Notice(IntEnum):
@@ -64,6 +64,7 @@ class Refusal(IntEnum):
     OFF_START = 10  # the path does not begin where the mallet is
     TOO_LATE = 11  # the time to apply it is past
     TOO_EARLY = 12  # the time to apply it is too far ahead
+    BUSY = 13  # one that came less than 7 ms before is still being looked at
 
 
 @dataclass(frozen=True)
@@ -136,7 +137,7 @@ class Traj:
     t2: tuple[int, int]  # us
     rest: tuple[float, float]  # m; where it would coast to
     slow: tuple[float, float]  # m; mode that fades slowly
-    fast: tuple[float, float]  # m; mode that fades fast
+    fast: tuple[float, float]  # m; mode that fades fast; under 1e-4 on this gantry
 
 
 @dataclass(frozen=True)
@@ -236,6 +237,6 @@ LIMITS = {  # of the fields that have some
         "t2": (0, 10000000),
         "rest": (-10.0, 10.0),
         "slow": (-10.0, 10.0),
-        "fast": (-1.0, 1.0),
+        "fast": (-0.001, 0.001),
     },
 }

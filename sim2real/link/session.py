@@ -144,6 +144,7 @@ class Session:
         """Motors off now; sent even to a board that has not answered hello. ValueError without a port."""
         if not self._connection.open:
             raise ValueError("cannot stop the board: its port is lost; it stops by itself when the host is silent")
+        self._connection.send(b"\0")  # whatever was cut off on the line, this is not to be a part of it
         self._send(messages.Estop())
 
     def clear(self) -> None:

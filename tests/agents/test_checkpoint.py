@@ -132,6 +132,13 @@ def test_a_checkpoint_of_another_run_is_refused(run: Path, other: str) -> None:
     assert "checkpoint" in refuse_to_go_on(run, preset=preset, variant=variant)
 
 
+def test_a_checkpoint_of_a_variant_that_looks_alike_is_refused(tmp_path: Path) -> None:
+    """Attack and defence have tables and observations of the same size."""
+    training(tmp_path, variant="puckpilot/defence-v0").round()
+    with pytest.raises(ValueError, match=r"is of puckpilot/defence-v0; this run plays puckpilot/attack-v0"):
+        training(tmp_path, resume=True, variant="puckpilot/attack-v0")
+
+
 @pytest.mark.parametrize(
     "part", ["learner", "torch_random", "random", "tables", "rows", "waited", "anchors", "earlier"]
 )

@@ -48,6 +48,6 @@ def test_rows_are_of_what_all_met_and_a_last_one_of_all() -> None:
     assert still["shares"] == [1.0, 0.5] and still["iqm"]["value"] == pytest.approx(0.75)
     assert goalie["shares"] == [None, 0.3] and goalie["iqm"] is None
     assert veteran["shares"] == [0.8, 0.6]  # a drill's share is that of its job
-    assert (whole["variant"], whole["opponent"]) == ("all", "all")
+    assert (whole["variant"], whole["opponent"]) == ("all", "2 of 3 that have a share")
     assert whole["shares"] == pytest.approx([0.9, 0.55]) and whole["iqm"]["value"] == pytest.approx(0.7)
     assert len(rows_over_seeds({"a": met["a"][:1]}, 0)) == 1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import resource
 import subprocess
 import sys
 import time
@@ -13,7 +14,6 @@ import pytest
 import torch
 from tiny import TINY, curve, files, tiny, training
 
-from agents import checkpoint as checkpoint_module
 from agents.policy import PolicyPlayer
 from agents.preset import read_preset
 from agents.runner import DivergedError
@@ -132,19 +132,17 @@ def test_a_killed_run_goes_on_and_two_at_once_do_not(tmp_path: Path, capsys: pyt
     assert same_policies(tmp_path / "a" / "policy.npz", tmp_path / "b" / "policy.npz")
 
 
-def test_a_full_disk_leaves_the_last_checkpoint_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_full_disk_leaves_the_last_checkpoint_whole(tmp_path: Path) -> None:
     run = training(tmp_path / "a")
     run.round()
     before = (tmp_path / "a" / "checkpoint.pt").read_bytes()
-    with monkeypatch.context() as patch:
-
-        def full(contents: object, draft: Path) -> None:
-            Path(draft).write_bytes(b"half")
-            raise OSError(28, "No space left on device", str(draft))
-
-        patch.setattr(checkpoint_module.torch, "save", full)
-        with pytest.raises(OSError, match="No space"):
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (len(before) - 1, hard))  # the system's own refusal, as of a full disk
+    try:
+        with pytest.raises(OSError, match="too large"):
             run.round()
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
     assert (tmp_path / "a" / "checkpoint.pt").read_bytes() == before
     assert not [name for name in files(tmp_path / "a") if ".tmp" in name]
     training(tmp_path / "a", resume=True).round()

@@ -27,5 +27,6 @@ def test_fuzzing_finds_nothing(tmp_path: Path):
     if not shutil.which("clang") or not shutil.which("unzip"):
         pytest.skip("clang or unzip is not installed: the core is not fuzzed here")
     told = make("fuzz", f"BUILD={tmp_path}", "SECONDS=5").split()
+    assert "ERROR:" not in told and told.count("Done") == 2
     runs = [int(told[at + 1]) for at, word in enumerate(told) if word == "stat::number_of_executed_units:"]
     assert len(runs) == 2 and runs[0] > 10_000 and runs[1] > 100

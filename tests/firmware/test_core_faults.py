@@ -187,15 +187,12 @@ def test_the_trajectory_before_goes_on_when_one_is_refused(playing: Bench):
 
 
 def test_old_and_repeated_trajectories_are_refused():
+    """By numbers that wrap: 1 is newer than 2^32 - 1."""
     bench = Bench().armed()
-    bench.sequence = 2**32 - 3
-    first, second = bench.trajectory(TARGET), bench.trajectory(TARGET)
-    wrapped = bench.trajectory(TARGET, sequence=1)
-    bench.send(first, second, first, second)
-    bench.run(1)
-    bench.send(wrapped, second)
-    bench.run(1)
-    assert bench.refusals == [(8, Refusal.OLD_SEQUENCE)] * 3
+    for sequence in (2**32 - 2, 2**32 - 1, 2**32 - 2, 2**32 - 1, 1, 2**32 - 1, 1):
+        bench.send(bench.trajectory(CORNER, sequence=sequence))
+        bench.run(8)
+    assert bench.refusals == [(8, Refusal.OLD_SEQUENCE)] * 4
     bench.run(10)
     assert bench.telemetry is not None and bench.telemetry.sequence == 1
 
@@ -333,6 +330,78 @@ def test_a_few_bad_answers_are_borne(playing: Bench, what: str):
         playing.run(6)
     playing.run(600)
     assert playing.state == State.ARMED and playing.place == pytest.approx(TARGET, abs=5e-4)
+
+
+@pytest.mark.parametrize("glitch", [250, 700, 1000, 1300, 5000, 8000])
+@pytest.mark.parametrize("ticks", [1, 3])
+def test_a_glitch_of_an_encoder_moves_nothing(glitch: int, ticks: int):
+    bench = Bench().armed()
+    bench.send(bench.trajectory(TARGET))
+    bench.run(600)
+    bench.encoders[0].spoil = lambda answer: with_parity((answer + glitch) & 0x3FFF)
+    most = max(max(map(abs, bench.tick().pwm)) for _ in range(ticks))
+    bench.encoders[0].spoil = lambda answer: answer
+    most = max(most, *(max(map(abs, bench.tick().pwm)) for _ in range(20)))
+    assert most < 300 and bench.state == State.ARMED and bench.place == pytest.approx(TARGET, abs=5e-4)
+
+
+def test_a_clear_beside_an_encoder_that_breaks_does_not_keep_the_place():
+    for ticks in range(1, 9):
+        bench = Bench().armed()
+        bench.send(Estop())
+        bench.run(3)
+        bench.encoders[0].spoil = lambda answer: answer ^ 0x0010
+        for _ in range(ticks):
+            bench.tick()
+        bench.send(Clear(), Arm())
+        bench.tick()
+        bench.encoders[0].spoil = lambda answer: answer
+        bench.run(30)
+        if bench.state in (State.IDLE, State.ARMED):
+            assert bench.telemetry is not None
+            assert bench.telemetry.place == pytest.approx(bench.place, abs=5e-5)
+
+
+def test_its_own_hello_that_comes_back_is_no_host():
+    bench = Bench().armed()
+    bench.send(hello())
+    echoed = b""
+    for _ in range(300):
+        bench.send(echoed)
+        echoed = bench.tick().sent
+    assert bench.events(messages.Notice.FAULTED) == [Fault.HOST_SILENT]
+
+
+def test_a_clock_that_stands_still_stops_the_motors(playing: Bench):
+    playing.now -= 1000
+    assert playing.tick().pwm == (0, 0)
+    assert playing.events(messages.Notice.FAULTED) == [Fault.TICK_OVERRUN]
+
+
+def test_a_path_that_would_begin_before_the_one_that_is_played_is_not_taken_for_its_end(playing: Bench):
+    began = playing.now - 1000 * PLAYS
+    playing.send(playing.trajectory(TARGET, apply=began, rest=TARGET, slow=(0.0, 0.0)))
+    playing.run(10)
+    assert playing.refusals == [(8, Refusal.TOO_LATE)] and playing.state == State.ARMED
+
+
+def test_trajectories_in_quick_succession_are_refused_aloud_and_the_first_is_played():
+    bench = Bench().armed()
+    first = bench.trajectory(TARGET)
+    bench.send(first)
+    bench.tick()
+    bench.send(bench.trajectory((0.3, 0.3)))
+    bench.run(20)
+    assert bench.refusals == [(8, Refusal.BUSY)]
+    assert bench.telemetry is not None and bench.telemetry.sequence == first.sequence
+
+
+def test_a_trajectory_that_is_late_once_it_was_looked_at_is_refused(playing: Bench):
+    before = playing.telemetry.sequence if playing.telemetry else 0
+    playing.send(playing.trajectory(TARGET, apply=playing.now, life=3000))
+    playing.run(20)
+    assert playing.refusals == [(8, Refusal.TOO_LATE)]
+    assert playing.telemetry is not None and playing.telemetry.sequence == before
 
 
 def test_one_impossible_jump_is_borne_and_several_are_not(playing: Bench):

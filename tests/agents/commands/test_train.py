@@ -190,7 +190,16 @@ CHANGES = {
     "a change of no reward": ("[rewards]", "[[later]]\nfrom_steps = 9\nrewards = { gaol = 1.0 }\n[rewards]"),
     "a change by words": ("[rewards]", "[[later]]\nfrom_steps = 9\nrewards = { goal = 'much' }\n[rewards]"),
     "a change at no step": ("[rewards]", "[[later]]\nppo = { gamma = 0.9 }\n[rewards]"),
-    "a section that is a number": ("[network]", "league = 3\n[network]"),
+    "a section that is a number": ("[league]", "league = 3\n[other]"),
+    "anchors in a list": ("anchors = {", "anchors = ['still']\nwere = {"),
+    "a gate of words": ("gate = 0.9", "gate = 'high'"),
+    "a rate of words": ("gamma = 0.95", "gamma = 0.95\nlearning_rate = 'fast'"),
+    "rewards of words": ("goal = 1.0", "goal = 'much'"),
+    "no batches": ("num_mini_batches = 1", "num_mini_batches = 0"),
+    "a flip that the critic contradicts": (
+        'flip = "rows"\n[network]',
+        'flip = "augment"\n[network]\ncritic = "state"',
+    ),
 }
 
 

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -183,7 +184,10 @@ def test_the_monitor_as_json(terminal, capsys):
 
 def test_ctrl_c_ends_the_monitor(terminal):
     words = [sys.executable, "-m", "puckpilot", "link", "monitor", str(terminal.path)]
-    process = subprocess.Popen(words, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    heeds = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)  # a shell's background jobs ignore it
+    process = subprocess.Popen(
+        words, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=heeds
+    )
     assert process.stdout is not None
     assert "connected to a board" in process.stdout.readline()
     assert any("UNHOMED" in line for line in process.stdout)

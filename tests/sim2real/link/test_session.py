@@ -31,7 +31,7 @@ CONFIGURED = (
     (1e-3, 1e-3), (1e-2, 1e-2), (0.5, 0.5), 0.03, 24.0, 12.0, (0.0, 1.0), (0.0, 1.0), (1.0, 1.0), (1.0, 1.0),
     (1.0, 1.0), 0.1,
 )  # fmt: skip
-PLAN = Traj(0, 1000, 50_000, (12.0, -6.5), (1, 2), (3, 4), (0.5, 0.25), (-0.5, 0.125), (0.0, 1.0))
+PLAN = Traj(0, 1000, 50_000, (12.0, -6.5), (1, 2), (3, 4), (0.5, 0.25), (-0.5, 0.125), (0.0, 0.0009765625))
 
 
 def run(bench: Bench, session: Session, seconds: float) -> None:
@@ -140,7 +140,7 @@ def test_what_it_is_told_reaches_the_board():
     told = [(number, body) for number, body in board.heard if number not in (HELLO, PING)]
     assert [number for number, _ in told] == [CONFIG, HOME, ARM, TRAJ, TRAJ, TRAJ, DISARM, ESTOP, CLEAR]
     assert told[1][1] == struct.pack("<ff", 0.25, 0.5)
-    plan = (1000, 50_000, 12.0, -6.5, 1, 2, 3, 4, 0.5, 0.25, -0.5, 0.125, 0.0, 1.0)
+    plan = (1000, 50_000, 12.0, -6.5, 1, 2, 3, 4, 0.5, 0.25, -0.5, 0.125, 0.0, 2.0**-10)
     assert [body for number, body in told if number == TRAJ] == [
         struct.pack("<III2f2I2I2f2f2f", number, *plan) for number in numbers
     ]
