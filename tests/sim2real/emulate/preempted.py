@@ -1,5 +1,5 @@
 """The flashed program at play, interrupted between any two blocks of its code, until so many came in the middle of
-something: `python -m tests.sim2real.emulate.preempted 100000` (some minutes)."""
+something: `python -m tests.sim2real.emulate.preempted 100000` (hours)."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def main() -> int:
     wanted, done, seed = int(sys.argv[1]), 0, 0
     while done < wanted:
         seed += 1
-        done += play(min(wanted - done, 20_000), seed)
+        done += play(min(wanted - done, 2_000), seed)
         print(f"{done:,} interrupts in the middle of something, {seed} seeds, clean", flush=True)
     return 0
 
