@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import ClassVar
 
 from sim2real.emulate.registers import Peripheral
 
@@ -14,7 +15,7 @@ class Port(Peripheral):
     `lent` to a peripheral as an output, `high` or `low` as ODR has it by driving or pulling."""
 
     offsets = ("CRL", "CRH", "", "ODR", "BSRR", "BRR")
-    start = {"CRL": 0x44444444, "CRH": 0x44444444}  # noqa: RUF012
+    start: ClassVar[dict[str, int]] = {"CRL": 0x44444444, "CRH": 0x44444444}
 
     def __init__(self, letter: str, base: int, changed: Callable[[], None]) -> None:
         self.name, self.base, self._changed = f"GPIO{letter}", base, changed

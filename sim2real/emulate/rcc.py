@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import ClassVar
 
 from sim2real.emulate.registers import NotModelledError, Peripheral
 from sim2real.emulate.timeline import PER_US, Timeline
@@ -28,7 +29,7 @@ class Rcc(Peripheral):
 
     name, base = "RCC", 0x40021000
     offsets = ("CR", "CFGR", "", "", "", "AHBENR", "APB2ENR", "APB1ENR", "", "CSR")
-    start = {"CR": 0x83, "AHBENR": 0x14}  # noqa: RUF012
+    start: ClassVar[dict[str, int]] = {"CR": 0x83, "AHBENR": 0x14}
 
     def __init__(self, timeline: Timeline, wait: Callable[[int], bool], flash: Flash) -> None:
         self._timeline, self._wait, self._flash = timeline, wait, flash

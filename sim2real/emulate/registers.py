@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 
 class NotModelledError(Exception):
     """The program did what this emulator does not know; the message says where and what."""
@@ -13,7 +15,7 @@ class Peripheral:
     name = ""
     base = 0
     offsets: tuple[str, ...] = ()  # names of the registers, one every four bytes; "" is not modelled
-    start: dict[str, int] = {}  # noqa: RUF012 - values after reset that are not 0
+    start: ClassVar[dict[str, int]] = {}  # values after reset that are not 0
     clocked = True  # whether its clock is on
 
     def __init__(self) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import ClassVar
 
 from sim2real.emulate.rcc import Rcc
 from sim2real.emulate.registers import NotModelledError, Peripheral
@@ -51,7 +52,7 @@ class Counter(Peripheral):
 
     name, base = "TIM2", 0x40000000
     offsets = ("CR1", "", "", "", "", "EGR", "", "", "", "CNT", "PSC", "ARR")
-    start = {"ARR": 0xFFFF}  # noqa: RUF012
+    start: ClassVar[dict[str, int]] = {"ARR": 0xFFFF}
 
     def __init__(self, timeline: Timeline, rcc: Rcc) -> None:
         self._timeline, self._rcc = timeline, rcc

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import ClassVar
 
 from sim2real.emulate.registers import NotModelledError, Peripheral
 from sim2real.emulate.timeline import PER_US, Timeline
@@ -17,7 +18,7 @@ class Watchdog(Peripheral):
 
     name, base = "IWDG", 0x40003000
     offsets = ("KR", "PR", "RLR", "SR")
-    start = {"RLR": 0xFFF}  # noqa: RUF012
+    start: ClassVar[dict[str, int]] = {"RLR": 0xFFF}
 
     def __init__(self, timeline: Timeline, wait: Callable[[int], bool], bite: Callable[[], None]) -> None:
         self._timeline, self._wait, self._bite = timeline, wait, bite
