@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from agents.scaling import SPEED_SCALE
+from puckpilot_env.kernel import kernel
 from puckpilot_env.tables import Tables
 
-SIDES = np.array([1.0, -1.0])  # a player 0's x direction, and player 1's
+SIDES = (1.0, -1.0)  # a player 0's x direction, and player 1's
 FASTEST_SHOT = 2.0  # in units of SPEED_SCALE; faster ones are worth no more
 
 
-@dataclass(frozen=True)
-class Before:
+class Before(NamedTuple):
     """What a reward must know of the tables before a step: each player's `potential` (n, 2), and whether the puck was
     `beyond` the middle line (n,), in the half of player 1."""
 
@@ -47,36 +49,61 @@ class Rewards:
 
     def before(self, tables: Tables) -> Before:
         """To be kept from before a step."""
-        return Before(self._potential(tables), _beyond(tables))
+        found = Before(np.empty((len(tables), 2)), np.empty(len(tables), np.bool_))
+        _look(tables.states, tables.params, self._worth, found.potential, found.beyond)
+        return found
 
     def after(
         self, tables: Tables, before: Before, scored: NDArray[np.int64], done: NDArray[np.bool_], gamma: float
     ) -> NDArray[np.float32]:
         """(n, 2) of a step in which each player `scored` (n, 2) goals, and on tables `done` (n,) an episode ended."""
-        shaping = gamma * np.where(done[:, None], 0.0, self._potential(tables)) - before.potential
-        shaping[tables.truncated] = 0.0  # where it was cut is known to no one any more
+        now = self.before(tables)
         goals = self.goal * (scored - scored[:, ::-1])
-        moved_on = done | (scored.sum(axis=1) > 0)  # the puck was put elsewhere
-        crossed = np.where(moved_on, 0, _beyond(tables).astype(int) - before.beyond)
-        pace = np.clip(tables.states["puck"]["vx"] / SPEED_SCALE, -FASTEST_SHOT, FASTEST_SHOT)
-        shots = self.shot * (np.where(crossed * pace > 0.0, crossed * pace**2, 0.0))[:, None] * SIDES
-        return (self.rules * tables.rewards + goals + shots + shaping).astype(np.float32)
+        moved_on = done | scored.any(axis=1)  # the puck was put elsewhere
+        extra = np.empty((len(tables), 2))
+        _pay(tables.states, before, now, moved_on, done, tables.truncated, gamma, self.shot, extra)
+        return (self.rules * tables.rewards + goals + extra).astype(np.float32)
 
-    def _potential(self, tables: Tables) -> NDArray[np.float64]:
-        puck, length = tables.states["puck"], tables.params["length"]
-        ahead = self.place * (2.0 * puck["x"] / length - 1.0)
-        ahead += self.speed * np.clip(puck["vx"] / SPEED_SCALE, -1.0, 1.0)
-        return ahead[:, None] * SIDES - self.chase * _ways(tables) / length[:, None]
+    @property
+    def _worth(self) -> tuple[float, float, float]:
+        return float(self.place), float(self.speed), float(self.chase)
 
 
-def _beyond(tables: Tables) -> NDArray[np.bool_]:
-    return tables.states["puck"]["x"] > 0.5 * tables.params["length"]
+@kernel
+def _look(states, params, worth, potential, beyond):
+    """Write both players' `potential` (n, 2), and which pucks are `beyond` the middle line (n,)."""
+    place, speed, chase = worth
+    for i in range(states.shape[0]):
+        puck, p = states[i].puck, params[i]
+        beyond[i] = puck.x > 0.5 * p.length
+        ahead = place * (2.0 * puck.x / p.length - 1.0) + speed * _clipped(puck.vx / SPEED_SCALE, 1.0)
+        potential[i, 0], potential[i, 1] = ahead, -ahead
+        owner = 1 if beyond[i] else 0
+        potential[i, owner] -= chase * _way(puck, states[i].mallets[owner], p, SIDES[owner]) / p.length
 
 
-def _ways(tables: Tables) -> NDArray[np.float64]:
-    """(n, 2) from each mallet to where it just touches the puck from behind [m]; 0 where the puck is not its."""
-    puck, mallets, p = tables.states["puck"], tables.states["mallets"], tables.params
-    reach = (p["puck_radius"] + p["mallet_radius"])[:, None]
-    x, y = (mallets[axis]["rest"] + mallets[axis]["slow"] + mallets[axis]["fast"] for axis in "xy")
-    ways = np.hypot(puck["x"][:, None] - SIDES * reach - x, puck["y"][:, None] - y)
-    return np.where(_beyond(tables)[:, None] == (SIDES < 0), ways, 0.0)
+@kernel
+def _way(puck, mallet, p, side):
+    """From the mallet to where it just touches the puck from behind [m]."""
+    behind = puck.x - side * (p.puck_radius + p.mallet_radius)
+    x = mallet.x.rest + mallet.x.slow + mallet.x.fast
+    y = mallet.y.rest + mallet.y.slow + mallet.y.fast
+    return math.hypot(behind - x, puck.y - y)
+
+
+@kernel
+def _clipped(value, most):
+    return min(max(value, -most), most)
+
+
+@kernel
+def _pay(states, before, now, moved_on, done, truncated, gamma, shot, extra):
+    """Write shaping and what shots over the middle line are worth into `extra` (n, 2)."""
+    for i in range(states.shape[0]):
+        pace = _clipped(states[i].puck.vx / SPEED_SCALE, FASTEST_SHOT)
+        crossed = int(now.beyond[i]) - int(before.beyond[i])
+        worth = shot * crossed * pace * pace if crossed * pace > 0.0 and not moved_on[i] else 0.0
+        for player in range(2):
+            later = 0.0 if done[i] else gamma * now.potential[i, player]
+            shaping = 0.0 if truncated[i] else later - before.potential[i, player]  # cut: known to no one any more
+            extra[i, player] = SIDES[player] * worth + shaping

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import statistics
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from rich import box
@@ -12,6 +13,7 @@ from rich.table import Table
 
 SHOWN = 12  # rounds in a terminal
 WINS = "wins_"
+PARTS = ("environment", "acting", "learning")
 
 
 class Board:
@@ -41,6 +43,13 @@ class Board:
         if len(self._rows) == 1:
             self._console.print("  ".join(f"{name:>{_width(name)}}" for name in cells), soft_wrap=True)
         self._console.print("  ".join(f"{text:>{_width(name)}}" for name, text in cells.items()), soft_wrap=True)
+
+
+def pace(rows: Sequence[Mapping[str, Any]]) -> str:
+    """How fast these rounds were, and what their time went into: medians."""
+    share = {part: 100.0 * statistics.median(row[part] for row in rows) for part in PARTS}
+    steps = statistics.median(row["steps_per_s"] for row in rows)
+    return f"{steps:,.0f} steps/s, {', '.join(f'{share[part]:.0f} % {part}' for part in PARTS)}"
 
 
 def _width(name: str) -> int:

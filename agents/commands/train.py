@@ -55,6 +55,7 @@ def run(args: argparse.Namespace) -> int:
     need_torch()
     from agents import ranks
     from agents.commands.given import kept_settings, new_settings
+    from agents.commands.live import pace
     from agents.run_folder import RunFolder
 
     for name in ("steps", "minutes"):
@@ -70,6 +71,7 @@ def run(args: argparse.Namespace) -> int:
             folder.begin(settings.as_dict())
         training = run_training(folder, settings, steps=args.steps, minutes=args.minutes, quiet=not first)
     if first:
+        print(f"the rounds' medians: {pace(training.rows)}")
         print(f"{training.steps:,} steps; the player is {folder.policy}")
     return 0
 
