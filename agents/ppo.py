@@ -27,7 +27,7 @@ class FinalStatePPO(PPO):
         cut, final = extras.pop(CUT, None), extras.pop(FINAL, None)
         if final is not None and len(final):
             rewards = rewards.clone()
-            rewards[cut.bool()] += self.gamma * self.critic(final).squeeze(-1)
+            rewards[cut.bool()] += self.gamma * self.critic(final.to(self.device)).squeeze(-1)
         super().process_env_step(obs, rewards, dones, extras)
 
     def hold(self, numbers: Mapping[str, float]) -> None:

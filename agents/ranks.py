@@ -7,6 +7,7 @@ results and, with the same random numbers, takes the same decisions.
 from __future__ import annotations
 
 import os
+from typing import Any
 
 import numpy as np
 import torch
@@ -24,18 +25,33 @@ def world() -> int:
     return int(os.environ.get("WORLD_SIZE", "1"))
 
 
-def join(device: str) -> dict[str, int] | None:
-    """Meet the other processes, over gloo on processors and NCCL on GPUs; rsl-rl's description of them, None if alone.
+def own_device(device: str) -> str:
+    """Of several processes on a machine's GPUs each has its own."""
+    return f"cuda:{os.environ.get('LOCAL_RANK', '0')}" if device == "cuda" else device
 
-    rsl-rl 5.5 would set up NCCL in any case, and so refuses processors.
+
+def join(device: str) -> dict[str, int] | None:
+    """Meet the other processes, over NCCL where networks are on GPUs, else over gloo; rsl-rl's description of them,
+    None if alone. What comes of the games is on processors, and so goes over gloo in any case.
+
+    rsl-rl 5.5 would set up NCCL alone, and so refuses processors.
     """
     if world() == 1:
         return None
     if not dist.is_initialized():
-        dist.init_process_group("nccl" if device.startswith("cuda") else "gloo")
+        dist.init_process_group("cpu:gloo,cuda:nccl" if device.startswith("cuda") else "gloo")
     if device.startswith("cuda"):
         torch.cuda.set_device(device)
     return {"global_rank": rank(), "local_rank": int(os.environ.get("LOCAL_RANK", "0")), "world_size": world()}
+
+
+def gathered(mine: Any) -> list[Any]:
+    """What every process has of this, in the order of their numbers, for the first; nothing for the others."""
+    if world() == 1:
+        return [mine]
+    everyone = [None] * world() if rank() == 0 else None
+    dist.gather_object(mine, everyone)
+    return everyone or []
 
 
 def added(counts: NDArray[np.float64]) -> NDArray[np.float64]:

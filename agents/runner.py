@@ -54,7 +54,7 @@ class SelfPlayRunner(OnPolicyRunner):
     env: Hall
     alg: FinalStatePPO
 
-    def __init__(self, env: Hall, preset: Preset, device: str = "cpu") -> None:
+    def __init__(self, env: Hall, preset: Preset, device: str) -> None:
         with contextlib.redirect_stdout(io.StringIO()):  # rsl-rl prints its networks
             super().__init__(env, _config(preset), log_dir=None, device=device)
         self._distribution = preset.distribution
@@ -71,13 +71,14 @@ class SelfPlayRunner(OnPolicyRunner):
         """Play `steps` steps on every table and learn from them. DivergedError where a loss is not finite."""
         begun, played = time.perf_counter(), 0.0
         with torch.inference_mode():
-            obs = self.env.get_observations()
+            obs = self.env.get_observations().to(self.device)
             for _ in range(self.cfg["num_steps_per_env"]):
                 actions = self.alg.act(obs)
                 before = time.perf_counter()
                 obs, rewards, dones, extras = self.env.step(actions)
                 played += time.perf_counter() - before
-                self.alg.process_env_step(obs, rewards, dones, extras)
+                obs = obs.to(self.device)
+                self.alg.process_env_step(obs, rewards.to(self.device), dones.to(self.device), extras)
             collected = time.perf_counter()
             self.alg.compute_returns(obs)
         losses = self.alg.update()

@@ -22,7 +22,10 @@ if TYPE_CHECKING:
 
 
 def save(training: Training) -> None:
-    """Write the policy, the curve and the checkpoint."""
+    """Write the policy, the curve and the checkpoint: one process does, and all must call it."""
+    processes = ranks.gathered(_own(training))
+    if ranks.rank() > 0:
+        return
     folder, league = training.folder, training.league
     training.policy().save(folder.policy)
     folder.write_curve(training.rows)
@@ -30,15 +33,21 @@ def save(training: Training) -> None:
         folder.checkpoint,
         {
             "learner": training.runner.alg.save(),
-            "torch_random": torch.get_rng_state(),
             "random": json.dumps(training.rng.bit_generator.state),
-            "tables": [tables_as_tensors(part.tables) for part in training.hall.parts],
+            **processes[0],
+            "others": processes[1:],
             "rows": json.dumps(training.rows),
             "waited": league.waited,
             "anchors": [_as_dict(member) for member in league.anchors],
             "earlier": [_as_dict(member) for member in league.earlier],
         },
     )
+
+
+def _own(training: Training) -> dict[str, Any]:
+    """What no other process has."""
+    tables = [tables_as_tensors(part.tables) for part in training.hall.parts]
+    return {"torch_random": torch.get_rng_state(), "tables": tables}
 
 
 def take_up(training: Training) -> None:
@@ -102,9 +111,11 @@ def _read(checkpoint: Path, use: Callable[[Mapping[str, Any]], None]) -> None:
 def _take_up(training: Training, kept: Mapping[str, Any]) -> None:
     training.runner.alg.load(kept["learner"], None, True)
     training.rng.bit_generator.state = json.loads(kept["random"])
-    if ranks.rank() == 0:  # the others' games begin anew
-        torch.set_rng_state(kept["torch_random"])
-        for part, tables in zip(training.hall.parts, kept["tables"], strict=True):
+    processes = [kept, *kept.get("others", [])]  # checkpoints of before had but the first's
+    if ranks.rank() < len(processes):  # of more processes than there were the games begin anew
+        own = processes[ranks.rank()]
+        torch.set_rng_state(own["torch_random"])
+        for part, tables in zip(training.hall.parts, own["tables"], strict=True):
             restore_tables(part.tables, tables)
     training.rows = json.loads(kept["rows"])
     training.runner.current_learning_iteration = len(training.rows) * training.preset.round

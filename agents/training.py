@@ -37,7 +37,8 @@ Row = dict[str, Any]
 @dataclass(frozen=True)
 class Settings:
     """What is trained. `effects`: parameters of an effects file, or None; `against`: the one player that is met, else
-    a league is; `start`: folder of the run whose networks it begins with, else they know nothing."""
+    a league is; `start`: folder of the run whose networks it begins with, else they know nothing; `device`: where the
+    networks are, in torch's words."""
 
     variant: str
     seed: int
@@ -46,11 +47,11 @@ class Settings:
     effects: Mapping[str, float] | None = None
     against: str | None = None
     start: str | None = None
+    device: str = "cpu"
 
     def as_dict(self) -> dict[str, Any]:
         """As JSON can hold it."""
-        kept = {name: getattr(self, name) for name in ("variant", "seed", "threads", "effects", "against", "start")}
-        return {**kept, "preset": self.preset.text}
+        return {**vars(self), "preset": self.preset.text}
 
     @classmethod
     def from_dict(cls, kept: Mapping[str, Any]) -> Settings:
@@ -75,7 +76,7 @@ class Training:
         self.folder, self.settings = folder, settings
         self.rng = np.random.default_rng(settings.seed)
         self.hall, self.columns = _hall(preset, settings, seed)
-        self.runner = SelfPlayRunner(self.hall, preset)
+        self.runner = SelfPlayRunner(self.hall, preset, ranks.own_device(settings.device))
         members = [Member(name) for name in preset.anchors]
         members += [Member(name, beside=_short(one.variant)) for one in preset.beside for name in one.anchors]
         self.league = League(members, preset.gate, preset.cap, preset.most)
@@ -111,8 +112,7 @@ class Training:
         before = self.steps
         self.rows.append(self._row(iterations))
         self._hold(before)
-        if ranks.rank() == 0:
-            saving.save(self)
+        saving.save(self)
         return self.rows[-1]
 
     def _besides(self) -> list[str]:

@@ -26,6 +26,7 @@ OPTIONS = {
         "--resume",
         "--start",
         "--variant",
+        "--device",
         "--effects",
         "--seed",
         "--threads",

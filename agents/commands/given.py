@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from agents.run_folder import RunFolder
     from agents.training import Settings
 
-DEFAULTS = {"variant": "match-v0", "preset": "fast", "seed": 0, "threads": 1, "effects": None}
+DEFAULTS = {"variant": "match-v0", "preset": "fast", "seed": 0, "threads": 1, "device": "cpu", "effects": None}
 FEW = 8  # numbers of effects that are told one by one
 
 
@@ -27,7 +27,20 @@ def new_settings(args: argparse.Namespace) -> Settings:
     effects = effect_values(asked["effects"]) if asked["effects"] else None
     start = str(_start(args.start)) if args.start else None
     variant, preset = find_variant(asked["variant"]).id, find_preset(asked["preset"])
-    return Settings(variant, asked["seed"], asked["threads"], preset, effects, start=start)
+    return Settings(
+        variant, asked["seed"], asked["threads"], preset, effects, start=start, device=_device(asked["device"])
+    )
+
+
+def _device(name: str) -> str:
+    """A device of torch's that is there."""
+    import torch
+
+    try:
+        torch.zeros(1, device=name)
+    except (RuntimeError, AssertionError, NotImplementedError):  # torch says so in many ways
+        raise ValueError(f"--device is '{name}', unusable for torch here; expected cpu, or cuda for a GPU") from None
+    return name
 
 
 def _start(name: str) -> Path:
@@ -42,6 +55,7 @@ def kept_settings(args: argparse.Namespace, folder: RunFolder) -> Settings:
     from agents.training import Settings
 
     settings = Settings.from_dict(folder.settings())
+    _device(settings.device)
     if args.start:
         raise ValueError(f"--resume goes on with the run in {folder.path} as it is; --start is for a new one")
     wrong = [
@@ -67,7 +81,7 @@ def _contradicted(args: argparse.Namespace, settings: Settings) -> dict[str, str
         found["variant"] = settings.variant
     if args.preset is not None and find_preset(args.preset).text != settings.preset.text:
         found["preset"] = _name_of(settings.preset.text)
-    for name in ("seed", "threads"):
+    for name in ("seed", "threads", "device"):
         if getattr(args, name) is not None and getattr(args, name) != getattr(settings, name):
             found[name] = str(getattr(settings, name))
     if args.effects is not None and effect_values(args.effects) != (settings.effects or {}):

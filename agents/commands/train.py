@@ -45,6 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--variant", metavar="ID", help="what is played (default match-v0)")
     parser.add_argument("--seed", type=int, help="seed of everything random (default 0)")
     parser.add_argument("--threads", type=int, metavar="K", help="threads to learn on (default 1)")
+    parser.add_argument("--device", metavar="NAME", help="where the networks are: cpu, cuda (default cpu)")
     parser.add_argument(
         "--effects", metavar="FILE", help="physics beyond the baseline, as `diagnose` writes it (no flip then)"
     )

@@ -1,10 +1,13 @@
 """Two processes train one player over gloo: the same network and league on both, from games of their own."""
 
+from __future__ import annotations
+
 import json
 import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -21,10 +24,10 @@ from agents.run_folder import RunFolder
 from agents.training import Settings, Training
 folder = Path(sys.argv[1])
 run = RunFolder(folder)
-if ranks.rank() == 0:
+if ranks.rank() == 0 and not folder.exists():
     run.begin({})
 training = Training(run, Settings("match-v0", 3, 1, read_preset(sys.argv[2], "tiny")))
-for _ in range(2):
+while len(training.rows) < int(sys.argv[3]):
     training.round()
 league = training.league
 told = {
@@ -37,23 +40,33 @@ told = {
 """
 
 
-def test_two_processes_keep_the_same_network_and_league(tmp_path):
-    script = tmp_path / "train_twice.py"
+def trained(folder: Path, rounds: int) -> list[dict[str, Any]]:
+    """What each of two processes has after so many rounds of the run in `folder`, which it may go on with."""
+    script = folder.with_suffix(".py")
     script.write_text(TRAIN)
-    words = ["--standalone", "--nproc-per-node", "2", str(script), str(tmp_path), LONGER]
+    words = ["--standalone", "--nproc-per-node", "2", str(script), str(folder), LONGER, str(rounds)]
     environment = {"PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1", **_path()}
     run = subprocess.run(
         [sys.executable, "-m", "torch.distributed.run", *words], env=environment, capture_output=True, text=True,
         timeout=300,
     )  # fmt: skip
     assert run.returncode == 0, run.stderr[-2000:]
-    first, second = (json.loads((tmp_path / f"rank{k}.json").read_text()) for k in range(2))
+    return [json.loads((folder / f"rank{k}.json").read_text()) for k in range(2)]
+
+
+def test_two_processes_keep_the_same_network_and_league(tmp_path: Path) -> None:
+    first, second = trained(tmp_path / "run", 2)
     assert first["places"] != second["places"]
     for mine, other in zip(first["weights"], second["weights"], strict=True):
         assert mine == other and np.ptp(np.array(mine)) > 0.0
     assert first["members"] == second["members"] and sum(sum(points) for _, points, _ in first["members"]) > 0.0
     assert first["steps"] == second["steps"]
-    assert (tmp_path / "checkpoint.pt").exists()
+    assert (tmp_path / "run" / "checkpoint.pt").exists()
+
+
+def test_two_processes_go_on_as_if_they_had_never_stopped(tmp_path: Path) -> None:
+    trained(tmp_path / "broken", 1)
+    assert trained(tmp_path / "broken", 2) == trained(tmp_path / "unbroken", 2)
 
 
 def _path() -> dict[str, str]:

@@ -156,6 +156,8 @@ OPTIONS = {
     "seed negative": ["--seed", "-1"],
     "threads 0": ["--threads", "0"],
     "threads negative": ["--threads", "-2"],
+    "a device without torch": ["--device", "abacus"],
+    "a GPU that is not there": ["--device", "cuda:99"],
     "no such effects": ["--effects", "no/such/file.toml"],
 }
 
