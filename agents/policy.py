@@ -54,6 +54,8 @@ class Policy:
 
 def load_policy(path: Path) -> Policy:
     """The policy of a file. ValueError, in one line, for a file that is not one, is cut short, or does not fit."""
+    if path.suffix == ".onnx":
+        raise ValueError(f"{path} is for other programs; here the .npz of `puckpilot train` or `export` plays")
     try:
         arrays = _arrays(path)
         head = json.loads(str(arrays["head"]))

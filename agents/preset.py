@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import tomllib
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import MISSING, dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +16,11 @@ FOLDER = Path(__file__).parent / "presets"
 FLIPS = ("rows", "augment", "none")
 CRITICS = ("score", "state")  # what only the critic sees: how strong the opponent is, or the table's true state as well
 COUNTS = ("tables", "steps", "round", "cap", "most")
+# The least and the greatest that a number may be; every other one must be finite.
+RANGES = {
+    "gate": (0.0, 1.0), "gamma": (0.0, 1.0), "lam": (0.0, 1.0), "clip_param": (0.0, math.inf),
+    "learning_rate": (0.0, math.inf), "entropy_coef": (0.0, math.inf),
+}  # fmt: skip
 CHANGEABLE = ("learning_rate", "gamma", "lam", "clip_param", "entropy_coef")
 
 
@@ -89,14 +96,16 @@ def read_preset(text: str, name: str) -> Preset:
     try:
         raw = tomllib.loads(text)
         network, league = raw.pop("network"), raw.pop("league")
+        lists = {"hidden": network.pop("hidden"), "earlier": league.pop("earlier")}
+        wrong = [f"{what} is {sizes!r}; expected a list" for what, sizes in lists.items() if type(sizes) is not list]
+        if wrong:
+            raise TypeError(wrong[0])
         later = tuple(_change(entry) for entry in raw.pop("later", []))
         beside = tuple(_beside(entry) for entry in raw.pop("beside", []))
-        ppo, rewards = raw.pop("ppo"), Rewards(**raw.pop("rewards"))
-        preset = Preset(
-            text=text, ppo=ppo, rewards=rewards, later=later, beside=beside, **raw,
-            hidden=tuple(network.pop("hidden")), critic=network.pop("critic", "score"), **network,
-            earlier=tuple(league.pop("earlier")), **league,
-        )  # fmt: skip
+        ppo, rewards = raw.pop("ppo"), _known(Rewards, raw.pop("rewards"))
+        numbers = {"text": text, "ppo": ppo, "rewards": Rewards(**rewards), "later": later, "beside": beside}
+        sizes = {name: tuple(some) for name, some in lists.items()}
+        preset = Preset(**_known(Preset, {**raw, "critic": "score", **network, **league, **sizes, **numbers}))
         preset.at(max((change.from_steps for change in later), default=0))  # its rewards are known ones
     except KeyError as error:
         raise ValueError(f"preset {name}: it has no {error.args[0]}") from None
@@ -115,11 +124,27 @@ def read_preset(text: str, name: str) -> Preset:
     return preset
 
 
+def _known(made: type[Any], entries: Mapping[str, Any]) -> dict[str, Any]:
+    """The entries, if they are what a dataclass is made of. KeyError for one that is missing, TypeError for others."""
+    known = {field.name: field for field in fields(made)}
+    unknown = [name for name in entries if name not in known]
+    if unknown:
+        own = [name for name in known if name not in ("text", "later", "beside")]
+        raise TypeError(f"'{unknown[0]}' is unknown; known: {', '.join(own)}")
+    for name, field in known.items():
+        if field.default is MISSING and name not in entries:
+            raise KeyError(name)
+    return dict(entries)
+
+
 def _check_numbers(preset: Preset, name: str) -> None:
-    named = {**{key: preset.ppo[key] for key in CHANGEABLE if key in preset.ppo}, **vars(preset.rewards)}
-    for what, number in {**named, "gate": preset.gate}.items():
-        if type(number) not in (int, float):
-            raise ValueError(f"preset {name}: {what} is {number!r}; expected a number")
+    for each in (preset, *(preset.at(change.from_steps) for change in preset.later)):
+        named = {**{key: each.ppo[key] for key in CHANGEABLE if key in each.ppo}, **vars(each.rewards)}
+        for what, number in {**named, "gate": each.gate}.items():
+            low, high = RANGES.get(what, (-math.inf, math.inf))
+            if type(number) not in (int, float) or not (low <= number <= high and math.isfinite(number)):
+                expected = f"a number from {low:g} to {high:g}" if what in RANGES else "a finite number"
+                raise ValueError(f"preset {name}: {what} is {number!r}; expected {expected}")
 
 
 def _change(entry: dict[str, Any]) -> Change:

@@ -31,8 +31,8 @@ class RunFolder:
         self.policy, self.selves = path / "policy.npz", path / "selves"
 
     def begin(self, settings: Mapping[str, Any]) -> None:
-        """Make the folder for a new run. ValueError, in one line, if one in it has come to a checkpoint already."""
-        if self.checkpoint.exists():
+        """Make the folder for a new run. ValueError, in one line, if one in it has come to a player already."""
+        if self.checkpoint.exists() or self.policy.exists():
             raise ValueError(f"{self.path} holds a run already; --resume goes on with it, or choose another folder")
         self.selves.mkdir(parents=True, exist_ok=True)
         write_text_whole(self.run, json.dumps({"format": FORMAT, **settings}, indent=2))

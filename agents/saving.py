@@ -111,12 +111,16 @@ def _read(checkpoint: Path, use: Callable[[Mapping[str, Any]], None]) -> None:
 def _take_up(training: Training, kept: Mapping[str, Any]) -> None:
     training.runner.alg.load(kept["learner"], None, True)
     training.rng.bit_generator.state = json.loads(kept["random"])
-    processes = [kept, *kept.get("others", [])]  # checkpoints of before had but the first's
-    if ranks.rank() < len(processes):  # of more processes than there were the games begin anew
-        own = processes[ranks.rank()]
-        torch.set_rng_state(own["torch_random"])
-        for part, tables in zip(training.hall.parts, own["tables"], strict=True):
-            restore_tables(part.tables, tables)
+    processes = [kept, *kept.get("others", [])]
+    if len(processes) != ranks.world():
+        words = f"{len(processes)} processes side by side; these are {ranks.world()}"
+        raise ValueError(
+            f"the run in {training.folder.path} is of {words}: torchrun --nproc-per-node {len(processes)} ..."
+        )
+    own = processes[ranks.rank()]
+    torch.set_rng_state(own["torch_random"])
+    for part, tables in zip(training.hall.parts, own["tables"], strict=True):
+        restore_tables(part.tables, tables)
     training.rows = json.loads(kept["rows"])
     training.runner.current_learning_iteration = len(training.rows) * training.preset.round
     league = training.league

@@ -84,10 +84,14 @@ class Training:
         if folder.checkpoint.exists():
             saving.take_up(self)
             self._hold(self.steps)
+        elif folder.policy.exists():
+            way = f"a new run can begin with its player: --start {folder.policy}"
+            raise ValueError(f"{folder.checkpoint} is missing, so that this run cannot go on; {way}")
         else:
             if settings.start:
                 saving.learn_on(self, Path(settings.start))
             self._admit("self-0")
+        self.taken_up = len(self.rows)  # rounds that were played before
 
     @property
     def steps(self) -> int:

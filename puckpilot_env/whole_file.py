@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -15,12 +16,16 @@ def draft_of(path: Path) -> Path:
 def write_whole(path: Path, write: Callable[[Path], object]) -> Path:
     """Let `write` make the draft of `path`, put it there once it is complete, and return `path`.
 
-    If `write` raises, what was there before stays.
+    If `write` raises, what was there before stays; an OSError names `path` where it named nothing.
     """
     draft = draft_of(path)
     try:
         write(draft)
         draft.replace(path)
+    except OSError as error:
+        if error.filename is None and error.errno is not None:  # a full disk's
+            raise OSError(error.errno, os.strerror(error.errno), str(path)) from None
+        raise
     finally:
         draft.unlink(missing_ok=True)
     return path

@@ -19,6 +19,7 @@ OPTIONS = {
     "match": ["--games", "--video", "--variant", "--seed", "--threads", "--json"],
     "tournament": ["--games", "--out", "--variant", "--seed", "--threads", "--json"],
     "train": [
+        "--show-preset",
         "--preset",
         "--out",
         "--steps",

@@ -49,7 +49,10 @@ def print_meetings(name: str, rows: Sequence[dict[str, Any]]) -> None:
 
 def print_over_seeds(names: Sequence[str], games: int, rows: Sequence[dict[str, Any]]) -> None:
     """What several runs reach, one beside the other, and their interquartile mean."""
-    title = f"share of decisive games won, or in drills of jobs done, of {games} games each: {', '.join(names)}"
+    for number, name in enumerate(names, start=1):
+        print(f"{number}: {name}")
+    few = "; of fewer than four the IQM is the mean" if len(names) < 4 else ""
+    title = f"\nshare of decisive games won, or in drills of jobs done, of {games} games each{few}"
     table = _table(title, *(str(k) for k in range(1, len(names) + 1)), "IQM", "95 %")
     for row in rows:
         shares = ["-" if share is None else f"{100 * share:.1f} %" for share in row["shares"]]

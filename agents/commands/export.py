@@ -32,5 +32,6 @@ def run(args: argparse.Namespace) -> int:
 
         write_onnx(policy, args.out)
     sizes = " x ".join(str(size) for size in policy.network.sizes)
-    print(f"wrote {args.out}: {sizes} numbers, {args.out.stat().st_size / 1000:.0f} kB, made for {policy.about}")
+    about = ", ".join(f"{name} {value}" for name, value in policy.about.items())
+    print(f"wrote {args.out}: {sizes} numbers, {args.out.stat().st_size / 1000:.0f} kB; {about}")
     return 0

@@ -24,6 +24,8 @@ def new_settings(args: argparse.Namespace) -> Settings:
     asked = {
         name: default if getattr(args, name) is None else getattr(args, name) for name, default in DEFAULTS.items()
     }
+    if asked["seed"] < 0:
+        raise ValueError(f"--seed is {asked['seed']}; expected a whole number from 0 on")
     effects = effect_values(asked["effects"]) if asked["effects"] else None
     start = str(_start(args.start)) if args.start else None
     variant, preset = find_variant(asked["variant"]).id, find_preset(asked["preset"])

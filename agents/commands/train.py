@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import argparse
 import importlib.util
+import sys
 from contextlib import nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 if TYPE_CHECKING:
     from agents.run_folder import RunFolder
@@ -25,6 +26,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
     known = ", ".join(sorted(path.stem for path in PRESETS.glob("*.toml")))
     parser.add_argument("--preset", metavar="NAME", help=f"how to train: {known}, or a .toml file (default fast)")
+    parser.add_argument(
+        "--show-preset", metavar="NAME", action=_Show, help="print one, to begin your own with, and end"
+    )
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder of the run")
     parser.add_argument(
         "--steps",
@@ -66,15 +70,28 @@ def run(args: argparse.Namespace) -> int:
         raise ValueError(f"--threads is {args.threads}; expected a whole number from 1 on")
     folder = RunFolder(args.out)
     first = ranks.rank() == 0  # of several processes one writes
+    settings = kept_settings(args, folder) if args.resume else new_settings(args)  # before a folder is made
     with folder.locked() if first else nullcontext():
-        settings = kept_settings(args, folder) if args.resume else new_settings(args)
         if first and not args.resume:
             folder.begin(settings.as_dict())
         training = run_training(folder, settings, steps=args.steps, minutes=args.minutes, quiet=not first)
+    fresh = training.rows[training.taken_up :]
     if first:
-        print(f"the rounds' medians: {pace(training.rows)}")
+        print(f"the rounds' medians: {pace(fresh)}" if fresh else "nothing was left to do")
         print(f"{training.steps:,} steps; the player is {folder.policy}")
     return 0
+
+
+class _Show(argparse.Action):
+    """Prints a preset and ends."""
+
+    def __call__(
+        self, parser: argparse.ArgumentParser, namespace: object, name: Any, option: object = None
+    ) -> NoReturn:
+        from agents.preset import find_preset
+
+        print(find_preset(name).text, end="")
+        raise SystemExit(0)
 
 
 def need_torch() -> None:
@@ -108,9 +125,17 @@ def run_training(
         try:
             train(training, steps=steps, seconds=60.0 * minutes, tell=tell)
         except DivergedError as error:
-            raise ValueError(
-                f"the losses are no numbers any more ({error}); {folder.checkpoint} is as it was"
-            ) from None
+            kept = f"{folder.checkpoint} is as it was" if training.rows else "nothing of it is kept"
+            raise ValueError(f"the losses are no numbers any more ({error}); {kept}") from None
+        except KeyboardInterrupt:
+            if not quiet:
+                kept = (
+                    f"{len(training.rows)} rounds are kept, --resume goes on after them"
+                    if training.rows
+                    else "no round"
+                )
+                print(f"in {folder.path} {kept}", file=sys.stderr)
+            raise
         finally:
             if curves:
                 curves.close()

@@ -64,7 +64,7 @@ def test_several_policies_stand_side_by_side(capsys: pytest.CaptureFixture[str])
     assert found["over_seeds"][0]["shares"][0] == alone.wins[0] / max(sum(alone.wins), 1)
     assert main(words) == 0
     told = capsys.readouterr().out
-    assert "IQM" in told and "follower, goalie" in told
+    assert "1: follower\n2: goalie\n" in told and "of fewer than four the IQM is the mean" in " ".join(told.split())
 
 
 @pytest.mark.parametrize(

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import errno
 import json
 from pathlib import Path
 
 import pytest
 
-from agents.preset import find_preset
+from agents.checkpoint import load_checkpoint, save_checkpoint
+from agents.preset import find_preset, read_preset
 from puckpilot import main
 
 TINY = """
@@ -79,11 +81,65 @@ def test_a_folder_that_holds_a_run_is_refused_without_resume(
 def test_resuming_needs_a_run_that_can_be_read(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     run = tmp_path / "run"
     assert "no run in" in refused(capsys, "--resume", "--out", str(run))
+    assert not run.exists()
+    run.mkdir()
     for text, words in (("{", "is not JSON"), ("[]", "is not of the format"), ('{"format": "x"}', "is not of the")):
         (run / "run.json").write_text(text)
         assert words in refused(capsys, "--resume", "--out", str(run))
     (run / "run.json").write_text('{"format": "puckpilot-run-1", "variant": "match-v0"}')
     refused(capsys, "--resume", "--out", str(run))
+
+
+def test_a_run_without_its_checkpoint_keeps_its_player(
+    preset: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = ["--out", str(tmp_path / "run")]
+    assert main(["train", *out, "--preset", str(preset), "--steps", "1"]) == 0
+    (tmp_path / "run" / "checkpoint.pt").unlink()
+    before = {path.name: path.read_bytes() for path in (tmp_path / "run").glob("[cp]*")}
+    assert f"--start {tmp_path / 'run' / 'policy.npz'}" in refused(capsys, *out, "--resume", "--steps", "99")
+    assert "holds a run already" in refused(capsys, *out, "--preset", str(preset), "--steps", "1")
+    assert {path.name: path.read_bytes() for path in (tmp_path / "run").glob("[cp]*")} == before
+
+
+def test_a_run_of_two_processes_is_not_taken_up_by_one(
+    preset: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = ["--out", str(tmp_path / "run")]
+    assert main(["train", *out, "--preset", str(preset), "--steps", "1"]) == 0
+    checkpoint = tmp_path / "run" / "checkpoint.pt"
+    kept = load_checkpoint(checkpoint)
+    save_checkpoint(checkpoint, {**kept, "others": [{name: kept[name] for name in ("tables", "torch_random")}]})
+    said = refused(capsys, *out, "--resume", "--steps", "99")
+    assert "2 processes side by side; these are 1: torchrun --nproc-per-node 2" in said
+
+
+def test_a_run_that_has_come_far_enough_says_so(
+    preset: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["train", "--out", str(tmp_path / "run"), "--steps", "1"]
+    assert main([*words, "--preset", str(preset)]) == 0
+    assert "the rounds' medians: " in capsys.readouterr().out
+    assert main([*words, "--resume"]) == 0
+    assert "nothing was left to do" in capsys.readouterr().out
+
+
+def test_a_full_disk_is_told_with_the_file_that_it_had_no_room_for(
+    preset: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(path: Path, data: bytes) -> int:
+        raise OSError(errno.ENOSPC, "no room")
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    said = refused(capsys, "--out", str(tmp_path / "run"), "--preset", str(preset), "--steps", "1")
+    assert f"{tmp_path / 'run' / 'checkpoint.pt'}: No space left on device" in said
+
+
+def test_a_preset_is_shown_and_can_be_trained_with(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as end:
+        main(["train", "--show-preset", "paper"])
+    assert end.value.code == 0 and read_preset(capsys.readouterr().out, "shown") == find_preset("paper")
+    assert main(["train", "--show-preset", "papper"]) == 2
 
 
 EFFECTS = 'format = "puckpilot-effects/1"\n[effects.table_tilt]\ntilt_x = {}\n'
@@ -177,6 +233,13 @@ CHANGES = {
     "no entry": ("cap = 2", ""),
     "unknown entry": ("cap = 2", "cap = 2\ncup = 3"),
     "unknown reward": ("goal = 1.0", "gaol = 1.0"),
+    "a reward that is none": ("goal = 1.0", "goal = nan"),
+    "a share above 1": ("gate = 0.9", "gate = 7"),
+    "a discount above 1": ("[ppo]", "[ppo]\nlam = 3.0"),
+    "a rate below 0": ("[ppo]", "[ppo]\nclip_param = -1.0"),
+    "a later number out of its range": ("[rewards]", "[[later]]\nfrom_steps = 9\nppo = { gamma = 3.0 }\n[rewards]"),
+    "a text for a list": ("hidden = [8]", 'hidden = "big"'),
+    "no share": ("gate = 0.9\n", ""),
     "unknown flip": ('flip = "rows"', 'flip = "columns"'),
     "unknown distribution": ('"TanhNormal"', '"Cauchy"'),
     "unknown player": ("still = 1", "stil = 1"),
