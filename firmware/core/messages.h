@@ -57,7 +57,7 @@ enum refusal {
     REFUSAL_OFF_START, /* the path does not begin where the mallet is */
     REFUSAL_TOO_LATE, /* the time to apply it is past */
     REFUSAL_TOO_EARLY, /* the time to apply it is too far ahead */
-    REFUSAL_BUSY, /* one that came less than 7 ms before is still being looked at */
+    REFUSAL_BUSY, /* one of its kind that came just before is still being looked at */
 };
 
 enum message {
@@ -106,7 +106,7 @@ struct home {
 
 struct traj {
     uint32_t sequence; /* greater than of every one before, modulo 2^32 */
-    uint32_t apply; /* us; when it begins, by the board's clock; looking at it takes 7 ms */
+    uint32_t apply; /* us; when it begins, by the board's clock; looking at it takes 10 ms */
     uint32_t life; /* us; after it the motors are off */
     float volts[2]; /* V; of axes x, y, signed */
     uint32_t t1[2]; /* us */

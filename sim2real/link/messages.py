@@ -64,7 +64,7 @@ class Refusal(IntEnum):
     OFF_START = 10  # the path does not begin where the mallet is
     TOO_LATE = 11  # the time to apply it is past
     TOO_EARLY = 12  # the time to apply it is too far ahead
-    BUSY = 13  # one that came less than 7 ms before is still being looked at
+    BUSY = 13  # one of its kind that came just before is still being looked at
 
 
 @dataclass(frozen=True)
@@ -130,7 +130,7 @@ class Traj:
     """A plan: volts until t1, reversed until t2, then none; from the state that the modes say. The newest wins."""
 
     sequence: int  # greater than of every one before, modulo 2^32
-    apply: int  # us; when it begins, by the board's clock; looking at it takes 7 ms
+    apply: int  # us; when it begins, by the board's clock; looking at it takes 10 ms
     life: int  # us; after it the motors are off
     volts: tuple[float, float]  # V; of axes x, y, signed
     t1: tuple[int, int]  # us

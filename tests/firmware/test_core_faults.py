@@ -76,6 +76,43 @@ def test_a_flood_of_refusals_leaves_room_for_telemetry(playing: Bench):
     assert sum(isinstance(one, messages.Telemetry) for one in playing.heard) == before + 50
 
 
+def test_a_flood_of_refusals_does_not_drive_out_the_fault(playing: Bench):
+    playing.send(*[Clear()] * 12)
+    playing.tick()
+    playing.send(Estop(), *[Arm(), Disarm()] * 6)
+    playing.tick()
+    playing.run(30)
+    assert playing.events(messages.Notice.FAULTED) == [Fault.ESTOP]
+
+
+def test_an_estop_in_the_middle_of_a_flood_stops_at_once(playing: Bench):
+    playing.send(*[Clear()] * 7, Estop(), *[Clear()] * 6)
+    assert playing.tick().pwm == (0, 0)
+
+
+@pytest.mark.parametrize("again", [config(), Home(*CORNER)])
+def test_of_two_heavy_messages_in_a_tick_the_second_is_refused(again: object):
+    bench = Bench()
+    bench.run(30)
+    bench.send(config(), Home(*CORNER), again)
+    bench.run(8)
+    assert bench.refusals == [(2 if isinstance(again, Config) else 3, Refusal.BUSY)] and bench.state == State.IDLE
+
+
+def test_a_full_line_delays_the_look_at_a_trajectory_and_no_more():
+    bench = Bench().armed()
+    bench.send(bench.trajectory(TARGET, apply=bench.now + 60_000))
+    for _ in range(58):
+        bench.send(*[Ping(1)] * 3)
+        bench.tick()
+    bench.run(20)
+    assert bench.refusals == [(8, Refusal.TOO_LATE)] and bench.pwm == (0, 0)
+    bench.send(bench.trajectory(TARGET, apply=bench.now + 20_000))
+    bench.send(*[Ping(1)] * 3)
+    bench.run(600)
+    assert bench.place == pytest.approx(TARGET, abs=3e-4) and bench.state == State.ARMED
+
+
 def test_damaged_frames_and_lost_bytes_are_counted(playing: Bench):
     playing.send(frame(Ping(1))[:-3] + b"\0", b"\x02\x01\0")
     playing.tick(lost=3)
@@ -99,7 +136,7 @@ def test_another_version_is_not_armed_for(wrong: dict):
     bench = Bench()
     bench.run(30)
     bench.send(hello(**wrong), bench.config, Home(*CORNER), Arm())
-    bench.run(3)
+    bench.run(8)
     assert bench.refusals == [(1, Refusal.WRONG_VERSION), (4, Refusal.WRONG_VERSION)]
     answer = [one for one in bench.heard if isinstance(one, messages.Hello)]
     assert answer[0].schema == messages.SCHEMA and bench.state == State.IDLE
@@ -134,7 +171,7 @@ def test_what_is_no_number_is_refused(playing: Bench, at: int, value: float):
 def test_int_min_and_its_neighbours_are_refused(playing: Bench, at: int):
     for value in (-(2**31), 2**31 - 1, -1):
         playing.send(raw(playing.trajectory(TARGET), at, "<i", value))
-        playing.run(1)
+        playing.run(2)
     assert playing.refusals == [(8, Refusal.OUT_OF_RANGE)] * 3
 
 
@@ -143,7 +180,7 @@ def test_a_configuration_without_a_number_is_refused(at: int):
     bench = Bench()
     bench.run(30)
     bench.send(raw(config(), at, "<f", math.nan), Home(*CORNER))
-    bench.run(1)
+    bench.run(4)
     assert bench.refusals == [(2, Refusal.OUT_OF_RANGE), (3, Refusal.NO_CONFIG)]
 
 
@@ -191,7 +228,7 @@ def test_old_and_repeated_trajectories_are_refused():
     bench = Bench().armed()
     for sequence in (2**32 - 2, 2**32 - 1, 2**32 - 2, 2**32 - 1, 1, 2**32 - 1, 1):
         bench.send(bench.trajectory(CORNER, sequence=sequence))
-        bench.run(8)
+        bench.run(12)
     assert bench.refusals == [(8, Refusal.OLD_SEQUENCE)] * 4
     bench.run(10)
     assert bench.telemetry is not None and bench.telemetry.sequence == 1
@@ -272,6 +309,7 @@ def test_a_clear_after_an_estop_still_knows_the_place(playing: Bench):
 
 def test_a_missed_tick_stops_the_motors(playing: Bench):
     assert playing.tick(missed=1).pwm == (0, 0)
+    playing.run(2)
     assert playing.events(messages.Notice.FAULTED) == [Fault.TICK_OVERRUN]
 
 
@@ -375,6 +413,7 @@ def test_its_own_hello_that_comes_back_is_no_host():
 def test_a_clock_that_stands_still_stops_the_motors(playing: Bench):
     playing.now -= 1000
     assert playing.tick().pwm == (0, 0)
+    playing.run(2)
     assert playing.events(messages.Notice.FAULTED) == [Fault.TICK_OVERRUN]
 
 

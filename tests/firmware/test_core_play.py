@@ -128,7 +128,7 @@ def test_arming_takes_a_hello_a_configuration_and_a_home():
     bench.send(Home(*CORNER))
     bench.run(1)
     bench.send(bench.config, Arm(), Home(*CORNER), Arm())
-    bench.run(1)
+    bench.run(20)
     assert [number for number, _ in bench.refusals] == [4, 4, 3, 4] and bench.state == State.ARMED
 
 

@@ -79,7 +79,7 @@ def played() -> tuple[Recorder, list[object]]:
     machine.run(begin - 5000)
     heard = read(machine.received())
     board = [one for one in heard if isinstance(one, Telemetry)][-1].time
-    plan = Bench(now=board, start=START).trajectory(TARGET, apply=board + 8000)
+    plan = Bench(now=board, start=START).trajectory(TARGET, apply=board + 14_000)
     machine.send(frame(plan))
     for number in range(40):
         machine.send(frame(Ping(number)))
