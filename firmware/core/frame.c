@@ -18,11 +18,10 @@ static bool open_frame(const uint8_t *kept, size_t length, struct frame *frame) 
     if (layout == NULL || length != 1u + layout->size + FRAME_CRC) {
         return false;
     }
-    uint32_t crc;
-    memcpy(&crc, kept + length - FRAME_CRC, FRAME_CRC);
+    memcpy(&frame->crc, kept + length - FRAME_CRC, FRAME_CRC);
     frame->layout = layout;
     frame->body = kept + 1;
-    return crc == crc_of(kept, length - FRAME_CRC);
+    return frame->crc == crc_of(kept, length - FRAME_CRC);
 }
 
 enum frame_result frame_take(struct receiver *receiver, const uint8_t *bytes, size_t *count, struct frame *frame) {

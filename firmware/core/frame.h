@@ -24,6 +24,7 @@ struct receiver {
 struct frame {
     const struct layout *layout;
     const uint8_t *body;
+    uint32_t crc;
 };
 
 enum frame_result {

@@ -6,7 +6,7 @@
 
 #define PROTOCOL_MAJOR 1
 #define PROTOCOL_MINOR 0
-#define PROTOCOL_SCHEMA 0x262B07D4u
+#define PROTOCOL_SCHEMA 0x6A25804Eu
 #define MESSAGE_UNCHECKED 1 /* its CRC begins at 0, that of others at the schema */
 #define MESSAGE_LONGEST 82 /* bytes of a body */
 
@@ -47,6 +47,7 @@ enum refusal {
     REFUSAL_OUT_OF_RANGE, /* a number is outside its limits, or none */
     REFUSAL_WRONG_VERSION, /* no hello of the same version and schema came before */
     REFUSAL_NO_CONFIG, /* no configuration came before */
+    REFUSAL_OTHER_CONFIG, /* the configuration held is not the one that is meant: it was lost, or another host's came */
     REFUSAL_BAD_CONFIG, /* the configuration's numbers do not fit each other */
     REFUSAL_WRONG_STATE, /* not in this state */
     REFUSAL_NO_ENCODERS, /* the encoders give no valid angle */
@@ -102,6 +103,10 @@ struct config {
 struct home {
     float x; /* m */
     float y; /* m */
+};
+
+struct arm {
+    uint32_t config; /* the CRC-32 at the end of the configuration's frame that is meant */
 };
 
 struct traj {

@@ -13,6 +13,7 @@ union body {
     struct hello hello;
     struct config config;
     struct home home;
+    struct arm arm;
     struct traj traj;
     struct ping ping;
 };
@@ -30,7 +31,7 @@ static int take_hello(struct robot *robot, const struct hello *hello) {
     return REFUSAL_WRONG_VERSION;
 }
 
-static int take_config(struct robot *robot, const struct config *config) {
+static int take_config(struct robot *robot, const struct config *config, uint32_t crc) {
     struct axis axes[2];
     bool fits = config->x[0] < config->x[1] && config->y[0] < config->y[1] && config->most_volts <= config->supply;
     for (int i = 0; i < 2; i++) {
@@ -46,6 +47,7 @@ static int take_config(struct robot *robot, const struct config *config) {
         }
     }
     robot->config = *config;
+    robot->config_crc = crc;
     robot->axes[0] = axes[0];
     robot->axes[1] = axes[1];
     robot->configured = true;
@@ -86,7 +88,10 @@ static int take_home(struct robot *robot, const struct home *home) {
     return OBEYED;
 }
 
-static int take_arm(struct robot *robot) {
+static int take_arm(struct robot *robot, const struct arm *arm) {
+    if (arm->config != robot->config_crc) {
+        return REFUSAL_OTHER_CONFIG;
+    }
     if (!encoders_good(robot)) {
         return REFUSAL_NO_ENCODERS;
     }
@@ -201,12 +206,12 @@ static bool in_its_state(enum message id, enum state state) {
     }
 }
 
-static int take(struct robot *robot, enum message id, const union body *body, uint32_t received) {
-    switch (id) {
+static int take(struct robot *robot, const struct frame *frame, const union body *body, uint32_t received) {
+    switch (frame->layout->id) {
     case MESSAGE_HELLO: return take_hello(robot, &body->hello);
-    case MESSAGE_CONFIG: return take_config(robot, &body->config);
+    case MESSAGE_CONFIG: return take_config(robot, &body->config, frame->crc);
     case MESSAGE_HOME: return take_home(robot, &body->home);
-    case MESSAGE_ARM: return take_arm(robot);
+    case MESSAGE_ARM: return take_arm(robot, &body->arm);
     case MESSAGE_DISARM: enter(robot, STATE_IDLE); return OBEYED;
     case MESSAGE_ESTOP: raise_fault(robot, FAULT_ESTOP); return OBEYED;
     case MESSAGE_CLEAR: recover(robot); return OBEYED;
@@ -238,6 +243,9 @@ void obey(struct robot *robot, const struct frame *frame, uint32_t received) {
     if (!from_host(id)) {
         return; /* an echo on the line */
     }
+    if (id == MESSAGE_HELLO && robot->read >> id & 1) {
+        return; /* one a tick is enough of a greeting */
+    }
     int refusal = refused_unread(robot, id);
     if (refusal == OBEYED) {
         robot->read |= (uint16_t)(1u << id);
@@ -245,7 +253,7 @@ void obey(struct robot *robot, const struct frame *frame, uint32_t received) {
         if (id == MESSAGE_HELLO && body.hello.boots != 0) {
             return; /* a board's, so an echo too */
         }
-        refusal = within ? take(robot, id, &body, received) : REFUSAL_OUT_OF_RANGE;
+        refusal = within ? take(robot, frame, &body, received) : REFUSAL_OUT_OF_RANGE;
     }
     robot->heard = received;
     if (refusal != OBEYED) {

@@ -32,6 +32,7 @@ struct robot {
     bool greeted;    /* a hello of the same version and schema came */
     bool configured;
     struct config config;
+    uint32_t config_crc; /* of its frame */
     struct axis axes[2];
 
     struct encoder encoders[2];

@@ -8,7 +8,7 @@ from firmware import ELF
 from puckpilot_env.parameters import make_records
 from sim2real.emulate.gantry import Gantry
 from sim2real.emulate.machine import Machine
-from sim2real.link.frames import Receiver, encode
+from sim2real.link.frames import Receiver, encode, seal
 from sim2real.link.messages import (
     SCHEMA,
     VERSION,
@@ -34,7 +34,7 @@ def count_ticks() -> dict[str, int]:
     """The most instructions of a tick, by what was asked in it."""
     board = _Board()
     found = {"nothing to do": board.most(0.02)}
-    asked = (Hello(*VERSION, SCHEMA, 1, 0), board.config, Home(*START), Arm())
+    asked = (Hello(*VERSION, SCHEMA, 1, 0), board.config, Home(*START), Arm(seal(board.config)))
     for message in asked:
         name = type(message).__name__.lower()
         found[f"a {name}" if name != "arm" else "an arm"] = board.most(0.005, message)

@@ -11,7 +11,7 @@ from puckpilot_env.physics.mallet import axis_constants
 from puckpilot_env.physics.plan import switching_times
 from sim2real.link import messages
 from tests.firmware.host_core import Core, Step
-from tests.firmware.line import config, frame, hello, read
+from tests.firmware.line import arm, config, frame, hello, read
 
 CORNER = (0.1, 0.2)  # m: where the mallet stands in the beginning
 FULL = 3600
@@ -149,7 +149,7 @@ class Bench:
         self.run(30)
         self.send(hello(), self.config, messages.Home(*self.start))
         self.run(2)
-        self.send(messages.Arm())
+        self.send(arm(self.config))
         self.run(1)
         assert self.state == messages.State.ARMED
         return self

@@ -9,9 +9,9 @@ import struct
 import pytest
 
 from sim2real.link import messages
-from sim2real.link.messages import Arm, Clear, Config, Disarm, Estop, Fault, Home, Ping, Refusal, State, Traj
+from sim2real.link.messages import Clear, Config, Disarm, Estop, Fault, Home, Ping, Refusal, State, Traj
 from tests.firmware.bench import CORNER, FULL, Bench, with_parity
-from tests.firmware.line import config, frame, hello, sealed
+from tests.firmware.line import arm, config, frame, hello, sealed
 
 TARGET = (0.6, 0.7)
 PLAYS = 60  # ticks into a trajectory: both motors are driven
@@ -71,7 +71,7 @@ def test_a_flood_of_good_messages_is_borne(playing: Bench):
 def test_a_flood_of_refusals_leaves_room_for_telemetry(playing: Bench):
     before = sum(isinstance(one, messages.Telemetry) for one in playing.heard)
     for _ in range(100):
-        playing.send(*[Arm()] * 12)
+        playing.send(*[arm()] * 12)
         assert len(playing.tick().sent) <= 192
     assert sum(isinstance(one, messages.Telemetry) for one in playing.heard) == before + 50
 
@@ -79,7 +79,7 @@ def test_a_flood_of_refusals_leaves_room_for_telemetry(playing: Bench):
 def test_a_flood_of_refusals_does_not_drive_out_the_fault(playing: Bench):
     playing.send(*[Clear()] * 12)
     playing.tick()
-    playing.send(Estop(), *[Arm(), Disarm()] * 6)
+    playing.send(Estop(), *[arm(), Disarm()] * 6)
     playing.tick()
     playing.run(30)
     assert playing.events(messages.Notice.FAULTED) == [Fault.ESTOP]
@@ -135,7 +135,7 @@ def test_an_echo_of_its_own_words_is_not_a_host():
 def test_another_version_is_not_armed_for(wrong: dict):
     bench = Bench()
     bench.run(30)
-    bench.send(hello(**wrong), bench.config, Home(*CORNER), Arm())
+    bench.send(hello(**wrong), bench.config, Home(*CORNER), arm())
     bench.run(8)
     assert bench.refusals == [(1, Refusal.WRONG_VERSION), (4, Refusal.WRONG_VERSION)]
     answer = [one for one in bench.heard if isinstance(one, messages.Hello)]
@@ -193,6 +193,21 @@ def test_a_configuration_must_fit_together(wrong: dict):
     bench.send(config(**wrong))
     bench.run(1)
     assert bench.refusals == [(2, Refusal.BAD_CONFIG)]
+
+
+def test_it_arms_for_the_configuration_that_is_meant_alone():
+    """One that was lost on the way to a board that holds an older one, and one that was refused."""
+    bench = Bench()
+    bench.run(30)
+    meant, bad = config(off_path=0.03), config(most_volts=25.0)
+    bench.send(hello(), bench.config, Home(*CORNER), frame(meant)[:-9] + b"\0", arm(meant), bad, arm(bad))
+    bench.run(12)
+    assert bench.refusals == [(4, Refusal.OTHER_CONFIG), (2, Refusal.BUSY), (4, Refusal.OTHER_CONFIG)]
+    bench.send(bad)
+    bench.tick()
+    bench.send(arm(bad), meant, arm(meant))
+    bench.run(6)
+    assert bench.refusals[3:] == [(2, Refusal.BAD_CONFIG), (4, Refusal.OTHER_CONFIG)] and bench.state == State.ARMED
 
 
 @pytest.mark.parametrize(
@@ -280,7 +295,7 @@ def test_a_silent_host_stops_the_motors(silence: int):
 def test_estop_stops_in_the_tick_that_hears_it(playing: Bench):
     playing.send(Estop())
     assert playing.tick().pwm == (0, 0)
-    playing.send(Arm(), playing.trajectory(TARGET))
+    playing.send(arm(), playing.trajectory(TARGET))
     playing.run(20)
     assert playing.pwm == (0, 0) and playing.refusals == [(4, Refusal.WRONG_STATE), (8, Refusal.WRONG_STATE)]
 
@@ -301,7 +316,7 @@ def test_the_first_fault_is_kept_until_it_is_cleared(playing: Bench):
 def test_a_clear_after_an_estop_still_knows_the_place(playing: Bench):
     playing.send(Estop())
     playing.run(400)
-    playing.send(Clear(), Arm())
+    playing.send(Clear(), arm())
     playing.run(3)
     assert playing.state == State.ARMED and playing.telemetry is not None
     assert playing.telemetry.place == pytest.approx(playing.place, abs=3e-5)
@@ -338,7 +353,7 @@ def test_a_broken_encoder_stops_both_motors(playing: Bench, what: str, motor: in
     assert until_stopped(playing, 15) <= 10
     found = playing.events(messages.Notice.FAULTED)
     assert found == [why] or (what == "stuck low" and found == [Fault.ENCODER_JUMP])
-    playing.send(Clear(), Arm())
+    playing.send(Clear(), arm())
     playing.run(30)
     assert playing.pwm == (0, 0) and playing.state != State.ARMED
 
@@ -391,7 +406,7 @@ def test_a_clear_beside_an_encoder_that_breaks_does_not_keep_the_place():
         bench.encoders[0].spoil = lambda answer: answer ^ 0x0010
         for _ in range(ticks):
             bench.tick()
-        bench.send(Clear(), Arm())
+        bench.send(Clear(), arm())
         bench.tick()
         bench.encoders[0].spoil = lambda answer: answer
         bench.run(30)
