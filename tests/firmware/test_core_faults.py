@@ -380,8 +380,29 @@ def test_a_few_bad_answers_are_borne(playing: Bench, what: str):
         playing.encoders[0].spoil = spoiled
         playing.run(4)
         playing.encoders[0].spoil = lambda answer: answer
-        playing.run(6)
+        playing.run(8)
     playing.run(600)
+    assert playing.state == State.ARMED and playing.place == pytest.approx(TARGET, abs=5e-4)
+
+
+def spoil_some(bench: Bench, bad: int, of: int) -> None:
+    """So many answers of every so many have a wrong parity."""
+    numbers = itertools.count()
+    bench.encoders[0].spoil = lambda answer: answer ^ 0x0010 if next(numbers) % of < bad else answer
+
+
+@pytest.mark.parametrize(("bad", "of"), [(5, 6), (4, 6), (3, 6), (2, 5), (1, 2)])
+def test_an_encoder_that_is_bad_more_than_once_in_three_is_not_borne(playing: Bench, bad: int, of: int):
+    spoil_some(playing, bad, of)
+    assert until_stopped(playing, 60) <= 11 * of
+    playing.run(2)
+    assert playing.events(messages.Notice.FAULTED) == [Fault.ENCODER_PARITY]
+
+
+@pytest.mark.parametrize(("bad", "of"), [(1, 3), (1, 10), (4, 12)])
+def test_an_encoder_that_is_bad_now_and_then_is_borne(playing: Bench, bad: int, of: int):
+    spoil_some(playing, bad, of)
+    playing.run(700)
     assert playing.state == State.ARMED and playing.place == pytest.approx(TARGET, abs=5e-4)
 
 
