@@ -216,8 +216,7 @@ static int take(struct robot *robot, const struct frame *frame, const union body
     case MESSAGE_ESTOP: raise_fault(robot, FAULT_ESTOP); return OBEYED;
     case MESSAGE_CLEAR: recover(robot); return OBEYED;
     case MESSAGE_TRAJ: return take_traj(robot, &body->traj);
-    case MESSAGE_PING: return take_ping(robot, &body->ping, received);
-    default: return OBEYED;
+    default: return take_ping(robot, &body->ping, received); /* what else a host may say */
     }
 }
 

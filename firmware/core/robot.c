@@ -50,8 +50,9 @@ static void listen(struct robot *robot, const struct robot_input *in) {
     }
 }
 
+/* By then an encoder gave a good angle, or was given up: after eleven ticks of bad answers at the latest. */
 static void leave_boot(struct robot *robot) {
-    if (robot->state == STATE_BOOT && robot->ticks > BOOT_TICKS && robot->encoders[0].seen && robot->encoders[1].seen) {
+    if (robot->state == STATE_BOOT && robot->ticks > BOOT_TICKS) {
         enter(robot, STATE_UNHOMED);
     }
 }
