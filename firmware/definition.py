@@ -99,8 +99,8 @@ def read_protocol(path: Path = PROTOCOL) -> Protocol:
     )
     enums = tuple(Enum(one["name"], one["doc"], tuple((n, d) for n, d in one["values"])) for one in raw["enum"])
     ids = [message.id for message in messages]
-    if len(set(ids)) < len(ids) or not all(0 < number < 256 for number in ids):
-        raise ValueError(f"{path.name}: ids are {ids}; expected different numbers from 1 to 255")
+    if ids != list(range(1, len(ids) + 1)):  # by which the firmware finds a message's layout
+        raise ValueError(f"{path.name}: ids are {ids}; expected 1, 2, 3 and so on, in this order")
     for message in messages:
         if message.sender not in FROM:
             raise ValueError(f"{path.name}: {message.name} is from '{message.sender}'; known: {', '.join(FROM)}")

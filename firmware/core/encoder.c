@@ -19,10 +19,11 @@ static bool even(uint16_t word) {
 }
 
 static void doubt(struct encoder *encoder, enum fault why) {
-    if (encoder->bad == ENCODER_PATIENCE) {
+    if (encoder->doubt + ENCODER_BAD > ENCODER_PATIENCE * ENCODER_BAD) {
         encoder->fault = why;
     } else {
         encoder->bad++;
+        encoder->doubt += ENCODER_BAD;
     }
 }
 
@@ -52,6 +53,7 @@ static void take_angle(struct encoder *encoder, uint16_t angle) {
     }
     encoder->raw = angle;
     encoder->bad = 0;
+    encoder->doubt -= encoder->doubt < ENCODER_GOOD ? encoder->doubt : ENCODER_GOOD;
 }
 
 static void understand(struct encoder *encoder, uint16_t answer) {

@@ -13,6 +13,11 @@
 #define ENCODER_TURN 16384
 #define ENCODER_PATIENCE 5 /* bad answers in a row that are borne: meanwhile the angle is taken to go on as it did */
 
+/* A bad answer adds to the doubt, a good angle takes away less, so that an encoder of which more than one answer in
+ * three is bad is not believed for long, and one that is bad now and then is for ever. */
+#define ENCODER_BAD 2
+#define ENCODER_GOOD 1
+
 enum encoder_command {
     ENCODER_NOTHING = 0,      /* nothing was asked yet */
     ENCODER_ANGLE = 0xFFFF,   /* read ANGLECOM, register 0x3FFF */
@@ -26,6 +31,7 @@ struct encoder {
     int32_t step;           /* how far it turned in a tick, of late */
     uint16_t raw;           /* the last good angle, within its turn */
     uint8_t bad;            /* bad answers in a row */
+    uint8_t doubt;          /* see ENCODER_BAD */
     uint8_t zeros;          /* answers of nothing but zeros in a row */
     bool seen;              /* a good angle came since the start */
     uint8_t fault;          /* enum fault: why its answers are not believed any more */

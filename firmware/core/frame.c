@@ -9,73 +9,45 @@ static uint32_t crc_of(const uint8_t *plain, size_t count) {
     return crc32(plain[0] == MESSAGE_UNCHECKED ? 0 : PROTOCOL_SCHEMA, plain, count);
 }
 
-/* Take COBS off count bytes, in place. The number of bytes, 0 if they are no COBS. */
-static size_t unstuff(uint8_t *bytes, size_t count) {
-    size_t in = 0, out = 0;
-    while (in < count) {
-        size_t code = bytes[in++]; /* never 0: a zero ends the frame */
-        if (code - 1 > count - in) {
-            return 0;
-        }
-        for (size_t i = 1; i < code; i++) {
-            bytes[out++] = bytes[in++];
-        }
-        if (code < 0xFF && in < count) {
-            bytes[out++] = 0;
-        }
-    }
-    return out;
-}
-
 static const struct layout *layout_of(uint8_t id) {
-    for (size_t i = 0; i < LAYOUTS; i++) {
-        if (layouts[i].id == id) {
-            return &layouts[i];
-        }
-    }
-    return NULL;
+    return id >= 1 && id <= LAYOUTS ? &layouts[id - 1] : NULL;
 }
 
-static bool open_frame(uint8_t *kept, size_t count, struct frame *frame) {
-    size_t length = unstuff(kept, count);
+static bool open_frame(const uint8_t *kept, size_t length, struct frame *frame) {
     const struct layout *layout = length > FRAME_CRC ? layout_of(kept[0]) : NULL;
     if (layout == NULL || length != 1u + layout->size + FRAME_CRC) {
         return false;
     }
-    uint32_t crc;
-    memcpy(&crc, kept + length - FRAME_CRC, FRAME_CRC);
+    memcpy(&frame->crc, kept + length - FRAME_CRC, FRAME_CRC);
     frame->layout = layout;
     frame->body = kept + 1;
-    return crc == crc_of(kept, length - FRAME_CRC);
-}
-
-static enum frame_result end_frame(struct receiver *receiver, struct frame *frame) {
-    size_t count = receiver->count;
-    bool overlong = receiver->overlong;
-    receiver->count = 0;
-    receiver->overlong = false;
-    if (count == 0 && !overlong) {
-        return FRAME_OPEN; /* zeros may stand between frames */
-    }
-    return !overlong && open_frame(receiver->kept, count, frame) ? FRAME_GOOD : FRAME_DAMAGED;
+    return frame->crc == crc_of(kept, length - FRAME_CRC);
 }
 
 enum frame_result frame_take(struct receiver *receiver, const uint8_t *bytes, size_t *count, struct frame *frame) {
-    size_t given = *count, length = 0, room = sizeof receiver->kept - receiver->count;
-    uint8_t *to = receiver->kept + receiver->count;
-    while (length < given && bytes[length] != 0) {
-        if (length < room) {
-            to[length] = bytes[length];
+    size_t given = *count, kept = receiver->count, left = receiver->left; /* in registers: this is done for every byte */
+    for (size_t i = 0; i < given; i++) {
+        uint8_t byte = bytes[i];
+        if (byte == 0) {
+            *count = i + 1;
+            receiver->count = receiver->left = 0;
+            if (kept == 0) {
+                return FRAME_OPEN; /* zeros may stand between frames */
+            }
+            return left == 0 && open_frame(receiver->kept + 1, kept - 1, frame) ? FRAME_GOOD : FRAME_DAMAGED;
         }
-        length++;
+        if (left == 0) { /* a code byte stands for a zero, and says where the next is; 0xFF is beyond any frame */
+            left = byte;
+            byte = 0;
+        }
+        left--;
+        if (kept < sizeof receiver->kept) {
+            receiver->kept[kept++] = byte;
+        }
     }
-    receiver->overlong = receiver->overlong || length > room;
-    receiver->count = (uint8_t)(receiver->count + (length < room ? length : room));
-    if (length == given) {
-        return FRAME_OPEN;
-    }
-    *count = length + 1;
-    return end_frame(receiver, frame);
+    receiver->count = (uint8_t)kept;
+    receiver->left = (uint8_t)left;
+    return FRAME_OPEN;
 }
 
 size_t frame_put(uint8_t *out, enum message id, const void *data) {

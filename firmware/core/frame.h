@@ -13,16 +13,18 @@
 #define FRAME_PLAIN (1 + MESSAGE_LONGEST + FRAME_CRC) /* id, body, CRC */
 #define FRAME_LONGEST (FRAME_PLAIN + 2)               /* one code byte, as it is under 254 bytes, and the zero */
 
-/* A host's bytes on their way to messages. */
+/* A host's bytes on their way to messages: of the frame that is not yet whole, without COBS, a zero before it, and
+ * one byte more than any has, by whose length it is none. */
 struct receiver {
-    uint8_t kept[FRAME_PLAIN + 1];
+    uint8_t kept[1 + FRAME_PLAIN + 1];
     uint8_t count;
-    bool overlong; /* more came than a frame has: nothing is kept until the next zero */
+    uint8_t left; /* bytes up to the next code byte */
 };
 
 struct frame {
     const struct layout *layout;
     const uint8_t *body;
+    uint32_t crc;
 };
 
 enum frame_result {

@@ -36,7 +36,8 @@ bool motor_volts(const float axes[2], float most, float motors[2]) {
     if (!(greater > most)) {
         return false;
     }
-    motors[0] *= most / greater;
-    motors[1] *= most / greater;
+    float share = most / greater;
+    motors[0] *= share;
+    motors[1] *= share;
     return true;
 }

@@ -33,6 +33,10 @@ static const struct field home_fields[] = {
     {FIELD_F32, 1, offsetof(struct home, y), {.real = -5.0f}, {.real = 5.0f}},
 };
 
+static const struct field arm_fields[] = {
+    {FIELD_U32, 1, offsetof(struct arm, config), {.whole = 0}, {.whole = UINT32_MAX}},
+};
+
 static const struct field traj_fields[] = {
     {FIELD_U32, 1, offsetof(struct traj, sequence), {.whole = 0}, {.whole = UINT32_MAX}},
     {FIELD_U32, 1, offsetof(struct traj, apply), {.whole = 0}, {.whole = UINT32_MAX}},
@@ -79,7 +83,7 @@ const struct layout layouts[LAYOUTS] = {
     {MESSAGE_HELLO, 5, 14, hello_fields},
     {MESSAGE_CONFIG, 13, 82, config_fields},
     {MESSAGE_HOME, 2, 8, home_fields},
-    {MESSAGE_ARM, 0, 0, NULL},
+    {MESSAGE_ARM, 1, 4, arm_fields},
     {MESSAGE_DISARM, 0, 0, NULL},
     {MESSAGE_ESTOP, 0, 0, NULL},
     {MESSAGE_CLEAR, 0, 0, NULL},

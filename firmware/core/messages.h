@@ -6,7 +6,7 @@
 
 #define PROTOCOL_MAJOR 1
 #define PROTOCOL_MINOR 0
-#define PROTOCOL_SCHEMA 0x262B07D4u
+#define PROTOCOL_SCHEMA 0x6A25804Eu
 #define MESSAGE_UNCHECKED 1 /* its CRC begins at 0, that of others at the schema */
 #define MESSAGE_LONGEST 82 /* bytes of a body */
 
@@ -47,6 +47,7 @@ enum refusal {
     REFUSAL_OUT_OF_RANGE, /* a number is outside its limits, or none */
     REFUSAL_WRONG_VERSION, /* no hello of the same version and schema came before */
     REFUSAL_NO_CONFIG, /* no configuration came before */
+    REFUSAL_OTHER_CONFIG, /* the configuration held is not the one that is meant: it was lost, or another host's came */
     REFUSAL_BAD_CONFIG, /* the configuration's numbers do not fit each other */
     REFUSAL_WRONG_STATE, /* not in this state */
     REFUSAL_NO_ENCODERS, /* the encoders give no valid angle */
@@ -57,7 +58,7 @@ enum refusal {
     REFUSAL_OFF_START, /* the path does not begin where the mallet is */
     REFUSAL_TOO_LATE, /* the time to apply it is past */
     REFUSAL_TOO_EARLY, /* the time to apply it is too far ahead */
-    REFUSAL_BUSY, /* one that came less than 7 ms before is still being looked at */
+    REFUSAL_BUSY, /* one of its kind that came just before is still being looked at */
 };
 
 enum message {
@@ -104,9 +105,13 @@ struct home {
     float y; /* m */
 };
 
+struct arm {
+    uint32_t config; /* the CRC-32 at the end of the configuration's frame that is meant */
+};
+
 struct traj {
     uint32_t sequence; /* greater than of every one before, modulo 2^32 */
-    uint32_t apply; /* us; when it begins, by the board's clock; looking at it takes 7 ms */
+    uint32_t apply; /* us; when it begins, by the board's clock; looking at it takes 10 ms */
     uint32_t life; /* us; after it the motors are off */
     float volts[2]; /* V; of axes x, y, signed */
     uint32_t t1[2]; /* us */

@@ -13,6 +13,7 @@ union body {
     struct hello hello;
     struct config config;
     struct home home;
+    struct arm arm;
     struct traj traj;
     struct ping ping;
 };
@@ -30,11 +31,8 @@ static int take_hello(struct robot *robot, const struct hello *hello) {
     return REFUSAL_WRONG_VERSION;
 }
 
-static int take_config(struct robot *robot, const struct config *config) {
+static int take_config(struct robot *robot, const struct config *config, uint32_t crc) {
     struct axis axes[2];
-    if (robot->state == STATE_ARMED) {
-        return REFUSAL_WRONG_STATE;
-    }
     bool fits = config->x[0] < config->x[1] && config->y[0] < config->y[1] && config->most_volts <= config->supply;
     for (int i = 0; i < 2; i++) {
         fits = fits && axis_make(&axes[i], config->c5[i], config->c6[i], config->c7[i], config->pulley_radius);
@@ -49,6 +47,7 @@ static int take_config(struct robot *robot, const struct config *config) {
         }
     }
     robot->config = *config;
+    robot->config_crc = crc;
     robot->axes[0] = axes[0];
     robot->axes[1] = axes[1];
     robot->configured = true;
@@ -67,9 +66,6 @@ static bool encoders_good(const struct robot *robot) {
 
 static int take_home(struct robot *robot, const struct home *home) {
     const struct config *config = &robot->config;
-    if (robot->state != STATE_UNHOMED && robot->state != STATE_IDLE) {
-        return REFUSAL_WRONG_STATE;
-    }
     if (!robot->configured) {
         return REFUSAL_NO_CONFIG;
     }
@@ -92,34 +88,15 @@ static int take_home(struct robot *robot, const struct home *home) {
     return OBEYED;
 }
 
-static int take_arm(struct robot *robot) {
-    if (!robot->greeted) {
-        return REFUSAL_WRONG_VERSION;
-    }
-    if (robot->state != STATE_IDLE) {
-        return REFUSAL_WRONG_STATE;
+static int take_arm(struct robot *robot, const struct arm *arm) {
+    if (arm->config != robot->config_crc) {
+        return REFUSAL_OTHER_CONFIG;
     }
     if (!encoders_good(robot)) {
         return REFUSAL_NO_ENCODERS;
     }
     control_start(&robot->control);
     enter(robot, STATE_ARMED);
-    return OBEYED;
-}
-
-static int take_disarm(struct robot *robot) {
-    if (robot->state != STATE_ARMED) {
-        return REFUSAL_WRONG_STATE;
-    }
-    enter(robot, STATE_IDLE);
-    return OBEYED;
-}
-
-static int take_clear(struct robot *robot) {
-    if (robot->state != STATE_FAULT) {
-        return REFUSAL_WRONG_STATE;
-    }
-    recover(robot);
     return OBEYED;
 }
 
@@ -144,14 +121,8 @@ static bool begins_there(const struct robot *robot, const struct traj *traj) {
 static int take_traj(struct robot *robot, const struct traj *traj) {
     const struct config *config = &robot->config;
     int32_t ahead = (int32_t)(traj->apply - robot->now);
-    if (robot->state != STATE_ARMED) {
-        return REFUSAL_WRONG_STATE;
-    }
     if (robot->numbered && (int32_t)(traj->sequence - robot->newest) <= 0) {
         return REFUSAL_OLD_SEQUENCE;
-    }
-    if (robot->doubted.there) {
-        return REFUSAL_BUSY;
     }
     if (traj->t1[0] > traj->t2[0] || traj->t1[1] > traj->t2[1]) {
         return REFUSAL_SWITCH_ORDER;
@@ -173,9 +144,9 @@ static int take_traj(struct robot *robot, const struct traj *traj) {
     return OBEYED;
 }
 
-static bool stays_inside(const struct robot *robot, int axis) {
+static bool stays_inside(const struct robot *robot, int axis, int leg) {
     const float *area = axis == 0 ? robot->config.x : robot->config.y;
-    return path_inside(&robot->doubted.paths[axis], &robot->axes[axis], area[0], area[1]);
+    return leg_inside(&robot->doubted.paths[axis], leg, &robot->axes[axis], area[0], area[1]);
 }
 
 static void refuse(struct robot *robot, enum refusal why) {
@@ -183,32 +154,35 @@ static void refuse(struct robot *robot, enum refusal why) {
     tell(robot, NOTICE_REFUSED, (uint32_t)why | MESSAGE_TRAJ << 8);
 }
 
+#define PARTS 4 /* of looking at an axis */
+
+/* One of them; whether the next may come. */
+static bool vet_axis(struct robot *robot, int axis, int part) {
+    struct track *doubted = &robot->doubted;
+    struct path *path = &doubted->paths[axis];
+    switch (part) {
+    case 0: path_begin(path, &robot->axes[axis], &doubted->traj, axis); return true;
+    case 1: path_end(path, &robot->axes[axis], &doubted->traj, axis); return true;
+    case 2: return stays_inside(robot, axis, 0);
+    default: return stays_inside(robot, axis, 1) && stays_inside(robot, axis, 2);
+    }
+}
+
 void vet(struct robot *robot) {
     struct track *doubted = &robot->doubted;
     if (!doubted->there) {
         return;
     }
-    int axis = robot->vetted & 1;
-    switch (robot->vetted++) {
-    case 0: break; /* it came in this tick, which has done enough */
-    case 1:
-    case 2: path_make(&doubted->paths[axis], &robot->axes[axis], &doubted->traj, axis); break;
-    case 3:
-    case 4:
-        if (!stays_inside(robot, axis)) {
+    int part = robot->vetted++;
+    if (part < 2 * PARTS) {
+        if (!vet_axis(robot, part & 1, part >> 1)) {
             refuse(robot, REFUSAL_LEAVES_AREA);
         }
-        break;
-    case 5:
-        if (!begins_there(robot, &doubted->traj)) {
-            refuse(robot, REFUSAL_OFF_START);
-        }
-        break;
-    default:
-        if ((int32_t)(doubted->traj.apply - robot->now) < -LATEST) {
-            refuse(robot, REFUSAL_TOO_LATE);
-            break;
-        }
+    } else if (!begins_there(robot, &doubted->traj)) {
+        refuse(robot, REFUSAL_OFF_START);
+    } else if ((int32_t)(doubted->traj.apply - robot->now) < -LATEST) {
+        refuse(robot, REFUSAL_TOO_LATE);
+    } else {
         robot->coming = *doubted;
         doubted->there = false;
     }
@@ -220,23 +194,46 @@ static int take_ping(struct robot *robot, const struct ping *ping, uint32_t rece
     return OBEYED;
 }
 
-static int take(struct robot *robot, enum message id, const union body *body, uint32_t received) {
+static bool in_its_state(enum message id, enum state state) {
     switch (id) {
+    case MESSAGE_CONFIG: return state != STATE_ARMED;
+    case MESSAGE_HOME: return state == STATE_UNHOMED || state == STATE_IDLE;
+    case MESSAGE_ARM: return state == STATE_IDLE;
+    case MESSAGE_DISARM:
+    case MESSAGE_TRAJ: return state == STATE_ARMED;
+    case MESSAGE_CLEAR: return state == STATE_FAULT;
+    default: return true;
+    }
+}
+
+static int take(struct robot *robot, const struct frame *frame, const union body *body, uint32_t received) {
+    switch (frame->layout->id) {
     case MESSAGE_HELLO: return take_hello(robot, &body->hello);
-    case MESSAGE_CONFIG: return take_config(robot, &body->config);
+    case MESSAGE_CONFIG: return take_config(robot, &body->config, frame->crc);
     case MESSAGE_HOME: return take_home(robot, &body->home);
-    case MESSAGE_ARM: return take_arm(robot);
-    case MESSAGE_DISARM: return take_disarm(robot);
+    case MESSAGE_ARM: return take_arm(robot, &body->arm);
+    case MESSAGE_DISARM: enter(robot, STATE_IDLE); return OBEYED;
     case MESSAGE_ESTOP: raise_fault(robot, FAULT_ESTOP); return OBEYED;
-    case MESSAGE_CLEAR: return take_clear(robot);
+    case MESSAGE_CLEAR: recover(robot); return OBEYED;
     case MESSAGE_TRAJ: return take_traj(robot, &body->traj);
-    case MESSAGE_PING: return take_ping(robot, &body->ping, received);
-    default: return OBEYED;
+    default: return take_ping(robot, &body->ping, received); /* what else a host may say */
     }
 }
 
 static bool from_host(enum message id) {
     return id != MESSAGE_PONG && id != MESSAGE_TELEMETRY && id != MESSAGE_EVENT;
+}
+
+/* Why to refuse a message without a look at its numbers, which takes its time. */
+static int refused_unread(const struct robot *robot, enum message id) {
+    if (id == MESSAGE_ARM && !robot->greeted) {
+        return REFUSAL_WRONG_VERSION;
+    }
+    if (!in_its_state(id, robot->state)) {
+        return REFUSAL_WRONG_STATE;
+    }
+    bool another = (id == MESSAGE_CONFIG || id == MESSAGE_HOME) && (robot->read >> id & 1);
+    return another || (id == MESSAGE_TRAJ && robot->doubted.there) ? REFUSAL_BUSY : OBEYED;
 }
 
 void obey(struct robot *robot, const struct frame *frame, uint32_t received) {
@@ -245,15 +242,19 @@ void obey(struct robot *robot, const struct frame *frame, uint32_t received) {
     if (!from_host(id)) {
         return; /* an echo on the line */
     }
-    bool within = wire_read(frame->layout, frame->body, &body);
-    if (id == MESSAGE_HELLO && body.hello.boots != 0) {
-        return; /* a board's, so an echo too */
+    if (id == MESSAGE_HELLO && robot->read >> id & 1) {
+        return; /* one a tick is enough of a greeting */
+    }
+    int refusal = refused_unread(robot, id);
+    if (refusal == OBEYED) {
+        robot->read |= (uint16_t)(1u << id);
+        bool within = wire_read(frame->layout, frame->body, &body);
+        if (id == MESSAGE_HELLO && body.hello.boots != 0) {
+            return; /* a board's, so an echo too */
+        }
+        refusal = within ? take(robot, frame, &body, received) : REFUSAL_OUT_OF_RANGE;
     }
     robot->heard = received;
-    int refusal = REFUSAL_OUT_OF_RANGE;
-    if (within) {
-        refusal = take(robot, id, &body, received);
-    }
     if (refusal != OBEYED) {
         tell(robot, NOTICE_REFUSED, (uint32_t)refusal | (uint32_t)id << 8);
     }

@@ -7,7 +7,7 @@
 /* Do what a message asks. received: when its last byte came [us]. */
 void obey(struct robot *robot, const struct frame *frame, uint32_t received);
 
-/* Go on looking at the newest trajectory, a part in each tick: all at once would take too long. After six ticks it may
+/* Go on looking at the newest trajectory, a part in each call: all at once would take too long. After the ninth it may
  * begin. */
 void vet(struct robot *robot);
 

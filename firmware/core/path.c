@@ -26,16 +26,18 @@ static struct leg leg_from(const struct modes *modes, const struct axis *axis, u
     };
 }
 
-void path_make(struct path *path, const struct axis *axis, const struct traj *traj, int which) {
-    struct leg *legs = path->legs;
-    float volts = traj->volts[which];
-    uint32_t first = traj->t1[which], second = traj->t2[which];
+void path_begin(struct path *path, const struct axis *axis, const struct traj *traj, int which) {
+    uint32_t first = traj->t1[which];
     struct modes modes = {traj->rest[which], traj->slow[which], traj->fast[which]};
-    legs[0] = leg_from(&modes, axis, 0, volts);
-    modes = modes_at(&legs[0], axis, (float)first * SECONDS);
-    legs[1] = leg_from(&modes, axis, first, -volts);
-    modes = modes_at(&legs[1], axis, (float)(second - first) * SECONDS);
-    legs[2] = leg_from(&modes, axis, second, 0.0f);
+    path->legs[0] = leg_from(&modes, axis, 0, traj->volts[which]);
+    modes = modes_at(&path->legs[0], axis, (float)first * SECONDS);
+    path->legs[1] = leg_from(&modes, axis, first, -traj->volts[which]);
+}
+
+void path_end(struct path *path, const struct axis *axis, const struct traj *traj, int which) {
+    uint32_t first = traj->t1[which], second = traj->t2[which];
+    struct modes modes = modes_at(&path->legs[1], axis, (float)(second - first) * SECONDS);
+    path->legs[2] = leg_from(&modes, axis, second, 0.0f);
 }
 
 static const struct leg *leg_at(const struct path *path, uint32_t time) {
@@ -87,15 +89,13 @@ static bool turn_inside(const struct leg *leg, const struct leg *next, const str
     return between(leg->rest + leg->drift * since, low, high);
 }
 
-bool path_inside(const struct path *path, const struct axis *axis, float low, float high) {
-    const struct leg *legs = path->legs;
-    for (int i = 0; i < LEGS; i++) {
-        if (!between(start_of(&legs[i]), low, high)) {
-            return false;
-        }
-        if (i < LEGS - 1 && !turn_inside(&legs[i], &legs[i + 1], axis, low, high)) {
-            return false;
-        }
+bool leg_inside(const struct path *path, int which, const struct axis *axis, float low, float high) {
+    const struct leg *leg = &path->legs[which];
+    if (!between(start_of(leg), low, high)) {
+        return false;
     }
-    return between(legs[LEGS - 1].rest, low, high); /* where it coasts to in the end */
+    if (which == LEGS - 1) {
+        return between(leg->rest, low, high); /* where it coasts to in the end */
+    }
+    return turn_inside(leg, leg + 1, axis, low, high);
 }

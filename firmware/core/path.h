@@ -24,8 +24,9 @@ struct path {
     struct leg legs[LEGS];
 };
 
-/* The path of axis number which (0 x, 1 y) of a trajectory. */
-void path_make(struct path *path, const struct axis *axis, const struct traj *traj, int which);
+/* The path of axis number which (0 x, 1 y) of a trajectory, in two parts: legs 0 and 1, then leg 2. */
+void path_begin(struct path *path, const struct axis *axis, const struct traj *traj, int which);
+void path_end(struct path *path, const struct axis *axis, const struct traj *traj, int which);
 
 /* Place [m] at a time [us] since the path began. */
 float path_place(const struct path *path, const struct axis *axis, uint32_t time);
@@ -33,7 +34,7 @@ float path_place(const struct path *path, const struct axis *axis, uint32_t time
 /* Mean voltage from a time [us] on for duration [us]. */
 float path_volts(const struct path *path, uint32_t time, uint32_t duration);
 
-/* Whether it stays inside [low, high] [m], to infinity. */
-bool path_inside(const struct path *path, const struct axis *axis, float low, float high);
+/* Whether it stays inside [low, high] [m] from the beginning of leg number which to its end, for the last: to infinity. */
+bool leg_inside(const struct path *path, int which, const struct axis *axis, float low, float high);
 
 #endif

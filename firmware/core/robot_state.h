@@ -32,6 +32,7 @@ struct robot {
     bool greeted;    /* a hello of the same version and schema came */
     bool configured;
     struct config config;
+    uint32_t config_crc; /* of its frame */
     struct axis axes[2];
 
     struct encoder encoders[2];
@@ -39,12 +40,13 @@ struct robot {
     float offset[2]; /* rad, of the pulleys */
     float place[2];  /* m */
 
+    uint16_t read;         /* messages whose numbers were looked at in this tick, bit id of each */
     uint32_t heard;        /* us: when the last message came */
     uint32_t newest;       /* sequence of the newest trajectory */
     bool numbered;         /* there was one since ARMED */
     struct track playing, coming;
     struct track doubted;  /* the newest, until it was looked at */
-    uint8_t vetted;        /* parts of it that were, one a tick */
+    uint8_t vetted;        /* parts of it that were, one a tick at most */
     float path[2];         /* m: where the path has the mallet */
     struct control control;
     int16_t pwm[2];

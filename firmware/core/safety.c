@@ -7,6 +7,9 @@
 
 void tell(struct robot *robot, enum notice notice, uint32_t detail) {
     if (robot->news_count == NEWS) {
+        if (notice == NOTICE_REFUSED) {
+            return; /* a flood of them is not to drive out what matters */
+        }
         robot->news_first = (robot->news_first + 1) % NEWS;
         robot->news_count--;
     }

@@ -42,13 +42,28 @@ static const struct config gantry = {
     .off_path = 0.5f, .silence = 200,
 };
 
+static void require(int holds) {
+    if (!holds) {
+        abort();
+    }
+}
+
+static uint32_t crc_of_frame(const uint8_t *line, size_t count) {
+    struct receiver receiver = {.count = 0};
+    struct frame frame;
+    require(frame_take(&receiver, line, &count, &frame) == FRAME_GOOD);
+    return frame.crc;
+}
+
 static size_t lead_on(uint8_t *line) {
     struct hello hello = {PROTOCOL_MAJOR, PROTOCOL_MINOR, PROTOCOL_SCHEMA, 1, 0};
     struct home home = {0.5f, 0.5f};
     size_t count = frame_put(line, MESSAGE_HELLO, &hello);
+    size_t before = count;
     count += frame_put(line + count, MESSAGE_CONFIG, &gantry);
+    struct arm arm = {crc_of_frame(line + before, count - before)};
     count += frame_put(line + count, MESSAGE_HOME, &home);
-    return count + frame_put(line + count, MESSAGE_ARM, NULL);
+    return count + frame_put(line + count, MESSAGE_ARM, &arm);
 }
 
 static size_t speak(struct input *input, uint8_t how, const struct robot *robot, uint8_t *line) {
@@ -78,12 +93,6 @@ static size_t speak(struct input *input, uint8_t how, const struct robot *robot,
 static uint16_t answer(uint16_t asked, int32_t angle) {
     uint16_t word = asked == ENCODER_HEALTH ? 0x0180 : asked == ENCODER_ERRORS ? 0 : (uint16_t)(angle & 0x3FFF);
     return (uint16_t)(word | (__builtin_popcount(word) & 1) << 15);
-}
-
-static void require(int holds) {
-    if (!holds) {
-        abort();
-    }
 }
 
 static void check(const struct robot *robot, const struct robot_output *out) {

@@ -8,26 +8,48 @@ from firmware import ELF
 from puckpilot_env.parameters import make_records
 from sim2real.emulate.gantry import Gantry
 from sim2real.emulate.machine import Machine
-from sim2real.link.frames import Receiver, encode
-from sim2real.link.messages import SCHEMA, VERSION, Arm, Config, Hello, Home, Ping, State, Telemetry, Traj
+from sim2real.link.frames import Receiver, encode, seal
+from sim2real.link.messages import (
+    SCHEMA,
+    VERSION,
+    Arm,
+    Clear,
+    Config,
+    Disarm,
+    Hello,
+    Home,
+    Ping,
+    State,
+    Telemetry,
+    Traj,
+)
 
 START = (0.3, 0.3)  # m
 VOLTS, SWITCHES = (8.0, -6.0), ((90_000, 60_000), (150_000, 100_000))
+PER_TICK = 100  # bytes that the line brings in a tick, at 1 Mbaud
+AHEAD = 12_000  # us from now to where a plan begins
 
 
 def count_ticks() -> dict[str, int]:
     """The most instructions of a tick, by what was asked in it."""
     board = _Board()
     found = {"nothing to do": board.most(0.02)}
-    for message in (Hello(*VERSION, SCHEMA, 1, 0), board.config, Home(*START), Arm()):
+    asked = (Hello(*VERSION, SCHEMA, 1, 0), board.config, Home(*START), Arm(seal(board.config)))
+    for message in asked:
         name = type(message).__name__.lower()
         found[f"a {name}" if name != "arm" else "an arm"] = board.most(0.005, message)
     if board.telemetry.state != State.ARMED:
         raise RuntimeError(f"the board is in state {board.telemetry.state}; expected it to be armed")
-    board.most(0.005, board.plan())
+    board.most(0.015, board.plan())
     found["play"] = board.most(0.02)
     found["play, a ping answered"] = max(board.most(0.003, Ping(number)) for number in range(8))
-    found["play, a new trajectory"] = max(board.most(0.005, board.plan()) for _ in range(4))
+    found["play, a new trajectory"] = max(board.new_trajectory() for _ in range(4))
+    refused = (*asked, Clear(), board.plan(), Ping(1), b"\0", b"\1\0")  # in this state, or nothing at all
+    found["play, the line full of what is refused"] = max(map(board.flood, refused))
+    if board.telemetry.state != State.ARMED:
+        raise RuntimeError(f"the board is in state {board.telemetry.state}; expected a flood to be borne")
+    board.most(0.005, Disarm())
+    found["no play, the line full of what is done"] = max(map(board.flood, (*asked[:3], Ping(1))))
     return found
 
 
@@ -57,11 +79,26 @@ class _Board:
             self.telemetry = message if isinstance(message, Telemetry) else self.telemetry
         return max(counts)
 
+    def new_trajectory(self) -> int:
+        """Beside it as much as lets the board go on looking at it: two pings in each tick."""
+        first = self.most(0.001, self.plan())
+        return max(first, *(self.most(0.001, Ping(1), Ping(2)) for _ in range(14)))
+
+    def flood(self, message: object) -> int:
+        """While the line brings, as fast as it can, a configuration, the longest of all, then this message (or these
+        bytes) for two ticks, in turn: what comes before it is done with in the same tick."""
+        self.most(0.015, self.plan())
+        one = message if isinstance(message, bytes) else encode(message)
+        self.machine.send((encode(self.config) + one * (2 * PER_TICK // len(one))) * 8)
+        most = max(self.machine.instructions(self.machine.now + 20_000))
+        self.most(0.01)
+        return most
+
     def plan(self) -> Traj:
         """From where the mallet is, somewhere."""
         self.sequence += 1
-        (x, y), begin = self.gantry.axes, self.telemetry.time + 8000
-        now = (self.machine.now + 8000) * 1e-6 - self.gantry.since
+        (x, y), begin = self.gantry.axes, self.telemetry.time + AHEAD
+        now = (self.machine.now + AHEAD) * 1e-6 - self.gantry.since
         modes = [axis.after(now) for axis in (x, y)]
         rest, slow, fast = zip(*modes, strict=True)
         plan = Traj(self.sequence, begin, 1_000_000, VOLTS, *SWITCHES, rest, slow, fast)

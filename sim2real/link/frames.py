@@ -28,6 +28,12 @@ def encode(message: Message) -> bytes:
     return cobs.encode(plain + _crc(plain)) + b"\0"
 
 
+def seal(message: Message) -> int:
+    """The CRC-32 at the end of a message's frame, by which `arm` names a configuration."""
+    plain = bytes([FORMATS[type(message)][0]]) + bodies.pack(message)
+    return int.from_bytes(_crc(plain), "little")
+
+
 @dataclass
 class Tally:
     """Frames since the start, by what became of them."""

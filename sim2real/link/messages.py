@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 VERSION = (1, 0)
-SCHEMA = 0x262B07D4
+SCHEMA = 0x6A25804E
 UNCHECKED = 1  # id of the message whose CRC begins at 0; that of the others at SCHEMA
 
 
@@ -54,17 +54,18 @@ class Refusal(IntEnum):
     OUT_OF_RANGE = 0  # a number is outside its limits, or none
     WRONG_VERSION = 1  # no hello of the same version and schema came before
     NO_CONFIG = 2  # no configuration came before
-    BAD_CONFIG = 3  # the configuration's numbers do not fit each other
-    WRONG_STATE = 4  # not in this state
-    NO_ENCODERS = 5  # the encoders give no valid angle
-    OLD_SEQUENCE = 6  # this trajectory or a newer one came before
-    SWITCH_ORDER = 7  # the second switching time is before the first
-    TOO_MANY_VOLTS = 8  # a motor would need more than the configuration allows
-    LEAVES_AREA = 9  # the path leaves the mallet's area
-    OFF_START = 10  # the path does not begin where the mallet is
-    TOO_LATE = 11  # the time to apply it is past
-    TOO_EARLY = 12  # the time to apply it is too far ahead
-    BUSY = 13  # one that came less than 7 ms before is still being looked at
+    OTHER_CONFIG = 3  # the configuration held is not the one that is meant: it was lost, or another host's came
+    BAD_CONFIG = 4  # the configuration's numbers do not fit each other
+    WRONG_STATE = 5  # not in this state
+    NO_ENCODERS = 6  # the encoders give no valid angle
+    OLD_SEQUENCE = 7  # this trajectory or a newer one came before
+    SWITCH_ORDER = 8  # the second switching time is before the first
+    TOO_MANY_VOLTS = 9  # a motor would need more than the configuration allows
+    LEAVES_AREA = 10  # the path leaves the mallet's area
+    OFF_START = 11  # the path does not begin where the mallet is
+    TOO_LATE = 12  # the time to apply it is past
+    TOO_EARLY = 13  # the time to apply it is too far ahead
+    BUSY = 14  # one of its kind that came just before is still being looked at
 
 
 @dataclass(frozen=True)
@@ -109,6 +110,8 @@ class Home:
 class Arm:
     """Let the motors play; in IDLE."""
 
+    config: int  # the CRC-32 at the end of the configuration's frame that is meant
+
 
 @dataclass(frozen=True)
 class Disarm:
@@ -130,7 +133,7 @@ class Traj:
     """A plan: volts until t1, reversed until t2, then none; from the state that the modes say. The newest wins."""
 
     sequence: int  # greater than of every one before, modulo 2^32
-    apply: int  # us; when it begins, by the board's clock; looking at it takes 7 ms
+    apply: int  # us; when it begins, by the board's clock; looking at it takes 10 ms
     life: int  # us; after it the motors are off
     volts: tuple[float, float]  # V; of axes x, y, signed
     t1: tuple[int, int]  # us
@@ -200,7 +203,7 @@ FORMATS = {  # of a body, as Python's struct has it
     Hello: (1, "<BBIII"),
     Config: (2, "<2f2f2ffff2f2f2f2f2ffH"),
     Home: (3, "<ff"),
-    Arm: (4, "<"),
+    Arm: (4, "<I"),
     Disarm: (5, "<"),
     Estop: (6, "<"),
     Clear: (7, "<"),

@@ -22,10 +22,11 @@ from sim2real.link.board_view import BoardView
 from sim2real.link.bodies import Message
 from sim2real.link.clock import Clock
 from sim2real.link.connection import Connection
-from sim2real.link.frames import Receiver, Tally, encode
+from sim2real.link.frames import Receiver, Tally, encode, seal
 from sim2real.link.messages import SCHEMA, VERSION, Config, Event, Hello, Notice, Pong, Refusal, State, Telemetry, Traj
 from sim2real.link.pings import PERIOD, Pings
 from sim2real.link.port import Line
+from sim2real.link.stopping import Stopping
 
 HELLO_PERIOD = 0.2  # s between greetings that are not answered
 SILENCE = 1.0  # s without an answer to a ping after which the board is greeted anew
@@ -48,6 +49,8 @@ class Session:
         self._events: deque[Event] = deque(maxlen=KEPT)
         self._notes: deque[str] = deque(maxlen=KEPT)
         self._sequence = 0
+        self._config: int | None = None  # CRC-32 of the configuration sent last
+        self._stopping = Stopping(self._notes.append)
         self._connection = Connection(connect, now, self._notes.append)
         self._begin()
 
@@ -123,6 +126,7 @@ class Session:
     def config(self, config: Config) -> None:
         """The table and how to control it. Pings come at a third of its `silence`, if that is more often."""
         self._tell(config)
+        self._config = seal(config)
         self.pings.period = min(PERIOD, config.silence / 3000)
 
     def home(self, x: float, y: float) -> None:
@@ -130,25 +134,33 @@ class Session:
         self._tell(messages.Home(x, y))
 
     def arm(self) -> None:
-        """Let the motors play. ValueError before the first telemetry, too."""
+        """Let the motors play, by the configuration sent last: a board that holds another refuses with OTHER_CONFIG.
+
+        ValueError before the first telemetry, and before a configuration, too.
+        """
         if self.state is None:
             raise ValueError("cannot arm: the board has not yet said how it stands; poll until telemetry comes")
+        if self.connected and self._config is None:
+            raise ValueError("cannot arm: no configuration was sent; send one first")
         self._disarm_owed = False
-        self._tell(messages.Arm())
+        self._tell(messages.Arm(self._config or 0))
 
     def disarm(self) -> None:
         """Motors off."""
         self._tell(messages.Disarm())
 
     def estop(self) -> None:
-        """Motors off now; sent even to a board that has not answered hello. ValueError without a port."""
+        """Motors off now; sent even to a board that has not answered hello, and by `poll` again until telemetry shows
+        FAULT. ValueError without a port."""
         if not self._connection.open:
             raise ValueError("cannot stop the board: its port is lost; it stops by itself when the host is silent")
-        self._connection.send(b"\0")  # whatever was cut off on the line, this is not to be a part of it
-        self._send(messages.Estop())
+        self._stopping.begin(self._now())
+        self._send_estop()
 
     def clear(self) -> None:
-        """Leave the state FAULT."""
+        """Leave the state FAULT. ValueError while an estop is not yet seen to be heard, too."""
+        if self._stopping.wanted:
+            raise ValueError("cannot clear: the board has not yet shown that it heard the estop; poll until FAULT")
         self._tell(messages.Clear())
 
     def traj(self, plan: Traj) -> int:
@@ -175,6 +187,8 @@ class Session:
         if not self._connection.open:
             return
         now = self._now()
+        if self._stopping.due(now):
+            self._send_estop()
         if self._greeted and now - self.pings.answered_at > SILENCE:
             self._notes.append("the board has fallen silent; greeting it again")
             self._greet()
@@ -200,6 +214,7 @@ class Session:
 
     def _take_telemetry(self, telemetry: Telemetry, came: float) -> None:
         self._telemetry.append(telemetry)
+        self._stopping.take(telemetry.state)
         if self.view.take(telemetry, came) and self._greeted:
             self._greet()
         if self._disarm_owed and self._greeted:
@@ -237,6 +252,10 @@ class Session:
         if not self.connected:
             raise ValueError(f"cannot send {type(message).__name__.lower()}: not connected; poll until `connected`")
         self._connection.send(frame)
+
+    def _send_estop(self) -> None:
+        self._connection.send(b"\0")  # whatever was cut off on the line, this is not to be a part of it
+        self._send(messages.Estop())
 
     def _send(self, message: Message) -> None:
         self._connection.send(encode(message))

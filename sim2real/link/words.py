@@ -11,6 +11,8 @@ from sim2real.link.session import Session
 
 _NAMES = {number: kind.__name__.lower() for kind, (number, _) in FORMATS.items()}
 
+_REMEDIES = {Refusal.OTHER_CONFIG: "; it does not hold the configuration sent last: send that again, then arm"}
+
 
 def name(enum: type[IntEnum], number: int) -> str:
     """The value's name; the number itself where it has none."""
@@ -27,7 +29,8 @@ def event_words(event: Event) -> str:
         return f"board stopped: {name(Fault, event.detail)}"
     if event.code == Notice.REFUSED:
         asked = event.detail >> 8
-        return f"board refused {_NAMES.get(asked, f'message {asked}')}: {name(Refusal, event.detail & 0xFF)}"
+        why = event.detail & 0xFF
+        return f"board refused {_NAMES.get(asked, f'message {asked}')}: {name(Refusal, why)}{_REMEDIES.get(why, '')}"
     return f"event {event.code}, detail {event.detail}"
 
 

@@ -11,8 +11,10 @@ from puckpilot_env.physics.mallet import axis_constants
 from puckpilot_env.physics.plan import switching_times
 from sim2real.link import messages
 from tests.firmware.host_core import Core, Step
-from tests.firmware.line import config, frame, hello, read
+from tests.firmware.line import arm, config, frame, hello, read
 
+TARGET = (0.6, 0.7)  # m: where it is mostly sent
+PLAYS = 60  # ticks into a trajectory: both motors are driven
 CORNER = (0.1, 0.2)  # m: where the mallet stands in the beginning
 FULL = 3600
 TURN = 16384
@@ -149,7 +151,7 @@ class Bench:
         self.run(30)
         self.send(hello(), self.config, messages.Home(*self.start))
         self.run(2)
-        self.send(messages.Arm())
+        self.send(arm(self.config))
         self.run(1)
         assert self.state == messages.State.ARMED
         return self
@@ -170,3 +172,14 @@ class Bench:
             "fast": tuple(axis.fast for axis in self.axes),
         }  # fmt: skip
         return messages.Traj(**{**fields, **changed})
+
+
+def until_stopped(bench: Bench, most: int, *, alive: bool = True) -> int:
+    """Ticks until the motors are off for good."""
+    for number in range(1, most + 1):
+        if alive and number % 20 == 0:
+            bench.send(messages.Ping(number))
+        bench.tick()
+        if bench.pwm == (0, 0) and bench.events(messages.Notice.FAULTED):
+            return number
+    raise AssertionError(f"still driven after {most} ticks")

@@ -34,15 +34,20 @@ def sealed(plain: bytes) -> bytes:
     return stuffed(plain + struct.pack("<I", crc)) + b"\0"
 
 
+def unstuffed(part: bytes) -> bytes:
+    """A frame without its zero and COBS."""
+    plain, at = b"", 0
+    while at < len(part):
+        plain += part[at + 1 : at + part[at]] + b"\0"
+        at += part[at]
+    return plain[:-1]
+
+
 def read(stream: bytes) -> list[object]:
     """The messages of an undamaged stream."""
     found = []
     for part in stream.split(b"\0")[:-1]:
-        plain, at = b"", 0
-        while at < len(part):
-            plain += part[at + 1 : at + part[at]] + b"\0"
-            at += part[at]
-        plain = plain[:-1]
+        plain = unstuffed(part)
         kind = next(kind for kind, (number, _) in FORMATS.items() if number == plain[0])
         assert sealed(plain[:-4]) == part + b"\0"
         numbers = iter(struct.unpack(FORMATS[kind][1], plain[1:-4]))
@@ -70,6 +75,13 @@ def hello(**changed: object) -> messages.Hello:
     return messages.Hello(**{**numbers, **changed})
 
 
+def arm(meant: messages.Config | None = None) -> messages.Arm:
+    """By the configuration that is meant, as its frame names it."""
+    coded = frame(meant or config())
+    plain = unstuffed(coded[:-1])
+    return messages.Arm(struct.unpack("<I", plain[-4:])[0])
+
+
 def golden() -> list[dict[str, object]]:
     """A frame of every message, with zeros and without."""
     traj = {
@@ -81,7 +93,7 @@ def golden() -> list[dict[str, object]]:
         "angle": (0, 16383), "sequence": 258, "damaged": 1, "lost": 0, "longest": 140,
     }  # fmt: skip
     every = [
-        hello(), config(), messages.Home(0.1, 0.9), messages.Arm(), messages.Disarm(), messages.Estop(),
+        hello(), config(), messages.Home(0.1, 0.9), arm(), messages.Disarm(), messages.Estop(),
         messages.Clear(), messages.Traj(**traj), messages.Ping(0x00FF00FF), messages.Pong(1, 2_000, 2_500),
         messages.Telemetry(**telemetry), messages.Event(0, messages.Notice.FAULTED, messages.Fault.OFF_PATH),
     ]  # fmt: skip

@@ -23,7 +23,7 @@ class Receiver(c.Structure):
 
 
 class Frame(c.Structure):
-    _fields_ = [("layout", c.POINTER(c.c_uint8)), ("body", c.POINTER(c.c_uint8))]
+    _fields_ = [("layout", c.POINTER(c.c_uint8)), ("body", c.POINTER(c.c_uint8)), ("crc", c.c_uint32)]
 
 
 class Line:

@@ -59,7 +59,8 @@ class Move:
         path = Path()
         traj = Traj(volts=(self.volts, 0), t1=(self.t1, 0), t2=(self.t2, 0), rest=(self.rest, 0), slow=(self.slow, 0))
         traj.fast[0] = self.fast
-        library().path_make(c.byref(path), c.byref(axis), c.byref(traj), 0)
+        for part in (library().path_begin, library().path_end):
+            part(c.byref(path), c.byref(axis), c.byref(traj), 0)
         return path
 
 
@@ -111,11 +112,15 @@ def test_inside_is_told_by_the_way_itself(move: Move, which: int):
     path = move.path(axis)
     way = places(move, which, np.append(np.arange(0, 1_500_000, 5_003), 3_000_000))
     low, high = float(way.min()), float(way.max())
-    inside = library().path_inside
-    inside.restype, inside.argtypes = c.c_bool, [c.POINTER(Path), c.POINTER(Axis), c.c_float, c.c_float]
-    assert inside(c.byref(path), c.byref(axis), low - 5e-3, high + 5e-3)  # 5 mm: what may lie between two samples
-    assert not inside(c.byref(path), c.byref(axis), low + 5e-4, 10.0)
-    assert not inside(c.byref(path), c.byref(axis), -10.0, high - 5e-4)
+    part = library().leg_inside
+    part.restype, part.argtypes = c.c_bool, [c.POINTER(Path), c.c_int, c.POINTER(Axis), c.c_float, c.c_float]
+
+    def inside(low: float, high: float) -> bool:
+        return all(part(c.byref(path), leg, c.byref(axis), low, high) for leg in range(3))
+
+    assert inside(low - 5e-3, high + 5e-3)  # 5 mm: what may lie between two samples
+    assert not inside(low + 5e-4, 10.0)
+    assert not inside(-10.0, high - 5e-4)
 
 
 def test_volts_are_the_profiles_mean_over_a_tick():

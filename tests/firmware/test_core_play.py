@@ -7,9 +7,9 @@ import itertools
 import numpy as np
 import pytest
 
-from sim2real.link.messages import Arm, Disarm, Fault, Home, Notice, Ping, State
+from sim2real.link.messages import Disarm, Fault, Home, Notice, Ping, State
 from tests.firmware.bench import CORNER, FULL, Bench, with_parity
-from tests.firmware.line import config, hello
+from tests.firmware.line import arm, config, hello
 
 TARGET = (0.6, 0.7)
 
@@ -121,14 +121,14 @@ def test_the_clock_may_wrap_at_any_moment_of_play(ahead: int):
 def test_arming_takes_a_hello_a_configuration_and_a_home():
     bench = Bench()
     bench.run(30)
-    bench.send(Arm())
+    bench.send(arm())
     bench.run(1)
-    bench.send(hello(), Arm())
+    bench.send(hello(), arm())
     bench.run(1)
     bench.send(Home(*CORNER))
     bench.run(1)
-    bench.send(bench.config, Arm(), Home(*CORNER), Arm())
-    bench.run(1)
+    bench.send(bench.config, arm(), Home(*CORNER), arm())
+    bench.run(20)
     assert [number for number, _ in bench.refusals] == [4, 4, 3, 4] and bench.state == State.ARMED
 
 
@@ -147,7 +147,7 @@ def test_reset_in_mid_game_comes_back_unhomed_with_the_motors_off():
     bench.send(bench.trajectory(TARGET))
     bench.run(60)
     again = Bench(start=bench.place)
-    again.send(bench.trajectory(TARGET), Arm())
+    again.send(bench.trajectory(TARGET), arm())
     for _ in range(100):
         again.tick()
         assert again.pwm == (0, 0)

@@ -52,11 +52,21 @@ def test_the_schema_changes_with_what_a_receiver_relies_on(tmp_path: Path):
     schemas = set()
     for before, after in (
         ("", ""), ('"apply", type = "u32"', '"apply", type = "i32"'), ("high = 60.0", "high = 61.0"),
+        ('name = "rest"', 'name = "slack"'), ('name = "traj"', 'name = "plan"'), ('name = "refusal"', 'name = "no"'),
         ('["ESTOP", "the host said stop"],', ""), ("version = [1, 0]", "version = [2, 0]"),
     ):  # fmt: skip
         assert before in text
         (tmp_path / "protocol.toml").write_text(text.replace(before, after, 1))
         schemas.add(read_protocol(tmp_path / "protocol.toml").schema)
-    assert len(schemas) == 5
+    assert len(schemas) == 8
     (tmp_path / "protocol.toml").write_text(text.replace("the host said stop", "stop, said the host"))
     assert read_protocol(tmp_path / "protocol.toml").schema == read_protocol().schema
+
+
+@pytest.mark.parametrize("ids", [("id = 12", "id = 11"), ("id = 12", "id = 13"), ("id = 1\n", "id = 0\n")])
+def test_ids_have_no_gap_by_which_the_firmware_would_miss_a_layout(tmp_path: Path, ids: tuple[str, str]):
+    text = (FOLDER / "protocol.toml").read_text()
+    assert ids[0] in text
+    (tmp_path / "protocol.toml").write_text(text.replace(*ids, 1))
+    with pytest.raises(ValueError, match="expected 1, 2, 3 and so on"):
+        read_protocol(tmp_path / "protocol.toml")

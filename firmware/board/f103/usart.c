@@ -1,4 +1,6 @@
 /* The line to the host. An interrupt takes each byte that comes; DMA sends, with an interrupt after each piece. */
+#include <string.h>
+
 #include "board.h"
 #include "registers.h"
 
@@ -82,8 +84,9 @@ void usart_send(const uint8_t *bytes, uint32_t count)
 {
     if (count > RING - (uint16_t)(written - sent))
         return;
-    for (uint32_t i = 0; i < count; i++)
-        ring[(written + i) % RING] = bytes[i];
+    const uint32_t begin = written % RING, room = RING - begin, first = count < room ? count : room;
+    memcpy(&ring[begin], bytes, first);
+    memcpy(ring, bytes + first, count - first);
     __asm__ volatile("" ::: "memory");
     written = (uint16_t)(written + count);
     if (!sending)

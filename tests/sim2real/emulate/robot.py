@@ -6,8 +6,8 @@ from firmware import ELF
 from puckpilot_env.physics.plan import switching_times
 from sim2real.emulate.gantry import Gantry
 from sim2real.emulate.machine import Machine
-from sim2real.link.messages import Arm, Event, Home, Notice, Ping, State, Telemetry, Traj
-from tests.firmware.line import config, frame, hello, read
+from sim2real.link.messages import Event, Home, Notice, Ping, State, Telemetry, Traj
+from tests.firmware.line import arm, config, frame, hello, read
 
 START, TARGET = (0.1, 0.2), (0.5, 0.6)
 
@@ -38,7 +38,7 @@ class Robot:
         """From power-on to ARMED."""
         self.run(30_000)
         self.run(6000, hello(), config(), Home(*START))
-        self.run(6000, Arm())
+        self.run(6000, arm())
         assert self.telemetry.state == State.ARMED
         return self
 

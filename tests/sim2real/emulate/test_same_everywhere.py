@@ -11,10 +11,10 @@ from unicorn.arm_const import UC_ARM_REG_R1, UC_ARM_REG_R2
 from firmware import ELF
 from sim2real.emulate.elf import read_elf
 from sim2real.emulate.machine import Machine
-from sim2real.link.messages import Arm, Event, Hello, Home, Notice, Ping, State, Telemetry
+from sim2real.link.messages import Event, Hello, Home, Notice, Ping, State, Telemetry
 from tests.firmware.bench import Bench
 from tests.firmware.host_core import Core
-from tests.firmware.line import config, frame, hello, read
+from tests.firmware.line import arm, config, frame, hello, read
 
 INPUT = struct.Struct("<IHH2HIHxxIH")  # of struct robot_input, as the microcontroller's compiler lays it out
 START, TARGET = (0.1, 0.2), (0.6, 0.7)
@@ -75,11 +75,11 @@ def played() -> tuple[Recorder, list[object]]:
             min(max(int((now - begin) / 1000.0), 0), len(angles) - 1)
         ][which]
     machine.run(60_000)
-    machine.send(frame(hello()) + frame(config()) + frame(Home(*START)) + frame(Arm()))
+    machine.send(frame(hello()) + frame(config()) + frame(Home(*START)) + frame(arm()))
     machine.run(begin - 5000)
     heard = read(machine.received())
     board = [one for one in heard if isinstance(one, Telemetry)][-1].time
-    plan = Bench(now=board, start=START).trajectory(TARGET, apply=board + 8000)
+    plan = Bench(now=board, start=START).trajectory(TARGET, apply=board + 14_000)
     machine.send(frame(plan))
     for number in range(40):
         machine.send(frame(Ping(number)))

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from reference_wire import SCHEMA, frame, stuff
 
 from sim2real.link.frames import Receiver, Tally, encode
-from sim2real.link.messages import Arm, Config, Event, Hello, Home, Ping, Pong, Telemetry, Traj
+from sim2real.link.messages import Arm, Config, Disarm, Event, Hello, Home, Ping, Pong, Telemetry, Traj
 
 CONFIG = Config(
     (1e-9, 2e-6), (1e-4, 2e-4), (0.125, 0.25), 0.03125, 24.0, 12.0, (0.0, 1.0), (-0.5, 0.5), (1.0, 2.0), (3.0, 4.0),
@@ -30,7 +30,7 @@ BY_HAND = [
               0.5, 1, 2, 3, 4, 5, 6, 0.0625, 250),
     ),
     (Home(0.5, -0.5), frame(3, "ff", 0.5, -0.5)),
-    (Arm(), frame(4, "")),
+    (Arm(0x01020304), frame(4, "I", 0x01020304)),
     (
         TRAJ,
         frame(8, "III ff II II ff ff ff", 7, 4_000_000_000, 50_000, 12, -6.5, 1, 2, 3, 4, 0.5, 0.25, -0.5, 0.125, 0,
@@ -106,7 +106,7 @@ def test_garbage_gives_nothing_and_the_next_frame_comes_through(garbage):
         (stuff(b"\x04\x01\x02") + b"\0", "wrong_length"),
         (frame(9, "IB", 1, 2), "wrong_length"),
         (frame(9, "H", 1), "wrong_length"),
-        (frame(4, "", schema=SCHEMA ^ 1), "wrong_crc"),
+        (frame(5, "", schema=SCHEMA ^ 1), "wrong_crc"),
         (frame(9, "I", 5, schema=0), "wrong_crc"),
         (frame(99, "I", 5), "unknown_id"),
         (frame(3, "ff", 5.5, 0.0), "out_of_range"),
@@ -133,7 +133,7 @@ def test_an_overlong_frame_in_pieces_is_counted_once_and_not_kept():
 
 def test_zeros_between_frames_are_nothing():
     receiver = Receiver()
-    assert receiver.feed(b"\0\0" + frame(4, "") + b"\0\0\0") == [Arm()]
+    assert receiver.feed(b"\0\0" + frame(5, "") + b"\0\0\0") == [Disarm()]
     assert receiver.tally == Tally(good=1)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+import zlib
 
 import pytest
 from fake_board import (
@@ -31,6 +32,7 @@ CONFIGURED = (
     (1e-3, 1e-3), (1e-2, 1e-2), (0.5, 0.5), 0.03, 24.0, 12.0, (0.0, 1.0), (0.0, 1.0), (1.0, 1.0), (1.0, 1.0),
     (1.0, 1.0), 0.1,
 )  # fmt: skip
+CONFIG_SENT = Config(*CONFIGURED, silence=100)
 PLAN = Traj(0, 1000, 50_000, (12.0, -6.5), (1, 2), (3, 4), (0.5, 0.25), (-0.5, 0.125), (0.0, 0.0009765625))
 
 
@@ -125,7 +127,7 @@ def test_the_clock_of_the_board_within_its_bound():
 
 def test_what_it_is_told_reaches_the_board():
     bench, session, board = met()
-    session.config(Config(*CONFIGURED, silence=100))
+    session.config(CONFIG_SENT)
     session.home(0.25, 0.5)
     run(bench, session, 0.01)
     assert session.state == IDLE
@@ -177,8 +179,61 @@ def test_arming_needs_to_know_how_the_board_stands():
     assert board.count(ARM) == 0
 
 
+def test_arming_names_the_configuration_sent_last():
+    bench, session, board = met()
+    with pytest.raises(ValueError, match="cannot arm: no configuration was sent; send one first"):
+        session.arm()
+    for silence in (100, 101):
+        session.config(Config(*CONFIGURED, silence=silence))
+    session.arm()
+    run(bench, session, 0.01)
+    layout = "<ff ff ff f f f ff ff ff ff ff f H".replace(" ", "")
+    flat = [n for v in CONFIGURED for n in (v if isinstance(v, tuple) else (v,))]
+    crc = zlib.crc32(b"\2" + struct.pack(layout, *flat, 101), SCHEMA)
+    assert [body for number, body in board.heard if number == ARM] == [struct.pack("<I", crc)]
+
+
+def test_an_estop_is_repeated_until_it_is_seen_to_be_heard():
+    bench, session, board = met()
+    board.mute = {ESTOP}
+    session.estop()
+    run(bench, session, 0.4)
+    assert board.count(ESTOP) > 30 and session.state != FAULT
+    with pytest.raises(ValueError, match="cannot clear: the board has not yet shown that it heard the estop"):
+        session.clear()
+    session.take_notes()
+    run(bench, session, 0.2)
+    assert session.take_notes() == ["no sign of a stop 0.5 s after an estop, which is repeated; cut the motors' supply"]
+    board.mute = set()
+    run(bench, session, 0.02)
+    told = board.count(ESTOP)
+    run(bench, session, 0.5)
+    assert session.state == FAULT and board.count(ESTOP) == told and session.take_notes() == []
+    session.clear()
+    run(bench, session, 0.05)
+    assert session.state == UNHOMED and board.count(ESTOP) == told
+
+
+def test_an_estop_that_is_heard_is_sent_once():
+    bench, session, board = met()
+    session.estop()
+    run(bench, session, 1.0)
+    assert session.state == FAULT and board.count(ESTOP) == 1
+
+
+def test_an_estop_outlives_a_lost_port():
+    bench, session, board = met()
+    session.estop()
+    bench.plugged = False
+    run(bench, session, 0.05)
+    bench.plugged = True
+    run(bench, session, 0.3)
+    assert session.state == FAULT and board.count(ESTOP) >= 1
+
+
 def test_a_lost_port_is_opened_again_and_nothing_is_sent_twice():
     bench, session, board = met()
+    session.config(CONFIG_SENT)
     session.home(0.0, 0.0)
     run(bench, session, 0.01)
     session.arm()
@@ -215,6 +270,7 @@ def test_a_board_that_is_found_armed_is_disarmed_once():
     bench, session, _ = met(board)
     assert session.state == IDLE and board.count(DISARM) == 1
     assert "the board was still armed; disarming it" in session.take_notes()
+    session.config(CONFIG_SENT)
     session.arm()
     run(bench, session, 1.0)
     assert session.state == ARMED and board.count(DISARM) == 1
@@ -222,6 +278,7 @@ def test_a_board_that_is_found_armed_is_disarmed_once():
 
 def test_a_quick_reconnection_disarms_too():
     bench, session, board = met()
+    session.config(CONFIG_SENT)
     session.arm()
     run(bench, session, 0.01)
     assert session.state == ARMED
@@ -311,7 +368,7 @@ def test_noise_on_the_line_is_counted_and_does_no_harm():
 
 def test_what_a_host_says_is_no_news_from_a_board():
     bench, session, _ = met()
-    bench.noise = frame(ARM, "") + frame(PING, "I", 5)
+    bench.noise = frame(DISARM, "") + frame(PING, "I", 5)
     run(bench, session, 0.01)
     assert session.echoes == 2 and session.connected
 

@@ -1,0 +1,23 @@
+"""What a human is told of the board's events."""
+
+from __future__ import annotations
+
+import pytest
+
+from sim2real.link.messages import Event
+from sim2real.link.words import event_words
+
+
+@pytest.mark.parametrize(
+    ("code", "detail", "told"),
+    [
+        (0, 36, "board started (cause 36)"),
+        (1, 3, "board is ARMED"),
+        (2, 1, "board stopped: ESTOP"),
+        (3, 0x0805, "board refused traj: WRONG_STATE"),
+        (3, 0x0403, "it does not hold the configuration sent last: send that again, then arm"),
+        (9, 7, "event 9, detail 7"),
+    ],
+)
+def test_an_event_in_words(code: int, detail: int, told: str):
+    assert told in event_words(Event(0, code, detail))
