@@ -10,6 +10,7 @@ from sim2real.link.messages import Arm, Event, Home, Notice, Ping, State, Teleme
 from tests.firmware.line import config, frame, hello, read
 
 START, TARGET = (0.1, 0.2), (0.5, 0.6)
+ALIVE = Ping(7)
 
 
 class Robot:
@@ -28,7 +29,7 @@ class Robot:
         end, before = self.machine.now + duration, len(self.heard)
         while self.machine.now < end:
             if alive:
-                self.machine.send(frame(Ping(7)))
+                self.machine.send(frame(ALIVE))
             self.machine.run(min(self.machine.now + 20_000, end))
         whole, zero, self._rest = (self._rest + self.machine.received()).rpartition(b"\0")
         self.heard += read(whole + zero)
