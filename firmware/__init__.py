@@ -5,3 +5,4 @@ from pathlib import Path
 FOLDER = Path(__file__).parent
 PROTOCOL = FOLDER / "protocol.toml"
 ELF = FOLDER / "puckpilot-f103.elf"  # what is flashed
+QEMU_ELF = FOLDER / "puckpilot-qemu.elf"  # the same core for a machine of QEMU's

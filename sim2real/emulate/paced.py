@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import pty
+import select
 import time
 import tty
 from collections.abc import Callable, Iterator
@@ -12,7 +13,7 @@ from pathlib import Path
 
 from sim2real.emulate.machine import Machine
 
-STEP = 0.001  # s between looks at the terminal
+STEP = 0.0002  # s at most between looks at the terminal
 FAR_BEHIND = 0.2  # s that the emulator may be late; what it is more, it does not make up for
 MOST = 4096  # bytes at once
 
@@ -56,5 +57,5 @@ def serve(machine: Machine, descriptor: int, going_on: Callable[[float], bool]) 
         data = machine.received()
         with contextlib.suppress(BlockingIOError):  # nobody reads: as on a real line, it is lost
             os.write(descriptor, data)
-        time.sleep(STEP)
+        select.select([descriptor], [], [], STEP)
     return behind

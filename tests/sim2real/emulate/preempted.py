@@ -1,49 +1,186 @@
-"""The flashed program at play, interrupted between any two blocks of its code, until so many came in the middle of
-something: `python -m tests.sim2real.emulate.preempted 100000` (hours)."""
+"""The flashed program at play while its host never stops talking: an interrupt is due every 10 us, and comes between
+any two blocks of its code; where the board hands bytes to its interrupts and back, between any two instructions.
+
+`python -m tests.sim2real.emulate.preempted --interrupts 100000` plays until so many came in the middle of something.
+"""
 
 from __future__ import annotations
 
+import argparse
 import itertools
-import sys
+import random
+from dataclasses import dataclass, field
 
-from sim2real.link.messages import Ping, State, Telemetry
-from tests.firmware.line import frame
-from tests.sim2real.emulate.robot import Robot
+import pytest
+
+from firmware import ELF
+from sim2real.emulate.elf import read_elf
+from sim2real.emulate.timeline import PER_US
+from sim2real.link.messages import Disarm, Event, Notice, Ping, Pong, State, Telemetry
+from tests.firmware.bench import FULL
+from tests.firmware.host_core import ZEROS, Core, Step
+from tests.firmware.line import arm, frame, read
+from tests.sim2real.emulate.recorder import Recorder
+from tests.sim2real.emulate.robot import ALIVE, Robot
+
+BYTE = 10.0  # us on the line
+COUNTER = 1 << 16  # us after which the stamps' counter begins again
+SHARED = ("usart_take", "usart_send", "sent_interrupt")  # functions that touch what interrupts touch
+OFTEN = 0.02  # of their instructions that last until the next event
+EACH = 3  # pieces from one ping to the next: of two in a tick one has no answer
+PLAY, TURN = 360, 120  # pieces of talk, some 1 ms each, of a play, and from one plan to the next
 
 
-def play(preemptions: int, seed: int) -> int:
-    """Play back and forth with one seed until so many; how many there were. AssertionError where anything went wrong:
-    a frame damaged, a byte or a telemetry lost, a fault, or a mallet off its path."""
-    robot = Robot(fuzz=seed)
-    counted = [0]
-    enter = robot.machine.cpu.enter
+@dataclass
+class Busy:
+    """A robot and its host, and all that went over the line between them.
 
-    def count(number: int) -> None:
-        counted[0] += not robot.machine.cpu.asleep
-        enter(number)
+    fuzz: where it is interrupted, by chance; None: only where it waits. seed: what the host says.
+    """
 
-    robot.machine.cpu.enter = count  # pyright: ignore[reportAttributeAccessIssue]
-    robot.armed()
-    for target in itertools.cycle([(0.5, 0.6), (0.8, 0.3), (0.2, 0.8), (0.1, 0.2)]):
-        robot.sends(target)
-        told = [one for one in robot.run(700_000) if isinstance(one, Telemetry)]
+    fuzz: int | None
+    seed: int
+    preemptions: int = 0
+    places: set[int] = field(default_factory=set)  # addresses at which it was interrupted
+    said: bytearray = field(default_factory=bytearray)
+    arrivals: list[float] = field(default_factory=list)  # of each byte that was said, at the board [us]
+    damaged: int = 0
+    pinged: list[int] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.robot, self.chance = Robot(fuzz=self.fuzz), random.Random(self.seed)
+        self.machine = machine = self.robot.machine
+        self.recorder = Recorder(machine, after=self._obeyed)
+        self._enter, self._send = machine.cpu.enter, machine.send
+        if self.fuzz is not None:
+            self._interrupt_anywhere(random.Random(self.fuzz))  # before that code is translated
+        machine.run(5000)  # so that it hears the first byte
+        machine.cpu.enter = self._entered  # pyright: ignore[reportAttributeAccessIssue]
+        machine.send = self._sent  # pyright: ignore[reportAttributeAccessIssue]
+
+    def _interrupt_anywhere(self, chance: random.Random) -> None:
+        """Let an instruction of SHARED last, now and then, until a byte has come."""
+        machine, symbols = self.machine, read_elf(ELF).symbols
+
+        def last() -> None:
+            if chance.random() < OFTEN:
+                machine._pass_until(machine.timeline.now + round(BYTE * PER_US))
+
+        for name in SHARED:
+            begin, end = symbols[name], min(at for at in symbols.values() if at > symbols[name])
+            for address in range(begin, end, 2):
+                machine.cpu.at(address, last)
+
+    def _entered(self, number: int) -> None:
+        cpu = self.machine.cpu
+        if not cpu.asleep:
+            self.preemptions += 1
+            self.places.add(cpu.program_counter)
+        self._enter(number)
+
+    def _sent(self, data: bytes) -> None:
+        begin = max(self.machine.now, self.arrivals[-1] if self.arrivals else 0.0)
+        self.arrivals += [begin + BYTE * (index + 1) for index in range(len(data))]
+        self.said += data
+        self._send(data)
+
+    def _obeyed(self, step: Step) -> None:
+        assert self.machine.motors.duties == pytest.approx([duty / FULL for duty in step.pwm], abs=1e-9)
+
+    def _piece(self, *messages: object) -> None:
+        """Some 0.9 ms of talk: these messages, and garbage of which every frame is damaged."""
+        data = b"".join(map(frame, messages))
+        while len(data) < 85:
+            length = min(self.chance.randrange(30), 85 - len(data))
+            self.damaged += length > 0
+            data += bytes(self.chance.randrange(1, 256) for _ in range(length)) + b"\0"
+        self.machine.send(data)
+        self.machine.run(self.machine.now + self.chance.uniform(BYTE * len(data), 1100.0))
+
+    def play(self, pieces: int) -> Busy:
+        """So many pieces of talk, in which it is armed again and again and follows plans, and a moment to answer."""
+        robot = self.robot.armed()
+        for number in range(pieces):
+            turn = number % TURN
+            messages: list[object] = [Ping(number)] * (number % EACH == 0)
+            messages += [Disarm()] * (turn == TURN - 10) + [arm()] * (turn == TURN - 5)
+            messages += [arm()] * 2 * (turn % 10 == 5 and turn < TURN - 10)  # refused, and told so in one tick of two
+            if turn == 0:
+                robot.sends((self.chance.uniform(0.2, 0.8), self.chance.uniform(0.2, 0.8)), 10.0)
+            self._piece(*messages)
+        self.pinged = [*range(0, pieces, EACH)]
+        robot.run(4000)
+        return self
+
+    def outcome(self) -> dict[str, object]:
+        """What the host knows in the end, but for times."""
+        told = self.robot.telemetry
+        return {
+            "events": [(one.code, one.detail) for one in self.robot.heard if isinstance(one, Event)],
+            "answered": [one.token for one in self.robot.heard if isinstance(one, Pong)],
+            "state": told.state, "damaged": told.damaged, "lost": told.lost,
+            "followed": sorted({one.sequence for one in self.robot.heard if isinstance(one, Telemetry)}),
+        }  # fmt: skip
+
+    def check(self) -> Busy:
+        """AssertionError where board and emulator did anything but carry between line, encoders, motors and core."""
+        self._check_carried()
+        self._check_stamps()
+        self._check_told()
+        core = Core(*self.recorder.start)
+        for tick, step in zip(self.recorder.ticks, self.recorder.steps, strict=False):
+            assert core.step(**vars(tick)) == step  # as without an interrupt
+        return self
+
+    def _check_carried(self) -> None:
+        ticks, steps = self.recorder.ticks, self.recorder.steps
+        assert b"".join(tick.received for tick in ticks) == self.said
+        assert not any(tick.missed or tick.lost for tick in ticks)
+        sent, heard = read(b"".join(step.sent for step in steps)), self.robot.heard
+        assert all(one == its for one, its in zip(sent, heard, strict=False))
+        assert abs(len(sent) - len(heard)) < 5  # the newest tick is not among the steps, or still on the line
+
+    def _check_stamps(self) -> None:
+        """Zeros have the time at which they came, those that have any."""
+        offset, taken = self.machine.now - self.machine.counter.get("CNT"), 0
+        for tick in self.recorder.ticks:
+            at = [taken + index for index, byte in enumerate(tick.received) if byte == 0][:ZEROS]
+            for index, stamp in zip(at, tick.stamps, strict=False):
+                late = (stamp + offset - self.arrivals[index] + COUNTER / 2) % COUNTER - COUNTER / 2
+                assert -1.0 <= late <= 2.0
+            taken += len(tick.received)
+
+    def _check_told(self) -> None:
+        told = [one for one in self.robot.heard if isinstance(one, Telemetry)]
         for before, after in itertools.pairwise(told):
-            assert after.time - before.time == 2000
-            assert max(abs(a - b) for a, b in zip(after.place, after.path, strict=True)) < 2e-3
+            assert abs(after.time - before.time - 2000) < 100
+        for one in told:
+            assert one.state == State.ARMED or one.pwm == (0, 0)
+            assert max(abs(a - b) for a, b in zip(one.place, one.path, strict=True)) < 5e-3
+        assert not self.robot.events(Notice.FAULTED)
+        answered = [one.token for one in self.robot.heard if isinstance(one, Pong) and one.token != ALIVE.token]
+        assert answered == self.pinged
         last = told[-1]
-        assert (last.state, last.damaged, last.lost) == (State.ARMED, 0, 0)
-        if counted[0] >= preemptions:
-            return counted[0]
-        robot.machine.send(frame(Ping(1)))
-    raise AssertionError
+        assert (last.state, last.damaged, last.lost) == (State.ARMED, self.damaged % (1 << 16), 0)
+
+
+def play(seed: int, pieces: int = PLAY) -> Busy:
+    """A play that was checked, and came out as without interrupts in the middle of anything."""
+    busy = Busy(seed, seed).play(pieces).check()
+    assert busy.outcome() == Busy(None, seed).play(pieces).check().outcome()
+    return busy
 
 
 def main() -> int:
-    wanted, done, seed = int(sys.argv[1]), 0, 0
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--interrupts", type=int, default=100_000, help="in the middle of something, at least")
+    wanted, done, seed, places = parser.parse_args().interrupts, 0, 0, set()
     while done < wanted:
         seed += 1
-        done += play(min(wanted - done, 2_000), seed)
-        print(f"{done:,} interrupts in the middle of something, {seed} seeds, clean", flush=True)
+        busy = play(seed)
+        done += busy.preemptions
+        places |= busy.places
+        print(f"{done:,} interrupts in the middle of something, at {len(places)} places, clean", flush=True)
     return 0
 
 

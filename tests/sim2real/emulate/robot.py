@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from firmware import ELF
 from puckpilot_env.physics.plan import switching_times
-from sim2real.emulate.gantry import Gantry
+from sim2real.emulate.gantry import US, Gantry
 from sim2real.emulate.machine import Machine
 from sim2real.link.messages import Event, Home, Notice, Ping, State, Telemetry, Traj
 from tests.firmware.line import arm, config, frame, hello, read
 
 START, TARGET = (0.1, 0.2), (0.5, 0.6)
+ALIVE = Ping(7)
 
 
 class Robot:
@@ -28,7 +29,7 @@ class Robot:
         end, before = self.machine.now + duration, len(self.heard)
         while self.machine.now < end:
             if alive:
-                self.machine.send(frame(Ping(7)))
+                self.machine.send(frame(ALIVE))
             self.machine.run(min(self.machine.now + 20_000, end))
         whole, zero, self._rest = (self._rest + self.machine.received()).rpartition(b"\0")
         self.heard += read(whole + zero)
@@ -42,19 +43,18 @@ class Robot:
         assert self.telemetry.state == State.ARMED
         return self
 
-    def sends(self, target: tuple[float, float]) -> None:
-        """A plan from where the mallet rests."""
-        place = self.gantry.place(self.machine.now)
+    def sends(self, target: tuple[float, float], volts: float = 8.0) -> None:
+        """A plan from where the mallet will be in 14 ms, if its volts stay as they are."""
+        begin, board = self.machine.now + 14_000, self.telemetry.time + 14_000
+        modes = [axis.after(begin * US - self.gantry.since) for axis in self.gantry.axes]
         plans = [
-            switching_times(here, 0.0, to, axis.rest_gain, axis.slow_gain, axis.slow_rate, 8.0)
-            for axis, here, to in zip(self.gantry.axes, place, target, strict=True)
+            switching_times(rest, slow, to, axis.rest_gain, axis.slow_gain, axis.slow_rate, volts)
+            for axis, (rest, slow, _), to in zip(self.gantry.axes, modes, target, strict=True)
         ]
         t1, t2 = ((round(1e6 * plans[0][which]), round(1e6 * plans[1][which])) for which in (1, 2))
-        volts = (8.0 * plans[0][0], 8.0 * plans[1][0])
+        signed = (volts * plans[0][0], volts * plans[1][0])
         self._sequence += 1
-        begin = self.telemetry.time + 14_000
-        plan = Traj(self._sequence, begin, 1_000_000, volts, t1, t2, place, (0.0, 0.0), (0.0, 0.0))
-        self.machine.send(frame(plan))
+        self.machine.send(frame(Traj(self._sequence, board, 1_000_000, signed, t1, t2, *zip(*modes, strict=True))))
 
     def goes(self) -> Robot:
         """On its way from START to TARGET."""

@@ -1,103 +1,113 @@
-"""The program gives the same duties on this machine as in the emulated microcontroller, tick by tick, on one log."""
+"""One log of play, and the same duties, tick by tick: on this machine, in our emulator, in QEMU."""
 
 from __future__ import annotations
 
-import math
-import struct
-from dataclasses import dataclass
+import random
+from functools import cache
 
-from unicorn.arm_const import UC_ARM_REG_R1, UC_ARM_REG_R2
+import pytest
 
-from firmware import ELF
-from sim2real.emulate.elf import read_elf
-from sim2real.emulate.machine import Machine
-from sim2real.link.messages import Event, Hello, Home, Notice, Ping, State, Telemetry
-from tests.firmware.bench import Bench
+pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
+
+from sim2real.emulate.as5147 import FAULTS
+from sim2real.link.messages import Clear, Estop, Fault, Home, Notice, Ping, State, Telemetry
 from tests.firmware.host_core import Core
-from tests.firmware.line import arm, config, frame, hello, read
+from tests.firmware.line import arm, frame
+from tests.sim2real.emulate.qemu import in_qemu
+from tests.sim2real.emulate.recorder import Recorder
+from tests.sim2real.emulate.robot import Robot
 
-INPUT = struct.Struct("<IHH2HIHxxIH")  # of struct robot_input, as the microcontroller's compiler lays it out
-START, TARGET = (0.1, 0.2), (0.6, 0.7)
-
-
-@dataclass
-class Tick:
-    now: int
-    missed: int
-    lost: int
-    answers: tuple[int, int]
-    data: bytes
-    stamps: tuple[int, ...]
-    took: int
+PIECE, PIECES = 10_000, 300  # us, and how many of them are played
+MISHAPS = ("estop", "silence", "late", *FAULTS[1:])
 
 
-class Recorder:
-    """What every call of robot_step in a machine was given, and the duties that it asked for."""
-
-    def __init__(self, machine: Machine) -> None:
-        self.machine = machine
-        self.ticks: list[Tick] = []
-        self.duties: list[tuple[int, int]] = []
-        self._out = 0
-        machine.cpu.at(read_elf(ELF).symbols["robot_step"], self._note)
-
-    def _note(self) -> None:
-        uc = self.machine.cpu.uc
-        if self._out:
-            self.duties.append(struct.unpack("<hh", uc.mem_read(self._out, 4)))
-        at, self._out = uc.reg_read(UC_ARM_REG_R1), uc.reg_read(UC_ARM_REG_R2)
-        now, missed, lost, one, other, data, count, zeros, took = INPUT.unpack(uc.mem_read(at, INPUT.size))
-        stamps = struct.unpack("<8I", uc.mem_read(zeros, 32))
-        received = bytes(uc.mem_read(data, count)) if count else b""
-        self.ticks.append(Tick(now, missed, lost, (one, other), received, stamps, took))
+def damaged(chance: random.Random) -> bytes:
+    """A frame of which a byte was changed, lost or cut off with all that follows; or no frame at all."""
+    whole, at = frame(Ping(chance.getrandbits(32))), chance.randrange(8)
+    return chance.choice([
+        whole[:at] + bytes([whole[at] % 255 + 1]) + whole[at + 1 :], whole[:at] + whole[at + 1 :], whole[:at] + b"\0",
+        chance.randbytes(30) + b"\0",
+    ])  # fmt: skip
 
 
-def shafts() -> list[tuple[float, float]]:
-    """Angles of both shafts [rad], a millisecond each, of a mallet that goes from START to TARGET, a little off."""
-    bench, angles = Bench(start=START).armed(), []
-    bench.send(bench.trajectory(TARGET))
-    for number in range(600):
-        bench.send(*[Ping(number)] * (number % 20 == 0))
-        bench.tick()
-        x, y = bench.place
-        x += 0.002 * math.sin(0.05 * number)
-        angles.append(((x - y) / bench.config.pulley_radius, (-x - y) / bench.config.pulley_radius))
-    return angles
+def befall(robot: Robot, mishap: str, chance: random.Random) -> None:
+    """Something that stops the board."""
+    machine = robot.machine
+    if mishap == "late":
+        machine.step_us = chance.uniform(1200.0, 3500.0)
+    elif mishap == "silence":
+        robot.run(110_000, alive=False)
+    elif mishap == "estop":
+        robot.run(PIECE, Estop())
+    else:
+        machine.encoders[chance.randrange(2)].fault = mishap
+    robot.run(4 * PIECE)
+    machine.step_us = 0.0
+    for encoder in machine.encoders:
+        encoder.fault = ""
 
 
-def played() -> tuple[Recorder, list[object]]:
-    """A machine that is homed, armed and given a trajectory, while its shafts turn as on a table."""
-    machine, angles = Machine(ELF), shafts()
-    recorder = Recorder(machine)
-    begin = 100_000.0
-    for which in range(2):
-        machine.encoders[which].angle = lambda now, which=which: angles[
-            min(max(int((now - begin) / 1000.0), 0), len(angles) - 1)
-        ][which]
-    machine.run(60_000)
-    machine.send(frame(hello()) + frame(config()) + frame(Home(*START)) + frame(arm()))
-    machine.run(begin - 5000)
-    heard = read(machine.received())
-    board = [one for one in heard if isinstance(one, Telemetry)][-1].time
-    plan = Bench(now=board, start=START).trajectory(TARGET, apply=board + 14_000)
-    machine.send(frame(plan))
-    for number in range(40):
-        machine.send(frame(Ping(number)))
-        machine.run(begin + 10_000 * (number + 1))
-    return recorder, heard + read(machine.received())
+def go_on(robot: Robot, chance: random.Random) -> None:
+    """What a host does next."""
+    state = robot.telemetry.state
+    if state == State.FAULT:
+        robot.run(0, Clear())
+    elif state == State.UNHOMED:
+        robot.run(0, Home(*robot.gantry.place(robot.machine.now)))
+    elif state == State.IDLE:
+        robot.run(0, arm())
+    elif chance.random() < 0.15:
+        robot.sends((chance.uniform(0.1, 0.9), chance.uniform(0.1, 0.9)), chance.uniform(4.0, 12.0))
+    if chance.random() < 0.3:
+        robot.machine.send(damaged(chance))
+    if chance.random() < 0.03:
+        robot.machine.usart.disturbed = 3
 
 
-def test_the_host_and_the_microcontroller_agree_within_a_step_of_the_duty():
-    recorder, heard = played()
-    booted = next(one for one in heard if isinstance(one, Event) and one.code == Notice.BOOTED)
-    greeting = next(one for one in heard if isinstance(one, Hello))
-    core, apart = Core(cause=booted.detail, boots=greeting.boots), []
-    for tick, duties in zip(recorder.ticks, recorder.duties, strict=False):
-        step = core.step(
-            tick.now, tick.answers, tick.data, missed=tick.missed, lost=tick.lost, took=tick.took, stamps=tick.stamps
-        )
-        apart += [abs(mine - its) for mine, its in zip(step.pwm, duties, strict=True)]
-    assert len(apart) > 900 and max(apart) <= 1
-    assert max(abs(duty) for pair in recorder.duties for duty in pair) > 500  # it did play
-    last = [one for one in heard if isinstance(one, Telemetry)][-1]
-    assert last.state == State.ARMED and last.sequence == 1
+@cache
+def played() -> tuple[Recorder, Robot]:
+    """Seconds of play with plans that replace one another, damage on the line, and everything that stops the board."""
+    robot, chance = Robot(), random.Random(1)
+    recorder = Recorder(robot.machine)
+    robot.armed()
+    mishaps = [*MISHAPS]
+    for piece in range(PIECES):
+        go_on(robot, chance)
+        robot.run(PIECE)
+        if mishaps and piece % (PIECES // len(MISHAPS)) == PIECES // len(MISHAPS) - 1:
+            befall(robot, mishaps.pop(), chance)
+    return recorder, robot
+
+
+def test_the_log_has_everything_in_it():
+    recorder, robot = played()
+    assert {Fault(one) for one in robot.events(Notice.FAULTED)} >= {
+        Fault.ESTOP, Fault.HOST_SILENT, Fault.TICK_OVERRUN, Fault.ENCODER_PARITY, Fault.ENCODER_ERROR,
+        Fault.ENCODER_STUCK, Fault.ENCODER_JUMP,
+    }  # fmt: skip
+    followed = {one.sequence for one in robot.heard if isinstance(one, Telemetry)}
+    driven = [max(map(abs, step.pwm)) for step in recorder.steps]
+    assert len(followed) > 15 and robot.telemetry.damaged > 50 and robot.telemetry.lost > 5
+    assert len(driven) > 3000 and max(driven) > 1500 and sum(map(bool, driven)) > 1500
+
+
+def test_this_machine_and_the_microcontroller_agree_within_a_step_of_the_duty():
+    recorder, _ = played()
+    core = Core(*recorder.start)
+    for tick, step in zip(recorder.ticks, recorder.steps, strict=False):
+        mine = core.step(**vars(tick))
+        assert max(abs(one - its) for one, its in zip(mine.pwm, step.pwm, strict=True)) <= 1
+
+
+def test_two_emulators_agree_in_every_bit_that_the_core_gives():
+    """Duties, what encoders are asked, and each byte to the host; the same core under ours with all of its board, and
+    under QEMU with none of it."""
+    recorder, _ = played()
+    with in_qemu(*recorder.start) as core:
+        for tick, step in zip(recorder.ticks, recorder.steps, strict=False):
+            assert core.step(**vars(tick)) == step
+
+
+def test_a_program_that_halts_in_qemu_is_noticed():
+    with in_qemu() as core, pytest.raises(AssertionError, match="came to a halt"):
+        core.step(1000, (0, 0), bytes(257))  # more than its line's box holds
