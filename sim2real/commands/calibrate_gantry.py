@@ -1,8 +1,7 @@
-"""Calibrate the physical table, guided step by step.
+"""The pulley's radius by the two-point procedure of the report (L.2).
 
-- gantry PORT: the pulley's radius by the two-point procedure of the report (L.2). The motors stay off; you move the
-  mallet by hand, with the jig that keeps it at known distances from the walls, from the right-hand corner to the
-  left-hand one.
+The motors stay off; you move the mallet by hand, with the jig that keeps it at known distances from the walls, from the
+right-hand corner to the left-hand one.
 """
 
 from __future__ import annotations
@@ -22,8 +21,7 @@ ALIKE = 0.003  # m that the jig may be off along x between both corners
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments of the command."""
-    parser.add_argument("what", choices=("gantry",), help="what to calibrate")
+    """Declare the arguments of `calibrate gantry`."""
     parser.add_argument("port", metavar="PORT", help="the board's serial port, /dev/ttyUSB0 for example")
     parser.add_argument("--width", type=float, metavar="M", help="of the table [m] (the simulator's default)")
     parser.add_argument("--mallet-radius", type=float, metavar="M", help="[m] (the simulator's default)")
