@@ -54,8 +54,11 @@ class Background:
         walls = sorted(SIDES, key=lambda side: self._outside(side, size))
         for side in walls:
             inner, outer = _wall(side, size, 0.0), _wall(side, size, table.rail_width)
-            foot, edge = table.surface.on(inner), table.surface.on(inner) + (0.0, 0.0, table.wall_height)
-            top = np.concatenate([edge, (table.surface.on(outer) + (0.0, 0.0, table.wall_height))[::-1]])
+            foot, edge, back = (
+                table.surface.on(inner),
+                *(table.surface.on(c, table.wall_height) for c in (inner, outer)),
+            )
+            top = np.concatenate([edge, back[::-1]])
             if self._outside(side, size):
                 self._hide_by(top)
             else:
@@ -93,9 +96,10 @@ class Background:
 
 def glint_shape(glint: Glint, table: Table, view: View) -> Shape:
     """A glint as it is seen. It mirrors the lamp, so that distance does not make it darker."""
-    circle = table.surface.disc(glint.x, glint.y, 1.0)[:, :2] - (glint.x, glint.y)
-    corners = table.surface.on((glint.x, glint.y) + circle * (glint.half_x, glint.half_y))
-    return Shape(view.project(corners + (0.0, 0.0, glint.above)), glint.level)
+    middle = np.array([glint.x, glint.y])
+    circle = table.surface.disc(glint.x, glint.y, 1.0)[:, :2] - middle
+    rim = table.surface.on(middle + circle * (glint.half_x, glint.half_y), glint.above)
+    return Shape(view.project(rim), glint.level)
 
 
 def _rectangle(x0: float, y0: float, x1: float, y1: float) -> np.ndarray:

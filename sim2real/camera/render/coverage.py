@@ -16,7 +16,7 @@ def coverage(outline: np.ndarray, box: Box) -> np.ndarray:
     the rows adds those up. What is cut off by the box is cut exactly.
     """
     rows, columns = box.shape
-    start, end = _in_one_pixel(outline + (0.5 - box.left, 0.5 - box.top))
+    start, end = _in_one_pixel(outline - np.array([box.left - 0.5, box.top - 0.5]))
     height = end[:, 1] - start[:, 1]
     middle = 0.5 * (start + end)
     x = np.clip(middle[:, 0], 0.0, columns)

@@ -22,7 +22,7 @@ class Surface:
         return a0 + x * (a1 + a3 * x + a4 * y) + y * (a2 + a5 * y)
 
     def disc(self, x: float, y: float, radius: float, above: float = 0.0) -> np.ndarray:
-        """The rim (ROUND, 3) of a flat disc whose centre is `above` over the surface at x, y, and which is tangent to it.
+        """The rim (ROUND, 3) of a flat disc, tangent to the surface, whose centre is `above` over it at x, y.
 
         As a polygon it has the circle's area: its edges are off by less than 3 parts in 100,000 of the radius.
         """
@@ -33,9 +33,9 @@ class Surface:
         z = self.height(x, y) + above + slope[0] * across + slope[1] * along
         return np.stack([x + across, y + along, z], axis=1)
 
-    def on(self, corners: np.ndarray) -> np.ndarray:
-        """Points (n, 3) of the surface at x, y (n, 2)."""
-        return np.column_stack([corners, self.height(*corners.T) + np.zeros(len(corners))])
+    def on(self, corners: np.ndarray, above: float = 0.0) -> np.ndarray:
+        """Points (n, 3) at x, y (n, 2), `above` over the surface [m]."""
+        return np.column_stack([corners, self.height(*corners.T) + np.full(len(corners), above)])
 
 
 _CIRCLE = np.stack([trig(2.0 * np.pi * np.arange(ROUND) / ROUND) for trig in (np.cos, np.sin)])
@@ -68,13 +68,13 @@ class Marker:
         """One that lies flat with its middle at x, y, z, upright for who looks along the table from the robot's end."""
         half = 0.5 * size
         steps = np.array([(half, half), (half, -half), (-half, -half), (-half, half)])
-        return cls(number, np.column_stack([(x, y) + steps, np.full(4, z)]))
+        return cls(number, np.column_stack([steps + np.array([x, y]), np.full(4, z)]))
 
 
 @dataclass(frozen=True)
 class Levels:
-    """Grey levels, 0 to 255, in the picture's middle. Only the order of those of retro-reflective film is known: they are
-    far brighter than all else at 100 us (report 2.2.1); the rest is a choice."""
+    """Grey levels, 0 to 255, in the picture's middle. All that is known is that retro-reflective film is far brighter
+    than all else at 100 us (report 2.2.1); the rest is a choice."""
 
     floor: float = 5.0
     table: float = 11.0
