@@ -27,6 +27,7 @@ class Device(Live):
         self._count = 0
 
     def _open(self) -> None:
+        cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_ERROR)  # what it warns of is said below
         self._capture = cv2.VideoCapture(self._number)
         if not self._capture.isOpened():
             raise CameraError(f"device:{self._number} cannot be opened; see that it is plugged in and not in use")

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
+from baselines import Seat, make_player
 from puckpilot_env.motion import mallet_motion, puck_motion
 from puckpilot_env.tables import Tables
 from puckpilot_env.trace import trace
@@ -42,31 +44,24 @@ def _track(stream: Stream, name: str, times: NDArray[np.float64]) -> list[Motion
     return [None if np.isnan(column[:2]).any() else Motion(*map(float, column)) for column in columns.T]
 
 
-class Watched:
-    """Collects the moments of a game while it is played: what `baselines.match.play` calls `watch`.
+def simulated(variant: str, players: tuple[str, str], seed: int, rate: float) -> Iterator[Moment]:
+    """The moments of a game, `rate` a second [Hz], played as they are asked for, until the game ends.
 
-    >>> watched = Watched(rate=120.0, longest=10.0)
-    >>> play("puckpilot/match-v0", "veteran", "goalie", games=1, seed=0, watch=watched)
-    >>> source = Synthetic(renderer, watched.moments)
+    The first of `players` is the robot. A puck in a goal is not there.
     """
-
-    def __init__(self, rate: float, longest: float) -> None:
-        """rate: moments a second of play [Hz]; longest: of play [s]."""
-        self.moments: list[Moment] = []
-        self._rate, self._longest = rate, longest
-        self._played = 0.0
-        self._over = False
-
-    def __call__(self, tables: Tables, actions: NDArray[np.float32]) -> None:
-        """Add the moments of the step that is about to be played on table 0."""
-        ended = bool(tables.terminated[0] or tables.truncated[0])
-        self._over = self._over or ended or self._played > self._longest - 1e-9
-        if self._over:
-            return
-        period = tables.variant.period
-        first, last = (np.ceil(time * self._rate - 1e-6) for time in (self._played, self._played + period))
-        times = np.clip(np.arange(first, last) / self._rate - self._played, 0.0, period)
-        for time, state in zip(times, trace(tables, 0, actions[0], times)[0], strict=True):
+    tables = Tables(variant, 1, seed=seed, autoreset=False)
+    seated = [make_player(name, Seat.from_tables(tables, seed=2 * seed + k)) for k, name in enumerate(players)]
+    for player in seated:
+        player.reset(np.ones(1, np.bool_))
+    period, played, given = tables.variant.period, 0.0, 0
+    while not (tables.terminated[0] or tables.truncated[0]):
+        actions = np.stack([player.act(tables.observations[:, k]) for k, player in enumerate(seated)], axis=1)
+        last = math.ceil((played + period) * rate - 1e-6)
+        times = np.arange(given, last) / rate
+        states, scored = trace(tables, 0, actions[0], np.clip(times - played, 0.0, period))
+        for time, state, goal in zip(times, states, scored, strict=True):
             robot, opponent = (Motion(*map(float, mallet)) for mallet in mallet_motion(state))
-            self.moments.append(Moment(self._played + time, Motion(*map(float, puck_motion(state))), opponent, robot))
-        self._played += period
+            puck = None if goal else Motion(*map(float, puck_motion(state)))
+            yield Moment(float(time), puck, opponent, robot)
+        tables.step(actions)
+        played, given = played + period, last

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from sim2real.camera.frame import Frame
-from sim2real.camera.moments import Watched, recorded
+from sim2real.camera.moments import recorded, simulated
 from sim2real.camera.playback import Playback
 from sim2real.camera.render.moment import Moment
 from sim2real.camera.render.renderer import Renderer
@@ -16,8 +16,7 @@ from sim2real.camera.render.table import Table
 from sim2real.camera.render.view import View
 from sim2real.recording import read_recording
 
-GAME, PLAYERS = "puckpilot/match-v0", ("veteran", "follower")
-LONGEST = 10.0  # s of a game
+GAME, PLAYERS = "puckpilot/match-v0", ("interceptor", "follower")
 
 
 class Synthetic(Playback):
@@ -33,12 +32,8 @@ def _frames(renderer: Renderer, moments: Iterable[Moment]) -> Iterator[Frame]:
 
 
 def of_a_game(rate: float, exposure: float) -> Synthetic:
-    """The first LONGEST seconds of a match of two scripted players, at `rate` [Hz] and with `exposure` [s]."""
-    from baselines.match import play
-
-    watched = Watched(rate, LONGEST)
-    play(GAME, *PLAYERS, games=1, seed=0, watch=watched)
-    return Synthetic(_renderer(Table.with_markers(), exposure), watched.moments)
+    """A match of two scripted players to its end, at `rate` [Hz] and with `exposure` [s]."""
+    return Synthetic(_renderer(Table.with_markers(), exposure), simulated(GAME, PLAYERS, 0, rate))
 
 
 def of_a_recording(path: Path, exposure: float) -> Synthetic:
