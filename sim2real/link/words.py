@@ -11,7 +11,9 @@ from sim2real.link.session import Session
 
 _NAMES = {number: kind.__name__.lower() for kind, (number, _) in FORMATS.items()}
 
-_REMEDIES = {Refusal.OTHER_CONFIG: "; it does not hold the configuration sent last: send that again, then arm"}
+_REMEDIES: dict[int, str] = {
+    Refusal.OTHER_CONFIG: "; it does not hold the configuration sent last: send that again, then arm"
+}
 
 
 def name(enum: type[IntEnum], number: int) -> str:

@@ -13,10 +13,11 @@ import pytest
 from tests.firmware.host_core import make
 
 
+PAIRS = ("t1", "t2", "volts", "c2", "c3", "c4")
+
+
 class Packet(c.Structure):
-    _fields_ = [
-        *((name, c.c_float * 2) for name in ("t1", "t2", "volts", "c2", "c3", "c4")), ("idle", c.c_bool),
-    ]  # fmt: skip
+    _fields_ = [*((name, c.c_float * 2) for name in PAIRS), ("idle", c.c_bool)]
 
 
 @cache
@@ -38,7 +39,7 @@ def heard(stream: bytes) -> list[tuple[float, ...]]:
     receiver, packet, found = c.create_string_buffer(64), Packet(), []
     for byte in stream:
         if library().report_take(receiver, byte, c.byref(packet)):
-            values = [v for name, _ in Packet._fields_[:-1] for v in getattr(packet, name)]
+            values = [v for name in PAIRS for v in getattr(packet, name)]
             found.append((*values, packet.idle))
     return found
 
