@@ -12,7 +12,6 @@ import pytest
 
 from tests.firmware.host_core import make
 
-
 PAIRS = ("t1", "t2", "volts", "c2", "c3", "c4")
 
 
