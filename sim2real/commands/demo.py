@@ -56,6 +56,10 @@ def run(args: argparse.Namespace) -> int:
         "in which the two games of a start count as one where they come out alike. In a drill the first seat is\n"
         "tested (defence: no goal conceded; attack: a shot that would score), and it ends before a shot arrives.\n"
     )
+    if not args.players:
+        console.print(
+            "policy:champion never learned to read the raw frames of match-sensors-v0; it plays blindly there.\n"
+        )
     console.print(f"The beginning of the first {FILMED} is filmed: {film}\n")
     console.print("A recording of a table with physics that the simulator leaves out, beside the simulator")
     console.print("(puckpilot compare --help explains the words):")
