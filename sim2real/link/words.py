@@ -9,6 +9,7 @@ from typing import Any
 from sim2real.link.messages import FORMATS, Event, Fault, Notice, Refusal, State
 from sim2real.link.session import Session
 
+DRIFT_KNOWN = 100.0  # ppm: what is less certain is noise
 _NAMES = {number: kind.__name__.lower() for kind, (number, _) in FORMATS.items()}
 
 _REMEDIES: dict[int, str] = {
@@ -59,6 +60,12 @@ def figures(session: Session) -> dict[str, Any]:
     }
 
 
+def _drift(now: dict[str, Any]) -> str:
+    if now["drift_error_ppm"] > DRIFT_KNOWN:
+        return "drift not known yet"
+    return f"drift {now['drift_ppm']:+.1f} ppm"
+
+
 def line(session: Session) -> str:
     """The same, the most important of it, in one line."""
     if not session.port_is_open:
@@ -68,7 +75,7 @@ def line(session: Session) -> str:
         return f"{silent}no telemetry"
     now = figures(session)
     fault = "" if telemetry.fault == Fault.NONE else f" {now['fault']}"
-    clock = "?" if now["clock_error_us"] is None else f"{now['clock_error_us']:.0f} us at {now['drift_ppm']:+.1f} ppm"
+    clock = "?" if now["clock_error_us"] is None else f"{now['clock_error_us']:.0f} us, {_drift(now)}"
     x, y = telemetry.place
     path_x, path_y = telemetry.path
     return (
