@@ -60,10 +60,9 @@ def figures(session: Session) -> dict[str, Any]:
     }
 
 
-def _drift(now: dict[str, Any]) -> str:
-    if now["drift_error_ppm"] > DRIFT_KNOWN:
-        return "drift not known yet"
-    return f"drift {now['drift_ppm']:+.1f} ppm"
+def drift_words(drift: float, error: float) -> str:
+    """By how much the board's clock goes fast, known to within an error [both ppm]."""
+    return "drift not known yet" if error > DRIFT_KNOWN else f"drift {drift:+.1f} ppm"
 
 
 def line(session: Session) -> str:
@@ -75,7 +74,11 @@ def line(session: Session) -> str:
         return f"{silent}no telemetry"
     now = figures(session)
     fault = "" if telemetry.fault == Fault.NONE else f" {now['fault']}"
-    clock = "?" if now["clock_error_us"] is None else f"{now['clock_error_us']:.0f} us, {_drift(now)}"
+    clock = (
+        "?"
+        if now["clock_error_us"] is None
+        else f"{now['clock_error_us']:.0f} us, {drift_words(now['drift_ppm'], now['drift_error_ppm'])}"
+    )
     x, y = telemetry.place
     path_x, path_y = telemetry.path
     return (

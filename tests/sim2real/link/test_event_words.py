@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from sim2real.link.messages import Event
-from sim2real.link.words import event_words
+from sim2real.link.words import drift_words, event_words
 
 
 @pytest.mark.parametrize(
@@ -21,3 +21,8 @@ from sim2real.link.words import event_words
 )
 def test_an_event_in_words(code: int, detail: int, told: str):
     assert told in event_words(Event(0, code, detail))
+
+
+def test_a_drift_that_is_noise_is_no_number():
+    assert drift_words(-2300.0, 4000.0) == drift_words(5.0, float("inf")) == "drift not known yet"
+    assert drift_words(-12.34, 20.0) == "drift -12.3 ppm"
