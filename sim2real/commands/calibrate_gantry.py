@@ -1,7 +1,7 @@
 """The pulley's radius by the two-point procedure of the report (L.2).
 
 The motors stay off; you move the mallet by hand, with the jig that keeps it at known distances from the walls, from the
-right-hand corner to the left-hand one.
+right-hand corner to the left-hand one, both at the robot's end of the table, as seen from there.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """0: calibrated. Raises ValueError, in one line, for what cannot be."""
     from puckpilot_env.parameters import TABLE, checked
-    from puckpilot_env.whole_file import write_text_whole
+    from puckpilot_env.whole_file import check_folder, write_text_whole
     from sim2real.link.port import Port
     from sim2real.link.session import Session
     from sim2real.link.trial import meet
@@ -45,6 +45,12 @@ def run(args: argparse.Namespace) -> int:
     defaults = {row.name: row.default for row in TABLE}
     width = checked("width", defaults["width"] if args.width is None else args.width)
     radius = checked("mallet_radius", defaults["mallet_radius"] if args.mallet_radius is None else args.mallet_radius)
+    if not all(0.0 <= gap < 0.5 * width - radius for gap in args.jig):
+        raise ValueError(f"--jig is {args.jig[0]:g} {args.jig[1]:g}; expected two distances [m], 0 or more, that leave "
+                         f"a way across a table of {width:g} m")  # fmt: skip
+    check_folder(args.out.absolute().parent)
+    if args.out.is_dir():
+        raise ValueError(f"--out is {args.out}, a folder; expected a file")
     corner = (radius + args.jig[0], radius + args.jig[1])
     session, shafts = Session(lambda: Port(args.port)), Shafts()
     try:

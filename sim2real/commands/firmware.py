@@ -3,7 +3,8 @@
 - info: the protocol, the flashed program's size and checksum, and how many instructions its ticks take.
 - build: write both sides' messages from firmware/protocol.toml, and compile; needs make and arm-none-eabi-gcc.
 - emulate: run the program in an emulator, with a gantry on its motors, behind a serial port of its own, until Ctrl-C:
-  `puckpilot link monitor PORT` and all that talks to a board talk to it there.
+  `puckpilot link monitor PORT` and all that talks to a board talk to it there, at whatever speed. No hand can move its
+  mallet, as `calibrate gantry` asks for.
 """
 
 from __future__ import annotations
@@ -52,7 +53,7 @@ def _info(args: argparse.Namespace) -> int:
     if args.json:
         print(json.dumps(found, indent=1))
         return 0
-    print(f"{found['program']}: {found['flash_bytes']} bytes of flash, CRC-32 {found['crc32']}")
+    print(f"{ELF}: {found['flash_bytes']} bytes of flash, CRC-32 {found['crc32']}")
     print(f"protocol {found['protocol']}, schema {found['schema']}\n")
     print(f"{'message':10}  {'id':>2}  {'bytes':>5}  from")
     for name, row in found["messages"].items():
@@ -75,7 +76,7 @@ def _ticks() -> dict[str, int]:
 
 
 def _build(args: argparse.Namespace) -> int:
-    from firmware import FOLDER
+    from firmware import ELF, FOLDER
     from firmware.definition import read_protocol
     from firmware.generate import write
 
@@ -87,7 +88,7 @@ def _build(args: argparse.Namespace) -> int:
     done = subprocess.run(["make", "-s", "-C", str(FOLDER), "f103"], capture_output=True, text=True)
     if done.returncode:
         raise ValueError(f"the program does not build: {(done.stderr or done.stdout).strip().splitlines()[0]}")
-    print(done.stdout.strip())
+    print(f"wrote {ELF}\n{done.stdout.strip()}")
     return 0
 
 
@@ -96,6 +97,12 @@ def _emulate(args: argparse.Namespace) -> int:
 
     if args.seconds is not None and not args.seconds > 0:
         raise ValueError(f"--seconds is {args.seconds:g}; expected more than 0")
+    from puckpilot_env.parameters import BY_NAME
+
+    sizes = [BY_NAME[name].default for name in ("length", "width")]
+    if not all(0.0 <= at <= size for at, size in zip(args.place, sizes, strict=True)):
+        raise ValueError(f"--place is {args.place[0]:g} {args.place[1]:g}; expected a place on the table, 0 0 to "
+                         f"{sizes[0]:g} {sizes[1]:g} m")  # fmt: skip
     try:
         from sim2real.emulate.gantry import Gantry
         from sim2real.emulate.machine import Machine

@@ -21,15 +21,15 @@ MOST = 4096  # bytes at once
 @contextlib.contextmanager
 def terminal(link: Path | None = None) -> Iterator[tuple[int, str]]:
     """A pseudo-terminal: this end's descriptor, and the other's name, `link` if that is given. ValueError where there
-    is something else at `link`."""
+    is something at `link` that is no dead link to a terminal, or no folder for it."""
+    if link is not None:
+        _check(link)
     own, other = pty.openpty()
     name = os.ttyname(other)
     try:
         tty.setraw(other)
         os.set_blocking(own, False)
         if link is not None:
-            if link.exists() and not link.is_symlink():
-                raise ValueError(f"{link} is there already and is no link; name another place for the port")
             link.unlink(missing_ok=True)
             link.symlink_to(name)
         yield own, str(link or name)
@@ -38,6 +38,15 @@ def terminal(link: Path | None = None) -> Iterator[tuple[int, str]]:
             link.unlink()
         os.close(own)
         os.close(other)
+
+
+def _check(link: Path) -> None:
+    if not link.absolute().parent.is_dir():
+        raise ValueError(f"--port is {link}; expected a place in a folder that is there")
+    if link.exists():
+        raise ValueError(f"{link} is there already, of another board perhaps; name another place for the port")
+    if link.is_symlink() and not str(link.readlink()).startswith("/dev/pts/"):
+        raise ValueError(f"{link} is a link of another kind; name another place for the port")
 
 
 def serve(machine: Machine, descriptor: int, going_on: Callable[[float], bool]) -> float:

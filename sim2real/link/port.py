@@ -51,7 +51,7 @@ class Port:
         self.name = name
         try:
             self._serial = serial.Serial(name, baud, timeout=READ_WAIT, write_timeout=WRITE_WAIT, exclusive=True)
-        except (OSError, ValueError) as error:
+        except (OSError, OverflowError, ValueError) as error:
             raise PortError(f"port {name} {_reason(error, baud)}") from None
 
     def read(self, most: int) -> bytes:

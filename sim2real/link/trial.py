@@ -24,7 +24,7 @@ def meet(session: Session, now: Callable[[], float] = time.perf_counter) -> None
     while not session.connected:
         if now() > end:
             heard = session.tally.good + session.tally.refused
-            what = f"{heard} frames came, {session.tally.good} of them whole" if heard else "nothing came"
+            what = f"{heard} frames came, {session.tally.good} of them whole" if heard else "no frame came"
             raise ValueError(
                 f"no answer to hello in {GREETING:g} s ({what}); is this the board's port, at its baud rate?"
             )

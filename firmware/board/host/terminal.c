@@ -89,8 +89,9 @@ int main(void) {
         perror("a pseudo-terminal");
         return 1;
     }
-    puts(ptsname(line));
+    puts(ptsname(line)); /* first, and alone on its line: for programs */
     fflush(stdout);
+    fputs("the board is there until Ctrl-C: puckpilot link test, with this name\n", stderr);
     board.in.bytes = board.bytes;
     board.in.zeros = board.zeros;
     clock_gettime(CLOCK_MONOTONIC, &next);

@@ -116,7 +116,7 @@ def test_a_port_where_nobody_answers(tmp_path, capsys, monkeypatch):
     board.mute, board.telemetry_every = {1, PING}, 1 << 30
     with Terminal(board, tmp_path / "board") as terminal:
         told = refused(["test", str(terminal.path)], capsys)
-    assert told == "no answer to hello in 0.3 s (nothing came); is this the board's port, at its baud rate?"
+    assert told == "no answer to hello in 0.3 s (no frame came); is this the board's port, at its baud rate?"
 
 
 def test_a_port_that_vanishes_ends_a_test(terminal, capsys):
@@ -207,6 +207,11 @@ def test_ctrl_c_ends_the_monitor(terminal):
 )
 def test_mistakes(words, told, capsys):
     assert refused(["monitor", "/dev/none", *words], capsys) == told
+
+
+def test_a_speed_beyond_any_port_s(terminal, capsys):
+    told = refused(["test", str(terminal.path), "--baud", "999999999999"], capsys)
+    assert "cannot be opened at 999999999999 baud" in told
 
 
 def test_a_clock_that_no_crystal_drives_is_bad_news():

@@ -108,6 +108,23 @@ def test_the_command_finds_the_radius_of_an_emulated_gantry(
     assert read_baseline(out)["pulley_radius"] == pytest.approx(0.035306, abs=2e-6)
 
 
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["--jig", "5", "5"], "--jig is 5 5; expected two distances"),
+        (["--jig", "-0.1", "0"], "--jig is -0.1 0; expected two distances"),
+        (["--out", "/dev/null/gantry.toml"], "/dev/null"),
+        (["--out", "/tmp"], "--out is /tmp, a folder; expected a file"),
+    ],
+)
+def test_what_cannot_be_is_told_before_anybody_moves_a_mallet(
+    words: list[str], told: str, capsys: pytest.CaptureFixture[str]
+):
+    assert puckpilot.main(["calibrate", "gantry", "/dev/none", *words]) == 2
+    found = capsys.readouterr()
+    assert told in found.err and found.err.count("\n") == 1 and not found.out
+
+
 def test_a_mallet_that_was_not_moved_is_told_in_one_line(
     robot: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):
