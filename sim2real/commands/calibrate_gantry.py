@@ -1,0 +1,102 @@
+"""The pulley's radius by the two-point procedure of the report (L.2).
+
+The motors stay off; you move the mallet by hand, with the jig that keeps it at known distances from the walls, from the
+right-hand corner to the left-hand one.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import select
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from sim2real.link.session import Session
+    from sim2real.link.two_points import Pair, Shafts
+
+ALIKE = 0.003  # m that the jig may be off along x between both corners
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of `calibrate gantry`."""
+    parser.add_argument("port", metavar="PORT", help="the board's serial port, /dev/ttyUSB0 for example")
+    parser.add_argument("--width", type=float, metavar="M", help="of the table [m] (the simulator's default)")
+    parser.add_argument("--mallet-radius", type=float, metavar="M", help="[m] (the simulator's default)")
+    parser.add_argument(
+        "--jig", type=float, nargs=2, default=(0.0, 0.0), metavar=("X", "Y"),
+        help="of the jig: distance of the mallet's edge from the end wall and the side wall [m] (0 0)",
+    )  # fmt: skip
+    parser.add_argument("--out", type=Path, default=Path("gantry.toml"), metavar="FILE", help="(default gantry.toml)")
+    parser.add_argument("--json", action="store_true", help="print one JSON object in the end")
+
+
+def run(args: argparse.Namespace) -> int:
+    """0: calibrated. Raises ValueError, in one line, for what cannot be."""
+    from puckpilot_env.parameters import TABLE, checked
+    from puckpilot_env.whole_file import write_text_whole
+    from sim2real.link.port import Port
+    from sim2real.link.session import Session
+    from sim2real.link.trial import meet
+    from sim2real.link.two_points import Shafts, solve
+
+    defaults = {row.name: row.default for row in TABLE}
+    width = checked("width", defaults["width"] if args.width is None else args.width)
+    radius = checked("mallet_radius", defaults["mallet_radius"] if args.mallet_radius is None else args.mallet_radius)
+    corner = (radius + args.jig[0], radius + args.jig[1])
+    session, shafts = Session(lambda: Port(args.port)), Shafts()
+    try:
+        meet(session)
+        right = _at(session, shafts, "1. Put the mallet into the right-hand corner, with the jig, and press Enter.")
+        left = _at(session, shafts, "2. Slide it, in less than a minute, to the left-hand corner, and press Enter.")
+    finally:
+        session.close()
+    found = solve(right, left, corner, width)
+    if abs(found.sideways) > ALIKE:
+        raise ValueError(
+            f"the corners differ by {1000 * found.sideways:.1f} mm along x; expected the jig to stand alike in both, "
+            f"within {1000 * ALIKE:.0f} mm: try again, or look for a belt that slipped"
+        )
+    checked("pulley_radius", found.pulley_radius)
+    write_text_whole(args.out, f"pulley_radius = {found.pulley_radius:.6g}  # m\n")
+    if args.json:
+        told = {"pulley_radius": found.pulley_radius, "sideways": found.sideways, "home": corner, "file": str(args.out)}
+        print(json.dumps(told, indent=1))
+        return 0
+    print(f"pulley radius {1000 * found.pulley_radius:.3f} mm; both corners alike within "
+          f"{1000 * abs(found.sideways):.2f} mm along x")  # fmt: skip
+    print(f"{args.out} holds it, for --baseline of `puckpilot diagnose`")
+    print(f"home of the mallet in the right-hand corner: x {corner[0]:.4f} m, y {corner[1]:.4f} m")
+    return 0
+
+
+def _at(session: Session, shafts: Shafts, words: str) -> Pair:
+    """The shafts' angles when Enter is pressed; all telemetry on the way is followed. ValueError if the port vanishes,
+    the board is reset, or nobody is there to press it."""
+    print(words, file=sys.stderr, flush=True)
+    resets = session.resets
+    while not select.select([sys.stdin], [], [], 0.0)[0]:
+        _follow(session, shafts, resets)
+    if not sys.stdin.readline():
+        raise ValueError(
+            "nobody pressed Enter: this command asks for it at each corner, on a terminal or through a pipe"
+        )
+    _follow(session, shafts, resets)
+    if shafts.angles is None:
+        raise ValueError("the board sends no telemetry; see `puckpilot link test`")
+    return shafts.angles
+
+
+def _follow(session: Session, shafts: Shafts, resets: int) -> None:
+    missing = session.view.missing
+    session.poll()
+    if not session.port_is_open or session.resets > resets:
+        raise ValueError(
+            "the port vanished or the board was reset on the way, so that turns were not counted; begin anew"
+        )
+    if session.view.missing > missing + 20:
+        raise ValueError("too much telemetry was lost to count turns; see `puckpilot link test`")
+    for telemetry in session.take_telemetry():
+        shafts.take(telemetry.angle)

@@ -1,0 +1,142 @@
+"""The markers round a table and its surface, from several positions of the camera at once (report B.4).
+
+A VIEW is a folder: view.png, a photograph with at least three markers, and pixels.csv with u,v,x,y: where the puck's
+centre was seen [pixels] when it lay at a place measured by hand [m]. Three views from apart are good; all places
+should be spread over the whole table. Writes table.json and, beside it, a picture of how far off each point is.
+With --check a view that was not used is put to the test: the camera's place from its markers alone, then its
+pixels as places on the table against those measured.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from sim2real.vision.check import Checked
+    from sim2real.vision.multiview import Solved
+    from sim2real.vision.width import Step
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of `calibrate table`."""
+    parser.add_argument("views", nargs="+", type=Path, metavar="VIEW", help="folders of view.png and pixels.csv")
+    parser.add_argument("--camera", type=Path, required=True, metavar="FILE", help="camera.json, of calibrate camera")
+    parser.add_argument("--out", type=Path, default=Path("table.json"), metavar="FILE", help="(default table.json)")
+    parser.add_argument("--check", type=Path, metavar="VIEW", help="a view to test the calibration on")
+    parser.add_argument("--json", action="store_true", help="print one JSON object in the end")
+
+
+def run(args: argparse.Namespace) -> int:
+    """0: calibrated. Raises ValueError, in one line, for what cannot be."""
+    from puckpilot_env.whole_file import check_folder, write_whole
+    from sim2real.vision.camera_file import read_setup
+    from sim2real.vision.check import check
+    from sim2real.vision.multiview import solve
+    from sim2real.vision.table_file import write_table
+    from sim2real.vision.view_file import read_view
+    from sim2real.vision.width import step_across
+
+    _refuse_twice([*args.views, *([args.check] if args.check else [])])
+    setup = read_setup(args.camera)
+    check_folder(args.out.absolute().parent)
+    begin = time.perf_counter()
+    solved = solve(setup, tuple(read_view(path, setup) for path in args.views))
+    seconds = time.perf_counter() - begin
+    checked = check(setup, solved.scene, read_view(args.check, setup)) if args.check else None
+    step = step_across(solved, setup.width)
+    write_table(args.out, setup, solved)
+
+    from sim2real.vision.picture import draw  # matplotlib is slow to load, and nothing else here needs it
+
+    picture = write_whole(args.out.with_suffix(".png"), lambda draft: draw(draft, setup, solved, checked))
+    told = {"file": str(args.out), "picture": str(picture), "seconds": round(seconds, 2), **_told(solved, step)}
+    if checked is not None:
+        told = {**_figures(checked), **told}
+    if args.json:
+        print(json.dumps(told, indent=1, allow_nan=False))
+    else:
+        print("\n".join(_lines(told, solved, setup.width)))
+    return 0
+
+
+def _refuse_twice(folders: list[Path]) -> None:
+    """ValueError for a view that is given twice: what a fit saw proves nothing."""
+    seen: dict[Path, Path] = {}
+    for folder in folders:
+        if seen.setdefault(folder.resolve(), folder) is not folder:
+            raise ValueError(f"{folder} is given twice; give each view once, for the fit or to --check")
+
+
+def _told(solved: Solved, step: Step | None) -> dict[str, Any]:
+    """What the fit found, ready for JSON."""
+    import numpy as np
+
+    std = np.sqrt(np.diag(solved.scene_covariance()))
+    far = 1e3 * np.concatenate([np.hypot(*off.T) for off in solved.off])
+    markers = np.array(list(solved.scene.replaced(std).markers.values()))
+    return {
+        "views": [view.name for view in solved.problem.views],
+        "markers": len(solved.scene.markers),
+        "fit": {"points": len(far), "mean_mm": float(far.mean()), "max_mm": float(far.max())},
+        "corner_rms_px": solved.corner_rms,
+        "marker_std_mm": float(1e3 * np.sqrt((markers**2).mean())),
+        "surface_per_m": {
+            name: {"value": value, "std": float(one)}
+            for name, value, one in zip(("xx", "xy", "yy"), solved.scene.surface.curvature, std, strict=False)
+        },
+        "wrong": [
+            {"view": view.name, "point": int(k) + 1, "off_mm": float(1e3 * np.hypot(*off[k]))}
+            for view, off, wrong in zip(solved.problem.views, solved.off, solved.wrong, strict=True)
+            for k in np.flatnonzero(wrong)
+        ],
+        "step_across": None if step is None else {"mm": 1e3 * step.value, "std": 1e3 * step.std, "clear": step.clear},
+    }
+
+
+def _figures(checked: Checked) -> dict[str, Any]:
+    """How well an unused view's points are found, ready for JSON."""
+    import numpy as np
+
+    far = 1e3 * checked.distances
+    return {
+        "check": checked.view.name,
+        "mean_mm": float(far.mean()),
+        "median_mm": float(np.median(far)),
+        "max_mm": float(far.max()),
+        "farthest_point": int(np.argmax(far)) + 1,
+        "markers_rms_px": checked.pose.rms,
+    }
+
+
+def _lines(told: dict[str, Any], solved: Solved, width: float) -> list[str]:
+    """The same for a reader."""
+    fit, surface = told["fit"], told["surface_per_m"]
+    heights = ", ".join(f"{name} {1e3 * one['value']:.2f} ({1e3 * one['std']:.2f})" for name, one in surface.items())
+    corners = ", ".join(f"{name} {rms:.2f}" for name, rms in zip(told["views"], told["corner_rms_px"], strict=True))
+    lines = [
+        f"{len(told['views'])} views, {told['markers']} markers, {fit['points']} points in {told['seconds']:.1f} s: "
+        f"points {fit['mean_mm']:.2f} mm off on average, {fit['max_mm']:.2f} mm at most",
+        f"corners of markers, px rms: {corners}; placed to {told['marker_std_mm']:.1f} mm",
+        f"surface, mm at 1 m from the middle: {heights}",
+        *(
+            f"wrong measurement: {one['view']}, point {one['point']}, {one['off_mm']:.1f} mm off"
+            for one in told["wrong"]
+        ),
+    ]
+    step = told["step_across"]
+    if step is not None and step["clear"]:
+        lines.append(
+            f"points left of the middle are stated {step['mm']:.1f} ({step['std']:.1f}) mm too far left against those "
+            f"right of it: if they were measured from the left wall, the table is {width - 1e-3 * step['mm']:.4f} m "
+            f"wide, not {width:g}; coordinates here follow the stated ones as well as a smooth map can"
+        )
+    if "check" in told:
+        lines.append(
+            f"check on {told['check']}, not used: mean {told['mean_mm']:.2f} mm, median {told['median_mm']:.2f} mm, "
+            f"max {told['max_mm']:.2f} mm (point {told['farthest_point']}); markers {told['markers_rms_px']:.2f} px rms"
+        )
+    return [*lines, f"{told['file']} holds it; {told['picture']} shows it"]

@@ -1,0 +1,99 @@
+"""Corners of a marker from its edges: each edge is fitted as a blurred straight step, and neighbours are intersected.
+
+Detectors round the corners off and see them up to 0.9 px inside. Along an edge hundreds of pixels tell where it is, and
+away from the corners nothing is rounded. It is straight once the lens's distortion is taken out.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.optimize import least_squares
+from scipy.special import ndtr
+
+from sim2real.vision.camera import Camera
+
+INSIDE, OUTSIDE = 0.6, 0.5  # of a cell: how far from the edge pixels are used; beyond, bits and the margin's end begin
+ALONG = 0.85  # of half an edge: the ends are rounded
+BLUR = 1.0  # px, where the search begins
+CONTRAST = 20.0  # grey levels that an edge must have
+MOST = 3.0  # px that an edge may be from where it was detected
+ROUNDS = 2  # of choosing pixels anew
+PIXELS = 12  # that an edge must have
+GREY = 8.0  # levels: larger errors, of glints and dirt, count less
+
+
+def refine(image: np.ndarray, camera: Camera, corners: np.ndarray, cells: int) -> np.ndarray | None:
+    """Corners (4, 2) [pixels] of a marker of some cells a side, its black border included, near detected ones (4, 2),
+    in a smoothed image. None where an edge is not clearly seen."""
+    for _ in range(ROUNDS):
+        straight = camera.straight(corners)
+        lines = [_line(image, camera, straight, k, cells) for k in range(4)]
+        found = [line for line in lines if line is not None]
+        if len(found) < 4:
+            return None
+        corners = camera.curved(np.array([_meeting(found[k - 1], found[k]) for k in range(4)]))
+    return corners
+
+
+def _line(
+    image: np.ndarray, camera: Camera, corners: np.ndarray, k: int, cells: int
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """A point and a direction, without distortion, of the edge from corner k to the next."""
+    one, other = corners[k], corners[(k + 1) % 4]
+    half = 0.5 * float(np.linalg.norm(other - one))
+    middle, along = 0.5 * (one + other), 0.5 * (other - one) / half
+    outward = np.array([along[1], -along[0]])
+    outward = outward * np.sign((middle - corners.mean(axis=0)) @ outward)
+    cell = 2.0 * float((middle - corners.mean(axis=0)) @ outward) / cells
+    columns, rows = _box(image, camera.curved(np.stack([one, other])), cell)
+    places = camera.straight(np.stack([columns, rows], axis=1).astype(float)) - middle
+    position, depth = places @ along / half, places @ outward
+    near = (np.abs(position) < ALONG) & (depth > -INSIDE * cell) & (depth < OUTSIDE * cell)
+    if near.sum() < PIXELS:
+        return None
+    step = _step(position[near], depth[near], image[rows[near], columns[near]])
+    if step is None:
+        return None
+    shift, turn = step
+    return middle + shift * outward, along * half + turn * outward
+
+
+def _box(image: np.ndarray, ends: np.ndarray, cell: float) -> tuple[np.ndarray, np.ndarray]:
+    """Columns and rows (n,) of the image round an edge with ends (2, 2)."""
+    low = np.maximum(np.floor(ends.min(axis=0) - cell - 1.0), 0.0).astype(int)
+    high = np.minimum(np.ceil(ends.max(axis=0) + cell + 1.0), np.array(image.shape[::-1]) - 1).astype(int)
+    columns, rows = np.meshgrid(np.arange(low[0], high[0] + 1), np.arange(low[1], high[1] + 1))
+    return columns.ravel(), rows.ravel()
+
+
+def _step(position: np.ndarray, depth: np.ndarray, grey: np.ndarray) -> tuple[float, float] | None:
+    """Shift and turn [pixels] of the line on which a blurred step from dark to bright lies, in pixels (n,) at some
+    positions along it (-1 to 1) and depths across [pixels]. None if there is no such step near depth 0."""
+
+    def model(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        shift, turn, low, high, blur = x
+        z = (depth - shift - turn * position) / blur
+        share, density = ndtr(z), np.exp(-0.5 * z * z) / np.sqrt(2.0 * np.pi)
+        steep = -(high - low) * density / blur
+        return low + (high - low) * share, np.stack([steep, steep * position, 1.0 - share, share, steep * z], axis=1)
+
+    begin = np.array([0.0, 0.0, *np.quantile(grey, [0.05, 0.95]), BLUR])
+    bounds = ([-np.inf, -np.inf, -np.inf, -np.inf, 0.3], [np.inf, np.inf, np.inf, np.inf, 5.0])
+    found = least_squares(
+        lambda x: model(x)[0] - grey,
+        begin,
+        lambda x: model(x)[1],  # pyright: ignore[reportArgumentType]
+        bounds=bounds,
+        x_scale=[0.1, 0.1, 5.0, 5.0, 0.1],
+        loss="soft_l1",
+        f_scale=GREY,
+    )
+    shift, turn, low, high, _ = found.x
+    clear = found.success and high - low > CONTRAST and abs(shift) + abs(turn) < MOST
+    return (float(shift), float(turn)) if clear else None
+
+
+def _meeting(one: tuple[np.ndarray, np.ndarray], other: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
+    """Where two lines of a point and a direction meet."""
+    (p, d), (q, e) = one, other
+    return p + np.linalg.solve(np.stack([d, -e], axis=1), q - p)[0] * d

@@ -1,0 +1,59 @@
+"""Markers in a photograph: found by OpenCV, their corners then taken from their edges."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+
+from sim2real.vision.camera import Camera
+from sim2real.vision.edges import refine
+from sim2real.vision.photograph import smoothed
+
+FEWEST = 3  # markers of a view
+BORDER = 2  # cells of a marker's black border, both sides together
+
+
+def find_markers(image: np.ndarray, camera: Camera, dictionary: str) -> dict[int, np.ndarray]:
+    """Corners (4, 2) [pixels] of the markers in a photograph (height, width) by their ids, clockwise from the marker's
+    own top left. ValueError, in one line, if fewer than three are clearly seen."""
+    book = dictionary_of(dictionary)
+    detected = _detect(image, book)
+    if len(detected) < FEWEST:
+        raise ValueError(_too_few(image, dictionary, len(detected)))
+    even = smoothed(image)
+    fine = {name: refine(even, camera, corners, book.markerSize + BORDER) for name, corners in detected.items()}
+    clear = {name: corners for name, corners in fine.items() if corners is not None}
+    if len(clear) < FEWEST:
+        raise ValueError(
+            f"{len(clear)} of {len(fine)} markers have clear edges; expected {FEWEST} at least: mend focus or light"
+        )
+    return clear
+
+
+def dictionary_of(name: str) -> cv2.aruco.Dictionary:
+    """OpenCV's dictionary of markers by its name, DICT_4X4_50 for example. ValueError if there is none."""
+    if name not in _names():
+        raise ValueError(f"unknown dictionary of markers '{name}'; expected one of OpenCV's, DICT_4X4_50 for example")
+    return cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, name))
+
+
+def _names() -> list[str]:
+    return [name for name in dir(cv2.aruco) if name.startswith("DICT_")]
+
+
+def _detect(image: np.ndarray, book: cv2.aruco.Dictionary) -> dict[int, np.ndarray]:
+    """Rough corners (4, 2) by id; of an id that is seen twice, none, since nobody knows which is the table's."""
+    corners, ids, _ = cv2.aruco.ArucoDetector(book).detectMarkers(image)
+    names = [] if ids is None else [int(one) for one in np.ravel(ids)]
+    found = {name: one.reshape(4, 2).astype(float) for name, one in zip(names, corners, strict=True)}
+    return {name: found[name] for name in sorted(found) if names.count(name) == 1}
+
+
+def _too_few(image: np.ndarray, dictionary: str, many: int) -> str:
+    """Why there are too few markers: perhaps they are of another dictionary."""
+    others = {name: len(_detect(image, dictionary_of(name))) for name in _names()}
+    best = max(others, key=lambda name: others[name])
+    said = f"{many} markers of {dictionary} are seen; expected {FEWEST} at least"
+    if others[best] >= max(FEWEST, many + 1):
+        return f"{said}: {others[best]} of {best} are, so state that dictionary"
+    return f"{said}: are they hidden, or out of the picture?"
