@@ -1,0 +1,70 @@
+"""A rectangle of pixels: rows top to bottom, columns left to right, the last ones not included."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+
+class Box(NamedTuple):
+    """Rows `top` to `bottom` and columns `left` to `right` of a picture."""
+
+    top: int
+    left: int
+    bottom: int
+    right: int
+
+    @classmethod
+    def around(cls, points: np.ndarray) -> Box:
+        """The pixels that an outline (n, 2), u and v, can touch."""
+        u, v = points.T
+        top, left = (math.floor(edge.min() + 0.5) for edge in (v, u))
+        bottom, right = (math.ceil(edge.max() + 0.5) for edge in (v, u))
+        return cls(top, left, bottom, right)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns."""
+        return max(self.bottom - self.top, 0), max(self.right - self.left, 0)
+
+    @property
+    def pixels(self) -> int:
+        """How many it holds."""
+        rows, columns = self.shape
+        return rows * columns
+
+    @property
+    def empty(self) -> bool:
+        """Whether it holds no pixel."""
+        return self.bottom <= self.top or self.right <= self.left
+
+    def common(self, other: Box) -> Box:
+        """The pixels of both."""
+        return Box(
+            max(self.top, other.top),
+            max(self.left, other.left),
+            min(self.bottom, other.bottom),
+            min(self.right, other.right),
+        )
+
+    def joined(self, other: Box) -> Box:
+        """The smallest box that holds both."""
+        return Box(
+            min(self.top, other.top),
+            min(self.left, other.left),
+            max(self.bottom, other.bottom),
+            max(self.right, other.right),
+        )
+
+    def wider(self, margin: int) -> Box:
+        """With so many pixels more on each side."""
+        return Box(self.top - margin, self.left - margin, self.bottom + margin, self.right + margin)
+
+    def within(self, other: Box) -> tuple[slice, slice]:
+        """Where its pixels are in a picture of `other`, which holds them all."""
+        return (
+            slice(self.top - other.top, self.bottom - other.top),
+            slice(self.left - other.left, self.right - other.left),
+        )

@@ -1,0 +1,97 @@
+"""The renderer's camera: where points of the table are seen. Projection is OpenCV's, and stays on this side.
+
+Whatever finds things in pictures has a projection of its own, so that a mistake in one does not hide in the other.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import cv2
+import numpy as np
+
+from sim2real.camera.render.coverage import cut
+
+SIZE = (1440, 1080)  # columns and rows of the real table's camera during play
+FOCAL = 1152.0  # pixels; as all below, its calibration made round, at 2048 columns, scaled to SIZE
+PRINCIPAL_POINT = (716.0, 543.0)  # pixels
+DISTORTION = (-0.128, 0.156, 0.0012, -0.0002, -0.065)
+PLACE = (-0.19, 0.5, 0.665)  # of the real table's camera, in lengths, widths and lengths of the table
+TARGET = (0.305, 0.5)  # what it looks at, in lengths and widths
+BEND = 0.02  # of the focal length: a straight edge is cut in pieces no longer than this before the lens bends it
+
+
+@dataclass(frozen=True)
+class View:
+    """A camera and where it stands. Table's frame: x forward, y left, z up [m]; camera's: x right, y down, z ahead.
+
+    matrix: (3, 3), focal lengths and principal point [pixels], the first pixel's centre at (0, 0); distortion: k1, k2,
+    p1, p2, k3 (report B.1); rotation: (3,) vector and shift: (3,) [m], from the table's frame to the camera's; size:
+    columns and rows.
+    """
+
+    matrix: np.ndarray
+    distortion: np.ndarray
+    rotation: np.ndarray
+    shift: np.ndarray
+    size: tuple[int, int] = SIZE
+
+    @classmethod
+    def like_the_real_one(cls, length: float, width: float) -> View:
+        """A view of a table of this length and width [m] like that of the real one: from behind the robot's end."""
+        scale = np.array([length, width, length])
+        return cls.from_place(scale * PLACE, scale * (*TARGET, 0.0))
+
+    @classmethod
+    def from_place(cls, place: np.ndarray, target: np.ndarray) -> View:
+        """The real table's camera at `place`, looking at `target` (3,) [m], with the horizon level."""
+        ahead = np.asarray(target, float) - place
+        right = np.cross(ahead, (0.0, 0.0, 1.0))
+        axes = np.array([right, np.cross(ahead, right), ahead])
+        turn = axes / np.linalg.norm(axes, axis=1, keepdims=True)
+        matrix = np.array([[FOCAL, 0.0, PRINCIPAL_POINT[0]], [0.0, FOCAL, PRINCIPAL_POINT[1]], [0.0, 0.0, 1.0]])
+        return cls(matrix, np.array(DISTORTION), cv2.Rodrigues(turn)[0].ravel(), -turn @ place)
+
+    @cached_property
+    def turn(self) -> np.ndarray:
+        """`rotation` as a matrix (3, 3)."""
+        return cv2.Rodrigues(self.rotation)[0]
+
+    @cached_property
+    def place(self) -> np.ndarray:
+        """Where the camera stands in the table's frame (3,) [m]."""
+        return -self.turn.T @ self.shift
+
+    def project(self, points: np.ndarray) -> np.ndarray:
+        """Pixels (n, 2), u and v, of points (n, 3) in the table's frame [m]."""
+        return cv2.projectPoints(points, self.rotation, self.shift, self.matrix, self.distortion)[0][:, 0]
+
+    def silhouette(self, points: np.ndarray) -> np.ndarray:
+        """The outline (m, 2) [pixels] of a convex body, of which `points` (n, 3) [m] hold all corners."""
+        seen = points @ self.turn.T + self.shift
+        rays = (seen[:, :2] / seen[:, 2:]).astype(np.float32)  # convexHull takes no doubles; 1e-4 pixels are lost
+        corners = cv2.convexHull(rays)[:, 0].astype(float)
+        edges, _ = cut(np.column_stack([corners, np.ones(len(corners))]), BEND)
+        return cv2.projectPoints(edges, np.zeros(3), np.zeros(3), self.matrix, self.distortion)[0][:, 0]
+
+    def brightness(self) -> np.ndarray:
+        """How bright the lamp beside the camera makes what lies at the table's height, for each pixel (rows, columns).
+
+        Relative to the middle of the picture; it falls with the square of the distance. Looked up between every 16th
+        pixel.
+        """
+        columns, rows = self.size
+        v, u = np.mgrid[0.0 : rows + 16 : 16, 0.0 : columns + 16 : 16]
+        pixels = np.stack([u.ravel(), v.ravel()], axis=1)
+        rays = cv2.undistortPoints(pixels[:, None], self.matrix, self.distortion)[:, 0]
+        down = np.column_stack([rays, np.ones(len(rays))]) @ -self.turn[:, 2]
+        steep = np.maximum(down / np.sqrt(1.0 + (rays**2).sum(axis=1)), 0.0)
+        coarse = ((steep / -self.turn[2, 2]) ** 2).reshape(u.shape).astype(np.float32)
+        v, u = np.mgrid[0:rows, 0:columns].astype(np.float32) / 16.0
+        return cv2.remap(coarse, u, v, cv2.INTER_LINEAR)
+
+    def brightness_at(self, point: np.ndarray) -> float:
+        """The same for a point (3,) [m] in the table's frame."""
+        middle = self.place[2] / -self.turn[2, 2]  # from the camera to where it looks
+        return float(middle**2 / ((point - self.place) ** 2).sum())
