@@ -34,6 +34,11 @@ class Locator:
         points = np.column_stack([flat, self.surface.height(flat) + height])
         return self.camera.project(moved(self.motion, points)[0])[0]
 
+    def distances(self, pixels: np.ndarray) -> np.ndarray:
+        """From the camera (n,) [m] to what is seen of the table's surface at pixels (n, 2); NaN past its plane."""
+        eye = -rotation(self.motion[:3]).T @ self.motion[3:]
+        return np.linalg.norm(self._points(pixels, 0.0) - eye, axis=1)
+
     def _points(self, pixels: np.ndarray, height: float) -> np.ndarray:
         """Points (n, 3) [m] of the rigid frame."""
         turn = rotation(self.motion[:3])
