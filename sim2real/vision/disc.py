@@ -24,7 +24,8 @@ ROUNDS = 8  # of the refinement
 SPREAD = (0.04, 0.3)  # px, the least and the greatest scatter that edges are taken to have
 CUT = 3.0  # times the scatter: farther points have no weight (Tukey's biweight)
 BINS = 36  # parts of the rim
-ALIKE = 0.03e-3  # m: what all edges of a disc may have in common
+TOGETHER = 4.0  # neighbouring points that err as one: so much greater is the variance than that of as many points
+COMMON = 0.03  # px: standard deviation of what all edges of a disc err by alike, which an arc's centre follows
 
 
 @dataclass(frozen=True)
@@ -49,11 +50,14 @@ def find_disc(rim: Rim, radius: float) -> Disc | None:
     centre = np.zeros(2)
     if len(rim) < 3 or _guess(rim.places, rim.steps, radius, centre) <= 0.0:
         return None
-    normal, counts, bins = np.zeros((2, 2)), np.zeros(2, np.int64), np.zeros(BINS, np.bool_)
-    scatter = _refine(rim.places, rim.steps, radius, centre, normal, counts, bins)
+    normal, total = np.zeros((2, 2)), np.zeros(2)
+    counts, bins = np.zeros(2, np.int64), np.zeros(BINS, np.bool_)
+    scatter = _refine(rim.places, rim.steps, radius, centre, normal, total, counts, bins)
     if counts[0] < 3 or np.linalg.cond(normal) > 1e8:
         return None
-    covariance = scatter**2 * np.linalg.inv(normal) + ALIKE**2 * np.eye(2)
+    inverse = np.linalg.inv(normal)
+    leaning = COMMON * inverse @ total
+    covariance = TOGETHER * scatter**2 * inverse + np.outer(leaning, leaning)
     return Disc(centre, covariance, float(bins.mean()), int(counts[0]), int(counts[1]))
 
 
@@ -114,15 +118,16 @@ def _guess(places, steps, radius, centre):
 
 
 @array_kernel
-def _refine(places, steps, radius, centre, normal, counts, bins):
+def _refine(places, steps, radius, centre, normal, total, counts, bins):
     """Move `centre` to where the points' distances from the rim [px] are least (Gauss, Newton; Tukey's weights). Fill
-    the normal matrix (2, 2) [px^2/m^2], how many points are on the rim and outside, and which parts of it they show.
-    The points' scatter [px]."""
+    the normal matrix (2, 2) [px^2/m^2], its right side (2,) [px/m] for points that all lie a pixel outside, how many
+    points are on the rim and outside, and which parts of it they show. The points' scatter [px]."""
     count = places.shape[0]
     off, near = np.empty(count), np.empty(count)
     scatter = SPREAD[1]
     for _ in range(ROUNDS):
         normal[:] = 0.0
+        total[:] = 0.0
         right_x, right_y, kept = 0.0, 0.0, 0
         for i in range(count):
             off[i], faces = _off(places, steps, i, radius, centre[0], centre[1])
@@ -138,6 +143,8 @@ def _refine(places, steps, radius, centre, normal, counts, bins):
             normal[0, 0] += weight * along_x * along_x
             normal[0, 1] += weight * along_x * along_y
             normal[1, 1] += weight * along_y * along_y
+            total[0] += weight * along_x
+            total[1] += weight * along_y
             right_x += weight * along_x * off[i]
             right_y += weight * along_y * off[i]
         normal[1, 0] = normal[0, 1]

@@ -13,9 +13,10 @@ from sim2real.vision.locate import Grid, Locator
 from sim2real.vision.puck import PuckFinder
 from sim2real.vision.ring import Ring, RingFinder
 
-SURE_SEEN = 0.35  # of the puck's rim, from which on it can be nothing else
+SURE_SEEN = 0.3  # of the puck's rim, from which on it can be nothing else
 SURE_WITHIN = 1e-3  # m, standard deviation of a sure sighting at most
-RING_ERROR = 0.15e-3  # m, standard deviation of a ring's middle
+PUCK_POWER, OPPONENT_POWER = 0.1, 20.0  # m^2/s^3, of what changes their velocities between contacts
+RING_ERROR = 0.05e-3  # m, standard deviation of a ring's middle
 AROUND = 2.0  # radii round where something should be that are looked at
 ROOM = 4.0  # standard deviations more
 
@@ -41,7 +42,7 @@ class Eye:
         self._bright = Bright(locator, size, length, width, ring_height, level)
         self._pucks = PuckFinder(Grid(locator, puck_height, size).places, puck_radius)
         self._rings = RingFinder(Grid(locator, ring_height, size).places)
-        self._puck, self._opponent = Follower(), Follower()
+        self._puck, self._opponent = Follower(PUCK_POWER), Follower(OPPONENT_POWER)
 
     def look(self, image: np.ndarray, time: float) -> Seen:
         """What this picture, uint8 (rows, columns), adds."""
@@ -68,7 +69,7 @@ class Eye:
 
     def _window(self, there: Estimate | None, height: float) -> Window | None:
         """Where something should be in the picture; None if that is not known."""
-        if there is None or not there.known:
+        if there is None:
             return None
         reach = self._reach + ROOM * there.deviation
         corners = there.place + reach * np.array([(-1, -1), (-1, 1), (1, -1), (1, 1)])

@@ -1,6 +1,7 @@
 """Follows one thing through the pictures: where it is, how fast, how surely, and when that is not known.
 
 Between contacts things on the table go nearly straight; a contact is a sighting that the path before did not foretell.
+What is not seen is under the gantry, beside the very mallet that may strike it at any moment: it is not known.
 """
 
 from __future__ import annotations
@@ -10,13 +11,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-UNSTEADY = 4.0  # m/s^2: standard deviation of what changes a velocity between contacts, white over UNSTEADY_TIME
-UNSTEADY_TIME = 0.05  # s
 GATE = 16.0  # square of the distance in standard deviations at which a sighting still fits the path
-SLACK = 1e-3  # m beside that: a contact between two pictures moves a thing a little off its path
+CLOSE = 0.03  # m: what is known no better, standard deviation, is followed by sure sightings alone
 FASTEST = 15.0  # m/s
 LOST = 0.06  # s unseen: whatever is seen surely from then on is it
-LEAST_SURE = 0.03  # m: with a greater standard deviation it is not known where it is
+STRUCK = 250.0  # m^2/s^3: power of what may change the velocity of something hidden: ten blows of 5 m/s a second
 ANY_SPEED = 5.0  # m/s, standard deviation of a velocity of which nothing is known
 
 
@@ -42,26 +41,21 @@ class Estimate:
     pictures: int
 
     @property
-    def seen(self) -> bool:
-        """Whether it was seen in this very picture."""
-        return self.last == self.time
+    def known(self) -> bool:
+        """Whether it is known where it is: it was seen in this very picture, and in another before, since one could
+        err."""
+        return self.last == self.time and self.pictures >= 2
 
     @property
     def deviation(self) -> float:
         """Standard deviation of its place in the least certain direction [m]."""
         return float(np.sqrt(np.linalg.eigvalsh(self.covariance[:2, :2])[-1]))
 
-    @property
-    def known(self) -> bool:
-        """Whether it is known where it is. One picture could err."""
-        return self.pictures >= 2 and self.deviation <= LEAST_SURE
-
-    def after(self, time: float) -> Estimate:
-        """Where it will be, if nothing touches it."""
+    def after(self, time: float, power: float) -> Estimate:
+        """Where it will be, if what changes its velocity is white and has this power [m^2/s^3]."""
         dt = time - self.time
         on = np.eye(4)
         on[0, 2] = on[1, 3] = dt
-        power = UNSTEADY**2 * UNSTEADY_TIME
         grown = power * np.kron([[dt**3 / 3.0, dt**2 / 2.0], [dt**2 / 2.0, dt]], np.eye(2))
         covariance = on @ self.covariance @ on.T + grown
         return replace(self, time=time, place=self.place + dt * self.velocity, covariance=covariance)
@@ -83,19 +77,20 @@ class Estimate:
     def far(self, sighting: Sighting) -> float:
         """Square of the distance to a sighting of the same time, in standard deviations."""
         off = sighting.place - self.place
-        spread = self.covariance[:2, :2] + sighting.covariance + SLACK**2 * np.eye(2)
-        return float(off @ np.linalg.solve(spread, off))
+        return float(off @ np.linalg.solve(self.covariance[:2, :2] + sighting.covariance, off))
 
 
 class Follower:
-    """Give it the sightings of every picture, in order of time."""
+    """Give it the sightings of every picture, in order of time. `power` [m^2/s^3]: of what changes the velocity between
+    contacts."""
 
-    def __init__(self) -> None:
+    def __init__(self, power: float) -> None:
+        self._power = power
         self._now: Estimate | None = None
 
     def foretold(self, time: float) -> Estimate | None:
-        """Where it should be at a time; None where nothing is followed."""
-        return self._now.after(time) if self._now else None
+        """Where it should be at a time, if nothing touches it; None where it is not known now."""
+        return self._now.after(time, self._power) if self._now and self._now.known else None
 
     def see(self, time: float, sightings: Sequence[Sighting]) -> Estimate | None:
         """What is known after a picture, None if nothing is. ValueError if a picture is not later than the last."""
@@ -109,29 +104,28 @@ class Follower:
         before = self._now
         sure = [one for one in sightings if one.sure]
         if before is None:
-            return _begun(time, sure[0]) if sure else None
-        here = before.after(time)
-        fitting = min(sightings, key=here.far, default=None)
-        if fitting is not None and here.far(fitting) <= GATE:
-            return here.corrected(fitting)
-        reachable = [one for one in sure if _apart(one, before) <= FASTEST * (time - before.last) + SLACK]
-        if reachable:  # something touched it
-            return _touched(before, time, min(reachable, key=lambda one: _apart(one, before)))
-        if time - before.last > LOST or before.pictures < 2:
-            return _begun(time, sure[0]) if sure else (here if before.pictures >= 2 else None)
-        return here
+            return _begun(time, sure)
+        here = before.after(time, self._power if before.last == before.time else STRUCK)
+        fitting = [one for one in (sightings if here.deviation <= CLOSE else sure) if here.far(one) <= GATE]
+        if fitting and (here.deviation <= CLOSE or len(fitting) == 1):
+            return here.corrected(min(fitting, key=here.far))
+        reachable = [one for one in sure if _apart(one, before) <= FASTEST * (time - before.last)]
+        if len(reachable) == 1 and before.pictures >= 2:
+            return _begun(time, reachable, before.pictures)  # something struck it
+        if before.pictures < 2 or time - before.last > LOST:
+            return _begun(time, sure)
+        return before.after(time, STRUCK)
 
 
 def _apart(sighting: Sighting, estimate: Estimate) -> float:
     return float(np.linalg.norm(sighting.place - estimate.place))
 
 
-def _begun(time: float, sighting: Sighting) -> Estimate:
+def _begun(time: float, sightings: list[Sighting], pictures: int = 0) -> Estimate | None:
+    """A new path; none from nothing, nor where there are several things that it could be."""
+    if len(sightings) != 1:
+        return None
+    (sighting,) = sightings
     covariance = np.diag([0.0, 0.0, ANY_SPEED**2, ANY_SPEED**2])
     covariance[:2, :2] = sighting.covariance
-    return Estimate(time, sighting.place, np.zeros(2), covariance, time, 1)
-
-
-def _touched(before: Estimate, time: float, sighting: Sighting) -> Estimate:
-    """Its way goes on from where it was seen, at a velocity of which little is known."""
-    return replace(_begun(time, sighting), pictures=before.pictures + 1)
+    return Estimate(time, sighting.place, np.zeros(2), covariance, time, pictures + 1)

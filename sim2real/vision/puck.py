@@ -8,7 +8,7 @@ from sim2real.vision.bright import Blob
 from sim2real.vision.disc import Disc, find_disc
 from sim2real.vision.rim import Places, Rim, rim_of
 
-LEAST_SEEN = 0.12  # of the rim; with less nothing is said
+LEAST_SEEN = 0.2  # of the rim; with less an arc's ends, where what hides the disc begins, pull it off by millimetres
 ENOUGH_SEEN = 0.4  # with so much of it, a glint may touch it
 LEAST_ON = 10  # edge points
 MOST_OUTSIDE = 0.15  # points outside for each one on the rim
@@ -26,7 +26,15 @@ class PuckFinder:
         rims = [rim for rim in (rim_of(image, blob.outline, self.places) for blob in blobs) if len(rim) >= LEAST_ON]
         found = [find_disc(Rim.joined(group), self.radius) for group in self._groups(rims)]
         good = [disc for disc in found if disc is not None and _is_puck(disc)]
-        return sorted(good, key=lambda disc: disc.outside - disc.on)
+        return self._apart(sorted(good, key=lambda disc: disc.outside - disc.on))
+
+    def _apart(self, discs: list[Disc]) -> list[Disc]:
+        """Those that can be there at once: of two that overlap, the former."""
+        kept: list[Disc] = []
+        for disc in discs:
+            if all(np.linalg.norm(disc.centre - other.centre) >= 2.0 * self.radius for other in kept):
+                kept.append(disc)
+        return kept
 
     def _groups(self, rims: list[Rim]) -> list[list[Rim]]:
         """Each rim alone, and with all that lie so near that one disc can have both."""
