@@ -46,7 +46,7 @@ class Camera:
                 break
             ray = ray - _solve(slope, off)
         bent, slope = self._distorted(ray)
-        found = (np.abs(bent - goal).max(axis=1) < 1e3 * CLOSE) & (np.linalg.det(slope) > 0.0)
+        found = (np.abs(bent - goal).max(axis=1) < 1e3 * CLOSE) & (np.linalg.det(slope) > 0.0) & (slope[:, 0, 0] > 0.0)
         return np.where(found[:, None], ray, np.nan)
 
     def straight(self, pixels: np.ndarray) -> np.ndarray:

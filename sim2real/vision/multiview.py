@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from sim2real.vision.camera_file import Setup
 from sim2real.vision.residuals import PLACE_STD, Problem
 from sim2real.vision.robust_fit import Evaluate, Fitted, robust_fit
-from sim2real.vision.scene import Scene
+from sim2real.vision.scene import BEFORE, Scene
 from sim2real.vision.start import start
+from sim2real.vision.surface import TERMS
 from sim2real.vision.view import View
 
 FEWEST_VIEWS = 2
 FEWEST_MARKERS = 3
+BEND_STD = 1e-3  # m, where the search for how large the frame's bend is begins,
+BEND_RANGE = (3e-5, 3e-3)  # and where it may end
+ROUNDS = 8  # of that search
 WRONG = 3.5  # times the typical error: of 108 points that are measured alike, 0.2 lie farther off by chance
 
 
@@ -47,16 +51,35 @@ def solve(setup: Setup, views: tuple[View, ...]) -> Solved:
         raise ValueError(
             f"{len(scene.markers)} markers are seen in two views or more; expected {FEWEST_MARKERS} at least"
         )
-    problem = Problem(setup.camera, views, scene, setup.puck_top)
-    pairs = sum(len(view.pixels) + len(problem.corners(view)) for view in views)
+    problem = Problem(setup.camera, views, scene, setup.puck_top, BEND_STD)
+    vector = np.concatenate([poses.ravel(), scene.vector()])
+    for _ in range(ROUNDS):
+        fitted = _fit(problem, vector)
+        vector, before = fitted.vector, problem.bend_std
+        problem = replace(problem, bend_std=_bend_std(fitted, poses.size, before))
+        if abs(problem.bend_std - before) < 0.05 * before:
+            break
+    found, scene = problem.split(vector)
+    return Solved(problem, fitted, found, scene, *_parts(problem, fitted))
+
+
+def _fit(problem: Problem, vector: np.ndarray) -> Fitted:
+    pairs = sum(len(view.pixels) + len(problem.corners(view)) for view in problem.views)
 
     def at(vector: np.ndarray) -> Evaluate:
         whitening = problem.whitening(vector)
         return lambda x: problem.evaluate(x, whitening)
 
-    fitted = robust_fit(at, np.concatenate([poses.ravel(), scene.vector()]), pairs)
-    found, scene = problem.split(fitted.vector)
-    return Solved(problem, fitted, found, scene, *_parts(problem, fitted))
+    return robust_fit(at, vector, pairs)
+
+
+def _bend_std(fitted: Fitted, first: int, std: float) -> float:
+    """How large the bend's coefficients typically are, by the evidence (MacKay 1992): squares over the number of them
+    that the points determine. A frame without a bend gets none."""
+    bend = slice(first + TERMS, first + BEFORE)
+    determined = BEFORE - TERMS - float(np.trace(fitted.covariance[bend, bend])) / std**2
+    size = np.sqrt(float(fitted.vector[bend] @ fitted.vector[bend]) / max(determined, 1.0))
+    return float(np.clip(size, *BEND_RANGE))
 
 
 def _parts(problem: Problem, fitted: Fitted) -> tuple[list[np.ndarray], list[np.ndarray], list[float]]:

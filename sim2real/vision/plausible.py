@@ -22,6 +22,12 @@ def check_view(camera: Camera, view: View, motion: np.ndarray, height: float) ->
     flat = Frame(((low[0], low[1]), (high[0], high[1])))
     off = Locator(camera, motion, Surface((0.0, 0.0)), flat).places(view.pixels, height) - view.places
     far = float(np.sqrt(np.nanmean((off**2).sum(axis=1)))) if np.isfinite(off).any() else np.inf
+    level = np.degrees(np.arctan2(origin[2], np.hypot(*(view.places - origin[:2]).T).max()))
+    if 0.0 < level < EDGE_ON and far < 10.0 * FAR:
+        raise ValueError(
+            f"{view.name}: the table is seen edge-on, its far end from {level:.0f} degrees above; expected "
+            f"{EDGE_ON:.0f} at least ({1e3 * far:.0f} mm rms on a flat table): put the camera higher"
+        )
     if origin[2] < 0.0 and far < FAR:
         raise ValueError(
             f"{view.name}: the points are mirrored: they fit to {1e3 * far:.1f} mm, but with the camera "
@@ -31,10 +37,4 @@ def check_view(camera: Camera, view: View, motion: np.ndarray, height: float) ->
         raise ValueError(
             f"{view.name}: on a flat table the points are {1e3 * far:.0f} mm from where they are seen; expected "
             f"{1e3 * FAR:.0f} at most: do lines belong together, and are x and y metres of this table?"
-        )
-    level = np.degrees(np.arctan2(origin[2], np.hypot(*(view.places - origin[:2]).T).max()))
-    if level < EDGE_ON:
-        raise ValueError(
-            f"{view.name}: the table is seen edge-on, its far end from {level:.0f} degrees above; expected "
-            f"{EDGE_ON:.0f} at least: put the camera higher"
         )

@@ -15,7 +15,6 @@ from sim2real.vision.view import View
 CORNER_STD = 0.1  # px, of a marker's corner by `edges`
 PIXEL_STD = 0.2  # px, of the puck's centre
 PLACE_STD = 0.5e-3  # m, of a place measured by hand
-BEND_STD = 1e-3  # m, of each coefficient of the frame's bend, before anything was seen
 CURVATURE_STD = 0.02  # 1/m: 2 cm at 1 m from the middle, beyond any table that can be played on
 
 
@@ -28,6 +27,7 @@ class Problem:
     views: tuple[View, ...]
     scene: Scene
     height: float  # of the puck's mark above the surface [m]
+    bend_std: float  # m, of each coefficient of the frame's bend, before anything was seen
 
     def split(self, vector: np.ndarray) -> tuple[np.ndarray, Scene]:
         """The cameras' motions (views, 6) and the scene in a vector of unknowns."""
@@ -44,7 +44,7 @@ class Problem:
             rows.append(np.einsum("nij,nj->ni", whitening[k], off).ravel())
             slopes.append((whitening[k] @ by).reshape(-1, len(vector)))
         first = 6 * len(self.views)
-        std = np.r_[np.full(TERMS, CURVATURE_STD), np.full(BEFORE - TERMS, BEND_STD)]
+        std = np.r_[np.full(TERMS, CURVATURE_STD), np.full(BEFORE - TERMS, self.bend_std)]
         prior = np.zeros((BEFORE, len(vector)))
         prior[:, first : first + BEFORE] = np.diag(1.0 / std)
         return np.concatenate([*rows, vector[first : first + BEFORE] / std]), np.concatenate([*slopes, prior])

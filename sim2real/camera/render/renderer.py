@@ -94,8 +94,8 @@ class Renderer:
     def _light(self, instants: list[Drawn], box: Box) -> np.ndarray:
         """Blurred light float64 in `box`, averaged over the exposure."""
         wide = box.wider(self.sensor.reach).common(self.box)
-        total = sum(self._sharp(drawn, wide) for drawn in instants) / len(instants)
-        return self.sensor.spread(total)[box.within(wide)]
+        mean = np.mean([self._sharp(drawn, wide) for drawn in instants], axis=0)
+        return self.sensor.spread(mean)[box.within(wide)]
 
     def _sharp(self, drawn: Drawn, box: Box) -> np.ndarray:
         """Light float64 at an instant, without blur."""

@@ -14,7 +14,7 @@ STANDARD_RING, LOW_RING = 0.090, 0.040  # m, height of the opponent's ring on ei
 class Surface:
     """The table's height z = a0 + a1 x + a2 y + a3 x^2 + a4 x y + a5 y^2 [m] (report eq. 15); flat by default."""
 
-    coefficients: tuple[float, float, float, float, float, float] = (0.0,) * 6
+    coefficients: tuple[float, float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
     def height(self, x: np.ndarray | float, y: np.ndarray | float) -> np.ndarray | float:
         """Heights at x, y [m]."""

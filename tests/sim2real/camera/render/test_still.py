@@ -44,7 +44,7 @@ def test_opencv_reads_every_marker_where_it_lies(renderer: Renderer) -> None:
     corners, numbers, _ = detector.detectMarkers(image)
     assert numbers is not None and sorted(numbers.ravel()) == [marker.number for marker in table.markers]
     for number, seen in zip(numbers.ravel(), corners, strict=True):
-        expected = VIEW.project(table.markers[number].corners)
+        expected = VIEW.project(table.markers[int(number)].corners)
         np.testing.assert_allclose(seen[0], expected, atol=2.0)  # its corners are whole pixels, and inwards
 
 

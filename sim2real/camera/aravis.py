@@ -1,0 +1,88 @@
+"""A GenICam camera (GigE Vision, USB3 Vision) by Aravis, the free library.
+
+It comes with the system: apt install gir1.2-aravis-0.8 python3-gi, and a Python that sees the system's packages. Tried
+with Aravis' own fake camera, `aravis:Fake_1`, not with one of glass and metal.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import time
+from typing import Any
+
+import numpy as np
+
+from sim2real.camera.frame import CameraError, Frame
+from sim2real.camera.live import Live
+
+BUFFERS = 8
+PATIENCE = 100_000  # us that one wait for a picture lasts
+NANO = 1e-9
+FAKE = "Fake_"
+
+
+class Aravis(Live):
+    """The camera `name`, as Aravis lists it; the first that is found if it is empty.
+
+    exposure [s] is set, and the pixels to grey of 8 bits; all else, rate and gain among them, stays as the camera has
+    it. A camera stamps the beginning of the exposure (GenICam SFNC, ChunkTimestamp: at FrameStart); half of the
+    exposure is added.
+    """
+
+    def __init__(self, name: str, exposure: float) -> None:
+        super().__init__()
+        self._name, self._exposure = name, exposure
+        self._camera: Any = None
+        self._stream: Any = None
+
+    def _open(self) -> None:
+        self._library, glib = _libraries()
+        self._error = glib.Error
+        if self._name.startswith(FAKE):
+            self._library.enable_interface("Fake")
+        try:
+            self._camera = self._library.Camera.new(self._name or None)
+            self._camera.set_pixel_format_from_string("Mono8")
+            self._camera.set_exposure_time(1e6 * self._exposure)
+            self._exposure = 1e-6 * self._camera.get_exposure_time()
+            self._stream = self._camera.create_stream(None, None)
+            for _ in range(BUFFERS):
+                self._stream.push_buffer(self._library.Buffer.new_allocate(self._camera.get_payload()))
+            self._camera.start_acquisition()
+        except (self._error, TypeError) as error:  # TypeError: from a constructor that found no camera
+            reason = getattr(error, "message", error)
+            raise CameraError(f"aravis:{self._name} cannot be opened ({reason}); arv-tool-0.8 lists cameras") from None
+
+    def _grab(self) -> Frame | None:
+        buffer = self._stream.timeout_pop_buffer(PATIENCE)
+        if buffer is None:
+            return None
+        now = time.perf_counter()
+        try:
+            if buffer.get_status() != self._library.BufferStatus.SUCCESS:
+                return None
+            shape = buffer.get_image_height(), buffer.get_image_width()
+            image = np.frombuffer(buffer.get_data(), np.uint8, shape[0] * shape[1]).reshape(shape)
+            middle = NANO * buffer.get_timestamp() + 0.5 * self._exposure
+            return Frame(image, middle, now, buffer.get_frame_id())
+        finally:
+            self._stream.push_buffer(buffer)
+
+    def _close(self) -> None:
+        if self._camera is not None and self._stream is not None:
+            with contextlib.suppress(self._error):  # it may be gone already
+                self._camera.stop_acquisition()
+        self._stream = self._camera = None
+
+
+def _libraries() -> tuple[Any, Any]:
+    """Aravis and GLib, whose errors it raises. CameraError where they are not installed."""
+    try:
+        gi = importlib.import_module("gi")
+        gi.require_version("Aravis", "0.8")
+        return importlib.import_module("gi.repository.Aravis"), importlib.import_module("gi.repository.GLib")
+    except (ImportError, ValueError):
+        raise CameraError(
+            "aravis: the library is not there; apt install gir1.2-aravis-0.8 python3-gi, for a Python that sees them"
+        ) from None

@@ -1,0 +1,91 @@
+"""A FLIR (Teledyne) camera by its maker's SDK, Spinnaker with PySpin.
+
+Not tried with a camera, nor with the SDK, which is not free to pass on: written after its documentation, and run
+against a stand-in. Where Aravis finds the camera, `aravis:` does the same with what has been tried.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import time
+from typing import Any
+
+import numpy as np
+
+from sim2real.camera.frame import CameraError, Frame
+from sim2real.camera.live import Live
+
+PATIENCE = 100  # ms that one wait for a picture lasts
+TIMED_OUT = -1011  # SPINNAKER_ERR_TIMEOUT
+NANO = 1e-9
+
+
+class Flir(Live):
+    """The camera with this serial number; the first that is found if it is empty.
+
+    exposure [s] is set, and the pixels to grey of 8 bits; all else stays as the camera has it. The camera's stamp is
+    taken for the beginning of the exposure, half of which is added.
+    """
+
+    def __init__(self, serial: str, exposure: float) -> None:
+        super().__init__()
+        self._serial, self._exposure = serial, exposure
+        self._system: Any = None
+        self._cameras: Any = None
+        self._camera: Any = None
+
+    def _open(self) -> None:
+        try:
+            self._spin = importlib.import_module("PySpin")
+        except ImportError:
+            raise CameraError(
+                "flir: PySpin is not there; install the Spinnaker SDK and its Python package, or use aravis:"
+            ) from None
+        self._system = self._spin.System.GetInstance()
+        self._cameras = self._system.GetCameras()
+        if not self._cameras.GetSize():
+            raise CameraError(f"flir:{self._serial} cannot be opened (no camera is found); see that it is plugged in")
+        try:
+            found = self._cameras.GetBySerial(self._serial) if self._serial else self._cameras.GetByIndex(0)
+            found.Init()
+            self._camera = found
+            found.PixelFormat.SetValue(self._spin.PixelFormat_Mono8)
+            found.ExposureAuto.SetValue(self._spin.ExposureAuto_Off)
+            found.ExposureTime.SetValue(1e6 * self._exposure)
+            self._exposure = 1e-6 * found.ExposureTime.GetValue()
+            found.BeginAcquisition()
+        except self._spin.SpinnakerException as error:
+            reason = " ".join(str(error).split())
+            raise CameraError(f"flir:{self._serial} cannot be opened ({reason}); see that it is not in use") from None
+
+    def _grab(self) -> Frame | None:
+        try:
+            picture = self._camera.GetNextImage(PATIENCE)
+            now = time.perf_counter()
+            try:
+                if picture.IsIncomplete():
+                    return None
+                middle = NANO * picture.GetTimeStamp() + 0.5 * self._exposure
+                return Frame(np.array(picture.GetNDArray()), middle, now, picture.GetFrameID())
+            finally:
+                picture.Release()
+        except self._spin.SpinnakerException as error:
+            if getattr(error, "errorcode", None) == TIMED_OUT:
+                return None
+            reason = " ".join(str(error).split())
+            raise CameraError(f"flir:{self._serial} gives no more pictures ({reason}); plug it in again") from None
+
+    def _close(self) -> None:
+        if self._camera is not None:
+            with contextlib.suppress(self._spin.SpinnakerException):  # it may be gone already
+                if self._camera.IsStreaming():
+                    self._camera.EndAcquisition()
+                self._camera.DeInit()
+            self._camera = None
+        if self._cameras is not None:
+            self._cameras.Clear()
+            self._cameras = None
+        if self._system is not None:
+            self._system.ReleaseInstance()
+            self._system = None

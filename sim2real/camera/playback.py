@@ -1,0 +1,42 @@
+"""What sources that are played back share: frames in their turn, as fast as asked, and an end."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from types import TracebackType
+from typing import Self
+
+from sim2real.camera.frame import Frame
+
+
+class Playback:
+    """A source of frames that are there already. `frames`: in order, each with its own sequence number."""
+
+    def __init__(self, frames: Iterator[Frame]) -> None:
+        self._frames = frames
+        self._next = next(frames, None)  # so that what is wrong with the first shows at once
+        self._last: int | None = None
+
+    @property
+    def over(self) -> bool:
+        """See `Source.over`."""
+        return self._next is None
+
+    def newest(self, wait: float) -> Frame | None:
+        """See `Source.newest`; it never waits."""
+        frame = self._next
+        if frame is None:
+            return None
+        self._next = next(self._frames, None)
+        dropped = 0 if self._last is None else frame.sequence - self._last - 1
+        self._last = frame.sequence
+        return replace(frame, dropped=dropped)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._next, self._frames = None, iter(())

@@ -1,0 +1,56 @@
+"""Sources of frames by a word, as users type it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from sim2real.camera.frame import CameraError, Source
+
+RATE = 120.0  # Hz, of the real table's camera
+EXPOSURE = 100e-6  # s (report 2.2.1)
+KNOWN = "a folder of pictures, a video file, device:0, aravis:NAME, flir:SERIAL, synthetic or synthetic:RECORDING"
+
+
+def open_source(word: str, rate: float = RATE, exposure: float = EXPOSURE) -> Source:
+    """The source that `word` names, to be opened by `with`; KNOWN says which there are.
+
+    rate [Hz]: of pictures in a folder and of rendered games; exposure [s]: of rendered pictures, and what aravis: and
+    flir: set. Loads only what the source needs. CameraError, or for a bad recording RecordingError, in one line.
+    """
+    if not 0.0 < rate < 1e5:
+        raise CameraError(f"rate is {rate!r}; expected frames a second, say {RATE:g}")
+    if not 0.0 < exposure < 1.0:
+        raise CameraError(f"exposure is {exposure!r}; expected seconds, say {EXPOSURE:g}")
+    kind, colon, name = word.partition(":")
+    if kind == "synthetic":
+        from sim2real.camera import synthetic
+
+        return synthetic.of_a_recording(Path(name), exposure) if name else synthetic.of_a_game(rate, exposure)
+    if colon and kind == "device":
+        from sim2real.camera.device import Device
+
+        if not name.isdecimal():
+            raise CameraError(f"{word!r} names no device; expected its number, as in device:0")
+        return Device(int(name))
+    if colon and kind == "aravis":
+        from sim2real.camera.aravis import Aravis
+
+        return Aravis(name, exposure)
+    if colon and kind == "flir":
+        from sim2real.camera.flir import Flir
+
+        return Flir(name, exposure)
+    return _files(word, rate)
+
+
+def _files(word: str, rate: float) -> Source:
+    path = Path(word)
+    if path.is_dir():
+        from sim2real.camera.folder import Folder
+
+        return Folder(path, rate)
+    if path.is_file():
+        from sim2real.camera.video_file import VideoFile
+
+        return VideoFile(path)
+    raise CameraError(f"{word!r} is no source of pictures, nor a file that is there; expected {KNOWN}")

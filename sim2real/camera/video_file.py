@@ -1,0 +1,49 @@
+"""A video file, played back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from types import TracebackType
+
+import cv2
+
+from sim2real.camera.frame import CameraError, Frame
+from sim2real.camera.playback import Playback
+
+
+class VideoFile(Playback):
+    """All frames of a video, as grey pictures, timed by the rate that it states: its first frame is at 0 s.
+
+    A lossy codec moves edges by parts of a pixel; a folder of .png files does not.
+    """
+
+    def __init__(self, path: Path) -> None:
+        if not path.is_file():
+            raise CameraError(f"{path}: is not there; expected a video file")
+        self._video = cv2.VideoCapture(str(path))
+        rate = self._video.get(cv2.CAP_PROP_FPS)
+        if not self._video.isOpened() or not 0.0 < rate < 1e5:
+            raise CameraError(
+                f"{path}: is no video that OpenCV can read; convert it, say to .mp4, or to a folder of .png"
+            )
+        super().__init__(_frames(self._video, rate))
+        if self.over:
+            raise CameraError(f"{path}: holds no frame that can be read; record it again")
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        super().__exit__(kind, error, trace)
+        self._video.release()
+
+
+def _frames(video: cv2.VideoCapture, rate: float) -> Iterator[Frame]:
+    number = 0
+    while True:
+        there, image = video.read()
+        if not there:
+            return
+        grey = image if image.ndim == 2 else cv2.cvtColor(image, cv2.COLOR_BGR2GRAY)
+        yield Frame(grey, number / rate, number / rate, number)
+        number += 1
