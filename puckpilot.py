@@ -34,6 +34,7 @@ COMMANDS = {
     "study": ("sim2real.commands.study", "how often a diagnosis is right, on cases with something hidden"),
     "calibrate": ("sim2real.commands.calibrate", "the physical table's numbers, by a guided procedure"),
     "firmware": ("sim2real.commands.firmware", "the microcontroller's program: what it is, build it, emulate it"),
+    "track": ("sim2real.commands.track", "puck and opponent in a camera's pictures, as a recording"),
     "link": ("sim2real.commands.link", "watch or test the line to the microcontroller"),
 }
 

@@ -14,7 +14,7 @@ from sim2real.vision.puck import PuckFinder
 from sim2real.vision.ring import Ring, RingFinder
 
 SURE_SEEN = 0.3  # of the puck's rim, from which on it can be nothing else
-SURE_WITHIN = 1e-3  # m, standard deviation of a sure sighting at most
+SURE_WITHIN = 0.25e-3  # m, standard deviation of a sure sighting at most
 PUCK_POWER, OPPONENT_POWER = 0.1, 20.0  # m^2/s^3, of what changes their velocities between contacts
 RING_ERROR = 0.05e-3  # m, standard deviation of a ring's middle
 AROUND = 2.0  # radii round where something should be that are looked at
@@ -25,10 +25,11 @@ Window = tuple[int, int, int, int]
 
 @dataclass(frozen=True)
 class Seen:
-    """What is known after a picture; None: not known where."""
+    """What is known after a picture; None: not known where. `pucks`: things in it that may be the puck."""
 
     puck: Estimate | None
     opponent: Estimate | None
+    pucks: int
 
 
 class Eye:
@@ -49,7 +50,7 @@ class Eye:
         rings, discs = self._near(image, time) or self._find(image, None)
         puck = self._puck.see(time, [_of_disc(disc) for disc in discs])
         opponent = self._opponent.see(time, [_of_ring(ring) for ring in rings])
-        return Seen(puck, opponent)
+        return Seen(puck, opponent, len(discs))
 
     def _near(self, image: np.ndarray, time: float) -> tuple[list[Ring], list[Disc]] | None:
         """What is seen where both should be; None if that is not known, or either is not there."""
