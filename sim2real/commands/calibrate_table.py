@@ -40,6 +40,8 @@ def run(args: argparse.Namespace) -> int:
     from sim2real.vision.view_file import read_view
     from sim2real.vision.width import step_across
 
+    if args.out.suffix != ".json":
+        raise ValueError(f"--out is '{args.out}'; expected a name that ends in .json, the picture's then ends in .png")
     _refuse_twice([*args.views, *([args.check] if args.check else [])])
     setup = read_setup(args.camera)
     check_folder(args.out.absolute().parent)
@@ -83,6 +85,7 @@ def _told(solved: Solved, step: Step | None) -> dict[str, Any]:
         "markers": len(solved.scene.markers),
         "fit": {"points": len(far), "mean_mm": float(far.mean()), "max_mm": float(far.max())},
         "corner_rms_px": solved.corner_rms,
+        "bend_mm": 1e3 * solved.bend,
         "marker_std_mm": float(1e3 * np.sqrt((markers**2).mean())),
         "surface_per_m": {
             name: {"value": value, "std": float(one)}
@@ -121,7 +124,7 @@ def _lines(told: dict[str, Any], solved: Solved, width: float) -> list[str]:
         f"{len(told['views'])} views, {told['markers']} markers, {fit['points']} points in {told['seconds']:.1f} s: "
         f"points {fit['mean_mm']:.2f} mm off on average, {fit['max_mm']:.2f} mm at most",
         f"corners of markers, px rms: {corners}; placed to {told['marker_std_mm']:.1f} mm",
-        f"surface, mm at 1 m from the middle: {heights}",
+        f"surface, mm at 1 m from the middle: {heights}; measured places bend by up to {told['bend_mm']:.1f} mm",
         *(
             f"wrong measurement: {one['view']}, point {one['point']}, {one['off_mm']:.1f} mm off"
             for one in told["wrong"]

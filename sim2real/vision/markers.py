@@ -17,10 +17,11 @@ def find_markers(image: np.ndarray, camera: Camera, dictionary: str) -> dict[int
     """Corners (4, 2) [pixels] of the markers in a photograph (height, width) by their ids, clockwise from the marker's
     own top left. ValueError, in one line, if fewer than three are clearly seen."""
     book = dictionary_of(dictionary)
-    detected = _detect(image, book)
-    if len(detected) < FEWEST:
-        raise ValueError(_too_few(image, dictionary, len(detected)))
     even = smoothed(image)
+    coarse = np.rint(even).astype(np.uint8)
+    detected = _detect(coarse, book)
+    if len(detected) < FEWEST:
+        raise ValueError(_too_few(coarse, dictionary, len(detected)))
     fine = {name: refine(even, camera, corners, book.markerSize + BORDER) for name, corners in detected.items()}
     clear = {name: corners for name, corners in fine.items() if corners is not None}
     if len(clear) < FEWEST:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sim2real.vision.camera_file import Setup
+from sim2real.vision.frame import TERMS as TERMS_OF_BEND
 from sim2real.vision.residuals import PLACE_STD, Problem
 from sim2real.vision.robust_fit import Evaluate, Fitted, robust_fit
 from sim2real.vision.scene import BEFORE, Scene
@@ -19,6 +20,8 @@ FEWEST_MARKERS = 3
 BEND_STD = 1e-3  # m, where the search for how large the frame's bend is begins,
 BEND_RANGE = (3e-5, 3e-3)  # and where it may end
 ROUNDS = 8  # of that search
+BEND_MOST = 6e-3  # m: a ruler's and a wall's faults are less
+MOST_WRONG = 1.0 / 3.0  # of a view's points, if the others are to say which
 WRONG = 3.5  # times the typical error: of 108 points that are measured alike, 0.2 lie farther off by chance
 
 
@@ -35,6 +38,12 @@ class Solved:
     off: list[np.ndarray]
     wrong: list[np.ndarray]
     corner_rms: list[float]
+
+    @property
+    def bend(self) -> float:
+        """How far at most [m] a measured place is from where a rigid frame has it, beyond shift, turn and scale."""
+        places = np.concatenate([view.places for view in self.problem.views])
+        return float(np.hypot(*(places - self.scene.frame.rigid(places)).T).max())
 
     def scene_covariance(self) -> np.ndarray:
         """Covariance of the scene's vector."""
@@ -60,7 +69,9 @@ def solve(setup: Setup, views: tuple[View, ...]) -> Solved:
         if abs(problem.bend_std - before) < 0.05 * before:
             break
     found, scene = problem.split(vector)
-    return Solved(problem, fitted, found, scene, *_parts(problem, fitted))
+    solved = Solved(problem, fitted, found, scene, *_parts(problem, fitted))
+    _check(solved)
+    return solved
 
 
 def _fit(problem: Problem, vector: np.ndarray) -> Fitted:
@@ -80,6 +91,24 @@ def _bend_std(fitted: Fitted, first: int, std: float) -> float:
     determined = BEFORE - TERMS - float(np.trace(fitted.covariance[bend, bend])) / std**2
     size = np.sqrt(float(fitted.vector[bend] @ fitted.vector[bend]) / max(determined, 1.0))
     return float(np.clip(size, *BEND_RANGE))
+
+
+def _check(solved: Solved) -> None:
+    """ValueError, in one line, for measured places that contradict each other or what the cameras see."""
+    for view, off, wrong in zip(solved.problem.views, solved.off, solved.wrong, strict=True):
+        if wrong.mean() > MOST_WRONG:
+            raise ValueError(
+                f"{view.name}: {int(wrong.sum())} of its {len(wrong)} points contradict the other views, by "
+                f"{1e3 * np.median(np.hypot(*off.T)):.1f} mm in the median: is it of the same table, measured alike?"
+            )
+    if solved.bend > BEND_MOST:
+        low, high = solved.scene.frame.box
+        stretch = 2.0 * float(solved.scene.frame.bend[TERMS_OF_BEND.index((1, 0, 1))]) / (high[1] - low[1])
+        raise ValueError(
+            f"measured places are up to {1e3 * solved.bend:.0f} mm from any rigid table that the cameras could see, "
+            f"y {100.0 * stretch:+.1f} % long against x; expected {1e3 * BEND_MOST:.0f} mm at most: is a size of the "
+            "table wrong, from whose far walls points were measured?"
+        )
 
 
 def _parts(problem: Problem, fitted: Fitted) -> tuple[list[np.ndarray], list[np.ndarray], list[float]]:

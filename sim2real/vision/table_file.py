@@ -1,7 +1,12 @@
 """table.json (puckpilot-table/1): what a calibration of the table found, all that a tracker needs in one file.
 
-Rigid frame: origin and axes as the table's (x forward, y left, z up), but straight; `bend` says what the table's
-coordinates, as measured by hand, are more than it. The puck is at the surface's height plus its own.
+- camera, aruco_dictionary, puck_top_above_table_m, table: as in camera.json, so that nothing else is needed.
+- markers: id and corners (4, 3) [m] of each, clockwise from its own top left, in the rigid frame: origin and axes as
+  the table's (x forward, y left, z up), but straight.
+- surface: height (xx, xy, yy) [1/m] times X^2, X Y, Y^2 with X, Y from `middle_m`, level there.
+- frame: what coordinates as measured by hand are more than the rigid ones [m]: for each of `axis_i_j` a coefficient of
+  the Legendre polynomials of order i in x and j in y over `box_m`; beyond the box as at its border.
+- views: the cameras' motions and how far off each point was; for a reader, as is every `std`.
 """
 
 from __future__ import annotations

@@ -94,7 +94,10 @@ class Levels:
 
 @dataclass(frozen=True)
 class Table:
-    """A table and what lies on it; lengths in metres. Where the report has no number, it is a choice."""
+    """A table and what lies on it; lengths in metres. Where the report has no number, it is a choice.
+
+    Not drawn: goal mouths, round corners, the side of the puck, shadows, and the opponent's hand and arm.
+    """
 
     length: float = 2.0
     width: float = 1.0

@@ -70,6 +70,12 @@ def test_a_view_that_is_given_twice_is_refused(made: Path, tmp_path: Path, again
     assert not list(tmp_path.iterdir())
 
 
+def test_the_picture_does_not_take_the_tables_place(made: Path, tmp_path: Path, capsys):
+    words = [str(made / "view_0"), str(made / "view_1"), "--camera", str(made / "camera.json")]
+    assert puckpilot.main(["calibrate", "table", *words, "--out", str(tmp_path / "t.png")]) == 2
+    assert "t.png'; expected a name that ends in .json" in capsys.readouterr().err and not list(tmp_path.iterdir())
+
+
 @pytest.fixture
 def real() -> Path:
     if not UBC.exists():

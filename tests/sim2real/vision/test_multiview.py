@@ -134,6 +134,19 @@ def test_places_that_cannot_be_are_refused(change, words: str):
         solve(SETUP, (replace(view(0), places=change(view(0).places)), view(1)))
 
 
+def test_a_view_that_contradicts_the_others_is_refused():
+    off = replace(view(0), places=view(0).places * [1.0, 0.985])
+    with pytest.raises(ValueError, match=r"view_0: \d\d of its 36 points contradict the other views, by \d\.\d mm"):
+        solve(SETUP, (off, view(1), view(2)))
+
+
+@pytest.mark.parametrize("scale, told", [([1.0, 1.02], r"\+(1\.9|2\.0)"), ([1.02, 1.0], r"-(1\.9|2\.0)")])
+def test_a_size_that_is_wrong_in_all_views_is_refused(scale: list[float], told: str):
+    views = tuple(replace(view(k), places=view(k).places * scale - [0.01, 0.005]) for k in range(3))
+    with pytest.raises(ValueError, match=rf"are up to \d+ mm from any rigid table .* y {told} % long against x"):
+        solve(SETUP, views)
+
+
 def test_a_table_seen_edge_on_is_refused():
     motion = world.camera_motion((-2.0, 0.5, 0.25))
     flat = View("low", view(0).corners, world.seen(motion, world.puck_points(world.grid())), world.grid())

@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 import pytest
 
+from sim2real.camera.render.box import Box
 from sim2real.camera.render.moment import Moment, Motion
 from sim2real.camera.render.renderer import Renderer
 from sim2real.camera.render.sensor import Sensor
@@ -80,6 +81,14 @@ def test_a_region_of_interest_is_cut_out_of_the_whole(renderer: Renderer) -> Non
     empty = renderer.picture(Moment(), 9)
     changed = renderer.picture(BUSY, 9) != empty
     assert changed.any() and changed.mean() < 0.2  # all else is the empty table's
+
+
+def test_a_box_through_everything_is_blurred_as_the_whole(renderer: Renderer) -> None:
+    whole = renderer.light(BUSY)
+    for place in [(m.x, m.y, 0.01) for m in BUSY.movers]:
+        column, row = VIEW.project(np.array([place]))[0].round().astype(int)
+        box = Box(row - 2, column - 9, row + 30, column + 4)
+        np.testing.assert_allclose(renderer.light(BUSY, box), whole[box.within(renderer.box)], atol=1e-9)
 
 
 def test_the_puck_stands_out_and_the_light_is_the_noises_mean(renderer: Renderer) -> None:
