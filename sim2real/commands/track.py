@@ -154,7 +154,9 @@ def _film(args: argparse.Namespace, tracker: Tracker, puck_top: float) -> Iterat
         if frame.time < due:
             return
         assert tracker.locator is not None
-        preview = preview or Preview(tracker.locator, (puck_top, tracker.things.ring_height), tracker.things.puck_radius)
+        preview = preview or Preview(
+            tracker.locator, (puck_top, tracker.things.ring_height), tracker.things.puck_radius
+        )
         film.add(preview.draw(frame.image, frame.time, seen))
         due = max(due, frame.time) + 1.0 / FILM_RATE
 

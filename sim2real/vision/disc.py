@@ -13,6 +13,7 @@ import numpy as np
 
 from puckpilot_env.kernel import array_kernel, kernel
 from sim2real.vision.rim import Rim
+from sim2real.vision.two_by_two import deviation, eigenvalues, inverse
 
 STARTS = 40  # first points of pairs
 JUDGES = 60  # points, about, by which a hypothesis is judged
@@ -20,9 +21,11 @@ PARTNERS = (0.11, 0.19, 0.31, 0.43)  # of a whole rim's points: how far on along
 WIDE = 1.5  # radii from the centre: what is farther off belongs to other things
 NEAR = 0.7  # px from the rim that count as on it, for a hypothesis
 FACING = 0.6  # cosine between where an edge faces and where the rim does, at least
-ROUNDS = 8  # of the refinement
+ROUNDS = 8  # of the refinement at most,
+STILL = 1e-7  # m: which ends when the centre moves less
 SPREAD = (0.04, 0.3)  # px, the least and the greatest scatter that edges are taken to have
 CUT = 3.0  # times the scatter: farther points have no weight (Tukey's biweight)
+WORST = 1e8  # condition of the normal matrix, from which on the points tell no centre
 BINS = 36  # parts of the rim
 TOGETHER = 4.0  # neighbouring points that err as one: so much greater is the variance than that of as many points
 COMMON = 0.03  # px: standard deviation of what all edges of a disc err by alike, which an arc's centre follows
@@ -42,7 +45,7 @@ class Disc:
     @property
     def deviation(self) -> float:
         """Standard deviation of the centre in its least certain direction [m]."""
-        return math.sqrt(float(np.linalg.eigvalsh(self.covariance)[-1]))
+        return deviation(self.covariance)
 
 
 def find_disc(rim: Rim, radius: float) -> Disc | None:
@@ -53,11 +56,14 @@ def find_disc(rim: Rim, radius: float) -> Disc | None:
     normal, total = np.zeros((2, 2)), np.zeros(2)
     counts, bins = np.zeros(2, np.int64), np.zeros(BINS, np.bool_)
     scatter = _refine(rim.places, rim.steps, radius, centre, normal, total, counts, bins)
-    if counts[0] < 3 or np.linalg.cond(normal) > 1e8:
+    if counts[0] < 3:
         return None
-    inverse = np.linalg.inv(normal)
-    leaning = COMMON * inverse @ total
-    covariance = TOGETHER * scatter**2 * inverse + np.outer(leaning, leaning)
+    smaller, greater = eigenvalues(normal)
+    if greater > WORST * smaller:
+        return None
+    alone = inverse(normal)
+    leaning = COMMON * alone @ total
+    covariance = TOGETHER * scatter**2 * alone + np.outer(leaning, leaning)
     return Disc(centre, covariance, float(bins.mean()), int(counts[0]), int(counts[1]))
 
 
@@ -152,9 +158,13 @@ def _refine(places, steps, radius, centre, normal, total, counts, bins):
         if kept < 3 or det <= 0.0:
             counts[0] = 0
             return scatter
-        centre[0] += (normal[1, 1] * right_x - normal[0, 1] * right_y) / det
-        centre[1] += (normal[0, 0] * right_y - normal[0, 1] * right_x) / det
+        move_x = (normal[1, 1] * right_x - normal[0, 1] * right_y) / det
+        move_y = (normal[0, 0] * right_y - normal[0, 1] * right_x) / det
+        centre[0] += move_x
+        centre[1] += move_y
         scatter = min(max(1.4826 * np.median(near[:kept]), SPREAD[0]), SPREAD[1])
+        if max(abs(move_x), abs(move_y)) < STILL:
+            break
     for i in range(count):
         away, faces = _off(places, steps, i, radius, centre[0], centre[1])
         if faces and abs(away) < CUT * scatter:

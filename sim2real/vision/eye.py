@@ -12,6 +12,7 @@ from sim2real.vision.follow import Estimate, Follower, Sighting
 from sim2real.vision.locate import Grid, Locator
 from sim2real.vision.puck import PuckFinder
 from sim2real.vision.ring import Ring, RingFinder
+from sim2real.vision.window import Windows
 
 SURE_SEEN = 0.3  # of the puck's rim, from which on it can be nothing else
 SURE_WITHIN = 0.25e-3  # m, standard deviation of a sure sighting at most
@@ -19,8 +20,6 @@ PUCK_POWER, OPPONENT_POWER = 0.1, 20.0  # m^2/s^3, of what changes their velocit
 RING_ERROR = 0.05e-3  # m, standard deviation of a ring's middle
 AROUND = 2.0  # radii round where something should be that are looked at
 ROOM = 4.0  # standard deviations more
-
-Window = tuple[int, int, int, int]
 
 
 @dataclass(frozen=True)
@@ -39,7 +38,8 @@ class Eye:
         self, locator: Locator, size: tuple[int, int], *, length: float, width: float, puck_radius: float,
         puck_height: float, ring_height: float, level: float = LEVEL,
     ) -> None:  # fmt: skip
-        self._locator, self._reach, self._heights = locator, AROUND * puck_radius, (puck_height, ring_height)
+        self._reach = AROUND * puck_radius
+        self._windows = [Windows(locator, height, length, width) for height in (puck_height, ring_height)]
         self._bright = Bright(locator, size, length, width, ring_height, level)
         self._pucks = PuckFinder(Grid(locator, puck_height, size).places, puck_radius)
         self._rings = RingFinder(Grid(locator, ring_height, size).places)
@@ -54,29 +54,21 @@ class Eye:
 
     def _near(self, image: np.ndarray, time: float) -> tuple[list[Ring], list[Disc]] | None:
         """What is seen where both should be; None if that is not known, or either is not there."""
-        windows = [
-            self._window(follower.foretold(time), height)
-            for follower, height in zip((self._puck, self._opponent), self._heights, strict=True)
-        ]
-        found = [self._find(image, window) for window in windows if window]
+        found = []
+        for follower, windows in zip((self._puck, self._opponent), self._windows, strict=True):
+            there = follower.foretold(time)
+            window = windows.around(there.place, self._reach + ROOM * there.deviation) if there else None
+            if window is None:
+                return None
+            found.append(self._find(image, window))
         rings, discs = ([one for part in found for one in part[kind]] for kind in (0, 1))
-        if len(found) < len(windows) or not rings or not any(_of_disc(disc).sure for disc in discs):
+        if not rings or not any(_of_disc(disc).sure for disc in discs):
             return None
         return rings, discs
 
-    def _find(self, image: np.ndarray, window: Window | None) -> tuple[list[Ring], list[Disc]]:
+    def _find(self, image: np.ndarray, window: tuple[int, int, int, int] | None) -> tuple[list[Ring], list[Disc]]:
         rings, rest = self._rings.find(image, self._bright.blobs(image, window))
         return rings, self._pucks.find(image, rest)
-
-    def _window(self, there: Estimate | None, height: float) -> Window | None:
-        """Where something should be in the picture; None if that is not known."""
-        if there is None:
-            return None
-        reach = self._reach + ROOM * there.deviation
-        corners = there.place + reach * np.array([(-1, -1), (-1, 1), (1, -1), (1, 1)])
-        pixels = self._locator.pixels(corners, height)
-        (left, top), (right, bottom) = np.floor(pixels.min(axis=0)), np.ceil(pixels.max(axis=0))
-        return int(left), int(top), int(right) + 1, int(bottom) + 1
 
 
 def _of_disc(disc: Disc) -> Sighting:

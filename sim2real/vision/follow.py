@@ -11,6 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from sim2real.vision.two_by_two import deviation, inverse
+
 GATE = 16.0  # square of the distance in standard deviations at which a sighting still fits the path
 CLOSE = 0.03  # m: what is known no better, standard deviation, is followed by sure sightings alone
 FASTEST = 15.0  # m/s
@@ -49,20 +51,20 @@ class Estimate:
     @property
     def deviation(self) -> float:
         """Standard deviation of its place in the least certain direction [m]."""
-        return float(np.sqrt(np.linalg.eigvalsh(self.covariance[:2, :2])[-1]))
+        return deviation(self.covariance)
 
     def after(self, time: float, power: float) -> Estimate:
         """Where it will be, if what changes its velocity is white and has this power [m^2/s^3]."""
         dt = time - self.time
-        on = np.eye(4)
-        on[0, 2] = on[1, 3] = dt
-        grown = power * np.kron([[dt**3 / 3.0, dt**2 / 2.0], [dt**2 / 2.0, dt]], np.eye(2))
+        on = np.array([[1.0, 0.0, dt, 0.0], [0.0, 1.0, 0.0, dt], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
+        aa, ab, bb = power * dt**3 / 3.0, power * dt**2 / 2.0, power * dt
+        grown = np.array([[aa, 0.0, ab, 0.0], [0.0, aa, 0.0, ab], [ab, 0.0, bb, 0.0], [0.0, ab, 0.0, bb]])
         covariance = on @ self.covariance @ on.T + grown
         return replace(self, time=time, place=self.place + dt * self.velocity, covariance=covariance)
 
     def corrected(self, sighting: Sighting) -> Estimate:
         """With a sighting of the same time (Kalman 1960)."""
-        gain = np.linalg.solve(self.covariance[:2, :2] + sighting.covariance, self.covariance[:2]).T
+        gain = self.covariance[:, :2] @ inverse(self.covariance[:2, :2] + sighting.covariance)
         off = sighting.place - self.place
         covariance = self.covariance - gain @ self.covariance[:2]
         return Estimate(
@@ -77,7 +79,7 @@ class Estimate:
     def far(self, sighting: Sighting) -> float:
         """Square of the distance to a sighting of the same time, in standard deviations."""
         off = sighting.place - self.place
-        return float(off @ np.linalg.solve(self.covariance[:2, :2] + sighting.covariance, off))
+        return float(off @ inverse(self.covariance[:2, :2] + sighting.covariance) @ off)
 
 
 class Follower:

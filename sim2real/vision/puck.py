@@ -39,6 +39,8 @@ class PuckFinder:
     def _groups(self, rims: list[Rim]) -> list[list[Rim]]:
         """Each rim alone, and with all that lie so near that one disc can have both."""
         alone = [[rim] for rim in rims]
+        if len(rims) < 2:
+            return alone
         middles = [rim.places.mean(axis=0) for rim in rims]
         together = []
         for first, rim in enumerate(rims):

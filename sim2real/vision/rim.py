@@ -43,6 +43,8 @@ def rim_of(image: np.ndarray, outline: np.ndarray, places: Places) -> Rim:
     pixels, outwards = edges[:count, :2], edges[:count, 2:]
     both = places(np.concatenate([pixels, pixels + outwards]))
     rim = Rim(both[:count], both[count:] - both[:count])
+    if np.isfinite(both.sum()):
+        return rim
     return rim.where(np.isfinite(both).all(axis=1).reshape(2, count).all(axis=0))
 
 

@@ -42,7 +42,9 @@ class Tracker:
         self._moved: Moved | None = None
         self._rows: list[tuple[float, ...]] = []
         self.locator: Locator | None = None
-        self.seen = self.hidden = self.unsure = 0  # frames: the puck is known, there is none, or what there is is not it
+        self.seen = self.hidden = self.unsure = (
+            0  # frames: the puck is known, there is none, or what there is is not it
+        )
 
     def add(self, frame: Frame) -> Seen:
         """Look at one. ValueError, in one line, if the first does not show where the camera is."""
