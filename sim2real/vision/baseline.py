@@ -1,4 +1,4 @@
-"""The report's rules for a puck that may be partly hidden (C.2), and the plain centroid: what the disc is held against."""
+"""The report's rules for a puck that may be partly hidden (C.2), and the plain centroid: the disc's rivals."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ def report_centre(contour: np.ndarray, radius: float, before: np.ndarray) -> np.
     """Centre (2,) [m] of a puck of this radius whose contour (n, 2) is on the table, and that was at `before` (2,) in
     the last picture."""
     x = contour[:, 0]
-    low = contour[x < x.min() + STRIP].mean(axis=0) + (radius, 0.0)
-    high = contour[x > x.max() - STRIP].mean(axis=0) - (radius, 0.0)
+    step = np.array([radius, 0.0])
+    low, high = contour[x < x.min() + STRIP].mean(axis=0) + step, contour[x > x.max() - STRIP].mean(axis=0) - step
     if np.linalg.norm(low - high) < SAME:
         return centroid(contour)
     both = np.array([low, high])

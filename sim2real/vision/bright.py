@@ -6,6 +6,7 @@ with the square of the distance. What lies off the table is never bright.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -55,7 +56,7 @@ class Bright:
         self._limit = np.where(inside > 0, np.clip(lamp, 1.0, NEVER - 1.0), NEVER).astype(np.uint8)[part]
 
     def blobs(self, image: np.ndarray, window: tuple[int, int, int, int] | None = None) -> list[Blob]:
-        """What shines in the picture uint8 (rows, columns), or in a window of it: left, top, and those after the last."""
+        """What shines in the picture uint8 (rows, columns), or in a window: left, top, and those after the last."""
         left, top, right, bottom = window or (0, 0, image.shape[1], image.shape[0])
         left, top = max(left, self.left), max(top, self.top)
         right, bottom = min(right, self.right), min(bottom, self.bottom)
@@ -67,7 +68,7 @@ class Bright:
         return [] if tree is None else _blobs(found, tree[0])
 
 
-def _blobs(found: tuple[np.ndarray, ...] | list[np.ndarray], tree: np.ndarray) -> list[Blob]:
+def _blobs(found: Sequence[np.ndarray], tree: np.ndarray) -> list[Blob]:
     """OpenCV's tree has for each contour: the next and the last one beside it, its first hole, and whose hole it is."""
     holes: dict[int, np.ndarray] = {}
     for contour, (_, _, _, around) in zip(found, tree, strict=True):

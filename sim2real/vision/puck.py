@@ -21,8 +21,8 @@ class PuckFinder:
         self.places, self.radius = places, radius
 
     def find(self, image: np.ndarray, blobs: list[Blob]) -> list[Disc]:
-        """All that may be the puck, the best first: discs of blobs that lie within a puck's size of each other, as those
-        of one that a beam divides."""
+        """All that may be the puck, the best first: discs of single blobs, and of several within a puck's size of each
+        other, as those of one that a beam divides."""
         rims = [rim for rim in (rim_of(image, blob.outline, self.places) for blob in blobs) if len(rim) >= LEAST_ON]
         found = [find_disc(Rim.joined(group), self.radius) for group in self._groups(rims)]
         good = [disc for disc in found if disc is not None and _is_puck(disc)]

@@ -29,6 +29,8 @@ class Rim:
     @classmethod
     def joined(cls, rims: list[Rim]) -> Rim:
         """All points of several."""
+        if len(rims) == 1:
+            return rims[0]
         return cls(np.concatenate([rim.places for rim in rims]), np.concatenate([rim.steps for rim in rims]))
 
     def where(self, so: np.ndarray) -> Rim:
@@ -45,7 +47,8 @@ def rim_of(image: np.ndarray, outline: np.ndarray, places: Places) -> Rim:
     rim = Rim(both[:count], both[count:] - both[:count])
     if np.isfinite(both.sum()):
         return rim
-    return rim.where(np.isfinite(both).all(axis=1).reshape(2, count).all(axis=0))
+    finite = np.isfinite(rim.places) & np.isfinite(rim.steps)
+    return rim.where(finite[:, 0] & finite[:, 1])
 
 
 @kernel

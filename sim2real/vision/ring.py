@@ -1,4 +1,4 @@
-"""The opponent's mallet: a bright flat ring on top of it (report D). What shines round a round dark hole is the ring."""
+"""The opponent's mallet: a bright flat ring on top (report D). What shines round a round dark hole is the ring."""
 
 from __future__ import annotations
 
@@ -65,8 +65,8 @@ class RingFinder:
 
 
 def _circle(places: np.ndarray, middle: np.ndarray | None) -> tuple[np.ndarray, float] | None:
-    """Centre (2,) and radius [m] of the circle on which most of (n, 2) points lie, or many that are about `middle`, if
-    that is given; None if too few do."""
+    """Centre (2,) and radius [m] of the circle on which most of (n, 2) points lie, or many about `middle`, if that is
+    given; None if too few do."""
     if len(places) < FEWEST:
         return None
     found = np.zeros(3)
@@ -79,8 +79,8 @@ def _circle(places: np.ndarray, middle: np.ndarray | None) -> tuple[np.ndarray, 
 
 @array_kernel
 def _fit(places, found):
-    """Move `found` (3,), centre and radius, to where the squares of the distances from the circle of all points that are
-    not too far off are least (Gauss, Newton). How many there are."""
+    """Move `found` (3,), centre and radius, to where the squares of the distances from the circle of all points that
+    are not too far off are least (Gauss, Newton). How many there are."""
     count = places.shape[0]
     far, off = np.empty(count), np.empty(count)
     limit, near = OFF, 0

@@ -65,7 +65,8 @@ def pucks_seen(frames: int, seed: int) -> list[tuple[int, np.ndarray]]:
 
 def _mover(rng: np.random.Generator, along: tuple[float, float], table: Table) -> Motion:
     x, y = rng.uniform((along[0], 0.06), (along[1], table.width - 0.06))
-    return Motion(x, y, *rng.normal(0.0, 1.5, 2))
+    vx, vy = rng.normal(0.0, 1.5, 2)
+    return Motion(x, y, vx, vy)
 
 
 def _kept(motion: Motion, table: Table) -> Motion:
@@ -79,10 +80,11 @@ def _glint(rng: np.random.Generator, table: Table) -> Glint:
     x, y = rng.uniform((0.0, 0.0), (table.length, table.width))
     level = rng.uniform(60.0, 250.0)
     if rng.random() < 0.6:
-        return Glint(x, y, *np.exp(rng.uniform(np.log(0.002), np.log(0.015), 2)), level)
+        half_x, half_y = np.exp(rng.uniform(np.log(0.002), np.log(0.015), 2))
+        return Glint(x, y, half_x, half_y, level)
     long, thin = rng.uniform(0.01, 0.15), rng.uniform(0.001, 0.004)
-    halves = (long, thin) if rng.random() < 0.5 else (thin, long)
-    return Glint(x, y, *halves, level)
+    half_x, half_y = (long, thin) if rng.random() < 0.5 else (thin, long)
+    return Glint(x, y, half_x, half_y, level)
 
 
 if __name__ == "__main__":
