@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -151,14 +152,14 @@ def _film(args: argparse.Namespace, tracker: Tracker, puck_top: float) -> Iterat
 
     def show(frame: Frame, seen: Seen) -> None:
         nonlocal due, preview
-        if frame.time < due:
+        if frame.time < due - 1e-9:
             return
         assert tracker.locator is not None
         preview = preview or Preview(
             tracker.locator, (puck_top, tracker.things.ring_height), tracker.things.puck_radius
         )
         film.add(preview.draw(frame.image, frame.time, seen))
-        due = max(due, frame.time) + 1.0 / FILM_RATE
+        due = (math.floor(frame.time * FILM_RATE + 1e-6) + 1) / FILM_RATE
 
     with VideoWriter(args.video, FILM_RATE) as film:
         yield show

@@ -9,9 +9,9 @@ from sim2real.vision.disc import Disc, find_disc
 from sim2real.vision.rim import Places, Rim, rim_of
 
 LEAST_SEEN = 0.2  # of the rim; with less an arc's ends, where what hides the disc begins, pull it off by millimetres
-ENOUGH_SEEN = 0.4  # with so much of it, a glint may touch it
+ENOUGH_SEEN = 0.4  # with so much of it, a glint may touch it,
 LEAST_ON = 10  # edge points
-MOST_OUTSIDE = 0.15  # points outside for each one on the rim
+MOST_OUTSIDE, TOUCHED = 0.15, 0.5  # points outside for each one on the rim, at most, and where a glint touches it
 
 
 class PuckFinder:
@@ -55,5 +55,5 @@ class PuckFinder:
 
 
 def _is_puck(disc: Disc) -> bool:
-    alone = disc.outside <= MOST_OUTSIDE * disc.on or disc.seen >= ENOUGH_SEEN
-    return disc.seen >= LEAST_SEEN and disc.on >= LEAST_ON and alone
+    most = TOUCHED if disc.seen >= ENOUGH_SEEN else MOST_OUTSIDE
+    return disc.seen >= LEAST_SEEN and disc.on >= LEAST_ON and disc.outside <= most * disc.on
