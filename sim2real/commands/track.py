@@ -2,8 +2,8 @@
 
 SOURCE is a folder of pictures, a video file, device:0, aravis:NAME, flir:SERIAL, synthetic, or synthetic:RECORDING.
 The first picture must show the markers of the calibration: they tell where the camera stands. Ctrl-C ends a live
-source, and what was seen so far is written. A cell is blank where the puck is not known: under the gantry, and in the first
-picture after. Ends with 1 if something was wrong with the pictures, which is named.
+source, and what was seen so far is written. A cell is blank where the puck is not known: under the gantry, and in the
+first picture after. Ends with 1 if something was wrong with the pictures, which is named.
 """
 
 from __future__ import annotations

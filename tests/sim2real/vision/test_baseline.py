@@ -32,5 +32,5 @@ def test_a_puck_of_which_one_end_is_seen_has_the_end_that_more_points_agree_with
 def test_where_both_ends_agree_with_as_many_points_the_place_before_decides():
     left = contour(lambda x, y: x < CENTRE[0] - 0.01)
     both = np.concatenate([left, left * (-1.0, 1.0) + (2.0 * CENTRE[0] + 0.01, 0.0)])  # two ends, too far apart for one
-    low, high = (report_centre(both, RADIUS, CENTRE + (step, 0.0)) for step in (-1.0, 1.0))
+    low, high = (report_centre(both, RADIUS, CENTRE + np.array([step, 0.0])) for step in (-1.0, 1.0))
     assert high[0] - low[0] == pytest.approx(0.01, abs=1e-3)

@@ -44,7 +44,7 @@ def test_the_chord_of_what_hides_it_pulls_it_nowhere():
 
 def test_glints_beside_it_and_a_wrong_fifth_of_the_points_pull_it_nowhere():
     rim = arc(0, 250, noise=0.05)
-    glint = Rim(arc(0, 360, radius=0.008, count=30).places + (0.04, 0.02), arc(0, 360, count=30).steps)
+    glint = Rim(arc(0, 360, radius=0.008, count=30).places + np.array([0.04, 0.02]), arc(0, 360, count=30).steps)
     assert off(Rim.joined([rim, glint])) < 0.1e-3
 
 

@@ -14,6 +14,7 @@ from sim2real.camera.render.table import LOW_RING, Glint, Table
 from sim2real.camera.render.view import View
 from sim2real.vision.eye import Seen
 from sim2real.vision.rendered import exact_locator, eye_for
+from tests.sim2real.vision.games import judge
 from tests.sim2real.vision.glints import pucks_seen
 
 RATE = 120.0
@@ -30,7 +31,9 @@ def watch(moments: list[Moment]) -> list[Seen]:
 
 def flight(puck: Motion | None, opponent: Motion | None, mallet: Motion | None, pictures: int) -> list[Moment]:
     times = (k / RATE for k in range(pictures))
-    return [Moment(t, *(one and one.after(t) for one in (puck, opponent, mallet))) for t in times]
+    return [
+        Moment(t, puck and puck.after(t), opponent and opponent.after(t), mallet and mallet.after(t)) for t in times
+    ]
 
 
 def off(motion: Motion | None, seen: Seen) -> float:
@@ -109,3 +112,11 @@ def test_a_ring_on_the_low_attachment_is_found_at_its_own_height_alone():
     camera = RENDERER.view.place
     shift = 0.05 * (1.5 - camera[0]) / (camera[2] - LOW_RING)
     assert 1.5 - seen[1].opponent.place[0] == pytest.approx(shift, rel=0.02)
+
+
+def test_in_a_game_it_is_right_where_it_says_that_it_knows():
+    """Gantry, blows and walls as they come, at 120 Hz."""
+    for judged in judge(150, seed=2).values():
+        assert len(judged.far) > 120 and max(judged.far) < 3e-3
+        assert sum(square > 16.0 for square in judged.squares) <= 1
+        assert np.mean(np.array(judged.squares) < 5.991) > 0.9

@@ -83,7 +83,7 @@ def test_what_is_wrong_is_named_and_ends_with_1(calibration: Path, tmp_path: Pat
     glaring = images[5].copy()
     glaring[:200] = 255
     images[4] = images[5] = images[6] = glaring
-    elsewhere = Renderer(TABLE, View.from_place(VIEW.place + (0.0, 0.004, 0.0), np.array([0.61, 0.5, 0.0])))
+    elsewhere = Renderer(TABLE, View.from_place(VIEW.place + np.array([0.0, 0.004, 0.0]), np.array([0.61, 0.5, 0.0])))
     images[10:] = [elsewhere.picture(Moment(puck=Motion(1.0, 0.3)), k) for k in range(8)]
     numbers = [*range(9), *range(11, 20)]
     assert run(calibration, folder_of(images, tmp_path / "pictures", numbers), tmp_path / "out", "--rate", "10") == 1
