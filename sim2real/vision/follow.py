@@ -7,7 +7,7 @@ What is not seen is under the gantry, beside the very mallet that may strike it 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -60,7 +60,8 @@ class Estimate:
         aa, ab, bb = power * dt**3 / 3.0, power * dt**2 / 2.0, power * dt
         grown = np.array([[aa, 0.0, ab, 0.0], [0.0, aa, 0.0, ab], [ab, 0.0, bb, 0.0], [0.0, ab, 0.0, bb]])
         covariance = on @ self.covariance @ on.T + grown
-        return replace(self, time=time, place=self.place + dt * self.velocity, covariance=covariance)
+        there = self.place + dt * self.velocity
+        return Estimate(time, there, self.velocity, covariance, self.last, self.pictures)
 
     def corrected(self, sighting: Sighting) -> Estimate:
         """With a sighting of the same time (Kalman 1960)."""

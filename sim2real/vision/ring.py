@@ -44,8 +44,8 @@ class RingFinder:
                 others.append(blob)
                 continue
             rings.append(ring)
-            far = np.linalg.norm(self.places(blob.outline.astype(float)) - ring.centre, axis=1)
-            rest = blob.outline[far > ring.radius + 2.0 * OFF]
+            x, y = (self.places(blob.outline) - ring.centre).T
+            rest = blob.outline[x * x + y * y > (ring.radius + 2.0 * OFF) ** 2]
             if len(rest) >= FEWEST:
                 others.append(Blob(rest, None))
         return rings, others
