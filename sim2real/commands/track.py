@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 RATE = 120.0  # Hz
 FILM_RATE = 25.0  # pictures a second of the preview
 WAIT = 0.05  # s
-UNUSABLE = ("wrong size", "wrong type")
+UNUSABLE = ("wrong size", "wrong type", "clock")  # troubles of pictures that are not looked at
 PATIENCE = 5.0  # s without any picture, after which a source is given up
 
 
@@ -116,13 +116,18 @@ def _follow(args: argparse.Namespace, tracker: Tracker, watch: Watch, puck_top: 
 def _sound(args: argparse.Namespace, watch: Watch, told: dict[str, Any]) -> Iterator[tuple[float, Frame]]:
     """Frames that can be looked at, and the time since the first of all; what is wrong goes into `told`."""
     from sim2real.camera.sources import open_source
+    from sim2real.camera.watch import Trouble
 
-    begin, heard = None, time.perf_counter()
+    begin, latest, heard = None, -math.inf, time.perf_counter()
     with open_source(args.source, rate=args.rate) as source:
         while not source.over:
             frame = source.newest(WAIT)
             now = time.perf_counter()
             wrong = watch.look(frame, now)
+            if frame is not None and frame.time <= latest:
+                wrong.append(
+                    Trouble("clock", f"a picture of {frame.time:.6f} s came after one of {latest:.6f} s; see why")
+                )
             for trouble in wrong:
                 known = told["troubles"].setdefault(trouble.name, {"times": 0, "text": trouble.text})
                 known["times"] += 1
@@ -135,6 +140,7 @@ def _sound(args: argparse.Namespace, watch: Watch, told: dict[str, Any]) -> Iter
                 return
             told["frames"] += 1
             told["dropped"] += frame.dropped
+            latest = max(latest, frame.time)
             if not any(trouble.name in UNUSABLE for trouble in wrong):
                 yield frame.time - begin, frame
 

@@ -101,8 +101,10 @@ class Stalling:
 
     over = False
 
-    def __init__(self, images: list[np.ndarray]) -> None:
-        self._frames = [Frame(image, k / RATE, k / RATE, k) for k, image in enumerate(images)]
+    def __init__(self, images: list[np.ndarray], back: int = 0) -> None:
+        """`back`: frames by which its clock once jumps back, before the third picture."""
+        times = [(k - (back if k == 2 else 0)) / RATE for k in range(len(images))]
+        self._frames = [Frame(image, t, t, k) for k, (t, image) in enumerate(zip(times, images, strict=True))]
 
     def newest(self, wait: float) -> Frame | None:
         return self._frames.pop(0) if self._frames else None
@@ -122,6 +124,17 @@ def test_a_camera_that_stalls_is_named_and_what_was_seen_is_kept(
     assert run(calibration, "device:0", tmp_path / "out") == 1
     told = capsys.readouterr().out
     assert told.startswith("3 frames: puck known in 2, hidden in 0, not sure in 1; 0 dropped\nstalled, ")
+    frames = read_recording(tmp_path / "out").frames
+    assert frames is not None and frames.rows == 3
+
+
+def test_a_clock_that_runs_back_is_named_and_that_picture_left_out(
+    calibration: Path, tmp_path: Path, monkeypatch, capsys
+):
+    monkeypatch.setattr(sources, "open_source", lambda word, rate: Stalling(still(4), back=5))
+    monkeypatch.setattr(track, "PATIENCE", 0.02)
+    assert run(calibration, "device:0", tmp_path / "out") == 1
+    assert "clock, 1 times: a picture of -0.025000 s came after one of 0.008333 s" in capsys.readouterr().out
     frames = read_recording(tmp_path / "out").frames
     assert frames is not None and frames.rows == 3
 
