@@ -61,7 +61,7 @@ class Eye:
             if window is None:
                 return None
             found.append(self._find(image, window))
-        rings, discs = ([one for part in found for one in part[kind]] for kind in (0, 1))
+        (_, discs), (rings, _) = found  # where both are near, each window shows both
         if not rings or not any(_of_disc(disc).sure for disc in discs):
             return None
         return rings, discs
