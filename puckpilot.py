@@ -17,7 +17,7 @@ from contextlib import contextmanager
 from importlib.metadata import version
 from typing import NoReturn
 
-# name: (module with `add_arguments` and `run`, what it does)
+# name, of one word or two: (module with `add_arguments` and `run`, what it does)
 COMMANDS = {
     "demo": ("sim2real.commands.demo", "a first look: players meet, a game is filmed, a recording is compared"),
     "envs": ("puckpilot_env.commands.envs", "list the environments, or show the page of one"),
@@ -29,11 +29,13 @@ COMMANDS = {
     "exploit": ("agents.commands.exploit", "how exploitable a player is: a fresh learner meets it alone"),
     "export": ("agents.commands.export", "write a policy as .npz or .onnx"),
     "bench": ("puckpilot_env.commands.bench", "how fast the simulator is here"),
+    "bench vision": ("sim2real.commands.bench_vision", "how exact and how fast the vision is here"),
     "compare": ("sim2real.compare", "where a recording of a table departs from the simulator"),
     "diagnose": ("sim2real.commands.diagnose", "which physics the simulator lacks, with proof on untouched data"),
     "study": ("sim2real.commands.study", "how often a diagnosis is right, on cases with something hidden"),
     "calibrate": ("sim2real.commands.calibrate", "the physical table's numbers, by a guided procedure"),
     "firmware": ("sim2real.commands.firmware", "the microcontroller's program: what it is, build it, emulate it"),
+    "track": ("sim2real.commands.track", "puck and opponent in a camera's pictures, as a recording"),
     "link": ("sim2real.commands.link", "watch or test the line to the microcontroller"),
 }
 
@@ -98,7 +100,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if not words or words[0] in ("-h", "--help"):
         print(_overview())
         return 0 if words else 2
-    name, *rest = words
+    many = 2 if " ".join(words[:2]) in COMMANDS else 1
+    name, rest = " ".join(words[:many]), words[many:]
     if name not in COMMANDS:
         print(_unknown(name), file=sys.stderr)
         return 2

@@ -15,7 +15,7 @@ from sim2real.vision.camera import Camera
 INSIDE, OUTSIDE = 0.6, 0.5  # of a cell: how far from the edge pixels are used; beyond, bits and the margin's end begin
 ALONG = 0.85  # of half an edge: the ends are rounded
 BLUR = 1.0  # px, where the search begins
-CONTRAST = 20.0  # grey levels that an edge must have
+CONTRAST = 8.0  # grey levels that an edge must have; the table's far end is dim
 MOST = 3.0  # px that an edge may be from where it was detected
 ROUNDS = 2  # of choosing pixels anew
 PIXELS = 12  # that an edge must have

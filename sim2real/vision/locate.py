@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from puckpilot_env.kernel import kernel
 from sim2real.vision.camera import Camera
 from sim2real.vision.frame import Frame
 from sim2real.vision.motion import moved, rotation
@@ -34,6 +35,11 @@ class Locator:
         points = np.column_stack([flat, self.surface.height(flat) + height])
         return self.camera.project(moved(self.motion, points)[0])[0]
 
+    def distances(self, pixels: np.ndarray) -> np.ndarray:
+        """From the camera (n,) [m] to what is seen of the table's surface at pixels (n, 2); NaN past its plane."""
+        eye = -rotation(self.motion[:3]).T @ self.motion[3:]
+        return np.linalg.norm(self._points(pixels, 0.0) - eye, axis=1)
+
     def _points(self, pixels: np.ndarray, height: float) -> np.ndarray:
         """Points (n, 3) [m] of the rigid frame."""
         turn = rotation(self.motion[:3])
@@ -53,14 +59,23 @@ class Grid:
 
     def places(self, pixels: np.ndarray) -> np.ndarray:
         """Places (n, 2) [m] of pixels (n, 2); NaN out of the picture."""
-        high, wide, _ = self._places.shape
-        cell = pixels / CELL
-        with np.errstate(invalid="ignore"):
-            inside = np.all((cell >= 0.0) & (cell <= (wide - 1, high - 1)), axis=1)
-        cell = np.where(inside[:, None], cell, 0.0)
-        column, row = np.minimum(cell.astype(int), (wide - 2, high - 2)).T
-        right, down = (cell - np.stack([column, row], axis=1)).T[:, :, None]
-        at = self._places
-        top = at[row, column] * (1.0 - right) + at[row, column + 1] * right
-        bottom = at[row + 1, column] * (1.0 - right) + at[row + 1, column + 1] * right
-        return np.where(inside[:, None], top * (1.0 - down) + bottom * down, np.nan)
+        found = np.empty((len(pixels), 2))
+        _between(self._places, np.ascontiguousarray(pixels, float), found)
+        return found
+
+
+@kernel
+def _between(nodes, pixels, found):
+    """Write into `found` (n, 2) what `nodes` (rows, columns, 2), CELL pixels apart, say at pixels (n, 2)."""
+    high, wide, _ = nodes.shape
+    for i in range(pixels.shape[0]):
+        u, v = pixels[i, 0] / CELL, pixels[i, 1] / CELL
+        if not (0.0 <= u <= wide - 1 and 0.0 <= v <= high - 1):
+            found[i, 0] = found[i, 1] = np.nan
+            continue
+        column, row = min(int(u), wide - 2), min(int(v), high - 2)
+        right, down = u - column, v - row
+        for k in range(2):
+            top = nodes[row, column, k] * (1.0 - right) + nodes[row, column + 1, k] * right
+            bottom = nodes[row + 1, column, k] * (1.0 - right) + nodes[row + 1, column + 1, k] * right
+            found[i, k] = top * (1.0 - down) + bottom * down

@@ -10,6 +10,7 @@ from sim2real.vision.edges import refine
 from sim2real.vision.photograph import smoothed
 
 FEWEST = 3  # markers of a view
+FAINT = 2.0  # grey levels between ink and paper at the table's far end, as short as play exposes
 BORDER = 2  # cells of a marker's black border, both sides together
 
 
@@ -44,7 +45,9 @@ def _names() -> list[str]:
 
 def _detect(image: np.ndarray, book: cv2.aruco.Dictionary) -> dict[int, np.ndarray]:
     """Rough corners (4, 2) by id; of an id that is seen twice, none, since nobody knows which is the table's."""
-    corners, ids, _ = cv2.aruco.ArucoDetector(book).detectMarkers(image)
+    parameters = cv2.aruco.DetectorParameters()
+    parameters.adaptiveThreshConstant = FAINT
+    corners, ids, _ = cv2.aruco.ArucoDetector(book, parameters).detectMarkers(image)
     names = [] if ids is None else [int(one) for one in np.ravel(ids)]
     found = {name: one.reshape(4, 2).astype(float) for name, one in zip(names, corners, strict=True)}
     return {name: found[name] for name in sorted(found) if names.count(name) == 1}
