@@ -9,6 +9,7 @@ from PIL import Image, UnidentifiedImageError
 
 from sim2real.camera.frame import CameraError
 
+KINDS = {"RGB": "a colour image", "RGBA": "a colour image", "P": "a palette image", "1": "a black-and-white image"}
 ENDINGS = (".png", ".bmp", ".tif", ".tiff", ".pgm", ".jpg", ".jpeg")
 
 
@@ -17,13 +18,12 @@ def read_grey(path: Path) -> np.ndarray:
     try:
         with Image.open(path) as image:
             if image.mode != "L":
-                raise CameraError(
-                    f"{path}: its pixels are of kind {image.mode}; expected grey of 8 bits, so convert it"
-                )
+                kind = KINDS.get(image.mode, f"an image of mode {image.mode}")
+                raise CameraError(f"{path} is {kind}; expected 8-bit grey levels as the camera gives them")
             return np.array(image)
-    except FileNotFoundError:
-        raise CameraError(f"{path}: is not there; expected a picture") from None
     except UnidentifiedImageError:
-        raise CameraError(f"{path}: is no picture; expected one of {', '.join(ENDINGS)}") from None
+        raise CameraError(f"{path} is no picture; expected one of {', '.join(ENDINGS)}") from None
     except (OSError, SyntaxError, Image.DecompressionBombError) as error:  # PIL has all of them for damaged files
-        raise CameraError(f"{path}: cannot be read whole ({error}); take it again") from None
+        if isinstance(error, OSError) and error.errno is not None:
+            raise CameraError(f"cannot read {path}: {error.strerror}; expected a picture there") from None
+        raise CameraError(f"{path} is cut off or damaged ({error}); take it again") from None

@@ -31,10 +31,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """0: calibrated. Raises ValueError, in one line, for what cannot be."""
     from puckpilot_env.whole_file import check_folder
+    from sim2real.camera.grey_image import read_grey
     from sim2real.vision.board import Board
     from sim2real.vision.camera_file import write_camera
     from sim2real.vision.intrinsics import calibrate
-    from sim2real.vision.photograph import read_photograph
 
     size = re.fullmatch(r"(\d{1,2})x(\d{1,2})", args.board)
     if size is None or min(int(size[1]), int(size[2])) < 3:
@@ -45,7 +45,7 @@ def run(args: argparse.Namespace) -> int:
     board = Board(int(size[1]), int(size[2]), args.charuco, args.marker)
     names, seen, without, shape = [], [], [], None
     for path in args.images:
-        image = read_photograph(path)
+        image = read_grey(path)
         if shape not in (None, image.shape):
             raise ValueError(
                 f"{path} is {image.shape[1]}x{image.shape[0]} pixels; expected {shape[1]}x{shape[0]} as the first"

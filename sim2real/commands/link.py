@@ -12,11 +12,12 @@ import argparse
 import json
 from typing import TYPE_CHECKING
 
+from sim2real.link import BAUD
+
 if TYPE_CHECKING:
     from sim2real.link.session import Session
 
 EVERY = 0.5  # s from a line of the monitor to the next
-BAUD = 1_000_000
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

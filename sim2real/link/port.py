@@ -7,7 +7,8 @@ from typing import Protocol
 
 import serial
 
-BAUD = 1_000_000
+from sim2real.link import BAUD
+
 READ_WAIT = 0.001  # s that `read` waits for a first byte: then a loop of reads needs no other pause
 WRITE_WAIT = 0.1  # s after which a port that takes no bytes counts as gone
 

@@ -1,4 +1,4 @@
-"""Photographs: 8-bit grey pictures, whole and of the camera's size."""
+"""Photographs: of the camera's size, and even where they are raw mosaics."""
 
 from __future__ import annotations
 
@@ -6,29 +6,10 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-from PIL import Image, UnidentifiedImageError
 
 from sim2real.vision.camera import Camera
 
-MODES = {"RGB": "a colour image", "RGBA": "a colour image", "P": "a palette image", "1": "a black-and-white image"}
 SHIFT = 0.1  # of the picture: how far a principal point lies from its middle at most
-
-
-def read_photograph(path: Path) -> np.ndarray:
-    """Grey levels (height, width) uint8. ValueError, in one line, for a file that is no whole 8-bit grey picture."""
-    try:
-        with Image.open(path) as picture:
-            picture.load()
-            if picture.mode != "L":
-                kind = MODES.get(picture.mode, f"an image of mode {picture.mode}")
-                raise ValueError(f"{path} is {kind}; expected 8-bit grey levels as the camera gives them")
-            return np.asarray(picture)
-    except UnidentifiedImageError:
-        raise ValueError(f"{path} is no picture; expected a PNG or the like") from None
-    except (OSError, SyntaxError) as error:
-        if isinstance(error, OSError) and error.errno is not None:
-            raise ValueError(f"cannot read {path}: {error.strerror}; expected a photograph there") from None
-        raise ValueError(f"{path} is cut off or damaged ({error}); take it again") from None
 
 
 def check_size(path: Path, image: np.ndarray, camera: Camera) -> None:

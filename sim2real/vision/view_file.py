@@ -6,10 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
+from sim2real.camera.grey_image import read_grey
 from sim2real.recording_csv import read_stream
 from sim2real.vision.camera_file import Setup
 from sim2real.vision.markers import find_markers
-from sim2real.vision.photograph import check_size, read_photograph
+from sim2real.vision.photograph import check_size
 from sim2real.vision.view import View
 
 COLUMNS = ("u", "v", "x", "y")
@@ -21,7 +22,7 @@ def read_view(folder: Path, setup: Setup) -> View:
     if not folder.is_dir():
         raise ValueError(f"{folder} is no folder; a view is a folder with view.png and pixels.csv")
     file = folder / "view.png"
-    image = read_photograph(file)
+    image = read_grey(file)
     check_size(file, image, setup.camera)
     try:
         corners = find_markers(image, setup.camera, setup.dictionary)

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from sim2real.vision.photograph import check_size, read_photograph
+from sim2real.camera.grey_image import read_grey
+from sim2real.vision.photograph import check_size
 from sim2real.vision.view_file import read_points, read_view
 from tests.sim2real.vision import world
 from tests.sim2real.vision.test_multiview import SETUP
@@ -69,7 +70,7 @@ def test_a_picture_of_another_size_is_named(folder: Path):
     cv2.imwrite(str(folder / "view.png"), cv2.resize(picture(), None, fx=0.5, fy=0.5))
     with pytest.raises(ValueError, match="is 1024x768 pixels; expected 2048x1536, for which the camera is calibrated"):
         read_view(folder, SETUP)
-    image = read_photograph(folder / "view.png")
+    image = read_grey(folder / "view.png")
     unknown = replace(SETUP.camera, size=None)
     with pytest.raises(ValueError, match=r"1024x768 pixels, but the camera's principal point is \(1018, 772\)"):
         check_size(folder / "view.png", image, unknown)
