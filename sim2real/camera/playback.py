@@ -7,7 +7,7 @@ from dataclasses import replace
 from types import TracebackType
 from typing import Self
 
-from sim2real.camera.frame import Frame
+from sim2real.camera.frame import CameraError, Frame
 
 
 class Playback:
@@ -17,18 +17,25 @@ class Playback:
         self._frames = frames
         self._next = next(frames, None)  # so that what is wrong with the first shows at once
         self._last: int | None = None
+        self._failure: CameraError | None = None
 
     @property
     def over(self) -> bool:
         """See `Source.over`."""
-        return self._next is None
+        return self._next is None and self._failure is None
 
     def newest(self, wait: float) -> Frame | None:
         """See `Source.newest`; it never waits."""
-        frame = self._next
+        if self._failure:
+            failure, self._failure = self._failure, None
+            raise failure
+        frame, self._next = self._next, None
         if frame is None:
             return None
-        self._next = next(self._frames, None)
+        try:
+            self._next = next(self._frames, None)
+        except CameraError as error:  # this frame is sound: the next call tells
+            self._failure = error
         dropped = 0 if self._last is None else frame.sequence - self._last - 1
         self._last = frame.sequence
         return replace(frame, dropped=dropped)

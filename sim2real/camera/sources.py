@@ -8,24 +8,28 @@ from sim2real.camera.frame import CameraError, Source
 
 RATE = 120.0  # Hz, of the real table's camera
 EXPOSURE = 100e-6  # s (report 2.2.1)
+TIMED = ("synthetic", "device", "aravis", "flir")  # what a name follows tells when its pictures were taken
 KNOWN = "a folder of pictures, a video file, device:0, aravis:NAME, flir:SERIAL, synthetic or synthetic:RECORDING"
 
 
-def open_source(word: str, rate: float = RATE, exposure: float = EXPOSURE) -> Source:
+def open_source(word: str, rate: float | None = None, exposure: float = EXPOSURE) -> Source:
     """The source that `word` names, to be opened by `with`; KNOWN says which there are.
 
-    rate [Hz]: of pictures in a folder and of rendered games; exposure [s]: of rendered pictures, and what aravis: and
-    flir: set. Loads only what the source needs. CameraError, or for a bad recording RecordingError, in one line.
+    rate [Hz]: of pictures in a folder and of rendered games, RATE if None, and of a video, for one that states another
+    than it was filmed with; exposure [s]: of rendered pictures, and what aravis: and flir: set. Loads only what the
+    source needs. CameraError, or for a bad recording RecordingError, in one line.
     """
-    if not 0.0 < rate < 1e5:
+    if rate is not None and not 0.0 < rate < 1e5:
         raise CameraError(f"rate is {rate!r}; expected frames a second, say {RATE:g}")
     if not 0.0 < exposure < 1.0:
         raise CameraError(f"exposure is {exposure!r}; expected seconds, say {EXPOSURE:g}")
     kind, colon, name = word.partition(":")
+    if rate is not None and colon and kind in TIMED:
+        raise CameraError(f"a rate of {rate:g} Hz is given, but {kind}: times its pictures itself; leave the rate out")
     if kind == "synthetic":
         from sim2real.camera import synthetic
 
-        return synthetic.of_a_recording(Path(name), exposure) if name else synthetic.of_a_game(rate, exposure)
+        return synthetic.of_a_recording(Path(name), exposure) if name else synthetic.of_a_game(rate or RATE, exposure)
     if colon and kind == "device":
         from sim2real.camera.device import Device
 
@@ -43,14 +47,14 @@ def open_source(word: str, rate: float = RATE, exposure: float = EXPOSURE) -> So
     return _files(word, rate)
 
 
-def _files(word: str, rate: float) -> Source:
+def _files(word: str, rate: float | None) -> Source:
     path = Path(word)
     if path.is_dir():
         from sim2real.camera.folder import Folder
 
-        return Folder(path, rate)
+        return Folder(path, rate or RATE)
     if path.is_file():
         from sim2real.camera.video_file import VideoFile
 
-        return VideoFile(path)
+        return VideoFile(path, rate)
     raise CameraError(f"{word!r} is no source of pictures, nor a file that is there; expected {KNOWN}")

@@ -11,23 +11,26 @@ import cv2
 from sim2real.camera.frame import CameraError, Frame
 from sim2real.camera.playback import Playback
 
+WHOLE = 0.99  # of the frames that a video states, which some containers do from its length
+
 
 class VideoFile(Playback):
-    """All frames of a video, as grey pictures, timed by the rate that it states: its first frame is at 0 s.
+    """All frames of a video, as grey pictures, its first at 0 s.
 
-    A lossy codec moves edges by parts of a pixel; a folder of .png files does not.
+    They are timed by the rate that the video states, or by `rate` [Hz], if one is given: slow motion states the rate at
+    which it is shown. A lossy codec moves edges by parts of a pixel; a folder of .png files does not.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, rate: float | None = None) -> None:
         if not path.is_file():
             raise CameraError(f"{path}: is not there; expected a video file")
         self._video = cv2.VideoCapture(str(path))
-        rate = self._video.get(cv2.CAP_PROP_FPS)
-        if not self._video.isOpened() or not 0.0 < rate < 1e5:
+        stated = self._video.get(cv2.CAP_PROP_FPS)
+        if not self._video.isOpened() or not 0.0 < stated < 1e5:
             raise CameraError(
                 f"{path}: is no video that OpenCV can read; convert it, say to .mp4, or to a folder of .png"
             )
-        super().__init__(_frames(self._video, rate))
+        super().__init__(_frames(path, self._video, rate or stated))
         if self.over:
             raise CameraError(f"{path}: holds no frame that can be read; record it again")
 
@@ -38,12 +41,14 @@ class VideoFile(Playback):
         self._video.release()
 
 
-def _frames(video: cv2.VideoCapture, rate: float) -> Iterator[Frame]:
-    number = 0
+def _frames(path: Path, video: cv2.VideoCapture, rate: float) -> Iterator[Frame]:
+    stated, number = video.get(cv2.CAP_PROP_FRAME_COUNT), 0
     while True:
         there, image = video.read()
         if not there:
-            return
+            break
         grey = image if image.ndim == 2 else cv2.cvtColor(image, cv2.COLOR_BGR2GRAY)
         yield Frame(grey, number / rate, number / rate, number)
         number += 1
+    if number < WHOLE * stated - 1.0:
+        raise CameraError(f"{path} is cut off or damaged: {number} of its {stated:.0f} frames can be read")

@@ -19,11 +19,10 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from sim2real.camera.frame import Frame
-    from sim2real.camera.watch import Watch
+    from sim2real.camera.watch import Trouble, Watch
     from sim2real.vision.eye import Seen
     from sim2real.vision.tracker import Tracker
 
-RATE = 120.0  # Hz
 FILM_RATE = 25.0  # pictures a second of the preview
 WAIT = 0.05  # s
 UNUSABLE = ("wrong size", "wrong type", "clock")  # troubles of pictures that are not looked at
@@ -41,7 +40,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--puck-radius", type=float, metavar="M", help="metres (0.0309)")
     parser.add_argument("--level", type=float, metavar="N", help="grey level above which film shines (75)")
-    parser.add_argument("--rate", type=float, default=RATE, metavar="HZ", help="of a folder's pictures (120)")
+    parser.add_argument(
+        "--rate",
+        type=float,
+        metavar="HZ",
+        help="of a folder's pictures (120); of a slow-motion video, as it was filmed",
+    )
     parser.add_argument("--seconds", type=float, metavar="S", help="how much of the source (all)")
     parser.add_argument("--json", action="store_true", help="print one JSON object in the end")
 
@@ -115,13 +119,19 @@ def _follow(args: argparse.Namespace, tracker: Tracker, watch: Watch, puck_top: 
 
 def _sound(args: argparse.Namespace, watch: Watch, told: dict[str, Any]) -> Iterator[tuple[float, Frame]]:
     """Frames that can be looked at, and the time since the first of all; what is wrong goes into `told`."""
+    from sim2real.camera.frame import CameraError
     from sim2real.camera.sources import open_source
     from sim2real.camera.watch import Trouble
 
     begin, latest, heard = None, -math.inf, time.perf_counter()
     with open_source(args.source, rate=args.rate) as source:
         while not source.over:
-            frame = source.newest(WAIT)
+            try:
+                frame = source.newest(WAIT)
+            except CameraError as error:
+                if begin is None:
+                    raise
+                return _count(told, Trouble("source failed", f"{error}; what it gave before is kept"))
             now = time.perf_counter()
             wrong = watch.look(frame, now)
             if frame is not None and frame.time <= latest:
@@ -129,8 +139,7 @@ def _sound(args: argparse.Namespace, watch: Watch, told: dict[str, Any]) -> Iter
                     Trouble("clock", f"a picture of {frame.time:.6f} s came after one of {latest:.6f} s; see why")
                 )
             for trouble in wrong:
-                known = told["troubles"].setdefault(trouble.name, {"times": 0, "text": trouble.text})
-                known["times"] += 1
+                _count(told, trouble)
             if frame is None:
                 if now - heard > PATIENCE:
                     return
@@ -143,6 +152,12 @@ def _sound(args: argparse.Namespace, watch: Watch, told: dict[str, Any]) -> Iter
             latest = max(latest, frame.time)
             if not any(trouble.name in UNUSABLE for trouble in wrong):
                 yield frame.time - begin, frame
+
+
+def _count(told: dict[str, Any], trouble: Trouble) -> None:
+    """Keep the first text of each trouble, and how often it came."""
+    known = told["troubles"].setdefault(trouble.name, {"times": 0, "text": trouble.text})
+    known["times"] += 1
 
 
 @contextmanager

@@ -64,22 +64,51 @@ def test_pictures_that_cannot_be_taken_are_named(tmp_path: Path) -> None:
         with pytest.raises(CameraError, match=rf"1\.png is {kind}; expected 8-bit grey"):
             open_source(str(tmp_path))
     save(tmp_path, "1.png", 7)
+
+
+def test_what_comes_before_a_damaged_picture_is_given(tmp_path: Path) -> None:
+    save(tmp_path, "1.png", 7)
     save(tmp_path, "2.png", 7, "RGB")
-    with open_source(str(tmp_path)) as source, pytest.raises(CameraError, match=r"2\.png"):
-        source.newest(0.0)
+    save(tmp_path, "3.png", 7)
+    with open_source(str(tmp_path)) as source:
+        frame = source.newest(0.0)
+        assert frame is not None and frame.sequence == 1 and not source.over
+        with pytest.raises(CameraError, match=r"2\.png"):
+            source.newest(0.0)
+        assert source.over
 
 
-def test_a_video_is_played_at_its_own_rate(tmp_path: Path) -> None:
-    path = tmp_path / "game.avi"
+def film(path: Path, levels: list[int]) -> Path:
+    """A video of 64 x 48 pixels, 60 a second, each picture of one level."""
     writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*"MJPG"), 60.0, (64, 48))
-    for level in (20, 90, 160):
+    for level in levels:
         writer.write(np.full((48, 64, 3), level, np.uint8))
     writer.release()
+    return path
+
+
+def test_a_video_is_played_at_its_own_rate_or_the_one_given(tmp_path: Path) -> None:
+    path = film(tmp_path / "game.avi", [20, 90, 160])
+    assert [frame.time for frame in play(open_source(str(path), rate=240.0))] == [0.0, 1 / 240, 2 / 240]
     frames = play(open_source(str(path)))
     assert [(f.sequence, f.dropped) for f in frames] == [(0, 0), (1, 0), (2, 0)]
     assert [f.time for f in frames] == pytest.approx([0.0, 1 / 60, 2 / 60], rel=1e-4)
     assert [float(f.image.mean()) for f in frames] == pytest.approx([20, 90, 160], abs=2)
     assert frames[0].image.shape == (48, 64)
+
+
+def test_a_video_that_ends_before_its_end_is_named(tmp_path: Path) -> None:
+    path = film(tmp_path / "game.avi", [20] * 40)
+    whole = path.read_bytes()
+    path.write_bytes(whole[: len(whole) // 2])
+    given = 0
+    with (
+        open_source(str(path)) as source,
+        pytest.raises(CameraError, match=r"cut off or damaged: \d+ of its 40 frames"),
+    ):
+        while source.newest(0.0):
+            given += 1
+    assert 5 < given < 30
 
 
 def test_files_that_are_no_video_are_named(tmp_path: Path) -> None:
@@ -101,6 +130,12 @@ def test_an_unknown_word_is_told_what_is_known(word: str, tmp_path: Path, monkey
 def test_a_device_is_a_number(word: str) -> None:
     with pytest.raises(CameraError, match=r"expected its number, as in device:0"):
         open_source(word)
+
+
+@pytest.mark.parametrize("word", ["device:0", "aravis:", "flir:1", "synthetic:somewhere"])
+def test_a_rate_is_refused_where_the_source_has_its_own(word: str) -> None:
+    with pytest.raises(CameraError, match=f"{word.partition(':')[0]}: times its pictures itself; leave the rate out"):
+        open_source(word, rate=60.0)
 
 
 @pytest.mark.parametrize("wrong", [{"rate": 0.0}, {"rate": float("nan")}, {"exposure": 100.0}, {"exposure": -1e-4}])

@@ -128,6 +128,17 @@ def test_a_camera_that_stalls_is_named_and_what_was_seen_is_kept(
     assert frames is not None and frames.rows == 3
 
 
+def test_what_was_seen_before_a_source_fails_is_kept(calibration: Path, tmp_path: Path, capsys):
+    folder = folder_of(still(5), tmp_path / "pictures")
+    damaged = folder / "frame_0003.png"
+    damaged.write_bytes(damaged.read_bytes()[:5000])
+    assert run(calibration, folder, tmp_path / "out") == 1
+    told = capsys.readouterr().out
+    assert told.startswith("3 frames: ") and "source failed, 1 times: " in told and "frame_0003.png is cut off" in told
+    frames = read_recording(tmp_path / "out").frames
+    assert frames is not None and frames.rows == 3
+
+
 def test_a_clock_that_runs_back_is_named_and_that_picture_left_out(
     calibration: Path, tmp_path: Path, monkeypatch, capsys
 ):
