@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from sim2real.vision.check import Checked
     from sim2real.vision.multiview import Solved
+    from sim2real.vision.view import View
     from sim2real.vision.width import Step
 
 
@@ -42,13 +43,15 @@ def run(args: argparse.Namespace) -> int:
 
     if args.out.suffix != ".json":
         raise ValueError(f"--out is '{args.out}'; expected a name that ends in .json, the picture's then ends in .png")
-    _refuse_twice([*args.views, *([args.check] if args.check else [])])
     setup = read_setup(args.camera)
     check_folder(args.out.absolute().parent)
     begin = time.perf_counter()
-    solved = solve(setup, tuple(read_view(path, setup) for path in args.views))
+    folders = [*args.views, *([args.check] if args.check else [])]
+    views = [read_view(folder, setup) for folder in folders]
+    _refuse_twice(folders, views)
+    solved = solve(setup, tuple(views[: len(args.views)]))
     seconds = time.perf_counter() - begin
-    checked = check(setup, solved.scene, read_view(args.check, setup)) if args.check else None
+    checked = check(setup, solved.scene, views[-1]) if args.check else None
     step = step_across(solved, setup.width)
     write_table(args.out, setup, solved)
 
@@ -65,12 +68,15 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _refuse_twice(folders: list[Path]) -> None:
-    """ValueError for a view that is given twice: what a fit saw proves nothing."""
-    seen: dict[Path, Path] = {}
-    for folder in folders:
-        if seen.setdefault(folder.resolve(), folder) is not folder:
-            raise ValueError(f"{folder} is given twice; give each view once, for the fit or to --check")
+def _refuse_twice(folders: list[Path], views: list[View]) -> None:
+    """ValueError for a photograph that is given twice: what a fit saw proves nothing."""
+    seen: dict[bytes, Path] = {}
+    for folder, view in zip(folders, views, strict=True):
+        corners = b"".join(corners.tobytes() for corners in view.corners.values())
+        if (other := seen.setdefault(corners, folder)) is not folder:
+            raise ValueError(
+                f"{folder} shows the same photograph as {other}; give each once, for the fit or to --check"
+            )
 
 
 def _told(solved: Solved, step: Step | None) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -61,12 +62,14 @@ def test_it_says_so_in_words(made: Path, tmp_path: Path, capsys):
     assert "check on view_2, not used: mean 0." in told and f"{tmp_path / 't.png'} shows it" in told
 
 
-@pytest.mark.parametrize("again", [["view_0/../view_1"], ["--check", "view_1"]])
+@pytest.mark.parametrize("again", [["view_0/../view_1"], ["copy"], ["--check", "view_1"], ["--check", "copy"]])
 def test_a_view_that_is_given_twice_is_refused(made: Path, tmp_path: Path, again: list[str], capsys):
+    shutil.copytree(made / "view_1", made / "copy", dirs_exist_ok=True)
     views = [word if word.startswith("--") else str(made / word) for word in ["view_0", "view_1", *again]]
     words = ["--camera", str(made / "camera.json"), "--out", str(tmp_path / "t.json")]
     assert puckpilot.main(["calibrate", "table", *views, *words]) == 2
-    assert "view_1 is given twice; give each view once" in capsys.readouterr().err
+    told = capsys.readouterr().err
+    assert f"{made / again[-1]} shows the same photograph as {made / 'view_1'}; give each once" in told
     assert not list(tmp_path.iterdir())
 
 
