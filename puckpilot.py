@@ -12,7 +12,7 @@ import signal
 import sys
 import textwrap
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from importlib.metadata import version
 from typing import NoReturn
@@ -33,10 +33,15 @@ COMMANDS = {
     "compare": ("sim2real.compare", "where a recording of a table departs from the simulator"),
     "diagnose": ("sim2real.commands.diagnose", "which physics the simulator lacks, with proof on untouched data"),
     "study": ("sim2real.commands.study", "how often a diagnosis is right, on cases with something hidden"),
-    "calibrate": ("sim2real.commands.calibrate", "the physical table's numbers, by a guided procedure"),
-    "firmware": ("sim2real.commands.firmware", "the microcontroller's program: what it is, build it, emulate it"),
+    "calibrate camera": ("sim2real.commands.calibrate_camera", "a camera's intrinsics, from photographs of a board"),
+    "calibrate table": ("sim2real.commands.calibrate_table", "markers and surface of a table, from photographs of it"),
+    "calibrate gantry": ("sim2real.commands.calibrate_gantry", "the pulley's radius, the mallet moved by hand"),
     "track": ("sim2real.commands.track", "puck and opponent in a camera's pictures, as a recording"),
-    "link": ("sim2real.commands.link", "watch or test the line to the microcontroller"),
+    "firmware info": ("sim2real.commands.firmware_info", "the microcontroller's program: protocol, size, speed"),
+    "firmware build": ("sim2real.commands.firmware_build", "compile the microcontroller's program"),
+    "firmware emulate": ("sim2real.commands.firmware_emulate", "run the microcontroller's program without a board"),
+    "link monitor": ("sim2real.commands.link_monitor", "watch the line to the microcontroller"),
+    "link test": ("sim2real.commands.link_test", "test the line to the microcontroller"),
 }
 
 
@@ -48,13 +53,22 @@ class _Parser(argparse.ArgumentParser):
         raise SystemExit(2)
 
 
+def _table(names: Iterable[str]) -> str:
+    width = max(map(len, names := list(names)))
+    return "\n".join(f"  {name:{width}}  {COMMANDS[name][1]}" for name in names)
+
+
 def _overview() -> str:
-    width = max(map(len, COMMANDS))
-    rows = "\n".join(f"  {name:{width}}  {what}" for name, (_, what) in COMMANDS.items())
     return (
         "usage: puckpilot COMMAND [options]\n\nAir hockey for learning robots: simulator, environments, players, and "
-        f"the gap to the table.\n\n{rows}\n\npuckpilot COMMAND --help explains one. First of all: puckpilot demo"
+        f"the gap to the table.\n\n{_table(COMMANDS)}\n\n"
+        "puckpilot COMMAND --help explains one. First of all: puckpilot demo"
     )
+
+
+def _kinds(word: str) -> list[str]:
+    """The commands of two words that begin with this one."""
+    return [name for name in COMMANDS if name.startswith(f"{word} ")]
 
 
 def _paragraphs(text: str) -> str:
@@ -66,9 +80,12 @@ def _paragraphs(text: str) -> str:
     )
 
 
-def _unknown(name: str) -> str:
-    near = difflib.get_close_matches(name, COMMANDS, n=1)
-    hint = f"did you mean '{near[0]}'?" if near else f"known: {', '.join(COMMANDS)}"
+def _unknown(words: list[str]) -> str:
+    kinds = _kinds(words[0])
+    known = kinds or list(COMMANDS)
+    name = " ".join(words[:2]) if kinds else words[0]
+    near = difflib.get_close_matches(name, known if kinds else [*known, *(one.split()[0] for one in known)], n=1)
+    hint = f"did you mean '{near[0]}'?" if near else f"known: {', '.join(known)}"
     return f"puckpilot: unknown command '{name}'; {hint}"
 
 
@@ -102,8 +119,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 0 if words else 2
     many = 2 if " ".join(words[:2]) in COMMANDS else 1
     name, rest = " ".join(words[:many]), words[many:]
+    if name not in COMMANDS and _kinds(name) and rest[:1] in ([], ["-h"], ["--help"]):
+        print(f"usage: puckpilot {name} KIND [options]\n\n{_table(_kinds(name))}")
+        return 0 if rest else 2
     if name not in COMMANDS:
-        print(_unknown(name), file=sys.stderr)
+        print(_unknown(words), file=sys.stderr)
         return 2
     module_name, what = COMMANDS[name]
     module = importlib.import_module(module_name)

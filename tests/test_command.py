@@ -52,10 +52,12 @@ OPTIONS = {
     "compare": ["--json", "--out"],
     "diagnose": ["--holdout", "--baseline", "--out", "--json"],
     "study": ["--cases", "--seed", "--out", "--seconds", "--only", "--mechanism", "--peer", "--workers", "--json"],
-    "calibrate gantry": ["--width", "--mallet-radius", "--jig", "--out", "--json"],
+    "calibrate gantry": ["--baud", "--width", "--mallet-radius", "--jig", "--out", "--json"],
     "calibrate camera": ["--board", "--charuco", "--marker", "--out", "--json"],
     "calibrate table": ["--camera", "--out", "--check", "--json"],
-    "firmware": ["--port", "--seconds", "--place", "--json"],
+    "firmware info": ["--json"],
+    "firmware build": [],
+    "firmware emulate": ["--port", "--seconds", "--place"],
     "track": [
         "--calibration",
         "--out",
@@ -67,7 +69,8 @@ OPTIONS = {
         "--seconds",
         "--json",
     ],
-    "link": ["--baud", "--seconds", "--pings", "--json"],
+    "link monitor": ["--baud", "--seconds", "--json"],
+    "link test": ["--baud", "--pings", "--json"],
 }
 DUMPS = "TypeError: dumps() missing 1 required positional argument: 'obj'"
 HEAVY = ("numba", "pettingzoo", "gymnasium", "matplotlib", "rich", "scipy", "cv2", "torch", "numpy")
@@ -86,7 +89,7 @@ def refused(words: list[str], capsys: pytest.CaptureFixture[str]) -> str:
 
 
 def test_every_command_is_tested_here():
-    assert {name.split()[0] for name in OPTIONS} == {name.split()[0] for name in puckpilot.COMMANDS}
+    assert set(OPTIONS) == set(puckpilot.COMMANDS)
 
 
 @pytest.mark.parametrize("name", OPTIONS)
@@ -108,9 +111,20 @@ def test_overview(word, capsys):
         assert name in told and what in told
 
 
+@pytest.mark.parametrize("more, code", [([], 2), (["-h"], 0), (["--help"], 0)])
+def test_a_word_of_several_commands_tells_them(more, code, capsys):
+    assert puckpilot.main(["calibrate", *more]) == code
+    told = capsys.readouterr().out.splitlines()
+    assert told[0] == "usage: puckpilot calibrate KIND [options]"
+    assert [line.split()[:2] for line in told[2:]] == [["calibrate", kind] for kind in ("camera", "table", "gantry")]
+
+
 @pytest.mark.parametrize(
     "words, told",
     [
+        (["calibrate", "tabel", "x"], "puckpilot: unknown command 'calibrate tabel'; did you mean 'calibrate table'?"),
+        (["link", "/dev/ttyUSB0"], "puckpilot: unknown command 'link /dev/ttyUSB0'; known: link monitor, link test"),
+        (["calibrat"], "puckpilot: unknown command 'calibrat'; did you mean 'calibrate'?"),
         (["bensh"], "puckpilot: unknown command 'bensh'; did you mean 'bench'?"),
         (["xyz"], "puckpilot: unknown command 'xyz'; known: " + ", ".join(puckpilot.COMMANDS)),
         (

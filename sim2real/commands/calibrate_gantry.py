@@ -13,6 +13,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from sim2real.commands.port import add_port, session_of
+
 if TYPE_CHECKING:
     from sim2real.link.session import Session
     from sim2real.link.two_points import Pair, Shafts
@@ -22,7 +24,7 @@ ALIKE = 0.003  # m that the jig may be off along x between both corners
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of `calibrate gantry`."""
-    parser.add_argument("port", metavar="PORT", help="the board's serial port, /dev/ttyUSB0 for example")
+    add_port(parser)
     parser.add_argument("--width", type=float, metavar="M", help="of the table [m] (the simulator's default)")
     parser.add_argument("--mallet-radius", type=float, metavar="M", help="[m] (the simulator's default)")
     parser.add_argument(
@@ -37,8 +39,6 @@ def run(args: argparse.Namespace) -> int:
     """0: calibrated. Raises ValueError, in one line, for what cannot be."""
     from puckpilot_env.parameters import TABLE, checked
     from puckpilot_env.whole_file import check_folder, write_text_whole
-    from sim2real.link.port import Port
-    from sim2real.link.session import Session
     from sim2real.link.trial import meet
     from sim2real.link.two_points import Shafts, solve
 
@@ -52,13 +52,11 @@ def run(args: argparse.Namespace) -> int:
     if args.out.is_dir():
         raise ValueError(f"--out is {args.out}, a folder; expected a file")
     corner = (radius + args.jig[0], radius + args.jig[1])
-    session, shafts = Session(lambda: Port(args.port)), Shafts()
-    try:
+    shafts = Shafts()
+    with session_of(args) as session:
         meet(session)
         right = _at(session, shafts, "1. Put the mallet into the right-hand corner, with the jig, and press Enter.")
         left = _at(session, shafts, "2. Slide it, in less than a minute, to the left-hand corner, and press Enter.")
-    finally:
-        session.close()
     found = solve(right, left, corner, width)
     if abs(found.sideways) > ALIKE:
         raise ValueError(

@@ -9,6 +9,7 @@ from typing import Any
 from sim2real.link.messages import FORMATS, Event, Fault, Notice, Refusal, State
 from sim2real.link.session import Session
 
+PLACELESS = (State.BOOT, State.UNHOMED)  # in which the place that telemetry names means nothing
 DRIFT_KNOWN = 100.0  # ppm: what is less certain is noise
 _NAMES = {number: kind.__name__.lower() for kind, (number, _) in FORMATS.items()}
 
@@ -61,8 +62,10 @@ def figures(session: Session) -> dict[str, Any]:
 
 
 def drift_words(drift: float, error: float) -> str:
-    """By how much the board's clock goes fast, known to within an error [both ppm]."""
-    return "drift not known yet" if error > DRIFT_KNOWN else f"drift {drift:+.1f} ppm"
+    """By how much the board's clock runs fast, known to within an error [both ppm]."""
+    if error > DRIFT_KNOWN:
+        return "drift not known yet"
+    return f"{abs(drift):.1f} ppm {'fast' if drift >= 0.0 else 'slow'} (to {error:.0f} ppm)"
 
 
 def line(session: Session) -> str:
@@ -79,10 +82,10 @@ def line(session: Session) -> str:
         if now["clock_error_us"] is None
         else f"{now['clock_error_us']:.0f} us, {drift_words(now['drift_ppm'], now['drift_error_ppm'])}"
     )
-    x, y = telemetry.place
+    at = "unknown" if telemetry.state in PLACELESS else "{:.4f} {:.4f} m".format(*telemetry.place)
     path_x, path_y = telemetry.path
     return (
-        f"{silent}{now['state']}{fault}  place {x:.4f} {y:.4f} m  path {path_x:.4f} {path_y:.4f} m  "
+        f"{silent}{now['state']}{fault}  place {at}  path {path_x:.4f} {path_y:.4f} m  "
         f"pwm {telemetry.pwm[0]:+d} {telemetry.pwm[1]:+d}  angle {telemetry.angle[0]} {telemetry.angle[1]}  "
         f"traj {telemetry.sequence}  age {1e3 * now['age_s']:.0f} ms  missing {now['missing']}  "
         f"damaged here {session.tally.refused} there {telemetry.damaged}  lost {telemetry.lost}  "

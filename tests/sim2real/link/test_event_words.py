@@ -25,4 +25,4 @@ def test_an_event_in_words(code: int, detail: int, told: str):
 
 def test_a_drift_that_is_noise_is_no_number():
     assert drift_words(-2300.0, 4000.0) == drift_words(5.0, float("inf")) == "drift not known yet"
-    assert drift_words(-12.34, 20.0) == "drift -12.3 ppm"
+    assert drift_words(-12.34, 20.0) == "12.3 ppm slow (to 20 ppm)"

@@ -130,5 +130,5 @@ def test_a_mallet_that_was_not_moved_is_told_in_one_line(
 ):
     assert call(robot, [0.6, 0.9], monkeypatch, "--out", str(tmp_path / "gantry.toml")) == 2
     told = capsys.readouterr().err.splitlines()
-    assert told[-1].startswith("puckpilot calibrate: both shafts together turned by 0.00 rad")
+    assert told[-1].startswith("puckpilot calibrate gantry: both shafts together turned by 0.00 rad")
     assert not (tmp_path / "gantry.toml").exists()

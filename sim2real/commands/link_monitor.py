@@ -1,0 +1,57 @@
+"""Watch the line to the microcontroller: what the board says of itself, twice a second, and everything that happens.
+
+Ctrl-C ends it. The board is neither armed nor configured; one that is found armed is disarmed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+
+from sim2real.commands.port import add_port, session_of
+
+EVERY = 0.5  # s from a line to the next
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of the command."""
+    add_port(parser)
+    parser.add_argument("--seconds", type=float, metavar="S", help="watch for so long (until Ctrl-C)")
+    parser.add_argument("--json", action="store_true", help="print JSON, an object a line")
+
+
+def run(args: argparse.Namespace) -> int:
+    """0: watched. Raises ValueError, in one line, where it cannot."""
+    from sim2real.link.trial import meet
+    from sim2real.link.words import event_words, figures, line
+
+    if args.seconds is not None and not 0.0 < args.seconds <= 1e6:
+        raise ValueError(f"--seconds is {args.seconds:g}; expected a number above 0, at most 1e6")
+    with session_of(args) as session:
+        begin = time.perf_counter()
+        due = begin + EVERY
+        try:
+            meet(session)
+            while args.seconds is None or time.perf_counter() < begin + args.seconds:
+                session.poll()
+                if not session.port_is_open:
+                    time.sleep(0.01)
+                now = time.perf_counter()
+                for words in [*session.take_notes(), *map(event_words, session.take_events())]:
+                    _print(now - begin, words, {"note": words}, args.json)
+                session.take_telemetry()
+                if now >= due:
+                    due = max(due + EVERY, now)
+                    _print(now - begin, line(session), figures(session), args.json)
+        except KeyboardInterrupt as stop:
+            if stop.args:  # told to end from outside
+                raise
+        return 0
+
+
+def _print(seconds: float, words: str, found: dict, as_json: bool) -> None:
+    text = (
+        json.dumps({"time_s": round(seconds, 3), **found}, allow_nan=False) if as_json else f"{seconds:8.2f} s  {words}"
+    )
+    print(text, flush=True)

@@ -1,0 +1,62 @@
+"""Test the line to the microcontroller: say hello, send pings, tell round trip, clock, telemetry and losses.
+
+Ends with 0 if all is good, 1 if something is not. The board is neither armed nor configured; one that is found armed is
+disarmed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+
+from sim2real.commands.port import add_port, session_of
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of the command."""
+    add_port(parser)
+    parser.add_argument("--pings", type=int, default=200, metavar="N", help="how many, 20 a second (200)")
+    parser.add_argument("--json", action="store_true", help="print one JSON object in the end")
+
+
+def run(args: argparse.Namespace) -> int:
+    """0: all is good; 1: something is not. Raises ValueError, in one line, where it cannot be tested."""
+    from rich.console import Console
+
+    from sim2real.link.trial import meet, trial
+
+    if not 2 <= args.pings <= 1000:
+        raise ValueError(f"--pings is {args.pings}; expected a whole number from 2 to 1000")
+    with session_of(args) as session, Console(stderr=True).status("greeting the board") as status:
+        meet(session)
+        status.update(f"{args.pings} pings")
+        found = {"port": args.port, **trial(session, args.pings)}
+    if args.json:
+        print(json.dumps(found, allow_nan=False))
+    else:
+        print("\n".join(_summary(found)))
+    return 1 if found["bad"] else 0
+
+
+def _summary(found: dict) -> list[str]:
+    from sim2real.link.words import drift_words
+
+    protocol = ".".join(map(str, found["protocol"]))
+    lines = [
+        f"{found['port']}: a board of protocol {protocol}",
+        f"pings: {found['answered']} answered, {found['lost']} lost",
+    ]
+    if found["answered"]:
+        trip = found["round_trip_ms"]
+        lines += [
+            f"round trip: median {trip['median']:.2f} ms, 99 % within {trip['p99']:.2f} ms",
+            f"board's clock: known within {found['clock_error_us']:.0f} us, "
+            f"{drift_words(found['drift_ppm'], found['drift_error_ppm'])}",
+        ]
+    if found["telemetry_hz"] is not None:
+        lines += [
+            f"telemetry: {found['telemetry_hz']:.0f} a second, {found['missing']} missing",
+            f"board: {found['damaged_there']} damaged frames, {found['lost_there']} lost bytes, "
+            f"longest tick {found['longest_tick_us']} us",
+        ]
+    return [*lines, *(f"bad: {line}" for line in found["bad"])] if found["bad"] else [*lines, "all is good"]
