@@ -33,7 +33,7 @@ def run(args: argparse.Namespace) -> int:
 
     import numpy as np
 
-    from sim2real.vision.bench import Stage, errors, speed
+    from sim2real.vision.trial.bench import Stage, errors, speed
 
     stage = Stage.with_estimated_calibration(args.seed)
     told: dict[str, Any] = {

@@ -32,9 +32,9 @@ def run(args: argparse.Namespace) -> int:
     """0: calibrated. Raises ValueError, in one line, for what cannot be."""
     from puckpilot_env.whole_file import check_folder
     from sim2real.camera.grey_image import read_grey
-    from sim2real.vision.board import Board
+    from sim2real.vision.calibrate.board import Board
+    from sim2real.vision.calibrate.intrinsics import calibrate
     from sim2real.vision.camera_file import write_camera
-    from sim2real.vision.intrinsics import calibrate
 
     size = re.fullmatch(r"(\d{1,2})x(\d{1,2})", args.board)
     if size is None or min(int(size[1]), int(size[2])) < 3:

@@ -16,10 +16,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from sim2real.vision.check import Checked
-    from sim2real.vision.multiview import Solved
-    from sim2real.vision.view import View
-    from sim2real.vision.width import Step
+    from sim2real.vision.calibrate.check import Checked
+    from sim2real.vision.calibrate.multiview import Solved
+    from sim2real.vision.calibrate.view import View
+    from sim2real.vision.calibrate.width import Step
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -34,12 +34,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """0: calibrated. Raises ValueError, in one line, for what cannot be."""
     from puckpilot_env.whole_file import check_folder, write_whole
+    from sim2real.vision.calibrate.check import check
+    from sim2real.vision.calibrate.multiview import solve
+    from sim2real.vision.calibrate.table_file import write_table
+    from sim2real.vision.calibrate.view_file import read_view
+    from sim2real.vision.calibrate.width import step_across
     from sim2real.vision.camera_file import read_setup
-    from sim2real.vision.check import check
-    from sim2real.vision.multiview import solve
-    from sim2real.vision.table_file import write_table
-    from sim2real.vision.view_file import read_view
-    from sim2real.vision.width import step_across
 
     if args.out.suffix != ".json":
         raise ValueError(f"--out is '{args.out}'; expected a name that ends in .json, the picture's then ends in .png")
@@ -55,7 +55,7 @@ def run(args: argparse.Namespace) -> int:
     step = step_across(solved, setup.width)
     write_table(args.out, setup, solved)
 
-    from sim2real.vision.picture import draw  # matplotlib is slow to load, and nothing else here needs it
+    from sim2real.vision.calibrate.picture import draw  # matplotlib is slow to load, and nothing else here needs it
 
     picture = write_whole(args.out.with_suffix(".png"), lambda draft: draw(draft, setup, solved, checked))
     told = {"file": str(args.out), "picture": str(picture), "seconds": round(seconds, 2), **_told(solved, step)}

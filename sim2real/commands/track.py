@@ -20,8 +20,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from sim2real.camera.frame import Frame
     from sim2real.camera.watch import Trouble, Watch
-    from sim2real.vision.eye import Seen
-    from sim2real.vision.tracker import Tracker
+    from sim2real.vision.track.eye import Seen
+    from sim2real.vision.track.tracker import Tracker
 
 FILM_RATE = 25.0  # pictures a second of the preview
 WAIT = 0.05  # s
@@ -55,8 +55,8 @@ def run(args: argparse.Namespace) -> int:
     from puckpilot_env.whole_file import check_folder
     from sim2real.camera.watch import Watch, colour_mosaic, over_exposed
     from sim2real.recording import write_recording
-    from sim2real.vision.table_file import read_table
-    from sim2real.vision.tracker import Tracker
+    from sim2real.vision.calibrate.table_file import read_table
+    from sim2real.vision.track.tracker import Tracker
 
     if args.seconds is not None and not 0.0 < args.seconds <= 1e6:
         raise ValueError(f"--seconds is {args.seconds:g}; expected a number above 0, at most 1e6")
@@ -77,9 +77,9 @@ def run(args: argparse.Namespace) -> int:
 
 def _things(args: argparse.Namespace) -> Any:
     from puckpilot_env.parameters import BY_NAME
-    from sim2real.vision.bright import LEVEL
-    from sim2real.vision.ring import HEIGHTS
-    from sim2real.vision.tracker import Things
+    from sim2real.vision.track.bright import LEVEL
+    from sim2real.vision.track.ring import HEIGHTS
+    from sim2real.vision.track.tracker import Things
 
     radius = BY_NAME["puck_radius"].default if args.puck_radius is None else args.puck_radius
     level = LEVEL if args.level is None else args.level
@@ -167,7 +167,7 @@ def _film(args: argparse.Namespace, tracker: Tracker, puck_top: float) -> Iterat
         yield lambda frame, seen: None
         return
     from puckpilot_env.video import VideoWriter
-    from sim2real.vision.preview import Preview
+    from sim2real.vision.track.preview import Preview
 
     due, preview = float("-inf"), None
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from puckpilot_env.kernel import kernel
+from sim2real.vision.bend import Bend
 from sim2real.vision.camera import Camera
-from sim2real.vision.frame import Frame
 from sim2real.vision.motion import moved, rotation
 from sim2real.vision.surface import Surface
 
@@ -22,16 +22,16 @@ class Locator:
     camera: Camera
     motion: np.ndarray
     surface: Surface
-    frame: Frame
+    bend: Bend
 
     def places(self, pixels: np.ndarray, height: float) -> np.ndarray:
         """Where (n, 2) [m] on the table things are whose marks, at a height [m] above it, are seen at pixels (n, 2).
         NaN where a pixel looks past the table's plane."""
-        return self.frame.measured(self._points(pixels, height)[:, :2])
+        return self.bend.measured(self._points(pixels, height)[:, :2])
 
     def pixels(self, places: np.ndarray, height: float) -> np.ndarray:
         """The inverse of `places`."""
-        flat = self.frame.rigid(places)
+        flat = self.bend.rigid(places)
         points = np.column_stack([flat, self.surface.height(flat) + height])
         return self.camera.project(moved(self.motion, points)[0])[0]
 

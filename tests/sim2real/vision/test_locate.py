@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sim2real.vision.frame import TERMS, Frame
+from sim2real.vision.bend import TERMS, Bend
 from sim2real.vision.locate import Grid, Locator
 from sim2real.vision.surface import Surface
 from tests.sim2real.vision import world
@@ -16,7 +16,7 @@ from tests.sim2real.vision.test_camera import CAMERA
 MIDDLE = (world.LENGTH / 2, world.WIDTH / 2)
 BOX = ((0.05, 0.05), (1.95, 0.95))
 MOTION = world.camera_motion(world.EYES[1])
-LOCATOR = Locator(CAMERA, MOTION, Surface(MIDDLE, world.CURVATURE), Frame(BOX))
+LOCATOR = Locator(CAMERA, MOTION, Surface(MIDDLE, world.CURVATURE), Bend(BOX))
 
 
 def test_pixels_of_known_places_are_found_there():
@@ -28,7 +28,7 @@ def test_pixels_of_known_places_are_found_there():
 def test_height_matters():
     """A mark 4 cm above the table is found beside its place by what similar triangles say."""
     eye, place = np.array(world.EYES[0]), np.array([[1.0, 0.5, 0.04]])
-    locator = Locator(CAMERA, world.camera_motion(world.EYES[0]), Surface(MIDDLE), Frame(BOX))
+    locator = Locator(CAMERA, world.camera_motion(world.EYES[0]), Surface(MIDDLE), Bend(BOX))
     found = locator.places(world.seen(locator.motion, place), 0.0)[0]
     np.testing.assert_allclose(found, eye[:2] + (place[0, :2] - eye[:2]) * eye[2] / (eye[2] - 0.04), atol=1e-9)
 
@@ -51,25 +51,24 @@ def test_rays_that_lead_away_meet_nothing():
     assert np.isnan(found).all()
 
 
-def test_the_frames_bend_is_undone():
-    bend = np.random.default_rng(3).normal(0.0, 1e-3, len(TERMS))
-    frame = Frame(BOX, bend)
+def test_the_bend_is_undone():
+    bend = Bend(BOX, np.random.default_rng(3).normal(0.0, 1e-3, len(TERMS)))
     places = world.grid()
-    assert 5e-4 < np.abs(frame.rigid(places) - places).max() < 0.02
-    np.testing.assert_allclose(frame.measured(frame.rigid(places)), places, atol=1e-8)
+    assert 5e-4 < np.abs(bend.rigid(places) - places).max() < 0.02
+    np.testing.assert_allclose(bend.measured(bend.rigid(places)), places, atol=1e-8)
 
 
 def test_beyond_what_was_measured_the_bend_is_what_it_is_at_the_border():
-    frame = Frame(BOX, np.random.default_rng(4).normal(0.0, 1e-3, len(TERMS)))
+    bend = Bend(BOX, np.random.default_rng(4).normal(0.0, 1e-3, len(TERMS)))
     inside, outside = np.array([[1.95, 0.5]]), np.array([[2.3, 0.5]])
-    np.testing.assert_allclose(outside - frame.rigid(outside), inside - frame.rigid(inside), atol=1e-12)
+    np.testing.assert_allclose(outside - bend.rigid(outside), inside - bend.rigid(inside), atol=1e-12)
 
 
 def test_a_first_order_polynomial_is_what_it_says():
     """y too large by 1 mm at the left end of the box, too small by 1 mm at its right end."""
     bend = np.zeros(len(TERMS))
     bend[TERMS.index((1, 0, 1))] = 1e-3
-    off = Frame(BOX, bend).rigid(np.array([[1.0, 0.95], [1.0, 0.5], [1.0, 0.05]])) - [
+    off = Bend(BOX, bend).rigid(np.array([[1.0, 0.95], [1.0, 0.5], [1.0, 0.05]])) - [
         [1.0, 0.95],
         [1.0, 0.5],
         [1.0, 0.05],

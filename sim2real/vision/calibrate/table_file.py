@@ -1,0 +1,113 @@
+"""table.json (puckpilot-table/1): what a calibration of the table found, all that a tracker needs in one file.
+
+- camera, aruco_dictionary, puck_top_above_table_m, table: as in camera.json, so that nothing else is needed.
+- markers: id and corners (4, 3) [m] of each, clockwise from its own top left, in the rigid frame: origin and axes as
+  the table's (x forward, y left, z up), but straight.
+- surface: height (xx, xy, yy) [1/m] times X^2, X Y, Y^2 with X, Y from `middle_m`, level there.
+- frame: what coordinates as measured by hand are more than the rigid ones [m]: for each of `axis_i_j` a coefficient of
+  the Legendre polynomials of order i in x and j in y over `box_m`; beyond the box as at its border.
+- views: the cameras' motions and how far off each point was; for a reader, as is every `std`.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from puckpilot_env.whole_file import write_text_whole
+from sim2real.vision.bend import TERMS, Bend
+from sim2real.vision.calibrate.multiview import Solved
+from sim2real.vision.camera_file import Setup, camera_of, camera_words
+from sim2real.vision.json_file import numbers, read_object
+from sim2real.vision.scene import Scene
+from sim2real.vision.surface import Surface
+
+FORMAT = "puckpilot-table/1"
+WHAT = f"a calibration of format {FORMAT}, of puckpilot calibrate table"
+
+
+@dataclass(frozen=True)
+class Table:
+    """The setup and what is the same in every view of it: markers, surface and bend."""
+
+    setup: Setup
+    scene: Scene
+
+
+def write_table(path: Path, setup: Setup, solved: Solved) -> None:
+    """Write table.json whole or not at all."""
+    scene = solved.scene
+    std = np.sqrt(np.diag(solved.scene_covariance()))
+    spread = scene.replaced(std)
+    words = {
+        "format": FORMAT,
+        "camera": camera_words(setup.camera),
+        "aruco_dictionary": setup.dictionary,
+        "puck_top_above_table_m": setup.puck_top,
+        "table": {"length_m": setup.length, "width_m": setup.width},
+        "surface": {
+            "middle_m": list(scene.surface.middle),
+            "xx_xy_yy_per_m": list(scene.surface.curvature),
+            "std": list(spread.surface.curvature),
+        },
+        "frame": {
+            "box_m": [list(one) for one in scene.bend.box],
+            "axis_i_j": [list(one) for one in TERMS],
+            "bend_m": scene.bend.coefficients.tolist(),
+            "std": spread.bend.coefficients.tolist(),
+        },
+        "markers": [
+            {"id": marker, "corners_m": corners.tolist(), "std": spread.markers[marker].tolist()}
+            for marker, corners in scene.markers.items()
+        ],
+        "views": [_view(solved, k) for k in range(len(solved.poses))],
+    }
+    write_text_whole(path, json.dumps(words, indent=1, allow_nan=False) + "\n")
+
+
+def _view(solved: Solved, k: int) -> dict[str, Any]:
+    view = solved.problem.views[k]
+    rows = zip(view.places.tolist(), solved.off[k].tolist(), solved.wrong[k].tolist(), strict=True)
+    return {
+        "name": view.name,
+        "rotation_vector_rad": solved.poses[k, :3].tolist(),
+        "shift_m": solved.poses[k, 3:].tolist(),
+        "corner_rms_px": solved.corner_rms[k],
+        "points": [{"place_m": place, "off_m": off, "wrong": wrong} for place, off, wrong in rows],
+    }
+
+
+def read_table(path: Path) -> Table:
+    """Read table.json. ValueError, in one line, if it is not one or something in it cannot be."""
+    found = read_object(path, WHAT)
+    if found.get("format") != FORMAT:
+        raise ValueError(f"{path}: format is {str(found.get('format'))[:40]!r}; expected {WHAT}")
+    camera, table, surface, bend = (_part(path, found, key) for key in ("camera", "table", "surface", "frame"))
+    markers = found.get("markers")
+    if not isinstance(markers, list) or not all(isinstance(one, dict) for one in markers):
+        raise ValueError(f'{path}: "markers" is no list of objects; expected {WHAT}')
+    if bend.get("axis_i_j") != [list(one) for one in TERMS]:
+        raise ValueError(f"{path}: the terms of the frame's bend are others; expected {WHAT}")
+    xx, xy, yy = (float(one) for one in numbers(path, surface, "xx_xy_yy_per_m", (3,)))
+    middle_x, middle_y = (float(one) for one in numbers(path, surface, "middle_m", (2,)))
+    (low_x, low_y), (high_x, high_y) = numbers(path, bend, "box_m", (2, 2)).tolist()
+    scene = Scene(
+        Surface((middle_x, middle_y), (xx, xy, yy)),
+        Bend(((low_x, low_y), (high_x, high_y)), numbers(path, bend, "bend_m", (len(TERMS),))),
+        {int(numbers(path, one, "id", ())): numbers(path, one, "corners_m", (4, 3)) for one in markers},
+    )
+    length, width = (float(numbers(path, table, key, ())) for key in ("length_m", "width_m"))
+    top = float(numbers(path, found, "puck_top_above_table_m", ()))
+    setup = Setup(camera_of(path, camera), str(found.get("aruco_dictionary")), top, length, width)
+    return Table(setup, scene)
+
+
+def _part(path: Path, found: dict[str, Any], key: str) -> dict[str, Any]:
+    part = found.get(key)
+    if not isinstance(part, dict):
+        raise ValueError(f'{path}: "{key}" is missing or no object; expected {WHAT}')
+    return part

@@ -1,0 +1,1 @@
+"""From pictures and table.json to where puck and opponent are."""

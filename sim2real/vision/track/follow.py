@@ -1,0 +1,134 @@
+"""Follows one thing through the pictures: where it is, how fast, how surely, and when that is not known.
+
+Between contacts things on the table go nearly straight; a contact is a sighting that the path before did not foretell.
+What is not seen is under the gantry, beside the very mallet that may strike it at any moment: it is not known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim2real.vision.track.two_by_two import deviation, inverse
+
+GATE = 16.0  # square of the distance in standard deviations at which a sighting still fits the path
+CLOSE = 0.03  # m: what is known no better, standard deviation, is followed by sure sightings alone
+FASTEST = 15.0  # m/s
+LOST = 0.06  # s unseen: whatever is seen surely from then on is it
+STRUCK = 250.0  # m^2/s^3: power of what may change the velocity of something hidden: ten blows of 5 m/s a second
+ANY_SPEED = 5.0  # m/s, standard deviation of a velocity of which nothing is known
+
+
+@dataclass(frozen=True)
+class Sighting:
+    """Something in one picture: its place (2,) [m], the covariance (2, 2) [m^2], and whether it can be nothing else."""
+
+    place: np.ndarray
+    covariance: np.ndarray
+    sure: bool
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Where something is at `time` [s]: place (2,) [m] and velocity (2,) [m/s], their covariance (4, 4), when it was
+    `last` seen [s], and in how many pictures so far."""
+
+    time: float
+    place: np.ndarray
+    velocity: np.ndarray
+    covariance: np.ndarray
+    last: float
+    pictures: int
+
+    @property
+    def known(self) -> bool:
+        """Whether it is known where it is: it was seen in this very picture, and in another before, since one could
+        err."""
+        return self.last == self.time and self.pictures >= 2
+
+    @property
+    def deviation(self) -> float:
+        """Standard deviation of its place in the least certain direction [m]."""
+        return deviation(self.covariance)
+
+    def after(self, time: float, power: float) -> Estimate:
+        """Where it will be, if what changes its velocity is white and has this power [m^2/s^3]."""
+        dt = time - self.time
+        on = np.array([[1.0, 0.0, dt, 0.0], [0.0, 1.0, 0.0, dt], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
+        aa, ab, bb = power * dt**3 / 3.0, power * dt**2 / 2.0, power * dt
+        grown = np.array([[aa, 0.0, ab, 0.0], [0.0, aa, 0.0, ab], [ab, 0.0, bb, 0.0], [0.0, ab, 0.0, bb]])
+        covariance = on @ self.covariance @ on.T + grown
+        there = self.place + dt * self.velocity
+        return Estimate(time, there, self.velocity, covariance, self.last, self.pictures)
+
+    def corrected(self, sighting: Sighting) -> Estimate:
+        """With a sighting of the same time (Kalman 1960)."""
+        gain = self.covariance[:, :2] @ inverse(self.covariance[:2, :2] + sighting.covariance)
+        off = sighting.place - self.place
+        covariance = self.covariance - gain @ self.covariance[:2]
+        return Estimate(
+            self.time,
+            self.place + gain[:2] @ off,
+            self.velocity + gain[2:] @ off,
+            0.5 * (covariance + covariance.T),
+            self.time,
+            self.pictures + 1,
+        )
+
+    def far(self, sighting: Sighting) -> float:
+        """Square of the distance to a sighting of the same time, in standard deviations."""
+        off = sighting.place - self.place
+        return float(off @ inverse(self.covariance[:2, :2] + sighting.covariance) @ off)
+
+
+class Follower:
+    """Give it the sightings of every picture, in order of time. `power` [m^2/s^3]: of what changes the velocity between
+    contacts."""
+
+    def __init__(self, power: float) -> None:
+        self._power = power
+        self._now: Estimate | None = None
+
+    def foretold(self, time: float) -> Estimate | None:
+        """Where it should be at a time, if nothing touches it; None where it is not known now."""
+        return self._now.after(time, self._power) if self._now and self._now.known else None
+
+    def see(self, time: float, sightings: Sequence[Sighting]) -> Estimate | None:
+        """What is known after a picture, None if nothing is. ValueError if a picture is not later than the last."""
+        before = self._now
+        if before and time <= before.time:
+            raise ValueError(f"a picture of {time:.6f} s after one of {before.time:.6f} s; expected later ones")
+        self._now = self._next(time, sightings)
+        return self._now if self._now and self._now.known else None
+
+    def _next(self, time: float, sightings: Sequence[Sighting]) -> Estimate | None:
+        before = self._now
+        sure = [one for one in sightings if one.sure]
+        if before is None:
+            return _begun(time, sure)
+        here = before.after(time, self._power if before.last == before.time else STRUCK)
+        fitting = [one for one in (sightings if here.deviation <= CLOSE else sure) if here.far(one) <= GATE]
+        if fitting and (here.deviation <= CLOSE or len(fitting) == 1):
+            return here.corrected(min(fitting, key=here.far))
+        reachable = [one for one in sure if _apart(one, before) <= FASTEST * (time - before.last)]
+        if len(reachable) == 1 and before.pictures >= 2:
+            return _begun(time, reachable, before.pictures)  # something struck it
+        if before.pictures < 2 or time - before.last > LOST:
+            return _begun(time, sure)
+        return before.after(time, STRUCK)
+
+
+def _apart(sighting: Sighting, estimate: Estimate) -> float:
+    return float(np.linalg.norm(sighting.place - estimate.place))
+
+
+def _begun(time: float, sightings: list[Sighting], pictures: int = 0) -> Estimate | None:
+    """A new path; none from nothing, nor where there are several things that it could be."""
+    if len(sightings) != 1:
+        return None
+    (sighting,) = sightings
+    covariance = np.diag([0.0, 0.0, ANY_SPEED**2, ANY_SPEED**2])
+    covariance[:2, :2] = sighting.covariance
+    return Estimate(time, sighting.place, np.zeros(2), covariance, time, pictures + 1)

@@ -1,0 +1,105 @@
+"""`puckpilot calibrate table` from files to files, on traced photographs and on the real table's."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import puckpilot
+from sim2real.vision.calibrate.table_file import read_table
+from tests.sim2real.vision import world
+
+UBC = Path(__file__).resolve().parents[5] / "shared" / "recordings" / "ubc" / "calibration"
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder of camera.json and four views, places known to 0.3 mm; one point of the second is 5 mm off."""
+    folder = tmp_path_factory.mktemp("made")
+    world.write_camera_file(folder / "camera.json")
+    for k, eye in enumerate(world.EYES):
+        motion, rng = world.camera_motion(eye), np.random.default_rng(k)
+        pixels = world.seen(motion, world.puck_points(world.grid())) + rng.normal(0.0, 0.1, (36, 2))
+        places = world.grid() + rng.normal(0.0, 3e-4, (36, 2))
+        places[7] += np.array([0.003, 0.004]) * (k == 1)
+        world.write_view(folder / f"view_{k}", world.photograph(motion), pixels, places)
+    return folder
+
+
+def calibrated(folder: Path, views: list[str], check: str | None, out: Path, capsys) -> dict:
+    """What the command says in JSON."""
+    words = ["calibrate", "table", *(str(folder / name) for name in views), "--camera", str(folder / "camera.json")]
+    words += ["--out", str(out), "--json", *([] if check is None else ["--check", str(folder / check)])]
+    assert puckpilot.main(words) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+def test_a_made_up_table_is_found(made: Path, tmp_path: Path, capsys):
+    told = calibrated(made, ["view_0", "view_1", "view_2"], "view_3", tmp_path / "table.json", capsys)
+    assert told["check"] == "view_3" and told["markers"] == 6 and told["fit"]["points"] == 108
+    assert told["median_mm"] <= told["mean_mm"] < 0.6 and told["max_mm"] < 1.5
+    assert [(one["view"], one["point"]) for one in told["wrong"]] == [("view_1", 8)]
+    assert told["wrong"][0]["off_mm"] == pytest.approx(5.0, abs=0.8)
+    assert max(told["corner_rms_px"]) < 0.05 and not told["step_across"]["clear"]
+    for k, one in enumerate(told["surface_per_m"].values()):
+        assert abs(one["value"] - world.CURVATURE[k]) < 4.0 * one["std"]
+    markers = read_table(tmp_path / "table.json").scene.markers
+    off = [np.abs(markers[name] - corners).max() for name, corners in world.markers().items()]
+    assert max(off) < 4e-3
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["table.json", "table.png"]
+    assert (tmp_path / "table.png").read_bytes()[:4] == b"\x89PNG"
+
+
+def test_it_says_so_in_words(made: Path, tmp_path: Path, capsys):
+    words = ["calibrate", "table", *(str(made / f"view_{k}") for k in range(2)), "--camera", str(made / "camera.json")]
+    assert puckpilot.main([*words, "--out", str(tmp_path / "t.json"), "--check", str(made / "view_2")]) == 0
+    told = capsys.readouterr().out
+    assert "2 views, 6 markers, 72 points in " in told and "wrong measurement: view_1, point 8, " in told
+    assert "check on view_2, not used: mean 0." in told and f"{tmp_path / 't.png'} shows it" in told
+
+
+@pytest.mark.parametrize("again", [["view_0/../view_1"], ["copy"], ["--check", "view_1"], ["--check", "copy"]])
+def test_a_view_that_is_given_twice_is_refused(made: Path, tmp_path: Path, again: list[str], capsys):
+    shutil.copytree(made / "view_1", made / "copy", dirs_exist_ok=True)
+    views = [word if word.startswith("--") else str(made / word) for word in ["view_0", "view_1", *again]]
+    words = ["--camera", str(made / "camera.json"), "--out", str(tmp_path / "t.json")]
+    assert puckpilot.main(["calibrate", "table", *views, *words]) == 2
+    told = capsys.readouterr().err
+    assert f"{made / again[-1]} shows the same photograph as {made / 'view_1'}; give each once" in told
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_picture_does_not_take_the_tables_place(made: Path, tmp_path: Path, capsys):
+    words = [str(made / "view_0"), str(made / "view_1"), "--camera", str(made / "camera.json")]
+    assert puckpilot.main(["calibrate", "table", *words, "--out", str(tmp_path / "t.png")]) == 2
+    assert "t.png'; expected a name that ends in .json" in capsys.readouterr().err and not list(tmp_path.iterdir())
+
+
+@pytest.fixture
+def real() -> Path:
+    if not UBC.exists():
+        pytest.skip(f"no photographs of the real table beside the project ({UBC})")
+    return UBC
+
+
+@pytest.mark.parametrize("kept", [1, 2, 3])
+def test_the_real_table_each_view_by_the_others(real: Path, kept: int, tmp_path: Path, capsys):
+    """Leave-one-out on real photographs. The largest errors of view 2 are of the points that the other two, together
+    with it, show to be measured wrong."""
+    views = [f"view_{k}" for k in (1, 2, 3) if k != kept]
+    told = calibrated(real, views, f"view_{kept}", tmp_path / "table.json", capsys)
+    with capsys.disabled():
+        print(f"\nview_{kept}: mean {told['mean_mm']:.2f}, median {told['median_mm']:.2f}, max {told['max_mm']:.2f} mm")
+    assert told["mean_mm"] < 0.7 and told["median_mm"] < 0.6
+    assert told["max_mm"] < {1: 1.8, 2: 2.6, 3: 1.5}[kept]
+
+
+def test_the_real_tables_wrong_points_and_width_are_named(real: Path, tmp_path: Path, capsys):
+    told = calibrated(real, ["view_1", "view_2", "view_3"], None, tmp_path / "table.json", capsys)
+    assert [(one["view"], one["point"]) for one in told["wrong"]] == [("view_2", 3), ("view_2", 27)]
+    assert told["step_across"]["clear"] and told["step_across"]["mm"] == pytest.approx(2.6, abs=0.4)
+    assert max(told["corner_rms_px"]) < 0.2

@@ -1,0 +1,165 @@
+"""The joint fit on a made-up table whose pixels come from cv2.projectPoints: truth, error bars, wrong points."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from sim2real.vision.calibrate.check import check
+from sim2real.vision.calibrate.multiview import Solved, solve
+from sim2real.vision.calibrate.pose import camera_pose
+from sim2real.vision.calibrate.view import View
+from sim2real.vision.calibrate.width import step_across
+from sim2real.vision.camera_file import Setup
+from sim2real.vision.scene import BEFORE
+from tests.sim2real.vision import world
+from tests.sim2real.vision.test_camera import CAMERA
+
+SETUP = Setup(CAMERA, "DICT_4X4_50", world.TOP, world.LENGTH, world.WIDTH)
+PLACE_NOISE, PIXEL_NOISE, CORNER_NOISE = 0.5e-3, 0.1, 0.03
+
+
+def view(k: int, noise: float = 1.0) -> View:
+    """Camera k, its points seen at places that are known to half a millimetre."""
+    rng, motion = np.random.default_rng(k), world.camera_motion(world.EYES[k])
+
+    def shaken(exact: np.ndarray, std: float) -> np.ndarray:
+        return exact + noise * rng.normal(0.0, std, exact.shape)
+
+    corners = {name: shaken(world.seen(motion, one), CORNER_NOISE) for name, one in world.markers().items()}
+    pixels = shaken(world.seen(motion, world.puck_points(world.grid())), PIXEL_NOISE)
+    return View(f"view_{k}", corners, pixels, shaken(world.grid(), PLACE_NOISE))
+
+
+@cache
+def solved() -> Solved:
+    return solve(SETUP, (view(0), view(1), view(2)))
+
+
+def true_vector() -> np.ndarray:
+    return np.concatenate([world.CURVATURE, np.zeros(BEFORE - 3), *map(np.ravel, world.markers().values())])
+
+
+def test_without_noise_it_is_exact():
+    found = solve(SETUP, tuple(view(k, 0.0) for k in range(3)))
+    np.testing.assert_allclose(found.poses, [world.camera_motion(eye) for eye in world.EYES[:3]], atol=3e-5)
+    np.testing.assert_allclose(found.scene.vector(), true_vector(), atol=2e-5)
+
+
+def test_the_error_bars_hold_the_truth():
+    off = solved().scene.vector() - true_vector()
+    z = off / np.sqrt(np.diag(solved().scene_covariance()))
+    assert np.abs(z).max() < 4.0 and 0.1 < np.sqrt((z**2).mean()) < 1.3
+
+
+def test_an_unused_view_is_found_to_a_third_of_a_millimetre():
+    exact = replace(view(3), places=world.grid())
+    checked = check(SETUP, solved().scene, exact)
+    assert 1e3 * checked.distances.mean() < 0.3 and 1e3 * checked.distances.max() < 0.8
+    np.testing.assert_allclose(checked.pose.origin, world.EYES[3], atol=3e-3)
+
+
+def test_the_check_looks_at_no_measured_point():
+    """The pose is of the markers alone: shifted places are found off by just that shift."""
+    base = check(SETUP, solved().scene, view(3))
+    shifted = check(SETUP, solved().scene, replace(view(3), places=view(3).places + np.array([0.01, 0.0])))
+    np.testing.assert_allclose(base.off - shifted.off, np.tile([0.01, 0.0], (36, 1)), atol=1e-12)
+
+
+def test_a_wrong_point_is_named_and_does_no_harm():
+    bent = view(1)
+    places = bent.places.copy()
+    places[20] += (0.0030, -0.0035)
+    found = solve(SETUP, (view(0), replace(bent, places=places), view(2)))
+    assert [np.flatnonzero(one).tolist() for one in found.wrong] == [[], [20], []]
+    assert 1e3 * np.hypot(*found.off[1][20]) == pytest.approx(4.6, abs=1.2)
+    assert not any(one.any() for one in solved().wrong)
+    exact = replace(view(3), places=world.grid())
+    assert 1e3 * check(SETUP, found.scene, exact).distances.mean() < 0.3
+
+
+def test_a_corner_that_is_seen_wrong_does_no_harm():
+    bent = view(3)
+    corners = {**bent.corners, 2: bent.corners[2] + [[6.0, -4.0], [0, 0], [0, 0], [0, 0]]}
+    pose = camera_pose(SETUP, solved().scene, corners)
+    np.testing.assert_allclose(pose.origin, world.EYES[3], atol=3e-3)
+    assert np.hypot(*pose.residuals[8]) == pytest.approx(7.2, abs=0.5)
+
+
+def test_derivatives_are_differences():
+    problem, vector = solved().problem, solved().fitted.vector
+    whitening = problem.whitening(vector)
+    _, by = problem.evaluate(vector, whitening)
+    for k in range(len(vector)):
+        step = 1e-6 * np.eye(len(vector))[k]
+        ahead, behind = (problem.evaluate(vector + one, whitening)[0] for one in (step, -step))
+        np.testing.assert_allclose(by[:, k], (ahead - behind) / 2e-6, atol=1e-5 * np.abs(by).max())
+
+
+@pytest.mark.parametrize("wrong", [0.003, -0.004])
+def test_a_width_that_is_stated_wrong_is_measured(wrong: float):
+    """Those left of the middle are measured from the left wall of a table that is narrower than stated."""
+    views = []
+    for k in range(3):
+        places = view(k).places.copy()
+        places[places[:, 1] > world.WIDTH / 2, 1] += wrong
+        views.append(replace(view(k), places=places))
+    step = step_across(solve(SETUP, tuple(views)), world.WIDTH)
+    assert step is not None and step.clear and abs(step.value - wrong) < 4.0 * step.std < 0.0016
+
+
+def test_a_width_that_is_right_is_not_doubted():
+    step = step_across(solved(), world.WIDTH)
+    assert step is not None and not step.clear and abs(step.value) < 4.0 * step.std
+    right = world.grid()[:, 1] < world.WIDTH / 2
+    half = tuple(replace(one, pixels=one.pixels[right], places=one.places[right]) for one in solved().problem.views)
+    assert step_across(solve(SETUP, half), world.WIDTH) is None
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        (
+            lambda p: p[:, ::-1].copy(),
+            r"view_0: the points are mirrored: they fit to \d\.\d mm, but .* under the table",
+        ),
+        (lambda p: p * [1.0, 0.9], r"view_0: on a flat table the points are \d\d mm from .* expected 10"),
+        (lambda p: np.roll(p, 7, axis=0), r"view_0: on a flat table the points are \d+ mm from"),
+    ],
+)
+def test_places_that_cannot_be_are_refused(change, words: str):
+    with pytest.raises(ValueError, match=words):
+        solve(SETUP, (replace(view(0), places=change(view(0).places)), view(1)))
+
+
+def test_a_view_that_contradicts_the_others_is_refused():
+    off = replace(view(0), places=view(0).places * [1.0, 0.985])
+    with pytest.raises(ValueError, match=r"view_0: \d\d of its 36 points contradict the other views, by \d\.\d mm"):
+        solve(SETUP, (off, view(1), view(2)))
+
+
+@pytest.mark.parametrize("scale, told", [([1.0, 1.02], r"\+(1\.9|2\.0)"), ([1.02, 1.0], r"-(1\.9|2\.0)")])
+def test_a_size_that_is_wrong_in_all_views_is_refused(scale: list[float], told: str):
+    views = tuple(replace(view(k), places=view(k).places * scale - [0.01, 0.005]) for k in range(3))
+    with pytest.raises(ValueError, match=rf"are up to \d+ mm from any rigid table .* y {told} % long against x"):
+        solve(SETUP, views)
+
+
+def test_a_table_seen_edge_on_is_refused():
+    motion = world.camera_motion((-2.0, 0.5, 0.25))
+    flat = View("low", view(0).corners, world.seen(motion, world.puck_points(world.grid())), world.grid())
+    with pytest.raises(ValueError, match=r"low: the table is seen edge-on, its far end from [34] degrees above"):
+        solve(SETUP, (flat, view(1)))
+
+
+def test_too_little_is_refused():
+    with pytest.raises(ValueError, match="1 view is given; expected 2"):
+        solve(SETUP, (view(0),))
+    few = replace(view(1), corners={name: view(1).corners[name] for name in (0, 1)})
+    with pytest.raises(ValueError, match="2 markers are seen in two views or more; expected 3"):
+        solve(SETUP, (view(0), few))
+    with pytest.raises(ValueError, match="2 of the calibration's 6 markers are seen; expected 3"):
+        camera_pose(SETUP, solved().scene, few.corners)

@@ -1,0 +1,134 @@
+"""Following on paths of our own: straight between walls that mirror, blows, and times in which nothing is seen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from sim2real.vision.track.follow import Estimate, Follower, Sighting
+
+LENGTH, WIDTH, RADIUS = 2.0, 1.0, 0.0309
+POWER, NOISE = 0.1, 0.05e-3
+Path = Callable[[float], np.ndarray]
+
+
+def mirrored(start: tuple[float, float], velocity: tuple[float, float]) -> Path:
+    """Straight on an unfolded table, folded back: a saw-tooth for each axis."""
+
+    def at(time: float) -> np.ndarray:
+        low, high = np.full(2, RADIUS), np.array([LENGTH, WIDTH]) - RADIUS
+        far = (np.array(start) + time * np.array(velocity) - low) % (2.0 * (high - low))
+        return low + np.minimum(far, 2.0 * (high - low) - far)
+
+    return at
+
+
+def seen(place: np.ndarray, rng: np.random.Generator, sure: bool = True) -> Sighting:
+    return Sighting(place + rng.normal(0.0, NOISE, 2), NOISE**2 * np.eye(2), sure)
+
+
+def follow(path: Path, rate: float, pictures: int, hidden=lambda time: False) -> list[tuple[float, Estimate | None]]:
+    rng, follower = np.random.default_rng(0), Follower(POWER)
+    times = np.arange(pictures) / rate
+    return [(t, follower.see(t, [] if hidden(t) else [seen(path(t), rng)])) for t in times]
+
+
+def off(path: Path, found: list[tuple[float, Estimate | None]]) -> np.ndarray:
+    """Of what is known: error [m], and its square in standard deviations."""
+    rows = []
+    for time, estimate in found:
+        if estimate is not None:
+            error = estimate.place - path(time)
+            square = error @ np.linalg.solve(estimate.covariance[:2, :2], error)
+            rows.append((float(np.linalg.norm(error)), float(square)))
+    return np.array(rows)
+
+
+@pytest.mark.parametrize("rate", [100.0, 120.0, 200.0])
+@pytest.mark.parametrize("velocity", [(0.0, 0.0), (1.3, 0.4), (-4.0, 3.0), (0.3, -9.0)])
+def test_between_walls_it_is_known_from_the_second_picture_on_and_within_its_deviations(rate, velocity):
+    path = mirrored((0.7, 0.4), velocity)
+    found = follow(path, rate, 400)
+    assert found[0][1] is None and all(estimate is not None for _, estimate in found[1:])
+    far = off(path, found)
+    assert far[:, 0].max() < 0.4e-3 and 0.01 < (far[:, 1] > 5.99).mean() < 0.1 and (far[:, 1] > 16.0).mean() < 0.01
+
+
+def test_the_velocity_is_that_of_the_path():
+    last = follow(mirrored((0.3, 0.3), (1.0, 0.5)), 120.0, 60)[-1][1]
+    assert last is not None
+    deviation = float(np.sqrt(last.covariance[2, 2]))
+    assert last.velocity == pytest.approx((1.0, 0.5), abs=4.0 * deviation) and deviation < 0.03
+
+
+def test_after_a_blow_it_goes_on_at_once_and_owns_that_its_velocity_is_not_known():
+    blow = 0.5
+    before, after = mirrored((0.5, 0.5), (-1.0, 0.0)), mirrored((0.1, 0.5), (6.0, 1.0))
+    path = lambda t: before(t) if t < blow else before(blow) + after(t - blow) - after(0.0)  # noqa: E731
+    found = follow(path, 120.0, 90)
+    assert off(path, found)[:, 0].max() < 0.4e-3 and all(estimate is not None for _, estimate in found[1:])
+    first = next(estimate for time, estimate in found if estimate is not None and time > blow + 1e-9)
+    assert np.sqrt(first.covariance[2, 2]) > 1.0
+    last = found[-1][1]
+    assert last is not None
+    assert last.velocity == pytest.approx((6.0, 1.0), abs=0.1)
+
+
+@pytest.mark.parametrize("rate", [100.0, 200.0])
+@pytest.mark.parametrize("hidden", [0.1, 0.25, 0.5])
+@pytest.mark.parametrize("struck", [False, True])
+def test_under_the_gantry_it_is_not_known_and_after_it_soon_is(rate, hidden, struck):
+    """Two pictures after it comes out it is known again, whether it was struck in there or not."""
+    begin, end = 0.3, 0.3 + hidden
+    free, away = mirrored((0.9, 0.3), (-1.5, 0.3)), mirrored((0.9, 0.3), (5.0, 1.0))
+    turn = 0.5 * (begin + end)
+    path = lambda t: free(t) if t < turn or not struck else free(turn) + away(t - turn) - away(0.0)  # noqa: E731
+    found = follow(path, rate, int((end + 0.1) * rate), lambda t: begin <= t < end)
+    assert all(estimate is None for time, estimate in found if begin <= time < end - 1e-9)
+    assert all(estimate is not None for time, estimate in found if time >= end + 1.0 / rate)
+    assert off(path, found)[:, 0].max() < 0.4e-3
+
+
+def test_a_false_sighting_beside_it_is_not_followed():
+    path, rng, follower = mirrored((0.3, 0.3), (2.0, 1.0)), np.random.default_rng(1), Follower(POWER)
+    still = np.array([0.62, 0.46])  # its way leads past it
+    found = []
+    for k in range(100):
+        places = [path(k / 120.0)] if k < 3 else [still, path(k / 120.0)]
+        found.append((k / 120.0, follower.see(k / 120.0, [seen(place, rng) for place in places])))
+    assert off(path, found)[:, 0].max() < 0.4e-3 and len(off(path, found)) == 99
+
+
+def test_of_two_that_it_could_be_neither_is_it():
+    rng, follower = np.random.default_rng(0), Follower(POWER)
+    for k in range(30):
+        both = [seen(np.array([0.5, 0.5]), rng), seen(np.array([1.5, 0.5]), rng)]
+        assert follower.see(k / 120.0, both) is None
+
+
+def test_what_could_be_something_else_begins_no_path_but_goes_on_with_one():
+    rng, follower = np.random.default_rng(0), Follower(POWER)
+    place = np.array([0.5, 0.5])
+    assert all(follower.see(k / 120.0, [seen(place, rng, sure=False)]) is None for k in range(10))
+    for k in range(10, 20):
+        follower.see(k / 120.0, [seen(place, rng)])
+    assert follower.see(20 / 120.0, [seen(place, rng, sure=False)]) is not None
+    assert follower.see(21 / 120.0, [seen(place + 0.3, rng, sure=False)]) is None
+
+
+def test_moved_by_hand_it_is_found_again():
+    """It jumps farther than it can fly: not known for LOST seconds, then it is where it is."""
+    path = lambda t: np.array([0.3, 0.3]) if t < 0.5 else np.array([1.7, 0.8])  # noqa: E731
+    found = follow(path, 120.0, 80)
+    assert off(path, found)[:, 0].max() < 0.4e-3
+    unknown = [time for time, estimate in found if estimate is None and time > 0.1]
+    assert min(unknown) >= 0.5 - 1e-9 and max(unknown) < 0.6
+
+
+def test_times_must_grow():
+    follower = Follower(POWER)
+    follower.see(1.0, [seen(np.zeros(2), np.random.default_rng(0))])
+    with pytest.raises(ValueError, match=r"a picture of 1\.000000 s after one of 1\.000000 s"):
+        follower.see(1.0, [])

@@ -1,0 +1,179 @@
+"""`puckpilot track`, from rendered pictures of a game in a folder to a recording held against the game itself."""
+
+from __future__ import annotations
+
+import json
+from itertools import islice
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+import puckpilot
+from sim2real.camera import sources
+from sim2real.camera.frame import Frame
+from sim2real.camera.moments import simulated
+from sim2real.camera.render.moment import Moment, Motion
+from sim2real.camera.render.renderer import Renderer
+from sim2real.camera.render.table import Table
+from sim2real.camera.render.view import View
+from sim2real.commands import track
+from sim2real.recording import read_recording
+from sim2real.vision.calibrate.table_file import write_table
+from sim2real.vision.trial.rendered_calibration import estimated
+
+TABLE = Table.with_markers()
+VIEW = View.like_the_real_one(TABLE.length, TABLE.width)
+RENDERER = Renderer(TABLE, VIEW)
+RATE = 120.0
+
+
+@pytest.fixture(scope="module")
+def calibration(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A calibration as a user would come by it."""
+    file = tmp_path_factory.mktemp("calibration") / "table.json"
+    write_table(file, *estimated(TABLE, VIEW, seed=3))
+    return file
+
+
+def folder_of(images: list[np.ndarray], folder: Path, numbers: list[int] | None = None) -> Path:
+    folder.mkdir()
+    for number, image in zip(numbers or range(len(images)), images, strict=True):
+        cv2.imwrite(str(folder / f"frame_{number:04}.png"), image, [cv2.IMWRITE_PNG_COMPRESSION, 1])
+    return folder
+
+
+def still(pictures: int) -> list[np.ndarray]:
+    moment = Moment(puck=Motion(1.0, 0.3), opponent=Motion(1.6, 0.5))
+    return [RENDERER.picture(moment, number) for number in range(pictures)]
+
+
+def run(calibration: Path, source: Path | str, out: Path, *more: str) -> int:
+    return puckpilot.main(["track", str(source), "--calibration", str(calibration), "--out", str(out), *more])
+
+
+def test_a_game_in_a_folder_becomes_a_recording(calibration: Path, tmp_path: Path, capsys):
+    """Positions are within the errors of the calibration, and blank where nobody could know."""
+    game = list(islice(simulated("puckpilot/match-v0", ("veteran", "follower"), 0, RATE), 90))
+    folder = folder_of([RENDERER.picture(moment, k) for k, moment in enumerate(game)], tmp_path / "pictures")
+    film = tmp_path / "preview.mp4"
+    assert run(calibration, folder, tmp_path / "out", "--video", str(film), "--json") == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["frames"] == 90 == told["seen"] + told["hidden"] + told["unsure"] and told["dropped"] == 0
+    frames = read_recording(tmp_path / "out").frames
+    assert frames is not None
+    assert frames.t == pytest.approx(np.arange(90) / RATE)
+    for name in ("puck", "opponent"):
+        truth = np.array([getattr(moment, name)[:2] for moment in game])
+        found = np.stack([frames[f"{name}_x"], frames[f"{name}_y"]], axis=1)
+        far = 1e3 * np.linalg.norm(found - truth, axis=1)
+        assert np.isfinite(far).sum() >= 75 and np.isnan(far[0])
+        assert np.nanmean(far) < 0.3 and np.nanmax(far) < 1.5
+    video = cv2.VideoCapture(str(film))
+    assert int(video.get(cv2.CAP_PROP_FRAME_COUNT)) == 19  # 25 a second of 0.75 s
+    assert puckpilot.main(["compare", str(tmp_path / "out"), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)
+
+
+def test_what_is_wrong_is_named_and_ends_with_1(calibration: Path, tmp_path: Path, capsys):
+    """At 10 Hz, so that the pixels are looked at every fifth picture."""
+    images = still(18)
+    images[3] = images[3][:-2]
+    glaring = images[5].copy()
+    glaring[:200] = 255
+    images[4] = images[5] = images[6] = glaring
+    elsewhere = Renderer(TABLE, View.from_place(VIEW.place + np.array([0.0, 0.004, 0.0]), np.array([0.61, 0.5, 0.0])))
+    images[10:] = [elsewhere.picture(Moment(puck=Motion(1.0, 0.3)), k) for k in range(8)]
+    numbers = [*range(9), *range(11, 20)]
+    assert run(calibration, folder_of(images, tmp_path / "pictures", numbers), tmp_path / "out", "--rate", "10") == 1
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].startswith("18 frames: ") and lines[0].endswith("; 2 dropped")
+    text = "\n".join(lines)
+    assert "wrong size, 1 times: a picture has 1440 x 1078 pixels; expected 1440 x 1080" in text
+    assert "over-exposed, " in text and "moved camera, " in text and "px from where they should be" in text
+    frames = read_recording(tmp_path / "out").frames
+    assert frames is not None and frames.rows == 17  # the picture of another size tells nothing
+
+
+class Stalling:
+    """A live camera that gives three pictures and then no more."""
+
+    over = False
+
+    def __init__(self, images: list[np.ndarray], back: int = 0) -> None:
+        """`back`: frames by which its clock once jumps back, before the third picture."""
+        times = [(k - (back if k == 2 else 0)) / RATE for k in range(len(images))]
+        self._frames = [Frame(image, t, t, k) for k, (t, image) in enumerate(zip(times, images, strict=True))]
+
+    def newest(self, wait: float) -> Frame | None:
+        return self._frames.pop(0) if self._frames else None
+
+    def __enter__(self) -> Stalling:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        pass
+
+
+def test_a_camera_that_stalls_is_named_and_what_was_seen_is_kept(
+    calibration: Path, tmp_path: Path, monkeypatch, capsys
+):
+    monkeypatch.setattr(sources, "open_source", lambda word, rate: Stalling(still(3)))
+    monkeypatch.setattr(track, "PATIENCE", 0.2)
+    assert run(calibration, "device:0", tmp_path / "out") == 1
+    told = capsys.readouterr().out
+    assert told.startswith("3 frames: puck known in 2, hidden in 0, not sure in 1; 0 dropped\nstalled, ")
+    frames = read_recording(tmp_path / "out").frames
+    assert frames is not None and frames.rows == 3
+
+
+def test_what_was_seen_before_a_source_fails_is_kept(calibration: Path, tmp_path: Path, capsys):
+    folder = folder_of(still(5), tmp_path / "pictures")
+    damaged = folder / "frame_0003.png"
+    damaged.write_bytes(damaged.read_bytes()[:5000])
+    assert run(calibration, folder, tmp_path / "out") == 1
+    told = capsys.readouterr().out
+    assert told.startswith("3 frames: ") and "source failed, 1 times: " in told and "frame_0003.png is cut off" in told
+    frames = read_recording(tmp_path / "out").frames
+    assert frames is not None and frames.rows == 3
+
+
+def test_a_clock_that_runs_back_is_named_and_that_picture_left_out(
+    calibration: Path, tmp_path: Path, monkeypatch, capsys
+):
+    monkeypatch.setattr(sources, "open_source", lambda word, rate: Stalling(still(4), back=5))
+    monkeypatch.setattr(track, "PATIENCE", 0.02)
+    assert run(calibration, "device:0", tmp_path / "out") == 1
+    assert "clock, 1 times: a picture of -0.025000 s came after one of 0.008333 s" in capsys.readouterr().out
+    frames = read_recording(tmp_path / "out").frames
+    assert frames is not None and frames.rows == 3
+
+
+def test_only_so_many_seconds_are_taken(calibration: Path, tmp_path: Path, capsys):
+    folder = folder_of(still(6), tmp_path / "pictures")
+    assert run(calibration, folder, tmp_path / "out", "--rate", "100", "--seconds", "0.025") == 0
+    assert capsys.readouterr().out.startswith("3 frames: ")
+
+
+def test_what_cannot_be_is_refused_in_one_line(calibration: Path, tmp_path: Path, capsys):
+    empty = folder_of([np.zeros((1080, 1440), np.uint8)], tmp_path / "dark")
+    small = folder_of([np.zeros((480, 640), np.uint8)], tmp_path / "small")
+    good = folder_of(still(1), tmp_path / "good")
+    for source, more, why in (
+        (empty, (), "the first picture does not tell where the camera is: 0 markers of DICT_4X4_50 are seen"),
+        (small, (), "a picture has 640 x 480 pixels; expected 1440 x 1080, as calibrated"),
+        (good, ("--ring-height", "high"), "--ring-height is 'high'; expected standard, low, or metres from 0 to 0.3"),
+        (good, ("--puck-radius", "30"), "--puck-radius is 30; expected metres from 0.005 to 0.1"),
+        (good, ("--level", "0"), "--level is 0; expected a grey level from 1 to 250"),
+        (good, ("--seconds", "-1"), "--seconds is -1; expected a number above 0"),
+        (good, ("--video", "film.avi"), "cannot write 'film.avi' as a film"),
+        (tmp_path / "nowhere", (), "is no source of pictures"),
+    ):
+        assert run(calibration, source, tmp_path / "out", *more) == 2
+        error = capsys.readouterr().err
+        assert error.count("\n") == 1 and why in error
+    assert not (tmp_path / "out").exists()
+    (tmp_path / "out").mkdir()
+    assert run(calibration, good, tmp_path / "out") == 2
+    assert "exists already" in capsys.readouterr().err

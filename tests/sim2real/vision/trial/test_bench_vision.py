@@ -1,0 +1,33 @@
+"""The bench's errors against the bars of the vision, on few pictures; times are not tested."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+import puckpilot
+from sim2real.vision.trial.bench import Stage, errors
+
+
+def test_with_an_estimated_calibration_the_disc_keeps_the_bars_and_its_rivals_do_not():
+    stage = Stage.with_estimated_calibration(1)
+    clear, half = errors(stage, 60, hidden=False, seed=2), errors(stage, 60, hidden=True, seed=3)
+    assert np.mean(clear["disc"]) < 0.3e-3 and np.percentile(clear["disc"], 95) < 0.5e-3
+    assert np.median(half["disc"]) < 0.5e-3 and np.percentile(half["disc"], 99) < 2e-3
+    assert np.median(half["report C.2"]) > 0.5e-3 and np.median(half["centroid"]) > 5e-3
+
+
+def test_the_command_tells_times_and_errors(capsys):
+    assert puckpilot.main(["bench", "vision", "--pictures", "3", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert set(told) == {"full frame", "region of interest", "clear", "half hidden"}
+    assert all(one["found"] == one["pictures"] == 3 for one in told["clear"].values())
+    assert told["region of interest"]["median_ms"] > 0.0
+
+
+@pytest.mark.parametrize("words", [["--pictures", "0"], ["--seed", "-1"]])
+def test_impossible_sizes_are_refused(words, capsys):
+    assert puckpilot.main(["bench", "vision", *words]) == 2
+    assert f"{words[0]} is {words[1]}; expected a whole number from" in capsys.readouterr().err
