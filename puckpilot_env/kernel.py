@@ -1,11 +1,13 @@
 """The one way in which this project compiles: `@kernel`.
 
 numba's own cache notices edits of the decorated file but not of the functions that it calls in other files, so the
-cache folder is keyed here by a hash of every kernel source: an edit anywhere starts a fresh folder.
+cache folder is keyed here by a hash of every kernel source: an edit anywhere starts a fresh folder. Packages above the
+players have one each, so that an edit there leaves the simulator compiled.
 """
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import os
 import shutil
@@ -23,30 +25,34 @@ _ROOT = Path(__file__).parent
 _KEEP_DAYS = 30
 
 
-def _source_files() -> list[Path]:
-    """Every file that defines kernels or what they are compiled against, in this package and those above it."""
+def _simulator_sources() -> list[Path]:
+    """Every file that defines kernels of the simulator and its players, or what they are compiled against."""
     sources = [path for path in sorted(_ROOT.rglob("*.py")) if path.parent.name in ("physics", "effects", "game")]
     sources += [
         _ROOT / f"{name}.py"
         for name in ("effect", "kernel", "parameters", "random_stream", "state", "team", "batch", "trace")
     ]
-    players = sorted((_ROOT.parent / "baselines").rglob("*.py"))
-    return sources + [path for path in players if path.parent.name != "commands"]
+    return sources + _package_sources("baselines")
 
 
-def _source_hash() -> str:
+def _package_sources(package: str) -> list[Path]:
+    files = sorted((_ROOT.parent / package).rglob("*.py"))
+    return [path for path in files if path.parent.name != "commands"]
+
+
+def _hash_of(sources: list[Path]) -> str:
     digest = hashlib.sha256(numba.__version__.encode())
-    for path in _source_files():
+    for path in sources:
         digest.update(path.name.encode())
         digest.update(path.read_bytes())
     return digest.hexdigest()[:16]
 
 
-def _make_cache_folder() -> Path:
+def _make_cache_folder(sources: list[Path]) -> Path:
     """The folder for this version of the sources; a temporary one where the home folder cannot be written."""
     try:
         base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "puckpilot"
-        folder = base / _source_hash()
+        folder = base / _hash_of(sources)
         folder.mkdir(parents=True, exist_ok=True)
         (folder / "used").touch()
     except (OSError, RuntimeError):  # Path.home() raises the latter for a user whom the system does not know
@@ -60,7 +66,15 @@ def _make_cache_folder() -> Path:
 
 
 _config: Any = numba_config  # its settings are made at run time
-CACHE_FOLDER = _make_cache_folder()
+CACHE_FOLDER = _make_cache_folder(_simulator_sources())  # of the simulator and its players
+
+
+@functools.cache
+def cache_folder_of(package: str) -> Path:
+    """Where the kernels of a package are kept."""
+    if package in (_ROOT.name, "baselines"):
+        return CACHE_FOLDER
+    return _make_cache_folder(_simulator_sources() + _package_sources(package))
 
 
 # Counting references to arrays costs a tenth of a step, and more where two threads count in the same place.
@@ -68,7 +82,7 @@ _FLAGS: Any = {"nogil": True, "error_model": "numpy", "_nrt": False}
 
 
 def _compiled(function: Callable[..., Any], **flags: Any) -> Callable[..., Any]:
-    before, _config.CACHE_DIR = _config.CACHE_DIR, str(CACHE_FOLDER)
+    before, _config.CACHE_DIR = _config.CACHE_DIR, str(cache_folder_of(function.__module__.partition(".")[0]))
     try:
         return numba.njit(cache=True, **{**_FLAGS, **flags})(function)
     finally:
@@ -76,7 +90,7 @@ def _compiled(function: Callable[..., Any], **flags: Any) -> Callable[..., Any]:
 
 
 def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Compile `function` with numba on its first call: no GIL, IEEE divisions, cached in `CACHE_FOLDER`.
+    """Compile `function` with numba on its first call: no GIL, IEEE divisions, cached in its package's folder.
 
     It counts no references to arrays, so it can neither make arrays nor assign a whole one to a slice of another.
     """

@@ -17,12 +17,19 @@ import pytest
 from puckpilot_env import kernel
 
 REPOSITORY = Path(kernel.__file__).parents[1]
-COMPILED = sorted(
-    path.relative_to(REPOSITORY)
-    for folder in ("puckpilot_env", "baselines")
-    for path in (REPOSITORY / folder).rglob("*.py")
-    if re.search(r"^@(array_|inlined_)?kernel", path.read_text(), re.MULTILINE)
-)
+
+
+def compiled_in(*folders: str) -> list[Path]:
+    """The files in which kernels are defined."""
+    return sorted(
+        path.relative_to(REPOSITORY)
+        for folder in folders
+        for path in (REPOSITORY / folder).rglob("*.py")
+        if re.search(r"^@(array_|inlined_)?kernel", path.read_text(), re.MULTILINE)
+    )
+
+
+COMPILED, ABOVE = compiled_in("puckpilot_env", "baselines"), compiled_in("agents", "sim2real")
 READ_BY_KERNELS = [Path("puckpilot_env") / f"{name}.py" for name in ("kernel", "parameters", "state")]
 
 
@@ -30,7 +37,7 @@ READ_BY_KERNELS = [Path("puckpilot_env") / f"{name}.py" for name in ("kernel", "
 def copied(tmp_path, monkeypatch):
     """The repository's packages copied to a folder, and a cache of their own."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    for name in ("puckpilot_env", "baselines"):
+    for name in ("puckpilot_env", "baselines", "agents", "sim2real"):
         shutil.copytree(REPOSITORY / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__"))
     return tmp_path
 
@@ -64,6 +71,22 @@ def test_an_edit_of_a_kernel_starts_a_fresh_folder(copied, path):
     assert after != before and after.parent == before.parent == copied / "cache" / "puckpilot"
     (copied / path).write_text(source)
     assert cache_folder(copied) == before
+
+
+@pytest.mark.parametrize("path", [*ABOVE, Path("sim2real/vision/track/bright.py")], ids=str)
+def test_an_edit_above_the_players_starts_a_fresh_folder_for_its_package_alone(copied, path):
+    package, other = path.parts[0], "agents" if path.parts[0] == "sim2real" else "sim2real"
+    before = load(copied)
+    folders = {name: before.cache_folder_of(name) for name in (package, other, "baselines")}
+    assert len(set(folders.values())) == 3 and folders["baselines"] == before.CACHE_FOLDER
+    with (copied / path).open("a") as file:
+        file.write("# edited\n")
+    after = load(copied)
+    assert after.cache_folder_of(package) != folders[package]
+    assert all(after.cache_folder_of(name) == folders[name] for name in (other, "baselines"))
+    with (copied / "puckpilot_env" / "state.py").open("a") as file:
+        file.write("# edited\n")
+    assert load(copied).cache_folder_of(other) != folders[other]
 
 
 @pytest.mark.parametrize("name", ["render", "page", "parallel_env", "commands/bench", "checks/walk"])
