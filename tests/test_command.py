@@ -66,6 +66,7 @@ OPTIONS = {
         "--puck-radius",
         "--level",
         "--rate",
+        "--exposure",
         "--seconds",
         "--json",
     ],

@@ -26,7 +26,7 @@ class Folder(Playback):
             raise CameraError(f"{path}: {error.strerror or error}; expected a folder of pictures") from None
         if not files:
             raise CameraError(f"{path}: holds no picture; expected files that end in one of {', '.join(ENDINGS)}")
-        super().__init__(_frames(_numbered(files), rate))
+        super().__init__(_frames(_numbered(files), rate), len(files))
 
 
 def _numbered(files: list[Path]) -> list[tuple[int, Path]]:

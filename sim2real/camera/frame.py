@@ -43,6 +43,11 @@ class Source(Protocol):
         """Whether no frame will follow: a played-back source is at its end."""
         ...
 
+    @property
+    def total(self) -> int | None:
+        """How many frames there will have been, if that is known."""
+        ...
+
     def newest(self, wait: float) -> Frame | None:
         """The newest frame, if it was not given before; None if none comes for `wait` [s].
 

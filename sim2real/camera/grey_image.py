@@ -22,7 +22,7 @@ def read_grey(path: Path) -> np.ndarray:
                 raise CameraError(f"{path} is {kind}; expected 8-bit grey levels as the camera gives them")
             return np.array(image)
     except UnidentifiedImageError:
-        raise CameraError(f"{path} is no picture; expected one of {', '.join(ENDINGS)}") from None
+        raise CameraError(f"{path} cannot be read as a picture; expected one, {', '.join(ENDINGS)}") from None
     except (OSError, SyntaxError, Image.DecompressionBombError) as error:  # PIL has all of them for damaged files
         if isinstance(error, OSError) and error.errno is not None:
             raise CameraError(f"cannot read {path}: {error.strerror}; expected a picture there") from None

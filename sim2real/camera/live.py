@@ -42,6 +42,11 @@ class Live(ABC):
         """See `Source.over`: never."""
         return False
 
+    @property
+    def total(self) -> None:
+        """See `Source.total`: nobody knows."""
+        return None
+
     def newest(self, wait: float) -> Frame | None:
         """See `Source.newest`."""
         with self._came:
@@ -59,9 +64,11 @@ class Live(ABC):
         while not self._ending.is_set():
             try:
                 frame = self._grab()
-            except CameraError as error:
+            except Exception as error:  # of the camera's own library too: the thread must not end without a word
                 with self._came:
-                    self._failure = error
+                    self._failure = (
+                        error if isinstance(error, CameraError) else CameraError(f"the camera failed: {error}")
+                    )
                     self._came.notify_all()
                 return
             if frame is not None:

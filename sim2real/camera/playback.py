@@ -11,10 +11,11 @@ from sim2real.camera.frame import CameraError, Frame
 
 
 class Playback:
-    """A source of frames that are there already. `frames`: in order, each with its own sequence number."""
+    """A source of frames that are there already. `frames`: in order, each with its own sequence number; `total`: how
+    many, if that is known."""
 
-    def __init__(self, frames: Iterator[Frame]) -> None:
-        self._frames = frames
+    def __init__(self, frames: Iterator[Frame], total: int | None = None) -> None:
+        self._frames, self.total = frames, total
         self._next = next(frames, None)  # so that what is wrong with the first shows at once
         self._last: int | None = None
         self._failure: CameraError | None = None

@@ -9,23 +9,27 @@ from sim2real.camera.frame import CameraError, Source
 RATE = 120.0  # Hz, of the real table's camera
 EXPOSURE = 100e-6  # s (report 2.2.1)
 TIMED = ("synthetic", "device", "aravis", "flir")  # what a name follows tells when its pictures were taken
+EXPOSED = ("synthetic", "aravis", "flir")  # what an exposure can be set for
 KNOWN = "a folder of pictures, a video file, device:0, aravis:NAME, flir:SERIAL, synthetic or synthetic:RECORDING"
 
 
-def open_source(word: str, rate: float | None = None, exposure: float = EXPOSURE) -> Source:
+def open_source(word: str, rate: float | None = None, exposure: float | None = None) -> Source:
     """The source that `word` names, to be opened by `with`; KNOWN says which there are.
 
     rate [Hz]: of pictures in a folder and of rendered games, RATE if None, and of a video, for one that states another
-    than it was filmed with; exposure [s]: of rendered pictures, and what aravis: and flir: set. Loads only what the
-    source needs. CameraError, or for a bad recording RecordingError, in one line.
+    than it was filmed with; exposure [s], EXPOSURE if None: of rendered pictures, and what aravis: and flir: set. Loads
+    only what the source needs. CameraError, or for a bad recording RecordingError, in one line.
     """
     if rate is not None and not 0.0 < rate < 1e5:
         raise CameraError(f"rate is {rate!r}; expected frames a second, say {RATE:g}")
-    if not 0.0 < exposure < 1.0:
+    if exposure is not None and not 0.0 < exposure < 1.0:
         raise CameraError(f"exposure is {exposure!r}; expected seconds, say {EXPOSURE:g}")
     kind, colon, name = word.partition(":")
     if rate is not None and colon and kind in TIMED:
         raise CameraError(f"a rate of {rate:g} Hz is given, but {kind}: times its pictures itself; leave the rate out")
+    if exposure is not None and kind not in EXPOSED:
+        raise CameraError(f"an exposure of {exposure:g} s is given, but '{word}' takes none; leave it out")
+    exposure = EXPOSURE if exposure is None else exposure
     if kind == "synthetic":
         from sim2real.camera import synthetic
 

@@ -30,7 +30,8 @@ class VideoFile(Playback):
             raise CameraError(
                 f"{path}: is no video that OpenCV can read; convert it, say to .mp4, or to a folder of .png"
             )
-        super().__init__(_frames(path, self._video, rate or stated))
+        count = int(self._video.get(cv2.CAP_PROP_FRAME_COUNT))
+        super().__init__(_frames(path, self._video, rate or stated, count), count if count > 0 else None)
         if self.over:
             raise CameraError(f"{path}: holds no frame that can be read; record it again")
 
@@ -41,8 +42,8 @@ class VideoFile(Playback):
         self._video.release()
 
 
-def _frames(path: Path, video: cv2.VideoCapture, rate: float) -> Iterator[Frame]:
-    stated, number = video.get(cv2.CAP_PROP_FRAME_COUNT), 0
+def _frames(path: Path, video: cv2.VideoCapture, rate: float, stated: int) -> Iterator[Frame]:
+    number = 0
     while True:
         there, image = video.read()
         if not there:
@@ -51,4 +52,4 @@ def _frames(path: Path, video: cv2.VideoCapture, rate: float) -> Iterator[Frame]
         yield Frame(grey, number / rate, number / rate, number)
         number += 1
     if number < WHOLE * stated - 1.0:
-        raise CameraError(f"{path} is cut off or damaged: {number} of its {stated:.0f} frames can be read")
+        raise CameraError(f"{path} is cut off or damaged: {number} of its {stated} frames can be read")

@@ -9,7 +9,9 @@ import numpy as np
 
 from sim2real.camera.frame import Frame
 
-STALL = 0.1  # s without a frame: a dozen of the real camera's
+STALL = 0.1  # s without a frame: a dozen of the real camera's,
+SLOW = 5.0  # or as many times the last wait for a frame: a webcam in a dim room gives eight a second
+SPARSE = 8  # of so many rows one is held against the picture before
 EVERY = 0.5  # s between looks at the pixels, which take a moment
 GLARE = 0.03  # share of white pixels: the real table's photographs have up to 1.3 %, puck, ring and markers 1 %
 WHITE = 255
@@ -50,35 +52,42 @@ def colour_mosaic(image: np.ndarray) -> Trouble | None:
 class Watch:
     """Looks at every frame of a source, or at its absence.
 
-    size: columns and rows that the calibration is for, or None if any will do. checks: what looks at the pixels, every
-    EVERY seconds of the host's time. A camera that was moved shows in the markers' residual, which calibration knows:
-    its check joins these.
+    size: columns and rows that the calibration is for; if None, those of the first picture. checks: what looks at the
+    pixels, every EVERY seconds of the host's time, until one finds something. Whether the camera was moved is known to
+    whoever follows the markers: that check joins these.
     """
 
     def __init__(
         self, size: tuple[int, int] | None = None, checks: Sequence[Check] = (over_exposed, colour_mosaic)
     ) -> None:
         self._size, self._checks = size, checks
-        self._heard: float | None = None  # host's time of the last frame, or of the first look
+        self._heard: float | None = None  # host's time of the last frame, or of the first look,
+        self._came: float | None = None  # and of the last frame alone
         self._checked: float | None = None
+        self._wait = 0.0  # s between the last two frames
+        self._last: np.ndarray | None = None
 
     def look(self, frame: Frame | None, now: float) -> list[Trouble]:
         """What is wrong: with a frame, or if there is none `now`, by the clock of `Frame.host_time` [s]."""
         if frame is None:
             return self._silence(now)
-        self._heard = frame.host_time
-        wrong = self._wrong_kind(frame.image)
+        self._wait = frame.host_time - self._came if self._came is not None else 0.0
+        self._heard = self._came = frame.host_time
+        wrong = self._wrong_kind(frame.image) or self._same(frame.image)
         if wrong:
             return [wrong]
         if self._checked is not None and 0.0 <= frame.host_time - self._checked < EVERY:
             return []
         self._checked = frame.host_time
-        return [trouble for check in self._checks if (trouble := check(frame.image))]
+        for check in self._checks:
+            if trouble := check(frame.image):
+                return [trouble]  # what the others would find may come of it
+        return []
 
     def _silence(self, now: float) -> list[Trouble]:
         self._heard = now if self._heard is None else self._heard
         silent = now - self._heard
-        if silent <= STALL:
+        if silent <= max(STALL, SLOW * self._wait):
             return []
         return [Trouble("stalled", f"no picture for {silent:.1f} s; see that the camera is plugged in and not in use")]
 
@@ -89,8 +98,15 @@ class Watch:
                 "wrong type", f"a picture is {kind}; expected grey, uint8 (rows, columns): set the camera so"
             )
         rows, columns = image.shape
-        if self._size is not None and self._size != (columns, rows):
+        self._size = self._size or (columns, rows)
+        if self._size != (columns, rows):
             expected = f"{self._size[0]} x {self._size[1]}"
             text = f"a picture has {columns} x {rows} pixels; expected {expected}, as calibrated: set the camera so"
             return Trouble("wrong size", text)
         return None
+
+    def _same(self, image: np.ndarray) -> Trouble | None:
+        last, self._last = self._last, image
+        if last is None or not np.array_equal(image[::SPARSE], last[::SPARSE]):
+            return None
+        return Trouble("repeated", "a picture is the one before once more, to the last pixel; see what doubles frames")

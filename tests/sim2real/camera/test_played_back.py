@@ -57,7 +57,7 @@ def test_pictures_that_cannot_be_taken_are_named(tmp_path: Path) -> None:
     with pytest.raises(CameraError, match=r"1\.png is cut off or damaged"):
         open_source(str(tmp_path))
     picture.write_bytes(b"nothing of the kind")
-    with pytest.raises(CameraError, match=r"1\.png is no picture"):
+    with pytest.raises(CameraError, match=r"1\.png cannot be read as a picture"):
         open_source(str(tmp_path))
     for mode, kind in (("RGB", "a colour image"), ("I;16", "an image of mode I;16")):
         save(tmp_path, "1.png", 7, mode)

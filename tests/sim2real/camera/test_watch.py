@@ -25,6 +25,29 @@ def test_a_good_picture_is_no_trouble() -> None:
     assert names(Watch((160, 120)), GOOD) == [] == names(Watch(), GOOD)
 
 
+def test_a_picture_that_comes_twice_is_noticed() -> None:
+    watch = Watch()
+    assert [names(watch, image, k / 100) for k, image in enumerate((GOOD, GOOD.copy(), GOOD + 1, GOOD))] == [
+        [],
+        ["repeated"],
+        [],
+        [],
+    ]
+
+
+def test_a_slow_camera_is_not_stalled() -> None:
+    watch = Watch()
+    for k in range(3):
+        assert names(watch, GOOD + k, k / 8) == []
+    assert watch.look(None, 2 / 8 + 0.6) == []
+    assert [trouble.name for trouble in watch.look(None, 2 / 8 + 0.7)] == ["stalled"]
+
+
+def test_without_a_size_all_pictures_have_that_of_the_first() -> None:
+    watch = Watch()
+    assert names(watch, GOOD) == [] and names(watch, GOOD[:-1], 6.0) == ["wrong size"]
+
+
 def test_a_stall_is_noticed_when_it_lasts_and_ends_with_a_frame() -> None:
     watch = Watch()
     assert watch.look(None, 100.0) == []  # it has only begun to look
@@ -68,15 +91,18 @@ def test_the_real_tables_photographs(view: int, expected: list[str]) -> None:
     assert names(Watch((2048, 1536)), read_grey(PHOTOGRAPHS / f"view_{view}" / "view.png")) == expected
 
 
-def test_pixels_are_looked_at_now_and_then_by_every_check_that_is_given() -> None:
+def test_pixels_are_looked_at_now_and_then_until_a_check_finds_something() -> None:
     seen = []
 
     def moved(image: np.ndarray) -> Trouble | None:
         seen.append(image)
         return Trouble("moved", "the markers are 9 pixels off; calibrate again")
 
-    watch = Watch(checks=[moved])
+    def blind(image: np.ndarray) -> Trouble | None:
+        raise AssertionError("the first check has found something")
+
+    watch = Watch(checks=[lambda image: None, moved, blind])
     assert names(watch, GOOD, 1.0) == ["moved"]
-    assert names(watch, GOOD, 1.0 + 0.9 * EVERY) == []
+    assert names(watch, GOOD + 1, 1.0 + 0.9 * EVERY) == []
     assert names(watch, GOOD, 1.0 + 1.1 * EVERY) == ["moved"]
     assert len(seen) == 2 and seen[0] is GOOD

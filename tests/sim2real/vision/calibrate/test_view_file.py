@@ -57,7 +57,7 @@ def test_deep_and_foreign_files_are_named(folder: Path):
     with pytest.raises(ValueError, match=r"view\.png is an image of mode I;16; expected 8-bit"):
         read_view(folder, SETUP)
     (folder / "view.png").write_text("no picture")
-    with pytest.raises(ValueError, match=r"view\.png is no picture"):
+    with pytest.raises(ValueError, match=r"view\.png cannot be read as a picture"):
         read_view(folder, SETUP)
     (folder / "view.png").unlink()
     with pytest.raises(ValueError, match=r"cannot read .*view\.png: No such file"):

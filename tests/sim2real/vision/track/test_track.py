@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 import json
+import re
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
+from time import perf_counter
 
 import cv2
 import numpy as np
 import pytest
 
 import puckpilot
-from sim2real.camera import sources
+from sim2real.camera import sound, sources
 from sim2real.camera.frame import Frame
 from sim2real.camera.moments import simulated
 from sim2real.camera.render.moment import Moment, Motion
 from sim2real.camera.render.renderer import Renderer
 from sim2real.camera.render.table import Table
 from sim2real.camera.render.view import View
-from sim2real.commands import track
 from sim2real.recording import read_recording
 from sim2real.vision.calibrate.table_file import write_table
 from sim2real.vision.trial.rendered_calibration import estimated
@@ -78,28 +80,65 @@ def test_a_game_in_a_folder_becomes_a_recording(calibration: Path, tmp_path: Pat
 
 def test_what_is_wrong_is_named_and_ends_with_1(calibration: Path, tmp_path: Path, capsys):
     """At 10 Hz, so that the pixels are looked at every fifth picture."""
-    images = still(18)
+    images = still(12)
     images[3] = images[3][:-2]
-    glaring = images[5].copy()
-    glaring[:200] = 255
-    images[4] = images[5] = images[6] = glaring
-    elsewhere = Renderer(TABLE, View.from_place(VIEW.place + np.array([0.0, 0.004, 0.0]), np.array([0.61, 0.5, 0.0])))
-    images[10:] = [elsewhere.picture(Moment(puck=Motion(1.0, 0.3)), k) for k in range(8)]
-    numbers = [*range(9), *range(11, 20)]
+    for image in images[4:7]:
+        image[:200] = 255
+    images[8] = images[7]
+    numbers = [*range(9), *range(11, 14)]
     assert run(calibration, folder_of(images, tmp_path / "pictures", numbers), tmp_path / "out", "--rate", "10") == 1
     lines = capsys.readouterr().out.splitlines()
-    assert lines[0].startswith("18 frames: ") and lines[0].endswith("; 2 dropped")
-    text = "\n".join(lines)
-    assert "wrong size, 1 times: a picture has 1440 x 1078 pixels; expected 1440 x 1080" in text
-    assert "over-exposed, " in text and "moved camera, " in text and "px from where they should be" in text
+    assert lines[0].startswith("12 frames: ") and lines[0].endswith("; 2 dropped")
+    assert lines[1].startswith("camera found by 5 markers, 0.0")
+    expected = {
+        "wrong size, 1 times from 0.3 s on: a picture has 1440 x 1078 pixels; expected 1440 x 1080": 1,
+        "over-exposed, 1 times from 0.5 s on: ": 1,
+        "repeated, 1 times from 0.8 s on: ": 1,
+    }
+    assert all(any(line.startswith(words) for line in lines) for words in expected) and len(lines) == 6
+    recording = read_recording(tmp_path / "out")
+    assert recording.frames is not None and recording.frames.rows == 10
+    assert all(words in recording.meta["note"] for words in expected)
+
+
+def test_after_a_bump_the_camera_is_found_anew(calibration: Path, tmp_path: Path, capsys):
+    """At 10 Hz the markers are looked at every half second: 0.5, 1.0, then the bump, 1.5, ..."""
+    images = still(13)
+    elsewhere = Renderer(TABLE, View.from_place(VIEW.place + np.array([0.0, 0.01, 0.0]), np.array([0.61, 0.51, 0.0])))
+    bumped = [elsewhere.picture(Moment(puck=Motion(1.0, 0.3), opponent=Motion(1.6, 0.5)), 20 + k) for k in range(11)]
+    folder = folder_of([*images, *bumped], tmp_path / "pictures")
+    assert run(calibration, folder, tmp_path / "out", "--rate", "10") == 1
+    shift = re.search(
+        r"moved camera, 1 times from 1.5 s on: 6 of 6 markers are up to (\S+) px", capsys.readouterr().out
+    )
+    corners = np.stack([marker.corners for marker in TABLE.markers])
+    off = [elsewhere.view.project(one) - VIEW.project(one) for one in corners]
+    assert shift and float(shift[1]) == pytest.approx(np.hypot(*np.median(off, axis=1).T).max(), abs=0.2)
     frames = read_recording(tmp_path / "out").frames
-    assert frames is not None and frames.rows == 17  # the picture of another size tells nothing
+    assert frames is not None
+    known = np.isfinite(frames["puck_x"])
+    assert known[1:10].all() and not known[11:15].any() and known[17:].all()
+    assert np.abs(frames["puck_x"][known] - 1.0).max() < 1e-3 and np.abs(frames["puck_y"][known] - 0.3).max() < 1e-3
+
+
+def test_a_table_on_which_no_puck_is_seen_is_named(calibration: Path, tmp_path: Path, capsys):
+    images = [RENDERER.picture(Moment(opponent=Motion(1.6, 0.5)), k) for k in range(3)]
+    assert run(calibration, folder_of(images, tmp_path / "pictures"), tmp_path / "out") == 1
+    told = capsys.readouterr().out
+    assert "no puck, 1 times from 0.0 s on: it was known in no picture; see that its film shines" in told
+
+
+def test_rendered_pictures_need_no_calibration(tmp_path: Path, capsys):
+    assert puckpilot.main(["track", "synthetic", "--out", str(tmp_path / "out"), "--seconds", "0.05"]) == 0
+    assert capsys.readouterr().out.startswith("6 frames: puck known in 5, ")
+    assert puckpilot.main(["track", str(tmp_path), "--out", str(tmp_path / "other")]) == 2
+    assert "--calibration is missing; give the table.json" in capsys.readouterr().err
 
 
 class Stalling:
     """A live camera that gives three pictures and then no more."""
 
-    over = False
+    over, total = False, None
 
     def __init__(self, images: list[np.ndarray], back: int = 0) -> None:
         """`back`: frames by which its clock once jumps back, before the third picture."""
@@ -107,7 +146,7 @@ class Stalling:
         self._frames = [Frame(image, t, t, k) for k, (t, image) in enumerate(zip(times, images, strict=True))]
 
     def newest(self, wait: float) -> Frame | None:
-        return self._frames.pop(0) if self._frames else None
+        return replace(self._frames.pop(0), host_time=perf_counter()) if self._frames else None
 
     def __enter__(self) -> Stalling:
         return self
@@ -119,11 +158,13 @@ class Stalling:
 def test_a_camera_that_stalls_is_named_and_what_was_seen_is_kept(
     calibration: Path, tmp_path: Path, monkeypatch, capsys
 ):
-    monkeypatch.setattr(sources, "open_source", lambda word, rate: Stalling(still(3)))
-    monkeypatch.setattr(track, "PATIENCE", 0.2)
+    monkeypatch.setattr(sources, "open_source", lambda word, rate, exposure: Stalling(still(3)))
+    monkeypatch.setattr(sound, "PATIENCE", 0.2)
     assert run(calibration, "device:0", tmp_path / "out") == 1
     told = capsys.readouterr().out
-    assert told.startswith("3 frames: puck known in 2, hidden in 0, not sure in 1; 0 dropped\nstalled, ")
+    lines = told.splitlines()
+    assert lines[0] == "3 frames: puck known in 2, hidden in 0, not sure in 1; 0 dropped" and len(lines) == 4
+    assert lines[2].startswith("stalled, ") and "no picture for 0.2 s" in lines[2]
     frames = read_recording(tmp_path / "out").frames
     assert frames is not None and frames.rows == 3
 
@@ -134,7 +175,11 @@ def test_what_was_seen_before_a_source_fails_is_kept(calibration: Path, tmp_path
     damaged.write_bytes(damaged.read_bytes()[:5000])
     assert run(calibration, folder, tmp_path / "out") == 1
     told = capsys.readouterr().out
-    assert told.startswith("3 frames: ") and "source failed, 1 times: " in told and "frame_0003.png is cut off" in told
+    assert (
+        told.startswith("3 frames: ")
+        and "source failed, 1 times from 0.0 s on: " in told
+        and "frame_0003.png is cut off" in told
+    )
     frames = read_recording(tmp_path / "out").frames
     assert frames is not None and frames.rows == 3
 
@@ -142,10 +187,12 @@ def test_what_was_seen_before_a_source_fails_is_kept(calibration: Path, tmp_path
 def test_a_clock_that_runs_back_is_named_and_that_picture_left_out(
     calibration: Path, tmp_path: Path, monkeypatch, capsys
 ):
-    monkeypatch.setattr(sources, "open_source", lambda word, rate: Stalling(still(4), back=5))
-    monkeypatch.setattr(track, "PATIENCE", 0.02)
+    monkeypatch.setattr(sources, "open_source", lambda word, rate, exposure: Stalling(still(4), back=5))
+    monkeypatch.setattr(sound, "PATIENCE", 0.02)
     assert run(calibration, "device:0", tmp_path / "out") == 1
-    assert "clock, 1 times: a picture of -0.025000 s came after one of 0.008333 s" in capsys.readouterr().out
+    assert (
+        "clock, 1 times from 0.0 s on: a picture of -0.025000 s came after one of 0.008333 s" in capsys.readouterr().out
+    )
     frames = read_recording(tmp_path / "out").frames
     assert frames is not None and frames.rows == 3
 
