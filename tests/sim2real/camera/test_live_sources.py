@@ -89,6 +89,20 @@ def test_a_failure_is_told_after_the_last_picture() -> None:
     assert source.closed == 1
 
 
+def test_an_error_of_the_cameras_library_is_a_failure_too() -> None:
+    with Hand() as source:
+        source.push(ZeroDivisionError("of its own"))
+        with pytest.raises(CameraError, match="the camera failed: of its own"):
+            source.newest(PATIENCE)
+
+
+def test_its_thread_ends_with_it() -> None:
+    before = threading.active_count()
+    with Hand():
+        assert threading.active_count() == before + 1
+    assert threading.active_count() == before
+
+
 def test_what_cannot_be_opened_is_closed_again() -> None:
     class Broken(Hand):
         def _open(self) -> None:
