@@ -12,6 +12,7 @@ from sim2real.camera.watch import Trouble, Watch
 
 WAIT = 0.05  # s
 PATIENCE = 5.0  # s without any picture, after which a source is given up
+ROUNDING = 1e-6  # s
 UNUSABLE = ("wrong size", "wrong type", "clock", "repeated")  # troubles of frames that are not looked at
 
 
@@ -57,7 +58,7 @@ class SoundFrames:
                 continue
             heard = now
             self._begin = frame.time if self._begin is None else self._begin
-            if frame.time - self._begin >= self._seconds:
+            if frame.time - self._begin >= self._seconds - ROUNDING:
                 return
             self.frames += 1
             self.dropped += frame.dropped

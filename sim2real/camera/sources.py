@@ -33,6 +33,8 @@ def open_source(word: str, rate: float | None = None, exposure: float | None = N
     if kind == "synthetic":
         from sim2real.camera import synthetic
 
+        if colon and not name:
+            raise CameraError("synthetic: names no recording; give its folder after the colon, or leave the colon out")
         return synthetic.of_a_recording(Path(name), exposure) if name else synthetic.of_a_game(rate or RATE, exposure)
     if colon and kind == "device":
         from sim2real.camera.device import Device

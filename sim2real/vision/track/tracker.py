@@ -99,13 +99,14 @@ class Tracker:
     def recording(self, name: str, note: str) -> Recording:
         """All that was seen so far. Nominal values that no picture tells are None."""
         columns = np.array([row[: len(COLUMNS)] for row in self._rows], dtype=float).reshape(-1, len(COLUMNS)).T
-        setup, step = self._table.setup, np.diff(columns[0])
+        setup = self._table.setup
+        rate = round(1.0 / float(np.median(np.diff(columns[0]))), 3) if len(self._rows) > 1 else None
         meta = {
             "format": FORMAT,
             "table": {"length_m": setup.length, "width_m": setup.width, "goal_width_m": None},
             "puck": {"radius_m": self.things.puck_radius},
             "mallet": {"radius_m": None},
-            "camera": {"rate_hz": float(1.0 / np.median(step)) if len(step) else None, "position_std_m": None},
+            "camera": {"rate_hz": rate, "position_std_m": None},
             "note": note,
         }
         return Recording(name, meta, frames=Stream(dict(zip(COLUMNS, columns, strict=True))))

@@ -118,6 +118,11 @@ def test_files_that_are_no_video_are_named(tmp_path: Path) -> None:
         open_source(str(path))
 
 
+def test_a_recording_to_render_is_named() -> None:
+    with pytest.raises(CameraError, match="synthetic: names no recording"):
+        open_source("synthetic:")
+
+
 @pytest.mark.parametrize("word", ["nowhere.mp4", "", "device", "aravis", "webcam:0"])
 def test_an_unknown_word_is_told_what_is_known(word: str, tmp_path: Path, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)

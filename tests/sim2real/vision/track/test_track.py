@@ -218,8 +218,10 @@ def test_a_clock_that_runs_back_is_named_and_that_picture_left_out(
 
 def test_only_so_many_seconds_are_taken(calibration: Path, tmp_path: Path, capsys):
     folder = folder_of(still(6), tmp_path / "pictures")
-    assert run(calibration, folder, tmp_path / "out", "--rate", "100", "--seconds", "0.025") == 0
-    assert capsys.readouterr().out.startswith("3 frames: ")
+    for seconds in ("0.025", "0.03"):
+        assert run(calibration, folder, tmp_path / seconds, "--rate", "100", "--seconds", seconds) == 0
+        assert capsys.readouterr().out.startswith("3 frames: ")
+    assert read_recording(tmp_path / "0.03").meta["camera"]["rate_hz"] == 100.0
 
 
 def test_what_cannot_be_is_refused_in_one_line(calibration: Path, tmp_path: Path, capsys):
