@@ -71,11 +71,11 @@ def camera_words(camera: Camera) -> dict[str, Any]:
     }
 
 
-def write_camera(path: Path, camera: Camera, dictionary: str | None, note: str) -> None:
+def write_camera(path: Path, camera: Camera, note: str) -> None:
     """Write camera.json whole or not at all; what the table must tell is null, to be filled in."""
     words = {
         **camera_words(camera),
-        "aruco_dictionary": dictionary,
+        "aruco_dictionary": None,
         "puck_top_above_table_m": None,
         "table": {"length_m": None, "width_m": None, "goal_width_m": None},
         "note": note,

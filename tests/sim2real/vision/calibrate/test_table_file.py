@@ -92,9 +92,13 @@ def test_what_is_no_json_is_named(tmp_path: Path):
 
 def test_a_camera_keeps_its_numbers(tmp_path: Path):
     path = tmp_path / "camera.json"
-    write_camera(path, CAMERA, "DICT_4X4_50", "made up")
+    write_camera(path, CAMERA, "made up")
     words = json.loads(path.read_text())
     assert words["table"] == {"length_m": None, "width_m": None, "goal_width_m": None}
-    words |= {"table": {"length_m": 2.0, "width_m": 1.0}, "puck_top_above_table_m": 0.006}
+    words |= {
+        "aruco_dictionary": "DICT_4X4_50",
+        "table": {"length_m": 2.0, "width_m": 1.0},
+        "puck_top_above_table_m": 0.006,
+    }
     path.write_text(json.dumps(words))
     assert read_setup(path) == SETUP
