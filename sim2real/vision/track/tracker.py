@@ -66,7 +66,7 @@ class Tracker:
         setup, step = self._table.setup, np.diff(columns[0])
         meta = {
             "format": FORMAT,
-            "table": {"length_m": setup.length, "width_m": setup.width, "goal_width_m": None},
+            "table": {"length_m": setup.length, "width_m": setup.width, "goal_width_m": setup.goal_width},
             "puck": {"radius_m": self.things.puck_radius},
             "mallet": {"radius_m": None},
             "camera": {"rate_hz": float(1.0 / np.median(step)) if len(step) else None, "position_std_m": None},
