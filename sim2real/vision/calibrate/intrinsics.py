@@ -65,13 +65,19 @@ def calibrate(names: list[str], seen: list[tuple[np.ndarray, np.ndarray]], size:
 
 def _fit(seen: list[tuple[np.ndarray, np.ndarray]], size: tuple[int, int]) -> tuple:
     """OpenCV's fit, begun at the focal length that it guesses from the boards' foreshortening and at the picture's
-    width: the better one, for either start can lead astray where boards all but face the camera."""
+    width: the better one, for either start can lead astray where boards all but face the camera. On one thread, for
+    several add up in an order of their own, and the same photographs would not give the same numbers."""
     boards, pixels = [one for one, _ in seen], [other for _, other in seen]
     wide = np.array([[size[0], 0.0, (size[0] - 1) / 2], [0.0, size[0], (size[1] - 1) / 2], [0.0, 0.0, 1.0]])
     begin = [(np.eye(3), 0), (wide, cv2.CALIB_USE_INTRINSIC_GUESS)]
-    fits = [
-        cv2.calibrateCameraExtended(boards, pixels, size, matrix, np.zeros(5), flags=flags) for matrix, flags in begin
-    ]
+    threads = cv2.getNumThreads()
+    cv2.setNumThreads(1)
+    try:
+        fits = [
+            cv2.calibrateCameraExtended(boards, pixels, size, one, np.zeros(5), flags=flags) for one, flags in begin
+        ]
+    finally:
+        cv2.setNumThreads(threads)
     return min(fits, key=lambda fit: fit[0])
 
 

@@ -50,7 +50,7 @@ class Sway:
             lost = residual @ residual + pull @ np.linalg.pinv(whole - square, KNOWN, hermitian=True) @ pull
             own.append(lost / freedom)
             rest.append(max(self._sum() - lost, 0.0) / (all_freedom - freedom))
-        return np.sqrt(own), np.sqrt(rest)
+        return np.sqrt(2.0 * np.array(own)), np.sqrt(2.0 * np.array(rest))  # of points, of two residuals each
 
     def _sum(self) -> float:
         return float(sum(one @ one for one in self.residuals))

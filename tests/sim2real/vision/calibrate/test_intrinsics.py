@@ -107,8 +107,15 @@ def test_what_the_others_say_of_a_photograph_is_what_a_fit_without_it_says():
     rest = calibrate(names(6), seen[:2] + seen[3:], SIZE)
     freedom = 6 * (2 * COLUMNS * ROWS - 6) - 9
     squares = [(one.rms**2).sum() * COLUMNS * ROWS for one in (found, rest)]
-    assert found.others[2] == pytest.approx(np.sqrt(squares[1] / freedom), rel=1e-4)
-    assert found.off[2] == pytest.approx(np.sqrt((squares[0] - squares[1]) / (2 * COLUMNS * ROWS - 6)), rel=1e-4)
+    assert found.others[2] == pytest.approx(np.sqrt(2 * squares[1] / freedom), rel=1e-4)
+    assert found.off[2] == pytest.approx(np.sqrt((squares[0] - squares[1]) / (COLUMNS * ROWS - 3)), rel=1e-4)
+
+
+def test_the_same_photographs_give_the_same_numbers():
+    """To the last bit, though they hardly tell them."""
+    seen = [corners((0.1 * a, 0.1 * b, 0.1 * c), k, 0.02) for k, (a, b, c) in enumerate(TURNS * 2)]
+    found = [calibrate(names(14), seen, SIZE) for _ in range(12)]
+    assert len({one.camera for one in found}) == 1 and len({one.std.tobytes() for one in found}) == 1
 
 
 def test_a_board_edge_on_is_named():
