@@ -16,14 +16,14 @@ def draft_of(path: Path) -> Path:
 def write_whole(path: Path, write: Callable[[Path], object]) -> Path:
     """Let `write` make the draft of `path`, put it there once it is complete, and return `path`.
 
-    If `write` raises, what was there before stays; an OSError names `path` where it named nothing.
+    If `write` raises, what was there before stays; an OSError names `path` where it named the draft or nothing.
     """
     draft = draft_of(path)
     try:
         write(draft)
         draft.replace(path)
     except OSError as error:
-        if error.filename is None and error.errno is not None:  # a full disk's
+        if error.filename in (None, str(draft)) and error.errno is not None:  # None: a full disk's
             raise OSError(error.errno, os.strerror(error.errno), str(path)) from None
         raise
     finally:

@@ -1,7 +1,8 @@
 """A camera's intrinsics from photographs of a flat board, a dozen from all sides, tilted by 20 to 45 degrees.
 
 The board fills the picture now here, now there, up to its corners. Writes camera.json; fill in there what the table's
-calibration must know besides: the table's size and the height of the puck's mark.
+calibration must know besides: the dictionary of the table's markers, the height of the puck's mark, and the table's
+size. A photograph that the others contradict is named.
 """
 
 from __future__ import annotations
@@ -10,6 +11,13 @@ import argparse
 import json
 import re
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from sim2real.vision.calibrate.board import Board
+    from sim2real.vision.calibrate.intrinsics import Intrinsics
 
 BOARD = "9x6"
 
@@ -31,7 +39,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """0: calibrated. Raises ValueError, in one line, for what cannot be."""
     from puckpilot_env.whole_file import check_folder
-    from sim2real.camera.grey_image import read_grey
     from sim2real.vision.calibrate.board import Board
     from sim2real.vision.calibrate.intrinsics import calibrate
     from sim2real.vision.camera_file import write_camera
@@ -41,53 +48,92 @@ def run(args: argparse.Namespace) -> int:
         raise ValueError(f"--board is '{args.board}'; expected inner corners like {BOARD}, 3 at least each way")
     if not 0.1 <= args.marker < 1.0:
         raise ValueError(f"--marker is {args.marker:g}; expected a share of a square from 0.1 to below 1")
+    if args.out.exists():  # what was filled in by hand is not written over
+        raise ValueError(f"{args.out} exists already; choose another name or remove it")
     check_folder(args.out.absolute().parent)
-    board = Board(int(size[1]), int(size[2]), args.charuco, args.marker)
-    names, seen, without, shape = [], [], [], None
-    for path in args.images:
-        image = read_grey(path)
-        if shape not in (None, image.shape):
-            raise ValueError(
-                f"{path} is {image.shape[1]}x{image.shape[0]} pixels; expected {shape[1]}x{shape[0]} as the first"
-            )
-        shape, found = image.shape, board.find(image)
-        if found is None:
-            without.append(str(path))
-        else:
-            names.append(str(path))
-            seen.append(found)
-    assert shape is not None
-    if not seen:
+    seen, (width, height) = _find(Board(int(size[1]), int(size[2]), args.charuco, args.marker), args.images)
+    names = [str(path) for path in seen]
+    if not names:
         raise ValueError(
             f"a board of {args.board} inner corners is seen in none of {len(args.images)} photographs; see --board"
         )
-    found = calibrate(names, seen, (shape[1], shape[0]))
-    camera = found.camera
-    told = {
-        "file": str(args.out),
-        "photographs": len(seen),
-        "without_board": without,
-        "rms_px": float((found.rms**2).mean() ** 0.5),
-        "values": {
-            name: {"value": value, "std": float(std)}
-            for (name, value), std in zip(_values(camera), found.std, strict=True)
-        },
-    }
-    write_camera(args.out, camera, args.charuco, f"rms {told['rms_px']:.3f} px over {len(seen)} photographs")
-    if args.json:
-        print(json.dumps(told, indent=1, allow_nan=False))
-        return 0
-    for path in without:
-        print(f"no board is seen in {path}")
-    print(f"{len(seen)} photographs of {shape[1]}x{shape[0]} pixels, {told['rms_px']:.3f} px rms")
-    for name, one in told["values"].items():
-        print(f"{name} {one['value']:.5g} ({one['std']:.2g})")
-    print(
-        f"{args.out} holds them; fill in the null values, then: puckpilot calibrate table VIEW... --camera {args.out}"
-    )
+    found = calibrate(names, list(seen.values()), (width, height))
+    without = [str(path) for path in args.images if path not in seen]
+    told = {"file": str(args.out), **_told(names, found), "without_board": without}
+    args.out.parent.mkdir(parents=True, exist_ok=True)
+    write_camera(args.out, found.camera, f"rms {told['rms_px']:.3f} px over {len(names)} photographs")
+    print(json.dumps(told, indent=1, allow_nan=False) if args.json else "\n".join(_lines(told, width, height)))
     return 0
 
 
-def _values(camera) -> list[tuple[str, float]]:
-    names = ("fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3")
-    return list(zip(names, (camera.fx, camera.fy, camera.cx, camera.cy, *camera.distortion), strict=True))
+def _find(board: Board, paths: list[Path]) -> tuple[dict[Path, tuple[np.ndarray, np.ndarray]], tuple[int, int]]:
+    """The board's corners in photographs that show it, and the width and height of all."""
+    from baselines.commands.options import progress_bar
+    from sim2real.camera.grey_image import read_grey
+
+    seen, first, shape = {}, {}, None
+    with progress_bar("looking for the board") as progress:
+        for done, path in enumerate(paths):
+            progress(done, len(paths))
+            image = read_grey(path)
+            if shape not in (None, image.shape):
+                raise ValueError(
+                    f"{path} is {image.shape[1]}x{image.shape[0]} pixels; expected {shape[1]}x{shape[0]} as the first"
+                )
+            shape, found = image.shape, board.find(image)
+            if found is None:
+                continue
+            twin = first.setdefault(found[1].tobytes(), path)
+            if path in seen or twin != path:
+                raise ValueError(f"{path} shows the same photograph as {twin}; give each once")
+            seen[path] = found
+    assert shape is not None
+    return seen, (shape[1], shape[0])
+
+
+def _told(names: list[str], found: Intrinsics) -> dict[str, Any]:
+    """What the fit found, ready for JSON."""
+    camera = found.camera
+    values = (camera.fx, camera.fy, camera.cx, camera.cy, *camera.distortion)
+    each = zip(names, found.rms, found.tilt, found.off, found.others, found.contradicted, strict=True)
+    return {
+        "photographs": len(names),
+        "rms_px": float((found.rms**2).mean() ** 0.5),
+        "each": [
+            {
+                "photograph": name,
+                "rms_px": float(rms),
+                "tilt_deg": float(tilt),
+                "off_px": float(off),
+                "others_px": float(others),
+                "contradicted": bool(contradicted),
+            }
+            for name, rms, tilt, off, others, contradicted in each
+        ],
+        "values": {
+            name: {"value": value, "std": float(std)}
+            for name, value, std in zip(
+                ("fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3"), values, found.std, strict=True
+            )
+        },
+    }
+
+
+def _lines(told: dict[str, Any], width: int, height: int) -> list[str]:
+    """The same for a reader."""
+    return [
+        *(f"no board is seen in {path}" for path in told["without_board"]),
+        f"{told['photographs']} photographs of {width}x{height} pixels, {told['rms_px']:.3f} px rms",
+        *(
+            f"{one['photograph']} stands out: its corners are {one['off_px']:.2f} px off where the others put the "
+            f"camera, theirs {one['others_px']:.2f} px; if it is blurred, mirrored or of a bent board, leave it out"
+            for one in told["each"]
+            if one["contradicted"]
+        ),
+        *(f"{name} {one['value']:.5g} ({one['std']:.2g})" for name, one in told["values"].items()),
+        f"{told['file']} holds them; fill in there by hand, lengths in metres:",
+        '  "aruco_dictionary": of the markers round the table, "DICT_4X4_50" say',
+        '  "puck_top_above_table_m": the height of the puck\'s mark above the surface',
+        '  "length_m", "width_m": of the table, from wall to wall; "goal_width_m" may stay null',
+        f"then: puckpilot calibrate table VIEW... --camera {told['file']}",
+    ]

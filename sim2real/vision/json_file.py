@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -12,24 +13,48 @@ import numpy as np
 
 def read_object(path: Path, what: str) -> dict[str, Any]:
     """The object in a JSON file; `what` it should hold is said where it does not. ValueError, in one line."""
+    twice: list[str] = []
+
+    def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        twice.extend(key for key, times in Counter(key for key, _ in pairs).items() if times > 1)
+        return dict(pairs)
+
     try:
-        found = json.loads(path.read_text(encoding="utf-8"))
+        found = json.loads(path.read_text(encoding="utf-8-sig"), object_pairs_hook=once)
     except OSError as error:
         raise ValueError(f"cannot read {path}: {error.strerror or error}; expected {what}") from None
     except (ValueError, RecursionError) as error:
         raise ValueError(f"{path}: not JSON ({error}); expected {what}") from None
     if not isinstance(found, dict):
         raise ValueError(f"{path}: holds no JSON object; expected {what}")
+    if twice:
+        raise ValueError(f'{path}: "{twice[0][:60]}" is given twice; expected once: leave one out')
     return found
 
 
-def numbers(path: Path, holder: dict[str, Any], key: str, shape: Sequence[int]) -> np.ndarray:
-    """The finite numbers of a shape under a key. ValueError, in one line, where they are not."""
+def numbers(
+    path: Path, holder: dict[str, Any], key: str, shape: Sequence[int], within: tuple[float, float], unit: str = ""
+) -> np.ndarray:
+    """The numbers of a shape under a key, all `within` two. ValueError, in one line, where they are not."""
+    low, high = within
     try:
-        found = np.array(holder[key], dtype=float)
-    except (KeyError, TypeError, ValueError):
+        found = np.array(_plain(holder.get(key)), dtype=float)
+    except (TypeError, ValueError, OverflowError):
         found = None
-    if found is None or found.shape != tuple(shape) or not np.isfinite(found).all():
-        size = "a number" if not shape else " by ".join(map(str, shape)) + " numbers"
-        raise ValueError(f'{path}: "{key}" is {str(holder.get(key))[:60]}; expected {size}')
+    given = f"is {repr(holder[key])[:60]}" if key in holder else "is missing"
+    if found is not None and found.shape == tuple(shape):
+        far = found[~((low <= found) & (found <= high))]
+        if not len(far):
+            return found
+        given = f"holds {far[0]:g}" if shape else given
+    size = "a number" if not shape else " by ".join(map(str, shape)) + " numbers"
+    raise ValueError(f'{path}: "{key}" {given}; expected {size} from {low:g} to {high:g}{unit and " " + unit}')
+
+
+def _plain(found: Any) -> Any:
+    """What is made of lists and numbers alone. TypeError for a string or a truth value, which numpy would take."""
+    if isinstance(found, list):
+        return [_plain(one) for one in found]
+    if isinstance(found, bool) or not isinstance(found, (int, float)):
+        raise TypeError
     return found

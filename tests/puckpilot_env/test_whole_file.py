@@ -54,6 +54,15 @@ def test_nothing_half_written_is_in_its_place(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == [place]
 
 
+@pytest.mark.parametrize("place", ["missing/a.json", "folder"])
+def test_an_error_names_the_place_and_not_the_draft(tmp_path: Path, place: str) -> None:
+    (tmp_path / "folder").mkdir()
+    with pytest.raises(OSError) as caught:
+        write_text_whole(tmp_path / place, "text")
+    assert caught.value.filename == str(tmp_path / place)
+    assert list(tmp_path.iterdir()) == [tmp_path / "folder"]
+
+
 def _begin_film(place: Path) -> subprocess.Popen[str]:
     """A process that films a game, stopped by the caller once its draft has appeared."""
     film = subprocess.Popen(

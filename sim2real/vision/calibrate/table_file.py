@@ -21,12 +21,15 @@ import numpy as np
 from puckpilot_env.whole_file import write_text_whole
 from sim2real.vision.bend import TERMS, Bend
 from sim2real.vision.calibrate.multiview import Solved
-from sim2real.vision.camera_file import Setup, camera_of, camera_words
+from sim2real.vision.camera_file import Setup, camera_words, setup_of
 from sim2real.vision.json_file import numbers, read_object
 from sim2real.vision.scene import Scene
 from sim2real.vision.surface import Surface
 
 FORMAT = "puckpilot-table/1"
+CURVED, BENT = (-0.1, 0.1), (-0.05, 0.05)  # 1/m, m: far more than of any table
+AROUND = (-3.0, 8.0)  # m: where markers and the corners of the box are, each way
+IDS, SIDE = (0, 1023), (0.005, 1.0)  # of markers; their sides' lengths [m]
 WHAT = f"a calibration of format {FORMAT}, of puckpilot calibrate table"
 
 
@@ -48,7 +51,7 @@ def write_table(path: Path, setup: Setup, solved: Solved) -> None:
         "camera": camera_words(setup.camera),
         "aruco_dictionary": setup.dictionary,
         "puck_top_above_table_m": setup.puck_top,
-        "table": {"length_m": setup.length, "width_m": setup.width},
+        "table": {"length_m": setup.length, "width_m": setup.width, "goal_width_m": setup.goal_width},
         "surface": {
             "middle_m": list(scene.surface.middle),
             "xx_xy_yy_per_m": list(scene.surface.curvature),
@@ -86,24 +89,40 @@ def read_table(path: Path) -> Table:
     found = read_object(path, WHAT)
     if found.get("format") != FORMAT:
         raise ValueError(f"{path}: format is {str(found.get('format'))[:40]!r}; expected {WHAT}")
-    camera, table, surface, bend = (_part(path, found, key) for key in ("camera", "table", "surface", "frame"))
-    markers = found.get("markers")
-    if not isinstance(markers, list) or not all(isinstance(one, dict) for one in markers):
-        raise ValueError(f'{path}: "markers" is no list of objects; expected {WHAT}')
+    camera, surface, bend = (_part(path, found, key) for key in ("camera", "surface", "frame"))
+    setup = setup_of(path, found, camera)
     if bend.get("axis_i_j") != [list(one) for one in TERMS]:
         raise ValueError(f"{path}: the terms of the frame's bend are others; expected {WHAT}")
-    xx, xy, yy = (float(one) for one in numbers(path, surface, "xx_xy_yy_per_m", (3,)))
-    middle_x, middle_y = (float(one) for one in numbers(path, surface, "middle_m", (2,)))
-    (low_x, low_y), (high_x, high_y) = numbers(path, bend, "box_m", (2, 2)).tolist()
+    xx, xy, yy = (float(one) for one in numbers(path, surface, "xx_xy_yy_per_m", (3,), CURVED))
+    middle_x, middle_y = (float(one) for one in numbers(path, surface, "middle_m", (2,), AROUND, "metres"))
+    (low_x, low_y), (high_x, high_y) = box = numbers(path, bend, "box_m", (2, 2), AROUND, "metres").tolist()
+    if not (low_x < high_x and low_y < high_y):
+        raise ValueError(f'{path}: "box_m" is {box}; expected its least x and y, then its greatest, in metres')
     scene = Scene(
         Surface((middle_x, middle_y), (xx, xy, yy)),
-        Bend(((low_x, low_y), (high_x, high_y)), numbers(path, bend, "bend_m", (len(TERMS),))),
-        {int(numbers(path, one, "id", ())): numbers(path, one, "corners_m", (4, 3)) for one in markers},
+        Bend(((low_x, low_y), (high_x, high_y)), numbers(path, bend, "bend_m", (len(TERMS),), BENT, "metres")),
+        _markers(path, found.get("markers")),
     )
-    length, width = (float(numbers(path, table, key, ())) for key in ("length_m", "width_m"))
-    top = float(numbers(path, found, "puck_top_above_table_m", ()))
-    setup = Setup(camera_of(path, camera), str(found.get("aruco_dictionary")), top, length, width)
     return Table(setup, scene)
+
+
+def _markers(path: Path, found: Any) -> dict[int, np.ndarray]:
+    if not isinstance(found, list) or not all(isinstance(one, dict) for one in found):
+        raise ValueError(f'{path}: "markers" is no list of objects; expected {WHAT}')
+    markers = {}
+    for one in found:
+        name, corners = (
+            int(numbers(path, one, "id", (), IDS)),
+            numbers(path, one, "corners_m", (4, 3), AROUND, "metres"),
+        )
+        sides = np.linalg.norm(corners - np.roll(corners, 1, axis=0), axis=1)
+        if name in markers or not ((sides >= SIDE[0]) & (sides <= SIDE[1])).all():
+            raise ValueError(
+                f'{path}: "markers" has marker {name} twice or with sides of {sides.min():g} to {sides.max():g} m; '
+                f"expected each once, {SIDE[0]:g} to {SIDE[1]:g} m wide"
+            )
+        markers[name] = corners
+    return markers
 
 
 def _part(path: Path, found: dict[str, Any], key: str) -> dict[str, Any]:

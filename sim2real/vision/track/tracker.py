@@ -103,7 +103,7 @@ class Tracker:
         rate = round(1.0 / float(np.median(np.diff(columns[0]))), 3) if len(self._rows) > 1 else None
         meta = {
             "format": FORMAT,
-            "table": {"length_m": setup.length, "width_m": setup.width, "goal_width_m": None},
+            "table": {"length_m": setup.length, "width_m": setup.width, "goal_width_m": setup.goal_width},
             "puck": {"radius_m": self.things.puck_radius},
             "mallet": {"radius_m": None},
             "camera": {"rate_hz": rate, "position_std_m": None},

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from pathlib import Path
 
 import cv2
@@ -11,7 +12,7 @@ import pytest
 
 import puckpilot
 from sim2real.vision.calibrate.board import Board
-from sim2real.vision.calibrate.intrinsics import calibrate
+from sim2real.vision.calibrate.intrinsics import Intrinsics, calibrate
 from tests.sim2real.vision.test_camera import CAMERA
 from tests.sim2real.vision.world import BENT, SIZE, K
 
@@ -35,26 +36,86 @@ def motion(k: int, turn: tuple[float, float, float], away: float) -> np.ndarray:
     return np.concatenate([turn, shift - cv2.Rodrigues(np.array(turn, float))[0] @ middle])
 
 
-def corners(turn: tuple[float, float, float], k: int, noise: float) -> tuple[np.ndarray, np.ndarray]:
+def corners(
+    turn: tuple[float, float, float], k: int, noise: float, rng: np.random.Generator | None = None
+) -> tuple[np.ndarray, np.ndarray]:
     x, y = np.meshgrid(np.arange(COLUMNS), np.arange(ROWS))
     places = np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1).astype(np.float32)
     at = motion(k, turn, 13.0)
     pixels = cv2.projectPoints(places.astype(float), at[:3], at[3:], K, BENT)[0][:, 0]
-    return places, (pixels + np.random.default_rng(k).normal(0.0, noise, pixels.shape)).astype(np.float32)
+    shaken = pixels + (rng or np.random.default_rng(k)).normal(0.0, noise, pixels.shape)
+    return places, shaken.astype(np.float32)
 
 
 def names(many: int) -> list[str]:
     return [f"{k}.png" for k in range(many)]
 
 
+def z_scores(found: Intrinsics) -> np.ndarray:
+    """How many of its stated deviations each of nine intrinsics is off."""
+    truth = np.array([CAMERA.fx, CAMERA.fy, CAMERA.cx, CAMERA.cy, *CAMERA.distortion])
+    camera = found.camera
+    return (np.array([camera.fx, camera.fy, camera.cx, camera.cy, *camera.distortion]) - truth) / found.std
+
+
 def test_intrinsics_lie_within_their_error_bars():
     seen = [corners(turn, k, 0.1) for k, turn in enumerate(TURNS)]
     found = calibrate(names(len(seen)), seen, SIZE)
-    truth = np.array([CAMERA.fx, CAMERA.fy, CAMERA.cx, CAMERA.cy, *CAMERA.distortion])
-    camera = found.camera
-    z = (np.array([camera.fx, camera.fy, camera.cx, camera.cy, *camera.distortion]) - truth) / found.std
-    assert np.abs(z).max() < 4.0 and found.std[0] < 5.0 and camera.size == SIZE
-    assert found.rms == pytest.approx(0.14, abs=0.03)
+    assert np.abs(z_scores(found)).max() < 4.0 and found.std[0] < 5.0 and found.camera.size == SIZE
+    assert found.rms == pytest.approx(0.14, abs=0.03) and not found.contradicted.any()
+
+
+def drawn_poses(seed: int) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Corners of 5 to 12 boards that are tilted by up to 0.3 to 50 degrees, all ways or all one way."""
+    rng = np.random.default_rng(seed)
+    steepest, way, spread = np.exp(rng.uniform(np.log(0.3), np.log(50.0))), rng.uniform(0, 6.3), rng.choice([0.2, 3.2])
+    seen = []
+    for k in range(rng.integers(5, 13)):
+        tilt, towards = np.radians(rng.uniform(0.0, steepest)), way + rng.uniform(-spread, spread)
+        turn = (tilt * np.cos(towards), tilt * np.sin(towards), rng.uniform(-0.3, 0.3))
+        seen.append(corners(turn, k, 0.1, rng))
+    return seen
+
+
+def test_whatever_the_poses_what_is_not_refused_lies_within_its_error_bars():
+    """Of poses that OpenCV's own deviations would let pass, half are further off than four of these."""
+    kept, refused = [], 0
+    for seed in range(60):
+        seen = drawn_poses(seed)
+        try:
+            kept.append(z_scores(calibrate(names(len(seen)), seen, SIZE)))
+        except ValueError as error:
+            assert "do not tell the" in str(error)
+            refused += 1
+    worst = np.abs(kept).max(axis=1)
+    assert len(kept) > 15 and refused > 15 and (worst < 4.0).mean() >= 0.95
+    assert 0.8 < np.sqrt(np.mean(np.square(kept))) < 1.2
+
+
+def test_a_mirrored_photograph_contradicts_the_others():
+    """Its corners are 0.3 px off, no more than a poor photograph's, but move the focal length by many deviations."""
+    seen = [corners(turn, k, 0.05) for k, turn in enumerate(TURNS)]
+    places, pixels = seen[3]
+    seen[3] = (places, np.array([SIZE[0] - 1, 0], np.float32) + np.array([-1, 1], np.float32) * pixels)
+    found = calibrate(names(7), seen, SIZE)
+    assert list(np.flatnonzero(found.contradicted)) == [3] and np.abs(z_scores(found)).max() > 5.0
+
+
+def test_what_the_others_say_of_a_photograph_is_what_a_fit_without_it_says():
+    seen = [corners(turn, k, 0.1 + 0.1 * (k == 2)) for k, turn in enumerate(TURNS)]
+    found = calibrate(names(7), seen, SIZE)
+    rest = calibrate(names(6), seen[:2] + seen[3:], SIZE)
+    freedom = 6 * (2 * COLUMNS * ROWS - 6) - 9
+    squares = [(one.rms**2).sum() * COLUMNS * ROWS for one in (found, rest)]
+    assert found.others[2] == pytest.approx(np.sqrt(2 * squares[1] / freedom), rel=1e-4)
+    assert found.off[2] == pytest.approx(np.sqrt((squares[0] - squares[1]) / (COLUMNS * ROWS - 3)), rel=1e-4)
+
+
+def test_the_same_photographs_give_the_same_numbers():
+    """To the last bit, though they hardly tell them."""
+    seen = [corners((0.1 * a, 0.1 * b, 0.1 * c), k, 0.02) for k, (a, b, c) in enumerate(TURNS * 2)]
+    found = [calibrate(names(14), seen, SIZE) for _ in range(12)]
+    assert len({one.camera for one in found}) == 1 and len({one.std.tobytes() for one in found}) == 1
 
 
 def test_a_board_edge_on_is_named():
@@ -70,9 +131,20 @@ def test_a_board_with_other_corners_is_named():
         calibrate(names(7), seen, SIZE)
 
 
-def test_boards_that_face_the_camera_do_not_suffice():
-    seen = [corners((0.01 * k, 0.0, 0.2 * k), k, 0.1) for k in range(6)]
-    with pytest.raises(ValueError, match=r"focal length is uncertain by \d+ %, tilts are 0 to 3 degrees"):
+@pytest.mark.parametrize(
+    "turns, told",
+    [
+        (
+            [(0.01 * k, 0.0, 0.2 * k) for k in range(6)],
+            r"focal length: it is uncertain by \d+\.\d %, .* 0 to 3 degrees",
+        ),
+        ([(0.001, 0.0, 0.1 * k) for k in range(6)], "focal length: it is uncertain altogether, expected 1 % at most"),
+        ([(0.5, 0.0, 0.0)] * 6, "focal length: it is uncertain"),
+    ],
+)
+def test_boards_that_face_the_camera_or_all_one_way_do_not_suffice(turns: list, told: str):
+    seen = [corners(turn, k, 0.1) for k, turn in enumerate(turns)]
+    with pytest.raises(ValueError, match=told):
         calibrate(names(6), seen, SIZE)
 
 
@@ -92,15 +164,17 @@ def drawn(charuco: bool) -> np.ndarray:
     return np.pad(np.where((x + y) % 2, 230, 30).astype(np.uint8), PIXELS, constant_values=230)
 
 
+PINHOLE = np.array([[FOCUS, 0, 410.0], [0, FOCUS, 295.0], [0, 0, 1]])
+
+
 def photographs(folder: Path, charuco: bool) -> list[str]:
     """Boards seen by a pinhole camera."""
-    k = np.array([[FOCUS, 0, 410.0], [0, FOCUS, 295.0], [0, 0, 1]])
     board = drawn(charuco)
     to_squares = np.array([[1 / PIXELS, 0, 0.5 / PIXELS - 2], [0, 1 / PIXELS, 0.5 / PIXELS - 2], [0, 0, 1]])
     paths = []
     for n, turn in enumerate(TURNS):
         at = motion(n, turn, 16.0)
-        matrix = k @ np.column_stack([cv2.Rodrigues(at[:3])[0][:, :2], at[3:]]) @ to_squares
+        matrix = PINHOLE @ np.column_stack([cv2.Rodrigues(at[:3])[0][:, :2], at[3:]]) @ to_squares
         large = np.diag([4.0, 4.0, 1.0]) + np.array([[0, 0, 1.5], [0, 0, 1.5], [0, 0, 0]])
         image = cv2.warpPerspective(board, large @ matrix, (4 * SMALL[0], 4 * SMALL[1]), borderValue=(150,))
         image = cv2.GaussianBlur(cv2.resize(image, SMALL, interpolation=cv2.INTER_AREA), (0, 0), 0.6)
@@ -117,8 +191,28 @@ def test_the_command_finds_boards_and_writes_the_camera(tmp_path: Path, charuco:
     assert told["photographs"] == len(TURNS) and told["rms_px"] < 0.25
     for name, truth in {"fx": FOCUS, "fy": FOCUS, "cx": 410.0, "cy": 295.0}.items():
         assert told["values"][name]["value"] == pytest.approx(truth, abs=2.0 + 4.0 * told["values"][name]["std"])
+    assert [Path(one["photograph"]).name for one in told["each"]] == [f"{k}.png" for k in range(len(TURNS))]
+    assert np.sqrt(np.mean([one["rms_px"] ** 2 for one in told["each"]])) == pytest.approx(told["rms_px"])
+    for one, turn in zip(told["each"], TURNS, strict=True):
+        tilt = np.degrees(np.arccos(cv2.Rodrigues(np.array(turn, float))[0][2, 2]))
+        assert one["tilt_deg"] == pytest.approx(tilt, abs=0.5) and not one["contradicted"]
     words = json.loads((tmp_path / "camera.json").read_text())
     assert words["image_size_px"] == list(SMALL) and words["K"][0][0] == told["values"]["fx"]["value"]
+    assert words["aruco_dictionary"] is None  # the table's, which is another than the board's
+
+
+@pytest.mark.parametrize("charuco, close", [(False, 0.05), (True, 0.2)])
+def test_corners_are_found_where_the_board_was_drawn(tmp_path: Path, charuco: bool, close: float):
+    """On average over a board, to a fraction of a pixel."""
+    for n, path in enumerate(photographs(tmp_path, charuco)):
+        image, at = cv2.imread(path, cv2.IMREAD_GRAYSCALE), motion(n, TURNS[n], 16.0)
+        assert image is not None
+        found = Board(COLUMNS, ROWS, "DICT_4X4_50" if charuco else None).find(image)
+        assert found is not None
+        there = cv2.projectPoints(found[0].astype(float), at[:3], at[3:], PINHOLE, np.zeros(5))[0][:, 0]
+        turned = there[::-1]  # a checkerboard looks the same from both of its long sides
+        off = min((found[1] - one for one in (there, turned)), key=lambda one: np.abs(one).mean())
+        assert np.abs(off.mean(axis=0)).max() < close
 
 
 def test_photographs_without_a_board_are_told(tmp_path: Path, capsys):
@@ -128,6 +222,44 @@ def test_photographs_without_a_board_are_told(tmp_path: Path, capsys):
     assert f"no board is seen in {paths[2]}\n6 photographs of 800x600" in capsys.readouterr().out
     assert puckpilot.main(["calibrate", "camera", *paths, "--board", "8x6"]) == 2
     assert "8x6 inner corners is seen in none of 7 photographs" in capsys.readouterr().err
+
+
+def test_it_names_what_stands_out_and_what_is_to_be_filled_in(tmp_path: Path, capsys):
+    paths, out = photographs(tmp_path, True), tmp_path / "new" / "camera.json"
+    image = cv2.imread(paths[3], cv2.IMREAD_GRAYSCALE)
+    assert image is not None
+    cv2.imwrite(paths[3], cv2.resize(image, (816, 600))[:, 8:808])  # by another lens, as it were
+    assert puckpilot.main(["calibrate", "camera", *paths, "--charuco", "DICT_4X4_50", "--out", str(out)]) == 0
+    told = capsys.readouterr().out
+    assert told.count("stands out") == 1 and f"\n{paths[3]} stands out: its corners are 0." in told
+    assert "leave it out" in told
+    empty = {name for name, value in flat(json.loads(out.read_text())).items() if value is None}
+    assert empty == {"aruco_dictionary", "puck_top_above_table_m", "length_m", "width_m", "goal_width_m"}
+    assert all(f'"{name}"' in told for name in empty)
+
+
+def flat(words: dict) -> dict:
+    """The same with what is inside of objects beside the rest."""
+    return {k: v for key, one in words.items() for k, v in (flat(one) if isinstance(one, dict) else {key: one}).items()}
+
+
+def test_what_is_there_is_not_written_over(tmp_path: Path, capsys):
+    """A user has filled in a camera.json by hand."""
+    (tmp_path / "camera.json").write_text("keep")
+    for out in (tmp_path / "camera.json", tmp_path):
+        assert puckpilot.main(["calibrate", "camera", "none.png", "--out", str(out)]) == 2
+        assert f"{out} exists already; choose another name or remove it" in capsys.readouterr().err
+    assert (tmp_path / "camera.json").read_text() == "keep"
+
+
+@pytest.mark.parametrize("again", ["0.png", "copy.png"])
+def test_a_photograph_that_is_given_twice_is_refused(tmp_path: Path, again: str, capsys):
+    """It would make the deviations too small."""
+    paths = photographs(tmp_path, True)
+    shutil.copy(paths[0], tmp_path / "copy.png")
+    words = [*paths, str(tmp_path / again), "--charuco", "DICT_4X4_50", "--out", str(tmp_path / "camera.json")]
+    assert puckpilot.main(["calibrate", "camera", *words]) == 2
+    assert f"{tmp_path / again} shows the same photograph as {paths[0]}; give each once" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
