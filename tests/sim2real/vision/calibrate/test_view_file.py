@@ -42,7 +42,7 @@ def test_a_picture_that_is_cut_off_is_named(folder: Path):
     whole = (folder / "view.png").read_bytes()
     for many in (len(whole) // 2, 40):
         (folder / "view.png").write_bytes(whole[:many])
-        with pytest.raises(ValueError, match=r"view\.png is (cut off or damaged|no picture)"):
+        with pytest.raises(ValueError, match=r"view\.png (is cut off or damaged|cannot be read as a picture)"):
             read_view(folder, SETUP)
 
 
