@@ -53,7 +53,7 @@ def find_pose(camera: Camera, points: np.ndarray, pixels: np.ndarray) -> Pose:
         found, by_seen = camera.project(seen)
         return ((found - pixels) / CORNER_STD).ravel(), (by_seen @ by / CORNER_STD).reshape(-1, 6)
 
-    fitted = robust_fit(lambda _: evaluate, rough_pose(camera, points, pixels), len(points))
+    fitted = robust_fit(lambda _: evaluate, rough_pose(camera, points, pixels), np.zeros(len(points), int))
     residuals = CORNER_STD * evaluate(fitted.vector)[0].reshape(-1, 2)
     return Pose(fitted.vector, np.sqrt(np.diag(fitted.covariance)), residuals)
 

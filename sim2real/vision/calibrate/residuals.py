@@ -12,9 +12,11 @@ from sim2real.vision.motion import moved
 from sim2real.vision.scene import BEFORE, Scene
 from sim2real.vision.surface import TERMS
 
-CORNER_STD = 0.1  # px, of a marker's corner by `edges`
+# at the least, since what fits better fits by chance, or errs alike in all views; `robust_fit` finds how much more
+CORNER_STD = 0.05  # px, of a marker's corner by `edges`
 PIXEL_STD = 0.2  # px, of the puck's centre
 PLACE_STD = 0.5e-3  # m, of a place measured by hand
+PLACE, CORNER = 0, 1  # kinds of pairs of residuals
 CURVATURE_STD = 0.02  # 1/m: 2 cm at 1 m from the middle, beyond any table that can be played on
 
 
@@ -33,6 +35,12 @@ class Problem:
         """The cameras' motions (views, 6) and the scene in a vector of unknowns."""
         many = 6 * len(self.views)
         return vector[:many].reshape(-1, 6), self.scene.replaced(vector[many:])
+
+    def kinds(self) -> np.ndarray:
+        """Of each pair of residuals (pairs,), in the order of `evaluate`, whether it is of a PLACE or of a CORNER."""
+        return np.concatenate(
+            [np.repeat([PLACE, CORNER], [len(view.pixels), len(self.corners(view))]) for view in self.views]
+        )
 
     def evaluate(self, vector: np.ndarray, whitening: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         """Residuals (m,) and their derivatives (m, unknowns): of each view the measured points and the corners, each
