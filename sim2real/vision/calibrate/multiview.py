@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 
 from sim2real.vision.bend import TERMS as TERMS_OF_BEND
+from sim2real.vision.calibrate.pose import FAR
 from sim2real.vision.calibrate.residuals import PLACE, Problem
 from sim2real.vision.calibrate.robust_fit import Evaluate, Fitted, robust_fit
 from sim2real.vision.calibrate.start import start
 from sim2real.vision.calibrate.view import View
 from sim2real.vision.camera_file import Setup
+from sim2real.vision.motion import rotation
 from sim2real.vision.scene import BEFORE, Scene
 from sim2real.vision.surface import TERMS
 
@@ -21,6 +24,9 @@ BEND_STD = 1e-3  # m, where the search for how large the bend is begins,
 BEND_RANGE = (3e-5, 3e-3)  # and where it may end
 ROUNDS = 8  # of that search
 BEND_MOST = 6e-3  # m: a ruler's and a wall's faults are less
+# m, the standard deviation of a marker: 23 mm by two real photographs whose cameras were 6 cm apart; at 30 mm places in
+# a third are 3 mm off on average, 7 mm at most
+PLACED_MOST = 0.03
 MOST_WRONG = 1.0 / 3.0  # of a view's points, if the others are to say which
 WRONG = 3.5  # standard deviations: of 108 points that are measured alike, 0.4 lie farther off by chance
 
@@ -49,6 +55,11 @@ class Solved:
         """Covariance of the scene's vector."""
         many = self.poses.size
         return self.fitted.covariance[many:, many:]
+
+    def marker_std(self) -> np.ndarray:
+        """Standard deviations (markers, 4, 3) [m] of the corners' places."""
+        std = self.scene.replaced(np.sqrt(np.diag(self.scene_covariance())))
+        return np.array(list(std.markers.values()))
 
 
 def solve(setup: Setup, views: tuple[View, ...]) -> Solved:
@@ -93,7 +104,21 @@ def _bend_std(fitted: Fitted, first: int, std: float) -> float:
 
 
 def _check(solved: Solved) -> None:
-    """ValueError, in one line, for measured places that contradict each other or what the cameras see."""
+    """ValueError, in one line, for views from one place, and for measured places that contradict each other or what the
+    cameras see."""
+    if (placed := float(solved.marker_std().max())) > PLACED_MOST:
+        eyes = np.array([-rotation(pose[:3]).T @ pose[3:] for pose in solved.poses])
+        apart = min(float(np.linalg.norm(one - other)) for one, other in combinations(eyes, 2))
+        raise ValueError(
+            f"a marker is placed to {1e3 * min(placed, 1.0):.0f} mm only; expected {1e3 * PLACED_MOST:.0f} at most: "
+            f"two cameras are {apart:.2f} m apart; add a photograph from half a metre aside"
+        )
+    for view, rms in zip(solved.problem.views, solved.corner_rms, strict=True):
+        if rms > FAR:
+            raise ValueError(
+                f"{view.name}: markers are {rms:.1f} px rms from where the other views have them; expected {FAR:g} at "
+                "most: was one moved between photographs, or is camera.json of another camera or lens?"
+            )
     for view, off, wrong in zip(solved.problem.views, solved.off, solved.wrong, strict=True):
         if wrong.mean() > MOST_WRONG:
             raise ValueError(

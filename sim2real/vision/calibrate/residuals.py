@@ -48,7 +48,7 @@ class Problem:
         poses, scene = self.split(vector)
         rows, slopes = [], []
         for k, (view, pose) in enumerate(zip(self.views, poses, strict=True)):
-            off, by = self._of_view(view, pose, scene, 6 * k, len(vector))
+            off, by = self.of_view(view, pose, scene, 6 * k, len(vector))
             rows.append(np.einsum("nij,nj->ni", whitening[k], off).ravel())
             slopes.append((whitening[k] @ by).reshape(-1, len(vector)))
         first = 6 * len(self.views)
@@ -85,12 +85,12 @@ class Problem:
 
     def corners(self, view: View) -> np.ndarray:
         """All corners (n, 2) of a view's markers that are in the scene."""
-        return np.concatenate([view.corners[marker] for marker in self._shared(view)])
+        return np.array([view.corners[marker] for marker in self._shared(view)]).reshape(-1, 2)
 
     def _shared(self, view: View) -> list[int]:
         return [marker for marker in self.scene.markers if marker in view.corners]
 
-    def _of_view(
+    def of_view(
         self, view: View, pose: np.ndarray, scene: Scene, column: int, many: int
     ) -> tuple[np.ndarray, np.ndarray]:
         """Seen less stated [pixels] (n, 2) of a view, with derivatives (n, 2, unknowns)."""

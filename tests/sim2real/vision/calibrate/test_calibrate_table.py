@@ -44,7 +44,7 @@ def test_a_made_up_table_is_found(made: Path, tmp_path: Path, capsys):
     assert told["median_mm"] <= told["mean_mm"] < 0.6 and told["max_mm"] < 1.5
     assert [(one["view"], one["point"]) for one in told["wrong"]] == [("view_1", 8)]
     assert told["wrong"][0]["off_mm"] == pytest.approx(5.0, abs=0.8)
-    assert max(told["corner_rms_px"]) < 0.05 and not told["step_across"]["clear"]
+    assert max(told["corner_rms_px"]) < 0.05 and not told["step_across"]["clear"] and not told["weakest"]["matters"]
     for k, one in enumerate(told["surface_per_m"].values()):
         assert abs(one["value"] - world.CURVATURE[k]) < 4.0 * one["std"]
     markers = read_table(tmp_path / "table.json").scene.markers
@@ -71,6 +71,28 @@ def test_a_view_that_is_given_twice_is_refused(made: Path, tmp_path: Path, again
     told = capsys.readouterr().err
     assert f"{made / again[-1]} shows the same photograph as {made / 'view_1'}; give each once" in told
     assert not list(tmp_path.iterdir())
+
+
+def test_a_check_that_cannot_be_leaves_no_file(made: Path, tmp_path: Path, capsys):
+    shutil.copytree(made / "view_2", made / "mistyped")
+    rows = np.loadtxt(made / "mistyped" / "pixels.csv", delimiter=",", skiprows=1)
+    rows[4, 2] += 0.4
+    np.savetxt(made / "mistyped" / "pixels.csv", rows, delimiter=",", header="u,v,x,y", comments="", fmt="%.6f")
+    words = [str(made / "view_0"), str(made / "view_1"), "--camera", str(made / "camera.json")]
+    words += ["--out", str(tmp_path / "t.json"), "--check", str(made / "mistyped")]
+    assert puckpilot.main(["calibrate", "table", *words]) == 2
+    assert "mistyped: point 5 (" in capsys.readouterr().err and not list(tmp_path.iterdir())
+
+
+def test_a_table_that_is_not_covered_is_told(made: Path, tmp_path: Path, capsys):
+    for k in range(2):
+        shutil.copytree(made / f"view_{k}", made / f"near_{k}")
+        lines = (made / f"near_{k}" / "pixels.csv").read_text().splitlines()
+        (made / f"near_{k}" / "pixels.csv").write_text("\n".join(lines[:19]) + "\n")
+    words = [str(made / "near_0"), str(made / "near_1"), "--camera", str(made / "camera.json")]
+    assert puckpilot.main(["calibrate", "table", *words, "--out", str(tmp_path / "t.json")]) == 0
+    told = capsys.readouterr().out
+    assert "the table is not covered: at (2.00, " in told and " m from any point, places are known to " in told
 
 
 def test_the_picture_does_not_take_the_tables_place(made: Path, tmp_path: Path, capsys):
