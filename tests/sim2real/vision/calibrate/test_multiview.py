@@ -153,7 +153,7 @@ def seen_from(eye: tuple[float, float, float], seed: int) -> View:
 def test_views_from_one_place_are_refused(aside: float):
     x, y, z = world.EYES[0]
     with pytest.raises(
-        ValueError, match=r"placed to \d+ mm only; expected 30 at most: two cameras are 0\.0[01] m apart"
+        ValueError, match=r"placed to \d+ mm only; expected 40 at most: two cameras are 0\.0[01] m apart"
     ):
         solve(SETUP, (seen_from((x, y, z), 1), seen_from((x, y + aside, z), 2)))
     assert len(solve(SETUP, (seen_from((x, y, z), 1), seen_from((x, y + 0.2, z), 2))).poses) == 2
