@@ -76,8 +76,8 @@ def _blunders(camera: Camera, view: View, height: float) -> str:
             where = [f"{1e3 * far:.0f} mm" if np.isfinite(far) else "above the horizon" for far in off]
             told = ", ".join(f"point {k + 1} ({far})" for k, far in zip(out, where, strict=True))
             return (
-                f"{told} is not where it is seen; the other {len(kept)} are, to {1e3 * rms[best]:.1f} mm: mend or "
-                "delete its line in pixels.csv"
+                f"not seen where measured: {told}; the other {len(kept)} are, to {1e3 * rms[best]:.1f} mm: mend or "
+                "delete the line in pixels.csv"
             )
     return ""
 

@@ -22,14 +22,14 @@ def test_a_point_above_the_horizon_is_named():
     pixels = low.pixels.copy()
     pixels[3] = (1000.0, 5.0)
     with pytest.raises(
-        ValueError, match=r"seen 3: point 4 \((above the horizon|\d+ mm)\) is not where it is seen; the other 35"
+        ValueError, match=r"seen 3: not seen where measured: point 4 \((above the horizon|\d+ mm)\); the other 35 are"
     ):
         check(SETUP, solved().scene, replace(low, pixels=pixels))
 
 
 def test_a_point_that_is_mistyped_is_named():
     places = view(3).places + 0.3 * (np.arange(36)[:, None] == 9) * [1.0, 0.0]
-    with pytest.raises(ValueError, match=r"view_3: point 10 \((29|30)\d mm\) is not where it is seen"):
+    with pytest.raises(ValueError, match=r"view_3: not seen where measured: point 10 \((29|30)\d mm\)"):
         check(SETUP, solved().scene, replace(view(3), places=places))
 
 

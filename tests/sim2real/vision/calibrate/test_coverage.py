@@ -39,4 +39,4 @@ def test_places_far_from_any_point_are_named_with_their_uncertainty():
 
 def test_a_few_points_in_the_middle_do_not_suffice():
     found = weakest(of_points(np.array([13, 14, 15, 20, 21, 22]), 0), world.LENGTH, world.WIDTH)
-    assert found.matters and found.away > 0.8
+    assert found.matters and found.away > 0.8 and found.std < 0.1  # no table is bent more
