@@ -33,11 +33,8 @@ def weakest(solved: Solved, length: float, width: float) -> Weakest:
     not counted."""
     x, y = np.meshgrid(np.linspace(0.0, length, ALONG), np.linspace(0.0, width, ACROSS))
     places = np.stack([x.ravel(), y.ravel()], axis=1)
-    grid, problem, covariance = (
-        View("grid", {}, np.zeros_like(places), places),
-        solved.problem,
-        solved.fitted.covariance,
-    )
+    grid = View("grid", {}, np.zeros_like(places), places)
+    problem, covariance = solved.problem, solved.fitted.covariance
     variance = np.zeros(len(places))
     for k, pose in enumerate(solved.poses):
         _, by = problem.of_view(grid, pose, solved.scene, 6 * k, len(covariance))

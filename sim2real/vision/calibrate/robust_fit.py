@@ -42,7 +42,7 @@ def robust_fit(
     vector, information = start, np.ones(len(kinds)) if information is None else information
     for _ in range(ROUNDS):
         vector, residuals, slope = _solve(at(vector), vector, information / EFFICIENT)
-        covariance = inverse(slope, information)
+        covariance = _covariance(slope, information)
         pairs = slope[: 2 * len(kinds)].reshape(len(kinds), 2, -1)
         taken = 0.5 * (pairs @ covariance * pairs).sum(axis=(1, 2)) * information
         free = np.maximum(1.0 - taken, LEAST_FREE)
@@ -54,7 +54,7 @@ def robust_fit(
     return Fitted(vector, covariance, information, far / np.sqrt(free) / spread)
 
 
-def inverse(slope: np.ndarray, information: np.ndarray) -> np.ndarray:
+def _covariance(slope: np.ndarray, information: np.ndarray) -> np.ndarray:
     """The covariance (n, n) of unknowns by which residuals have these derivatives (m, n), the first of them pairs of
     some information (pairs,). What nothing determines is very uncertain, and not infinitely."""
     rows = slope * _rows(information, slope)[:, None]
