@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from sim2real.vision.calibrate.check import Checked
+    from sim2real.vision.calibrate.coverage import Weakest
     from sim2real.vision.calibrate.multiview import Solved
     from sim2real.vision.calibrate.view import View
     from sim2real.vision.calibrate.width import Step
@@ -35,6 +36,7 @@ def run(args: argparse.Namespace) -> int:
     """0: calibrated. Raises ValueError, in one line, for what cannot be."""
     from puckpilot_env.whole_file import check_folder, write_whole
     from sim2real.vision.calibrate.check import check
+    from sim2real.vision.calibrate.coverage import weakest
     from sim2real.vision.calibrate.multiview import solve
     from sim2real.vision.calibrate.table_file import write_table
     from sim2real.vision.calibrate.view_file import read_view
@@ -52,13 +54,13 @@ def run(args: argparse.Namespace) -> int:
     solved = solve(setup, tuple(views[: len(args.views)]))
     seconds = time.perf_counter() - begin
     checked = check(setup, solved.scene, views[-1]) if args.check else None
-    step = step_across(solved, setup.width)
+    step, weak = step_across(solved, setup.width), weakest(solved, setup.length, setup.width)
     write_table(args.out, setup, solved)
 
     from sim2real.vision.calibrate.picture import draw  # matplotlib is slow to load, and nothing else here needs it
 
     picture = write_whole(args.out.with_suffix(".png"), lambda draft: draw(draft, setup, solved, checked))
-    told = {"file": str(args.out), "picture": str(picture), "seconds": round(seconds, 2), **_told(solved, step)}
+    told = {"file": str(args.out), "picture": str(picture), "seconds": round(seconds, 2), **_told(solved, step, weak)}
     if checked is not None:
         told = {**_figures(checked), **told}
     if args.json:
@@ -79,20 +81,19 @@ def _refuse_twice(folders: list[Path], views: list[View]) -> None:
             )
 
 
-def _told(solved: Solved, step: Step | None) -> dict[str, Any]:
+def _told(solved: Solved, step: Step | None, weak: Weakest) -> dict[str, Any]:
     """What the fit found, ready for JSON."""
     import numpy as np
 
     std = np.sqrt(np.diag(solved.scene_covariance()))
     far = 1e3 * np.concatenate([np.hypot(*off.T) for off in solved.off])
-    markers = np.array(list(solved.scene.replaced(std).markers.values()))
     return {
         "views": [view.name for view in solved.problem.views],
         "markers": len(solved.scene.markers),
         "fit": {"points": len(far), "mean_mm": float(far.mean()), "max_mm": float(far.max())},
         "corner_rms_px": solved.corner_rms,
         "bend_mm": 1e3 * solved.bend,
-        "marker_std_mm": float(1e3 * np.sqrt((markers**2).mean())),
+        "marker_std_mm": float(1e3 * np.sqrt((solved.marker_std() ** 2).mean())),
         "surface_per_m": {
             name: {"value": value, "std": float(one)}
             for name, value, one in zip(("xx", "xy", "yy"), solved.scene.surface.curvature, std, strict=False)
@@ -103,6 +104,12 @@ def _told(solved: Solved, step: Step | None) -> dict[str, Any]:
             for k in np.flatnonzero(wrong)
         ],
         "step_across": None if step is None else {"mm": 1e3 * step.value, "std": 1e3 * step.std, "clear": step.clear},
+        "weakest": {
+            "place_m": weak.place.tolist(),
+            "std_mm": 1e3 * weak.std,
+            "nearest_point_m": weak.away,
+            "matters": weak.matters,
+        },
     }
 
 
@@ -142,6 +149,13 @@ def _lines(told: dict[str, Any], solved: Solved, width: float) -> list[str]:
             f"points left of the middle are stated {step['mm']:.1f} ({step['std']:.1f}) mm too far left against those "
             f"right of it: if they were measured from the left wall, the table is {width - 1e-3 * step['mm']:.4f} m "
             f"wide, not {width:g}; coordinates here follow the stated ones as well as a smooth map can"
+        )
+    weak = told["weakest"]
+    if weak["matters"]:
+        lines.append(
+            f"the table is not covered: at ({weak['place_m'][0]:.2f}, {weak['place_m'][1]:.2f}), "
+            f"{weak['nearest_point_m']:.2f} m from any point, places are known to {weak['std_mm']:.0f} mm only; lay "
+            "the puck there, too"
         )
     if "check" in told:
         lines.append(

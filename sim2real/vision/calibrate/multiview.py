@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 
 from sim2real.vision.bend import TERMS as TERMS_OF_BEND
-from sim2real.vision.calibrate.residuals import PLACE_STD, Problem
+from sim2real.vision.calibrate.pose import FAR
+from sim2real.vision.calibrate.residuals import PLACE, Problem
 from sim2real.vision.calibrate.robust_fit import Evaluate, Fitted, robust_fit
 from sim2real.vision.calibrate.start import start
 from sim2real.vision.calibrate.view import View
 from sim2real.vision.camera_file import Setup
+from sim2real.vision.motion import rotation
 from sim2real.vision.scene import BEFORE, Scene
 from sim2real.vision.surface import TERMS
 
@@ -21,8 +24,11 @@ BEND_STD = 1e-3  # m, where the search for how large the bend is begins,
 BEND_RANGE = (3e-5, 3e-3)  # and where it may end
 ROUNDS = 8  # of that search
 BEND_MOST = 6e-3  # m: a ruler's and a wall's faults are less
+# m, the standard deviation of a marker: 23 mm by two real photographs whose cameras were 6 cm apart; at 40 mm places in
+# a third are 3 mm off on average, 7 mm at most
+PLACED_MOST = 0.04
 MOST_WRONG = 1.0 / 3.0  # of a view's points, if the others are to say which
-WRONG = 3.5  # times the typical error: of 108 points that are measured alike, 0.2 lie farther off by chance
+WRONG = 3.5  # standard deviations: of 108 points that are measured alike, 0.4 lie farther off by chance
 
 
 @dataclass(frozen=True)
@@ -50,6 +56,11 @@ class Solved:
         many = self.poses.size
         return self.fitted.covariance[many:, many:]
 
+    def marker_std(self) -> np.ndarray:
+        """Standard deviations (markers, 4, 3) [m] of the corners' places."""
+        std = self.scene.replaced(np.sqrt(np.diag(self.scene_covariance())))
+        return np.array(list(std.markers.values()))
+
 
 def solve(setup: Setup, views: tuple[View, ...]) -> Solved:
     """Fit all at once. ValueError, in one line, if the views do not suffice."""
@@ -62,26 +73,25 @@ def solve(setup: Setup, views: tuple[View, ...]) -> Solved:
         )
     problem = Problem(setup.camera, views, scene, setup.puck_top, BEND_STD)
     vector = np.concatenate([poses.ravel(), scene.vector()])
+    fitted = _fit(problem, vector, None)
     for _ in range(ROUNDS):
-        fitted = _fit(problem, vector)
-        vector, before = fitted.vector, problem.bend_std
+        before = problem.bend_std
         problem = replace(problem, bend_std=_bend_std(fitted, poses.size, before))
         if abs(problem.bend_std - before) < 0.05 * before:
             break
-    found, scene = problem.split(vector)
+        fitted = _fit(problem, fitted.vector, fitted.information)
+    found, scene = problem.split(fitted.vector)
     solved = Solved(problem, fitted, found, scene, *_parts(problem, fitted))
     _check(solved)
     return solved
 
 
-def _fit(problem: Problem, vector: np.ndarray) -> Fitted:
-    pairs = sum(len(view.pixels) + len(problem.corners(view)) for view in problem.views)
-
+def _fit(problem: Problem, vector: np.ndarray, information: np.ndarray | None) -> Fitted:
     def at(vector: np.ndarray) -> Evaluate:
         whitening = problem.whitening(vector)
         return lambda x: problem.evaluate(x, whitening)
 
-    return robust_fit(at, vector, pairs)
+    return robust_fit(at, vector, problem.kinds(), information)
 
 
 def _bend_std(fitted: Fitted, first: int, std: float) -> float:
@@ -94,7 +104,21 @@ def _bend_std(fitted: Fitted, first: int, std: float) -> float:
 
 
 def _check(solved: Solved) -> None:
-    """ValueError, in one line, for measured places that contradict each other or what the cameras see."""
+    """ValueError, in one line, for views from one place, and for measured places that contradict each other or what the
+    cameras see."""
+    if (placed := float(solved.marker_std().max())) > PLACED_MOST:
+        eyes = np.array([-rotation(pose[:3]).T @ pose[3:] for pose in solved.poses])
+        apart = min(float(np.linalg.norm(one - other)) for one, other in combinations(eyes, 2))
+        raise ValueError(
+            f"a marker is placed to {1e3 * min(placed, 1.0):.0f} mm only; expected {1e3 * PLACED_MOST:.0f} at most: "
+            f"two cameras are {apart:.2f} m apart; add a photograph from half a metre aside"
+        )
+    for view, rms in zip(solved.problem.views, solved.corner_rms, strict=True):
+        if rms > FAR:
+            raise ValueError(
+                f"{view.name}: markers are {rms:.1f} px rms from where the other views have them; expected {FAR:g} at "
+                "most: was one moved between photographs, or is camera.json of another camera or lens?"
+            )
     for view, off, wrong in zip(solved.problem.views, solved.off, solved.wrong, strict=True):
         if wrong.mean() > MOST_WRONG:
             raise ValueError(
@@ -114,12 +138,13 @@ def _check(solved: Solved) -> None:
 def _parts(problem: Problem, fitted: Fitted) -> tuple[list[np.ndarray], list[np.ndarray], list[float]]:
     """The residuals of each view: points on the table, which of them are wrong, and corners in the picture."""
     poses, scene = problem.split(fitted.vector)
-    off, wrong, corner_rms = [], [], []
+    place = problem.kinds() == PLACE
+    wrong = np.split(fitted.off[place] > WRONG, np.cumsum([len(view.pixels) for view in problem.views])[:-1])
+    off, corner_rms = [], []
     for view, pose in zip(problem.views, poses, strict=True):
         pixels = problem.pixels(view, pose, scene)
         n = len(view.pixels)
         by_place = problem.by_place(view, pose, scene)
         off.append(np.linalg.solve(by_place, (view.pixels - pixels[:n])[:, :, None])[:, :, 0])
-        wrong.append(np.hypot(*off[-1].T) > WRONG * fitted.spread * PLACE_STD)
         corner_rms.append(float(np.sqrt(((pixels[n:] - problem.corners(view)) ** 2).sum(axis=1).mean())))
     return off, wrong, corner_rms

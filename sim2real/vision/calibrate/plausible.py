@@ -1,10 +1,11 @@
-"""Whether a view's points can be what it shows: axes swapped, sizes in other units, a table seen edge-on."""
+"""Whether a view's points can be what it shows: axes swapped, sizes in other units, typing errors, a table edge-on."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from sim2real.vision.bend import Bend
+from sim2real.vision.calibrate.pose import rough_pose
 from sim2real.vision.calibrate.view import View
 from sim2real.vision.camera import Camera
 from sim2real.vision.locate import Locator
@@ -13,15 +14,22 @@ from sim2real.vision.surface import Surface
 
 FAR = 0.01  # m, of the points' root mean square: more than any table is warped
 EDGE_ON = 10.0  # degrees that the camera must see the whole table from above
+LINE = 0.02  # m, root mean square, that points must be spread across any line
+BLUNDERS = 6  # one point of so many, at most, is looked for as the one that spoils the rest
 
 
-def check_view(camera: Camera, view: View, motion: np.ndarray, height: float) -> None:
-    """See that the rough motion (6,) of a view's camera makes sense. ValueError, in one line, if not."""
+def plausible_pose(camera: Camera, view: View, height: float) -> np.ndarray:
+    """The rough motion (6,) of a view's camera, by its points on a flat table. ValueError, in one line, if that makes
+    no sense."""
+    across = np.linalg.svd(view.places - view.places.mean(axis=0))[1][-1] / np.sqrt(len(view.places))
+    if across < LINE:
+        raise ValueError(
+            f"{view.name}: its points lie on one line, to {1e3 * across:.0f} mm; expected them all over the table"
+        )
+    motion = _rough(camera, view, height)
+    off = _off(camera, view, motion, height)
+    far = _rms(off[np.isfinite(off)])
     origin = -rotation(motion[:3]).T @ motion[3:]
-    low, high = (tuple(float(one) for one in end(view.places, axis=0)) for end in (np.min, np.max))
-    flat = Bend(((low[0], low[1]), (high[0], high[1])))
-    off = Locator(camera, motion, Surface((0.0, 0.0)), flat).places(view.pixels, height) - view.places
-    far = float(np.sqrt(np.nanmean((off**2).sum(axis=1)))) if np.isfinite(off).any() else np.inf
     level = np.degrees(np.arctan2(origin[2], np.hypot(*(view.places - origin[:2]).T).max()))
     if 0.0 < level < EDGE_ON and far < 10.0 * FAR:
         raise ValueError(
@@ -33,8 +41,51 @@ def check_view(camera: Camera, view: View, motion: np.ndarray, height: float) ->
             f"{view.name}: the points are mirrored: they fit to {1e3 * far:.1f} mm, but with the camera "
             f"{-origin[2]:.2f} m under the table; are x and y swapped, or is y counted from the left?"
         )
-    if not far < FAR:
-        raise ValueError(
-            f"{view.name}: on a flat table the points are {1e3 * far:.0f} mm from where they are seen; expected "
-            f"{1e3 * FAR:.0f} at most: do lines belong together, and are x and y metres of this table?"
-        )
+    if not _rms(off) < FAR:
+        raise ValueError(f"{view.name}: {_blunders(camera, view, height) or _nonsense(off, far)}")
+    return motion
+
+
+def _rough(camera: Camera, view: View, height: float) -> np.ndarray:
+    return rough_pose(camera, np.column_stack([view.places, np.full(len(view.places), height)]), view.pixels)
+
+
+def _off(camera: Camera, view: View, motion: np.ndarray, height: float) -> np.ndarray:
+    """How far (n,) [m] on a flat table each point is seen from where it was measured; infinite above the horizon."""
+    flat = Locator(camera, motion, Surface((0.0, 0.0)), Bend(((0.0, 0.0), (1.0, 1.0))))
+    return np.nan_to_num(np.hypot(*(flat.places(view.pixels, height) - view.places).T), nan=np.inf)
+
+
+def _rms(off: np.ndarray) -> float:
+    return float(np.sqrt((off**2).mean())) if len(off) else np.inf
+
+
+def _blunders(camera: Camera, view: View, height: float) -> str:
+    """Which few points spoil the rest, left out one by one; empty if no few do."""
+    kept = np.arange(len(view.places))
+    for _ in range(len(kept) // BLUNDERS):
+        fewer = [np.delete(kept, k) for k in range(len(kept))]
+        parts = [View("", {}, view.pixels[some], view.places[some]) for some in fewer]
+        motions = [_rough(camera, part, height) for part in parts]
+        rms = [_rms(_off(camera, part, motion, height)) for part, motion in zip(parts, motions, strict=True)]
+        best = int(np.argmin(rms))
+        kept = fewer[best]
+        if rms[best] < FAR:
+            out = np.setdiff1d(np.arange(len(view.places)), kept)
+            off = _off(camera, view, motions[best], height)[out]
+            where = [f"{1e3 * far:.0f} mm" if np.isfinite(far) else "above the horizon" for far in off]
+            told = ", ".join(f"point {k + 1} ({far})" for k, far in zip(out, where, strict=True))
+            return (
+                f"not seen where measured: {told}; the other {len(kept)} are, to {1e3 * rms[best]:.1f} mm: mend or "
+                "delete the line in pixels.csv"
+            )
+    return ""
+
+
+def _nonsense(off: np.ndarray, far: float) -> str:
+    past = int(np.isinf(off).sum())
+    seen = f", {past} of them above its horizon" if past else ""
+    return (
+        f"on a flat table the points are {1e3 * far:.0f} mm from where they are seen{seen}; expected "
+        f"{1e3 * FAR:.0f} at most: do lines belong together, and are x and y metres of this table?"
+    )

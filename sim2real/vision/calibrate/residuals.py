@@ -12,9 +12,11 @@ from sim2real.vision.motion import moved
 from sim2real.vision.scene import BEFORE, Scene
 from sim2real.vision.surface import TERMS
 
-CORNER_STD = 0.1  # px, of a marker's corner by `edges`
+# at the least, since what fits better fits by chance, or errs alike in all views; `robust_fit` finds how much more
+CORNER_STD = 0.05  # px, of a marker's corner by `edges`
 PIXEL_STD = 0.2  # px, of the puck's centre
 PLACE_STD = 0.5e-3  # m, of a place measured by hand
+PLACE, CORNER = 0, 1  # kinds of pairs of residuals
 CURVATURE_STD = 0.02  # 1/m: 2 cm at 1 m from the middle, beyond any table that can be played on
 
 
@@ -34,13 +36,19 @@ class Problem:
         many = 6 * len(self.views)
         return vector[:many].reshape(-1, 6), self.scene.replaced(vector[many:])
 
+    def kinds(self) -> np.ndarray:
+        """Of each pair of residuals (pairs,), in the order of `evaluate`, whether it is of a PLACE or of a CORNER."""
+        return np.concatenate(
+            [np.repeat([PLACE, CORNER], [len(view.pixels), len(self.corners(view))]) for view in self.views]
+        )
+
     def evaluate(self, vector: np.ndarray, whitening: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         """Residuals (m,) and their derivatives (m, unknowns): of each view the measured points and the corners, each
         multiplied by its matrix of `whitening`; then what is known of bend and curvature before anything was seen."""
         poses, scene = self.split(vector)
         rows, slopes = [], []
         for k, (view, pose) in enumerate(zip(self.views, poses, strict=True)):
-            off, by = self._of_view(view, pose, scene, 6 * k, len(vector))
+            off, by = self.of_view(view, pose, scene, 6 * k, len(vector))
             rows.append(np.einsum("nij,nj->ni", whitening[k], off).ravel())
             slopes.append((whitening[k] @ by).reshape(-1, len(vector)))
         first = 6 * len(self.views)
@@ -77,12 +85,12 @@ class Problem:
 
     def corners(self, view: View) -> np.ndarray:
         """All corners (n, 2) of a view's markers that are in the scene."""
-        return np.concatenate([view.corners[marker] for marker in self._shared(view)])
+        return np.array([view.corners[marker] for marker in self._shared(view)]).reshape(-1, 2)
 
     def _shared(self, view: View) -> list[int]:
         return [marker for marker in self.scene.markers if marker in view.corners]
 
-    def _of_view(
+    def of_view(
         self, view: View, pose: np.ndarray, scene: Scene, column: int, many: int
     ) -> tuple[np.ndarray, np.ndarray]:
         """Seen less stated [pixels] (n, 2) of a view, with derivatives (n, 2, unknowns)."""

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from sim2real.vision.bend import Bend
-from sim2real.vision.calibrate.plausible import check_view
-from sim2real.vision.calibrate.pose import rough_pose
+from sim2real.vision.calibrate.plausible import plausible_pose
 from sim2real.vision.calibrate.view import View
 from sim2real.vision.camera import Camera
 from sim2real.vision.motion import rotation
@@ -19,11 +18,7 @@ def start(
 ) -> tuple[np.ndarray, Scene]:
     """Motions (views, 6) of the cameras and a scene with a flat surface. Markers that one view alone shows have no
     place in it. ValueError, in one line, if a view's points cannot be what it shows."""
-    poses = []
-    for view in views:
-        flat = np.column_stack([view.places, np.full(len(view.places), height)])
-        poses.append(rough_pose(camera, flat, view.pixels))
-        check_view(camera, view, poses[-1], height)
+    poses = [plausible_pose(camera, view, height) for view in views]
     often = [marker for view in views for marker in view.corners]
     markers = {}
     for marker in sorted(set(often)):
@@ -47,4 +42,4 @@ def _nearest(camera: Camera, seen: list[tuple[np.ndarray, np.ndarray]], corner: 
         across = np.eye(3) - np.outer(ray, ray) / (ray @ ray)
         left += across
         right -= across @ turn.T @ motion[3:]
-    return np.linalg.solve(left, right)
+    return np.linalg.lstsq(left, right)[0]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim2real.vision.calibrate.multiview import Solved
+from sim2real.vision.calibrate.robust_fit import robust_fit
 from sim2real.vision.scene import BEFORE
 from sim2real.vision.surface import TERMS
 
@@ -41,12 +42,9 @@ def step_across(solved: Solved, width: float) -> Step | None:
     bend = np.arange(BEFORE - TERMS) + solved.poses.size + TERMS
     residuals = residuals - slope[:, bend] @ vector[bend]
     columns = np.column_stack([np.delete(slope, bend, axis=1), _column(solved, width, whitening, len(residuals))])
-    weights = np.ones(len(residuals))
-    weights[: 2 * len(solved.fitted.weights)] = np.repeat(solved.fitted.weights, 2)
-    covariance = np.linalg.pinv((columns * weights[:, None]).T @ columns, hermitian=True)
-    best = -covariance @ (columns * weights[:, None]).T @ residuals
-    left = weights @ (residuals + columns @ best) ** 2 / max(weights.sum() - len(best), 1.0)
-    return Step(float(best[-1]), float(np.sqrt(left * covariance[-1, -1])))
+    start = np.zeros(columns.shape[1])
+    fitted = robust_fit(lambda _: lambda x: (residuals + columns @ x, columns), start, problem.kinds())
+    return Step(float(fitted.vector[-1]), float(np.sqrt(fitted.covariance[-1, -1])))
 
 
 def _column(solved: Solved, width: float, whitening: list[np.ndarray], many: int) -> np.ndarray:

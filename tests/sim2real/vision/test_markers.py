@@ -8,7 +8,9 @@ import cv2
 import numpy as np
 import pytest
 
+from sim2real.vision.edges import refine
 from sim2real.vision.markers import find_markers
+from sim2real.vision.photograph import smoothed
 from tests.sim2real.vision import world
 from tests.sim2real.vision.test_camera import CAMERA
 
@@ -51,6 +53,33 @@ def test_a_raw_mosaic_moves_nothing():
     mosaic[::2, ::2] = (0.5 * mosaic[::2, ::2]).astype(np.uint8)
     off, outward = errors(find_markers(mosaic, CAMERA, "DICT_4X4_50"))
     assert np.hypot(*off.T).max() < 0.1 and abs(outward.mean()) < 0.03
+
+
+AWRY = np.array([[2.0, 1.5], [-1.5, 2.0], [-2.0, -1.0], [2.0, -1.5]])  # px
+
+
+def truly_seen(name: int) -> np.ndarray:
+    return world.seen(world.camera_motion(world.EYES[0]), world.markers()[name])
+
+
+def test_corners_that_are_detected_far_off_are_found():
+    image = smoothed(picture(1.0))
+    for name in world.markers():
+        found = refine(image, CAMERA, truly_seen(name) + AWRY, 6)
+        assert found is not None and np.hypot(*(found - truly_seen(name)).T).max() < 0.06
+
+
+def test_an_edge_that_hardly_shows_is_none():
+    faint = 90.0 + 0.03 * (smoothed(picture(1.0)) - 90.0)
+    assert refine(faint, CAMERA, truly_seen(0), 6) is None
+
+
+def test_a_marker_that_is_seen_twice_is_not_taken():
+    image = picture(1.0).copy()
+    u, v = truly_seen(0).mean(axis=0).astype(int)
+    image[700:820, 960:1080] = image[v - 60 : v + 60, u - 60 : u + 60]
+    assert sorted(find_markers(picture(1.0), CAMERA, "DICT_4X4_50")) == [0, 1, 2, 3, 4, 5]
+    assert sorted(find_markers(image, CAMERA, "DICT_4X4_50")) == [1, 2, 3, 4, 5]
 
 
 def test_markers_of_another_dictionary_are_named():

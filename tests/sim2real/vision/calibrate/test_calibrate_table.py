@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 
 import puckpilot
+from sim2real.vision.calibrate.check import check
 from sim2real.vision.calibrate.table_file import read_table
+from sim2real.vision.calibrate.view_file import read_view
 from tests.sim2real.vision import world
 
 UBC = Path(__file__).resolve().parents[5] / "shared" / "recordings" / "ubc" / "calibration"
@@ -44,10 +46,16 @@ def test_a_made_up_table_is_found(made: Path, tmp_path: Path, capsys):
     assert told["median_mm"] <= told["mean_mm"] < 0.6 and told["max_mm"] < 1.5
     assert [(one["view"], one["point"]) for one in told["wrong"]] == [("view_1", 8)]
     assert told["wrong"][0]["off_mm"] == pytest.approx(5.0, abs=0.8)
-    assert max(told["corner_rms_px"]) < 0.05 and not told["step_across"]["clear"]
+    assert max(told["corner_rms_px"]) < 0.05 and not told["step_across"]["clear"] and not told["weakest"]["matters"]
     for k, one in enumerate(told["surface_per_m"].values()):
         assert abs(one["value"] - world.CURVATURE[k]) < 4.0 * one["std"]
-    markers = read_table(tmp_path / "table.json").scene.markers
+    words, table = json.loads((tmp_path / "table.json").read_text()), read_table(tmp_path / "table.json")
+    far = [1e3 * np.hypot(*point["off_m"]) for view in words["views"] for point in view["points"]]
+    assert told["fit"] == {"points": 108, "mean_mm": pytest.approx(np.mean(far)), "max_mm": pytest.approx(max(far))}
+    far = 1e3 * np.hypot(*check(table.setup, table.scene, read_view(made / "view_3", table.setup)).off.T)
+    figures = [told["mean_mm"], told["median_mm"], told["max_mm"], told["farthest_point"]]
+    assert figures == pytest.approx([far.mean(), np.median(far), far.max(), far.argmax() + 1])
+    markers = table.scene.markers
     off = [np.abs(markers[name] - corners).max() for name, corners in world.markers().items()]
     assert max(off) < 4e-3
     assert sorted(path.name for path in tmp_path.iterdir()) == ["table.json", "table.png"]
@@ -71,6 +79,28 @@ def test_a_view_that_is_given_twice_is_refused(made: Path, tmp_path: Path, again
     told = capsys.readouterr().err
     assert f"{made / again[-1]} shows the same photograph as {made / 'view_1'}; give each once" in told
     assert not list(tmp_path.iterdir())
+
+
+def test_a_check_that_cannot_be_leaves_no_file(made: Path, tmp_path: Path, capsys):
+    shutil.copytree(made / "view_2", made / "mistyped")
+    rows = np.loadtxt(made / "mistyped" / "pixels.csv", delimiter=",", skiprows=1)
+    rows[4, 2] += 0.4
+    np.savetxt(made / "mistyped" / "pixels.csv", rows, delimiter=",", header="u,v,x,y", comments="", fmt="%.6f")
+    words = [str(made / "view_0"), str(made / "view_1"), "--camera", str(made / "camera.json")]
+    words += ["--out", str(tmp_path / "t.json"), "--check", str(made / "mistyped")]
+    assert puckpilot.main(["calibrate", "table", *words]) == 2
+    assert "mistyped: not seen where measured: point 5 (" in capsys.readouterr().err and not list(tmp_path.iterdir())
+
+
+def test_a_table_that_is_not_covered_is_told(made: Path, tmp_path: Path, capsys):
+    for k in range(2):
+        shutil.copytree(made / f"view_{k}", made / f"near_{k}")
+        lines = (made / f"near_{k}" / "pixels.csv").read_text().splitlines()
+        (made / f"near_{k}" / "pixels.csv").write_text("\n".join(lines[:19]) + "\n")
+    words = [str(made / "near_0"), str(made / "near_1"), "--camera", str(made / "camera.json")]
+    assert puckpilot.main(["calibrate", "table", *words, "--out", str(tmp_path / "t.json")]) == 0
+    told = capsys.readouterr().out
+    assert "the table is not covered: at (2.00, " in told and " m from any point, places are known to " in told
 
 
 def test_the_picture_does_not_take_the_tables_place(made: Path, tmp_path: Path, capsys):

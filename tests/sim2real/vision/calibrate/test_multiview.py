@@ -10,7 +10,6 @@ import pytest
 
 from sim2real.vision.calibrate.check import check
 from sim2real.vision.calibrate.multiview import Solved, solve
-from sim2real.vision.calibrate.pose import camera_pose
 from sim2real.vision.calibrate.view import View
 from sim2real.vision.calibrate.width import step_across
 from sim2real.vision.camera_file import Setup
@@ -81,14 +80,6 @@ def test_a_wrong_point_is_named_and_does_no_harm():
     assert 1e3 * check(SETUP, found.scene, exact).distances.mean() < 0.3
 
 
-def test_a_corner_that_is_seen_wrong_does_no_harm():
-    bent = view(3)
-    corners = {**bent.corners, 2: bent.corners[2] + [[6.0, -4.0], [0, 0], [0, 0], [0, 0]]}
-    pose = camera_pose(SETUP, solved().scene, corners)
-    np.testing.assert_allclose(pose.origin, world.EYES[3], atol=3e-3)
-    assert np.hypot(*pose.residuals[8]) == pytest.approx(7.2, abs=0.5)
-
-
 def test_derivatives_are_differences():
     problem, vector = solved().problem, solved().fitted.vector
     whitening = problem.whitening(vector)
@@ -128,6 +119,14 @@ def test_a_width_that_is_right_is_not_doubted():
         ),
         (lambda p: p * [1.0, 0.9], r"view_0: on a flat table the points are \d\d mm from .* expected 10"),
         (lambda p: np.roll(p, 7, axis=0), r"view_0: on a flat table the points are \d+ mm from"),
+        (
+            lambda p: p + 0.3 * (np.arange(36)[:, None] == 4) * [1.0, 0.0],
+            r"view_0: not seen where measured: point 5 \((29|30)\d mm\); the other 35 are, to \d\.\d mm: mend",
+        ),
+        (
+            lambda p: p + 0.3 * np.isin(np.arange(36), (4, 30))[:, None] * [0.0, -1.0],
+            r"view_0: not seen where measured: point 5 \(\d\d\d mm\), point 31 \(\d\d\d mm\); the other 34",
+        ),
     ],
 )
 def test_places_that_cannot_be_are_refused(change, words: str):
@@ -135,10 +134,50 @@ def test_places_that_cannot_be_are_refused(change, words: str):
         solve(SETUP, (replace(view(0), places=change(view(0).places)), view(1)))
 
 
+def test_points_on_one_line_are_refused():
+    line = replace(view(0), pixels=view(0).pixels[::6], places=view(0).places[::6])
+    with pytest.raises(ValueError, match=r"view_0: its points lie on one line, to [01] mm; expected them all over"):
+        solve(SETUP, (line, view(1)))
+
+
+def seen_from(eye: tuple[float, float, float], seed: int) -> View:
+    """Not one of the four cameras', but seen with the same errors."""
+    rng, motion = np.random.default_rng(seed), world.camera_motion(eye)
+    corners = {name: world.seen(motion, one) for name, one in world.markers().items()}
+    corners = {name: one + rng.normal(0.0, CORNER_NOISE, (4, 2)) for name, one in corners.items()}
+    pixels = world.seen(motion, world.puck_points(world.grid())) + rng.normal(0.0, PIXEL_NOISE, (36, 2))
+    return View(f"seen {seed}", corners, pixels, world.grid())
+
+
+@pytest.mark.parametrize("aside", [0.0, 0.005])
+def test_views_from_one_place_are_refused(aside: float):
+    x, y, z = world.EYES[0]
+    with pytest.raises(
+        ValueError, match=r"placed to \d+ mm only; expected 40 at most: two cameras are 0\.0[01] m apart"
+    ):
+        solve(SETUP, (seen_from((x, y, z), 1), seen_from((x, y + aside, z), 2)))
+    assert len(solve(SETUP, (seen_from((x, y, z), 1), seen_from((x, y + 0.2, z), 2))).poses) == 2
+
+
+def test_a_marker_that_was_moved_between_photographs_is_told():
+    motion = world.camera_motion(world.EYES[2])
+    corners = {**view(2).corners, 3: world.seen(motion, world.markers()[3] + [0.02, 0.0, 0.0])}
+    with pytest.raises(ValueError, match=r"view_2: markers are \d\.\d px rms from where the other views have them"):
+        solve(SETUP, (view(0), view(1), replace(view(2), corners=corners)))
+
+
 def test_a_view_that_contradicts_the_others_is_refused():
     off = replace(view(0), places=view(0).places * [1.0, 0.985])
     with pytest.raises(ValueError, match=r"view_0: \d\d of its 36 points contradict the other views, by \d\.\d mm"):
         solve(SETUP, (off, view(1), view(2)))
+
+
+def test_a_view_of_which_half_contradicts_the_others_is_refused():
+    """15 of 36 points by a centimetre, every which way."""
+    turn = 2.4 * np.arange(36)
+    off = 0.010 * np.stack([np.cos(turn), np.sin(turn)], axis=1) * (np.arange(36)[:, None] % 12 < 5)
+    with pytest.raises(ValueError, match=r"view_0: 1[2-8] of its 36 points contradict the other views"):
+        solve(SETUP, (replace(view(0), places=view(0).places + off), view(1), view(2)))
 
 
 @pytest.mark.parametrize("scale, told", [([1.0, 1.02], r"\+(1\.9|2\.0)"), ([1.02, 1.0], r"-(1\.9|2\.0)")])
@@ -148,10 +187,12 @@ def test_a_size_that_is_wrong_in_all_views_is_refused(scale: list[float], told: 
         solve(SETUP, views)
 
 
-def test_a_table_seen_edge_on_is_refused():
-    motion = world.camera_motion((-2.0, 0.5, 0.25))
+@pytest.mark.parametrize("height, told", [(0.25, "[34]"), (0.6, "9")])
+def test_a_table_seen_edge_on_is_refused(height: float, told: str):
+    """The far end is 3.93 m away."""
+    motion = world.camera_motion((-2.0, 0.5, height))
     flat = View("low", view(0).corners, world.seen(motion, world.puck_points(world.grid())), world.grid())
-    with pytest.raises(ValueError, match=r"low: the table is seen edge-on, its far end from [34] degrees above"):
+    with pytest.raises(ValueError, match=rf"low: the table is seen edge-on, its far end from {told} degrees above"):
         solve(SETUP, (flat, view(1)))
 
 
@@ -161,5 +202,3 @@ def test_too_little_is_refused():
     few = replace(view(1), corners={name: view(1).corners[name] for name in (0, 1)})
     with pytest.raises(ValueError, match="2 markers are seen in two views or more; expected 3"):
         solve(SETUP, (view(0), few))
-    with pytest.raises(ValueError, match="2 of the calibration's 6 markers are seen; expected 3"):
-        camera_pose(SETUP, solved().scene, few.corners)

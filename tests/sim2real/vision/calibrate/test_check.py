@@ -1,0 +1,39 @@
+"""A view that is held against a calibration: what it cannot be is refused as in the fit."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sim2real.vision.calibrate.check import check
+from tests.sim2real.vision import world
+from tests.sim2real.vision.calibrate.test_multiview import SETUP, seen_from, solved, view
+
+
+def test_swapped_axes_are_refused():
+    with pytest.raises(ValueError, match="view_3: the points are mirrored"):
+        check(SETUP, solved().scene, replace(view(3), places=view(3).places[:, ::-1].copy()))
+
+
+def test_a_point_above_the_horizon_is_named():
+    low = seen_from((-0.9, 0.5, 0.6), 3)
+    pixels = low.pixels.copy()
+    pixels[3] = (1000.0, 5.0)
+    with pytest.raises(
+        ValueError, match=r"seen 3: not seen where measured: point 4 \((above the horizon|\d+ mm)\); the other 35 are"
+    ):
+        check(SETUP, solved().scene, replace(low, pixels=pixels))
+
+
+def test_a_point_that_is_mistyped_is_named():
+    places = view(3).places + 0.3 * (np.arange(36)[:, None] == 9) * [1.0, 0.0]
+    with pytest.raises(ValueError, match=r"view_3: not seen where measured: point 10 \((29|30)\d mm\)"):
+        check(SETUP, solved().scene, replace(view(3), places=places))
+
+
+def test_figures_are_of_the_distances():
+    """A shift of 1 mm of every place shows as one of every distance."""
+    exact = check(SETUP, solved().scene, replace(view(3), places=world.grid()))
+    np.testing.assert_allclose(exact.distances, np.sqrt((exact.off**2).sum(axis=1)))
