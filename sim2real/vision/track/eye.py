@@ -17,7 +17,6 @@ from sim2real.vision.track.window import Windows
 SURE_SEEN = 0.3  # of the puck's rim, from which on it can be nothing else
 SURE_WITHIN = 0.25e-3  # m, standard deviation of a sure sighting at most
 PUCK_POWER, OPPONENT_POWER = 0.02, 5.0  # m^2/s^3, of what changes their velocities between contacts
-RING_ERROR = 0.05e-3  # m, standard deviation of a ring's middle
 AROUND = 2.0  # radii round where something should be that are looked at
 ROOM = 4.0  # standard deviations more
 
@@ -76,4 +75,4 @@ def _of_disc(disc: Disc) -> Sighting:
 
 
 def _of_ring(ring: Ring) -> Sighting:
-    return Sighting(ring.centre, RING_ERROR**2 * np.eye(2), True)
+    return Sighting(ring.centre, ring.covariance, True)

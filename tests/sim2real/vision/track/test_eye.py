@@ -10,7 +10,7 @@ import pytest
 
 from sim2real.camera.render.moment import Moment, Motion
 from sim2real.camera.render.renderer import Renderer
-from sim2real.camera.render.table import LOW_RING, Glint, Table
+from sim2real.camera.render.table import LOW_RING, STANDARD_RING, Glint, Table
 from sim2real.camera.render.view import View
 from sim2real.vision.track.eye import Seen
 from sim2real.vision.trial.rendered import exact_locator, eye_for
@@ -118,6 +118,28 @@ def test_a_ring_on_the_low_attachment_is_found_at_its_own_height_alone():
     camera = RENDERER.view.place
     shift = 0.05 * (1.5 - camera[0]) / (camera[2] - LOW_RING)
     assert 1.5 - seen[1].opponent.place[0] == pytest.approx(shift, rel=0.02)
+
+
+@pytest.mark.parametrize("wide", [0.004, 0.008, 0.015, 0.02])
+@pytest.mark.parametrize("height", [STANDARD_RING, LOW_RING])
+def test_fingers_that_hold_the_ring_hide_it_not(wide, height):
+    """One or two dark ellipses from the hole to beyond the ring, along the table or across."""
+    renderer, rng = Renderer(replace(TABLE, ring_height=height), RENDERER.view), np.random.default_rng(0)
+    eye, far = eye_for(renderer, exact_locator(TABLE, RENDERER.view)), []
+    for number in range(8):
+        x, y = rng.uniform((1.1, 0.1), (1.9, 0.9))
+        along = number % 2
+        half = (0.06, 0.5 * wide) if along else (0.5 * wide, 0.06)
+        fingers = tuple(
+            Glint(x + side * 0.065 * along, y + side * 0.065 * (1 - along), *half, 12.0, height)
+            for side in ((1,), (-1, 1))[number // 2 % 2]
+        )
+        moments = (Moment(k / RATE, opponent=Motion(x, y), glints=fingers) for k in range(2))
+        fresh = copy.deepcopy(eye)
+        ring = [fresh.look(renderer.picture(one, number), one.time) for one in moments][-1].opponent
+        assert ring is not None
+        far.append(np.linalg.norm(ring.place - (x, y)))
+    assert max(far) < 0.2e-3
 
 
 def test_in_a_game_it_is_right_where_it_says_that_it_knows():
