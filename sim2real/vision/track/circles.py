@@ -70,8 +70,8 @@ def guess_hole(places, steps, found):
 @array_kernel
 def fit_circles(places, steps, found, normal):
     """Move `found` (x, y, outer and hole's radius), of which the outer one is not known yet, to where the squares of
-    the points' distances from their circles are least (Gauss, Newton; Tukey's weights). Fill the normal matrix (4, 4) [1]. False where
-    too few points agree."""
+    the points' distances from their circles are least (Gauss, Newton; Tukey's weights). Fill the normal matrix (4, 4)
+    [1]. False where too few points agree."""
     count = places.shape[0]
     outer, many = np.empty(count), 0
     for i in range(count):

@@ -91,17 +91,17 @@ class Follower:
 
     def foretold(self, time: float) -> Estimate | None:
         """Where it should be at a time, if nothing touches it; None where it is not known now."""
-        return self._last.after(time, self._power) if self._last and self._in_sight and self._last.known else None
+        return self._last.after(time, self._power) if self._last and self.in_sight and self._last.known else None
 
     def see(self, time: float, sightings: Sequence[Sighting]) -> Estimate | None:
         """What is known after a picture, None if nothing is. ValueError if a picture is not later than the last."""
         if time <= self._time:
             raise ValueError(f"a picture of {time:.6f} s after one of {self._time:.6f} s; expected later ones")
         self._last, self._time = self._next(time, sightings), time
-        return self._last if self._last and self._in_sight and self._last.known else None
+        return self._last if self._last and self.in_sight and self._last.known else None
 
     @property
-    def _in_sight(self) -> bool:
+    def in_sight(self) -> bool:
         """Whether it was seen in the last picture."""
         return self._last is not None and self._last.time == self._time
 
@@ -117,9 +117,9 @@ class Follower:
             return here.corrected(min(fitting, key=here.far))
         reachable = [one for one in sure if _apart(one, before) <= FASTEST * (time - before.time)]
         if len(reachable) == 1:
-            if self._in_sight and not close:
+            if self.in_sight and not close:
                 return here.corrected(reachable[0])
-            return _begun(time, reachable, before.pictures if self._in_sight else 0)  # something struck it
+            return _begun(time, reachable, before.pictures if self.in_sight else 0)  # something struck it
         return before if before.known else _begun(time, sure)
 
 
