@@ -47,8 +47,8 @@ class Judged:
         return (
             f"known in {len(mm)} pictures, unknown in {self.unknown}; mm: mean {mm.mean():.3f}, p99 "
             f"{np.percentile(mm, 99):.3f}, max {mm.max():.3f}; known and over 5 mm off: {(mm > 5.0).sum()}, over 4 "
-            f"standard deviations: {(squares > 16.0).sum()}; within the 95 % ellipse: {share_within(self.squares):.3f}, "
-            f"velocities: {share_within(self.speeds):.3f}"
+            f"standard deviations: {(squares > 16.0).sum()}; within the 95 % ellipse: "
+            f"{share_within(self.squares):.3f}, velocities: {share_within(self.speeds):.3f}"
         )
 
 
