@@ -14,8 +14,7 @@ from sim2real.vision.track.puck import PuckFinder
 from sim2real.vision.track.ring import Ring, RingFinder
 from sim2real.vision.track.window import Windows
 
-SURE_SEEN = 0.3  # of the puck's rim, from which on it can be nothing else
-SURE_WITHIN = 0.25e-3  # m, standard deviation of a sure sighting at most
+SURE_WITHIN = 0.25e-3  # m, standard deviation at most of what can be nothing else than the puck
 PUCK_POWER, OPPONENT_POWER = 0.02, 5.0  # m^2/s^3, of what changes their velocities between contacts
 AROUND = 2.0  # radii round where something should be that are looked at
 ROOM = 4.0  # standard deviations more
@@ -87,7 +86,7 @@ class Eye:
 
 
 def _of_disc(disc: Disc) -> Sighting:
-    return Sighting(disc.centre, disc.covariance, disc.seen >= SURE_SEEN and disc.deviation <= SURE_WITHIN)
+    return Sighting(disc.centre, disc.covariance, disc.deviation <= SURE_WITHIN)
 
 
 def _of_ring(ring: Ring) -> Sighting:
