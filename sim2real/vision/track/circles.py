@@ -68,10 +68,10 @@ def guess_hole(places, steps, found):
 
 
 @array_kernel
-def fit_circles(places, steps, found, normal):
+def fit_circles(places, steps, found, covariance):
     """Move `found` (x, y, outer and hole's radius), of which the outer one is not known yet, to where the squares of
-    the points' distances from their circles are least (Gauss, Newton; Tukey's weights). Fill the normal matrix (4, 4)
-    [1]. False where too few points agree."""
+    the points' distances from their circles are least (Gauss, Newton; Tukey's weights). Fill the centre's covariance
+    (2, 2) [m^2] for points that err by a metre. False where too few points agree."""
     count = places.shape[0]
     outer, many = np.empty(count), 0
     for i in range(count):
@@ -84,8 +84,7 @@ def fit_circles(places, steps, found, normal):
     found[2] = np.median(outer[:many])
     for turn in range(ROUNDS):
         limit = OFF if turn else 2.0 * OFF
-        normal[:] = 0.0
-        right, on = np.zeros(4), np.zeros(2)
+        normal, right, on = np.zeros((4, 4)), np.zeros(4), np.zeros(2)
         for i in range(count):
             far, side = _side(places, steps, i, found[0], found[1])
             which = 3 if side < 0 else 2
@@ -109,6 +108,7 @@ def fit_circles(places, steps, found, normal):
         found += move
         if turn and np.abs(move).max() < STILL:
             break
+    covariance[:] = np.linalg.inv(normal)[:2, :2]
     return True
 
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from puckpilot_env.kernel import kernel
 from sim2real.vision.track.two_by_two import deviation, inverse
 
 GATE = 16.0  # square of the distance in standard deviations at which a sighting still fits the path
@@ -53,13 +54,9 @@ class Estimate:
 
     def after(self, time: float, power: float) -> Estimate:
         """Where it will be, if what changes its velocity is white and has this power [m^2/s^3]."""
-        dt = time - self.time
-        on = np.array([[1.0, 0.0, dt, 0.0], [0.0, 1.0, 0.0, dt], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
-        aa, ab, bb = power * dt**3 / 3.0, power * dt**2 / 2.0, power * dt
-        grown = np.array([[aa, 0.0, ab, 0.0], [0.0, aa, 0.0, ab], [ab, 0.0, bb, 0.0], [0.0, ab, 0.0, bb]])
-        covariance = on @ self.covariance @ on.T + grown
-        there = self.place + dt * self.velocity
-        return Estimate(time, there, self.velocity, covariance, self.pictures)
+        dt, covariance = time - self.time, np.empty((4, 4))
+        _grow(self.covariance, dt, power, covariance)
+        return Estimate(time, self.place + dt * self.velocity, self.velocity, covariance, self.pictures)
 
     def corrected(self, sighting: Sighting) -> Estimate:
         """With a sighting of the same time (Kalman 1960)."""
@@ -121,6 +118,20 @@ class Follower:
                 return here.corrected(reachable[0])
             return _begun(time, reachable, before.pictures if self.in_sight else 0)  # something struck it
         return before if before.known else _begun(time, sure)
+
+
+@kernel
+def _grow(before, dt, power, after):
+    """Write the covariance (4, 4) of place and velocity a time later into `after`: what is off in the velocity moves
+    the place, and white noise adds to both."""
+    for i in range(2):
+        for j in range(2):
+            a, b, c, d = before[i, j], before[i, j + 2], before[i + 2, j], before[i + 2, j + 2]
+            noise = power * dt if i == j else 0.0
+            after[i, j] = a + dt * (b + c + dt * d) + noise * dt * dt / 3.0
+            after[i, j + 2] = b + dt * d + noise * dt / 2.0
+            after[i + 2, j] = c + dt * d + noise * dt / 2.0
+            after[i + 2, j + 2] = d + noise
 
 
 def _apart(sighting: Sighting, estimate: Estimate) -> float:

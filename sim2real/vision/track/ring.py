@@ -61,8 +61,8 @@ class RingFinder:
         found = np.zeros(4)
         if len(part) < FEWEST or not guess_hole(part.places, part.steps, found):
             return None
-        normal = np.zeros((4, 4))
-        if not fit_circles(whole.places, whole.steps, found, normal):
+        covariance = np.zeros((2, 2))
+        if not fit_circles(whole.places, whole.steps, found, covariance):
             return None
         radius, hole = float(found[2]), float(found[3])
         if radius < SMALLEST or not HOLES[0] <= hole / radius <= HOLES[1]:
@@ -70,7 +70,7 @@ class RingFinder:
         *seen, on = shares_of_circles(whole.places, whole.steps, found)
         if min(seen) < LEAST_SEEN or on < LEAST_ON:
             return None
-        return Ring(found[:2], EDGE_ERROR**2 * np.linalg.inv(normal)[:2, :2], radius, hole)
+        return Ring(found[:2], EDGE_ERROR**2 * covariance, radius, hole)
 
     def _beside(self, ring: Ring, blobs: list[Blob]) -> list[Blob]:
         """What is left of blobs outside of a ring."""
