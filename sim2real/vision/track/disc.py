@@ -13,7 +13,7 @@ import numpy as np
 
 from puckpilot_env.kernel import array_kernel, kernel
 from sim2real.vision.track.rim import Rim
-from sim2real.vision.track.two_by_two import deviation, eigenvalues, inverse
+from sim2real.vision.track.two_by_two import deviation, inverse
 
 STARTS = 40  # first points of pairs
 JUDGES = 60  # points, about, by which a hypothesis is judged
@@ -25,7 +25,6 @@ ROUNDS = 8  # of the refinement at most,
 STILL = 1e-7  # m: which ends when the centre moves less
 SPREAD = (0.04, 0.3)  # px, the least and the greatest scatter that edges are taken to have
 CUT = 3.0  # times the scatter: farther points have no weight (Tukey's biweight)
-WORST = 1e8  # condition of the normal matrix, from which on the points tell no centre
 BINS = 36  # parts of the rim
 TOGETHER = 4.0  # neighbouring points that err as one: so much greater is the variance than that of as many points
 COMMON = 0.03  # px: standard deviation of what all edges of a disc err by alike, which an arc's centre follows
@@ -57,9 +56,6 @@ def find_disc(rim: Rim, radius: float) -> Disc | None:
     counts, bins = np.zeros(2, np.int64), np.zeros(BINS, np.bool_)
     scatter = _refine(rim.places, rim.steps, radius, centre, normal, total, counts, bins)
     if counts[0] < 3:
-        return None
-    smaller, greater = eigenvalues(normal)
-    if greater > WORST * smaller:
         return None
     alone = inverse(normal)
     leaning = COMMON * alone @ total

@@ -1,23 +1,24 @@
 """Follows one thing through the pictures: where it is, how fast, how surely, and when that is not known.
 
 Between contacts things on the table go nearly straight; a contact is a sighting that the path before did not foretell.
-What is not seen is under the gantry, beside the very mallet that may strike it at any moment: it is not known.
+What is not seen is under the gantry, beside the very mallet that may strike it at any moment: it is not known, and
+comes out wherever it can have gone since it was seen last.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from puckpilot_env.kernel import kernel
 from sim2real.vision.track.two_by_two import deviation, inverse
 
 GATE = 16.0  # square of the distance in standard deviations at which a sighting still fits the path
-CLOSE = 0.03  # m: what is known no better, standard deviation, is followed by sure sightings alone
-FASTEST = 15.0  # m/s
-LOST = 0.06  # s unseen: whatever is seen surely from then on is it
-STRUCK = 250.0  # m^2/s^3: power of what may change the velocity of something hidden: ten blows of 5 m/s a second
+CLOSE = 0.01  # m: what is known no better, standard deviation, is followed by sure sightings alone,
+FASTEST = 15.0  # m/s: if it can have gone there since it was seen last
 ANY_SPEED = 5.0  # m/s, standard deviation of a velocity of which nothing is known
 
 
@@ -32,21 +33,19 @@ class Sighting:
 
 @dataclass(frozen=True)
 class Estimate:
-    """Where something is at `time` [s]: place (2,) [m] and velocity (2,) [m/s], their covariance (4, 4), when it was
-    `last` seen [s], and in how many pictures so far."""
+    """Where something is at `time` [s], when it was seen last: place (2,) [m] and velocity (2,) [m/s], their covariance
+    (4, 4), and in how many pictures it was seen."""
 
     time: float
     place: np.ndarray
     velocity: np.ndarray
     covariance: np.ndarray
-    last: float
     pictures: int
 
     @property
     def known(self) -> bool:
-        """Whether it is known where it is: it was seen in this very picture, and in another before, since one could
-        err."""
-        return self.last == self.time and self.pictures >= 2
+        """Whether two pictures agree on it, since one could err."""
+        return self.pictures >= 2
 
     @property
     def deviation(self) -> float:
@@ -55,13 +54,9 @@ class Estimate:
 
     def after(self, time: float, power: float) -> Estimate:
         """Where it will be, if what changes its velocity is white and has this power [m^2/s^3]."""
-        dt = time - self.time
-        on = np.array([[1.0, 0.0, dt, 0.0], [0.0, 1.0, 0.0, dt], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
-        aa, ab, bb = power * dt**3 / 3.0, power * dt**2 / 2.0, power * dt
-        grown = np.array([[aa, 0.0, ab, 0.0], [0.0, aa, 0.0, ab], [ab, 0.0, bb, 0.0], [0.0, ab, 0.0, bb]])
-        covariance = on @ self.covariance @ on.T + grown
-        there = self.place + dt * self.velocity
-        return Estimate(time, there, self.velocity, covariance, self.last, self.pictures)
+        dt, covariance = time - self.time, np.empty((4, 4))
+        _grow(self.covariance, dt, power, covariance)
+        return Estimate(time, self.place + dt * self.velocity, self.velocity, covariance, self.pictures)
 
     def corrected(self, sighting: Sighting) -> Estimate:
         """With a sighting of the same time (Kalman 1960)."""
@@ -73,7 +68,6 @@ class Estimate:
             self.place + gain[:2] @ off,
             self.velocity + gain[2:] @ off,
             0.5 * (covariance + covariance.T),
-            self.time,
             self.pictures + 1,
         )
 
@@ -89,35 +83,55 @@ class Follower:
 
     def __init__(self, power: float) -> None:
         self._power = power
-        self._now: Estimate | None = None
+        self._last: Estimate | None = None  # as it was when it was seen last
+        self._time = -math.inf  # of the last picture
 
     def foretold(self, time: float) -> Estimate | None:
         """Where it should be at a time, if nothing touches it; None where it is not known now."""
-        return self._now.after(time, self._power) if self._now and self._now.known else None
+        return self._last.after(time, self._power) if self._last and self.in_sight and self._last.known else None
 
     def see(self, time: float, sightings: Sequence[Sighting]) -> Estimate | None:
         """What is known after a picture, None if nothing is. ValueError if a picture is not later than the last."""
-        before = self._now
-        if before and time <= before.time:
-            raise ValueError(f"a picture of {time:.6f} s after one of {before.time:.6f} s; expected later ones")
-        self._now = self._next(time, sightings)
-        return self._now if self._now and self._now.known else None
+        if time <= self._time:
+            raise ValueError(f"a picture of {time:.6f} s after one of {self._time:.6f} s; expected later ones")
+        self._last, self._time = self._next(time, sightings), time
+        return self._last if self._last and self.in_sight and self._last.known else None
+
+    @property
+    def in_sight(self) -> bool:
+        """Whether it was seen in the last picture."""
+        return self._last is not None and self._last.time == self._time
 
     def _next(self, time: float, sightings: Sequence[Sighting]) -> Estimate | None:
-        before = self._now
+        before = self._last
         sure = [one for one in sightings if one.sure]
         if before is None:
             return _begun(time, sure)
-        here = before.after(time, self._power if before.last == before.time else STRUCK)
-        fitting = [one for one in (sightings if here.deviation <= CLOSE else sure) if here.far(one) <= GATE]
-        if fitting and (here.deviation <= CLOSE or len(fitting) == 1):
+        here = before.after(time, self._power)
+        close = here.deviation <= CLOSE
+        fitting = [one for one in sightings if here.far(one) <= GATE] if close else []
+        if fitting:
             return here.corrected(min(fitting, key=here.far))
-        reachable = [one for one in sure if _apart(one, before) <= FASTEST * (time - before.last)]
-        if len(reachable) == 1 and before.pictures >= 2:
-            return _begun(time, reachable, before.pictures)  # something struck it
-        if before.pictures < 2 or time - before.last > LOST:
-            return _begun(time, sure)
-        return before.after(time, STRUCK)
+        reachable = [one for one in sure if _apart(one, before) <= FASTEST * (time - before.time)]
+        if len(reachable) == 1:
+            if self.in_sight and not close:
+                return here.corrected(reachable[0])
+            return _begun(time, reachable, before.pictures if self.in_sight else 0)  # something struck it
+        return before if before.known else _begun(time, sure)
+
+
+@kernel
+def _grow(before, dt, power, after):
+    """Write the covariance (4, 4) of place and velocity a time later into `after`: what is off in the velocity moves
+    the place, and white noise adds to both."""
+    for i in range(2):
+        for j in range(2):
+            a, b, c, d = before[i, j], before[i, j + 2], before[i + 2, j], before[i + 2, j + 2]
+            noise = power * dt if i == j else 0.0
+            after[i, j] = a + dt * (b + c + dt * d) + noise * dt * dt / 3.0
+            after[i, j + 2] = b + dt * d + noise * dt / 2.0
+            after[i + 2, j] = c + dt * d + noise * dt / 2.0
+            after[i + 2, j + 2] = d + noise
 
 
 def _apart(sighting: Sighting, estimate: Estimate) -> float:
@@ -131,4 +145,4 @@ def _begun(time: float, sightings: list[Sighting], pictures: int = 0) -> Estimat
     (sighting,) = sightings
     covariance = np.diag([0.0, 0.0, ANY_SPEED**2, ANY_SPEED**2])
     covariance[:2, :2] = sighting.covariance
-    return Estimate(time, sighting.place, np.zeros(2), covariance, time, pictures + 1)
+    return Estimate(time, sighting.place, np.zeros(2), covariance, pictures + 1)

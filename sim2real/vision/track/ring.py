@@ -1,30 +1,35 @@
-"""The opponent's mallet: a bright flat ring on top (report D). What shines round a round dark hole is the ring."""
+"""The opponent's mallet: a bright flat ring on top (report D). What shines round a round dark hole is the ring.
+
+Fingers and the gantry's beam may hide some of it, so that its outline is open or in parts: what faces outwards of its
+edges lies on the outer circle, what faces inwards on the hole's, round the same middle.
+"""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 
-from puckpilot_env.kernel import array_kernel
 from sim2real.vision.track.bright import FEWEST, Blob
-from sim2real.vision.track.rim import Places, rim_of
+from sim2real.vision.track.circles import OFF, fit_circles, guess_hole, shares_of_circles
+from sim2real.vision.track.rim import Places, Rim, rim_of
 
 HEIGHTS = {"standard": 0.090, "low": 0.040}  # m, of both attachments; the report has neither, so measure your own
-SIZES = (0.015, 0.08)  # m, of a ring's outer radius
+SMALLEST = 0.015  # m, of a ring's outer radius
 HOLES = (0.25, 0.85)  # of the outer radius, the hole's
-ECCENTRIC = 0.15  # of the outer radius: between the middles of ring and hole
-OFF = 1.5e-3  # m from a circle: farther points are others'
-LEAST_ON = 0.6  # of the points of each circle
-ROUNDS = 5
+FULL = 0.8  # of its hull: what shines in more of it is no part of a ring
+LEAST_ON = 0.6  # of the edges that face inwards: on the hole's circle
+LEAST_SEEN = 0.4  # of each circle
+EDGE_ERROR = 0.5e-3  # m, standard deviation of an edge point, if they erred apart: neighbours err as one
 
 
 @dataclass(frozen=True)
 class Ring:
-    """A ring: its middle (2,) and its radii, outer and hole's [m]."""
+    """A ring: its middle (2,) [m], the middle's covariance (2, 2) [m^2], and its radii, outer and hole's [m]."""
 
     centre: np.ndarray
+    covariance: np.ndarray
     radius: float
     hole: float
 
@@ -37,72 +42,48 @@ class RingFinder:
 
     def find(self, image: np.ndarray, blobs: list[Blob]) -> tuple[list[Ring], list[Blob]]:
         """The rings, and what else shines: a puck may touch a ring in the picture."""
-        rings, others = [], []
+        rims = [self._rim(image, blob) for blob in blobs if _is_hollow(blob)]
+        rings: list[Ring] = []
+        for rim in rims:
+            ring = self._ring(rim, Rim.joined(rims))
+            if ring and all(np.linalg.norm(ring.centre - other.centre) > other.radius for other in rings):
+                rings.append(ring)
+        for ring in rings:
+            blobs = self._beside(ring, blobs)
+        return rings, blobs
+
+    def _rim(self, image: np.ndarray, blob: Blob) -> Rim:
+        outline = blob.outline if blob.hole is None else np.concatenate([blob.outline, blob.hole])
+        return rim_of(image, outline, self.places)
+
+    def _ring(self, part: Rim, whole: Rim) -> Ring | None:
+        """The ring of which some is seen in a part, by all that can be of it."""
+        found = np.zeros(4)
+        if len(part) < FEWEST or not guess_hole(part.places, part.steps, found):
+            return None
+        covariance = np.zeros((2, 2))
+        if not fit_circles(whole.places, whole.steps, found, covariance):
+            return None
+        radius, hole = float(found[2]), float(found[3])
+        if radius < SMALLEST or not HOLES[0] <= hole / radius <= HOLES[1]:
+            return None
+        *seen, on = shares_of_circles(whole.places, whole.steps, found)
+        if min(seen) < LEAST_SEEN or on < LEAST_ON:
+            return None
+        return Ring(found[:2], EDGE_ERROR**2 * covariance, radius, hole)
+
+    def _beside(self, ring: Ring, blobs: list[Blob]) -> list[Blob]:
+        """What is left of blobs outside of a ring."""
+        left = []
         for blob in blobs:
-            ring = None if blob.hole is None else self._ring(image, blob.outline, blob.hole)
-            if ring is None:
-                others.append(blob)
-                continue
-            rings.append(ring)
             x, y = (self.places(blob.outline) - ring.centre).T
             rest = blob.outline[x * x + y * y > (ring.radius + 2.0 * OFF) ** 2]
-            if len(rest) >= FEWEST:
-                others.append(Blob(rest, None))
-        return rings, others
-
-    def _ring(self, image: np.ndarray, outline: np.ndarray, hole: np.ndarray) -> Ring | None:
-        inner = _circle(rim_of(image, hole, self.places).places, None)
-        if inner is None:
-            return None
-        outer = _circle(rim_of(image, outline, self.places).places, inner[0])
-        if outer is None or not SIZES[0] <= outer[1] <= SIZES[1]:
-            return None
-        eccentric = float(np.linalg.norm(outer[0] - inner[0]))
-        if eccentric > ECCENTRIC * outer[1] or not HOLES[0] <= inner[1] / outer[1] <= HOLES[1]:
-            return None
-        longer = outer[1] / (outer[1] + inner[1])  # the longer edge is the surer one
-        return Ring(longer * outer[0] + (1.0 - longer) * inner[0], outer[1], inner[1])
+            if len(rest) == len(blob.outline):
+                left.append(blob)
+            elif len(rest) >= FEWEST:
+                left.append(Blob(rest, None))
+        return left
 
 
-def _circle(places: np.ndarray, middle: np.ndarray | None) -> tuple[np.ndarray, float] | None:
-    """Centre (2,) and radius [m] of the circle on which most of (n, 2) points lie, or many about `middle`, if that is
-    given; None if too few do."""
-    if len(places) < FEWEST:
-        return None
-    found = np.zeros(3)
-    found[:2] = places.mean(axis=0) if middle is None else middle
-    count = _fit(places, found)
-    if count < FEWEST or (middle is None and count < LEAST_ON * len(places)):
-        return None
-    return found[:2], float(found[2])
-
-
-@array_kernel
-def _fit(places, found):
-    """Move `found` (3,), centre and radius, to where the squares of the distances from the circle of all points that
-    are not too far off are least (Gauss, Newton). How many there are."""
-    count = places.shape[0]
-    far, off = np.empty(count), np.empty(count)
-    limit, near = OFF, 0
-    for turn in range(ROUNDS):
-        for i in range(count):
-            far[i] = max(math.hypot(places[i, 0] - found[0], places[i, 1] - found[1]), 1e-9)
-        if turn == 0:
-            found[2] = np.median(far)
-        normal, right, near = np.zeros((3, 3)), np.zeros(3), 0
-        for i in range(count):
-            miss = far[i] - found[2]
-            if abs(miss) >= limit:
-                continue
-            off[near] = abs(miss)
-            near += 1
-            slope = ((places[i, 0] - found[0]) / far[i], (places[i, 1] - found[1]) / far[i], 1.0)
-            for a in range(3):
-                right[a] += slope[a] * miss
-                for b in range(3):
-                    normal[a, b] += slope[a] * slope[b]
-        if near < FEWEST or np.linalg.det(normal) < 1e-9:
-            return 0
-        found += np.linalg.solve(normal, right)
-        limit = max(OFF, 2.0 * np.median(off[:near]))
-    return near
+def _is_hollow(blob: Blob) -> bool:
+    return blob.hole is not None or cv2.contourArea(blob.outline) < FULL * cv2.contourArea(cv2.convexHull(blob.outline))

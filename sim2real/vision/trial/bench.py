@@ -18,7 +18,6 @@ from sim2real.vision.calibrate.pose import camera_pose
 from sim2real.vision.locate import Grid, Locator
 from sim2real.vision.markers import find_markers
 from sim2real.vision.track.bright import Bright
-from sim2real.vision.track.eye import Eye
 from sim2real.vision.track.puck import PuckFinder
 from sim2real.vision.trial.baseline import centroid, report_centre
 from sim2real.vision.trial.rendered import eye_for
@@ -26,7 +25,6 @@ from sim2real.vision.trial.rendered_calibration import estimated
 
 WARP = Surface((0.0, -0.005, 0.008, 0.003, -0.002, -0.006))  # up to 5 mm, level in the middle
 RATE = 120.0  # Hz
-LOOKS = 3
 HALF = (0.3, 0.7)  # of a puck that is half hidden, how much is seen
 INSET = 0.035  # m of a puck's centre from the walls
 BEYOND_BEAM = 0.95  # m: pucks that the gantry can hide are nearer
@@ -74,8 +72,8 @@ def errors(stage: Stage, pictures: int, hidden: bool, seed: int) -> dict[str, np
 
 
 def speed(stage: Stage, pictures: int, seed: int) -> dict[str, np.ndarray]:
-    """Seconds (pictures,) on one core that a picture takes in which nothing is known beforehand, and one in which puck
-    and ring are near to where they should be; each the best of LOOKS."""
+    """Seconds (pictures,) on one core that a look at a picture takes in which nothing is known beforehand, and at one
+    in which puck and ring are near to where they should be; each picture is looked at once, as in play."""
     table, rng = stage.renderer.table, np.random.default_rng(seed)
     before = cv2.getNumThreads()
     cv2.setNumThreads(1)
@@ -93,22 +91,13 @@ def speed(stage: Stage, pictures: int, seed: int) -> dict[str, np.ndarray]:
                     moment, **{name: getattr(moment, name).after(k / RATE) for name in ("puck", "opponent")}
                 )
                 image = stage.renderer.picture(later, number)
-                if k != 1:
-                    took["region of interest" if k else "full frame"].append(_fastest(fresh, image, k / RATE))
+                begin = time.perf_counter()
                 fresh.look(image, k / RATE)
+                if k != 1:
+                    took["region of interest" if k else "full frame"].append(time.perf_counter() - begin)
     finally:
         cv2.setNumThreads(before)
     return {name: np.array(every) for name, every in took.items()}
-
-
-def _fastest(eye: Eye, image: np.ndarray, at: float) -> float:
-    """Seconds that a look takes."""
-    took = []
-    for one in [copy.deepcopy(eye) for _ in range(LOOKS)]:
-        begin = time.perf_counter()
-        one.look(image, at)
-        took.append(time.perf_counter() - begin)
-    return min(took)
 
 
 def _looker(stage: Stage) -> Look:

@@ -27,10 +27,10 @@ def exact_locator(table: Table, view: View) -> Locator:
     return Locator(camera_of_view(view), np.concatenate([view.rotation, view.shift]), Surface(middle), Bend(box))
 
 
-def eye_for(renderer: Renderer, locator: Locator) -> Eye:
-    """What looks at this renderer's pictures by a calibration."""
+def eye_for(renderer: Renderer, locator: Locator, calibration_error: float = 0.0) -> Eye:
+    """What looks at this renderer's pictures by a calibration, so far wrong along each axis [m]."""
     table = renderer.table
     return Eye(
         locator, renderer.view.size, length=table.length, width=table.width, puck_radius=table.puck_radius,
-        puck_height=table.puck_height, ring_height=table.ring_height,
+        puck_height=table.puck_height, ring_height=table.ring_height, calibration_error=calibration_error,
     )  # fmt: skip

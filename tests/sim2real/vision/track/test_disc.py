@@ -63,6 +63,14 @@ def test_deviations_cover_the_errors_of_arcs_whose_points_err_together_in_fours(
         assert np.mean(np.array(far) > 5.99) < 0.15 and 0.5 < np.median(far) / 1.386 < 1.5  # 5 % and 1 are just right
 
 
+def test_deviations_cover_what_all_edges_are_off_by_alike_as_a_lamp_brightens_them():
+    """An arc's centre follows such an error, which its points' scatter does not show."""
+    disc = find_disc(arc(0, 100, radius=RADIUS + 0.05 * PIXEL), RADIUS)
+    assert disc is not None
+    error = disc.centre - CENTRE
+    assert np.linalg.norm(error) > 0.1e-3 and error @ np.linalg.solve(disc.covariance, error) < 5.99
+
+
 def test_a_disc_of_another_size_has_few_points_on_it_and_a_line_has_none():
     larger = find_disc(arc(0, 360, radius=0.043), RADIUS)
     assert larger is None or larger.seen < 0.2

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from sim2real.vision.track.bright import Blob
+from sim2real.vision.track.disc import Disc
 from sim2real.vision.track.puck import PuckFinder
 
 PIXEL, RADIUS, FINE = 1.8e-3, 0.0309, 16
@@ -28,11 +29,14 @@ def picture(*shapes: tuple[str, tuple[float, float], tuple[float, float]], hidde
     return cv2.GaussianBlur(image, (0, 0), 0.7)
 
 
-def found(image: np.ndarray) -> list[np.ndarray]:
+def discs(image: np.ndarray) -> list[Disc]:
     contours, _ = cv2.findContours((image > 65).astype(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
     blobs = [Blob(contour[:, 0], None) for contour in contours]
-    discs = PuckFinder(lambda pixels: PIXEL * pixels, RADIUS).find(image, blobs)
-    return [disc.centre / PIXEL for disc in discs]
+    return PuckFinder(lambda pixels: PIXEL * pixels, RADIUS).find(image, blobs)
+
+
+def found(image: np.ndarray) -> list[np.ndarray]:
+    return [disc.centre / PIXEL for disc in discs(image)]
 
 
 SIZE = (RADIUS / PIXEL, RADIUS / PIXEL)
@@ -43,6 +47,16 @@ def test_a_puck_is_found_once_though_a_beam_divides_it():
     for hidden in (None, (66, 74), (40, 70)):
         (only,) = found(picture(PUCK, hidden=hidden))
         assert only == pytest.approx((70.0, 60.0), abs=0.15)
+
+
+def test_of_one_that_a_beam_divides_both_parts_are_used():
+    (only,) = discs(picture(PUCK, hidden=(66, 74)))
+    assert only.seen > 0.75
+
+
+def test_a_glint_as_wide_as_half_a_puck_may_touch_it():
+    (only,) = found(picture(PUCK, ("disc", (95.0, 60.0), (9.0, 7.0))))
+    assert only == pytest.approx((70.0, 60.0), abs=0.25)
 
 
 def test_two_pucks_are_two_and_a_glint_at_one_moves_it_not():

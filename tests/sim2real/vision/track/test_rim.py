@@ -47,5 +47,11 @@ def test_no_edge_is_clear_on_a_flat_ground_nor_at_the_border_nor_off_the_map():
     flat = np.full((SIZE, SIZE), 90, np.uint8)
     assert len(rim_of(flat, np.array([[30, 30], [20, 20]]), lambda p: p)) == 0
     image = half_plane(0.0, 0.0, 0.8)
+    faint = (20.0 + 0.06 * (image - 20.0)).round().astype(np.uint8)  # of six grey levels
+    assert (
+        len(rim_of(image, outline_of(image), lambda p: p))
+        > 30
+        == len(rim_of(faint, outline_of(image), lambda p: p)) + 30
+    )
     assert len(rim_of(image, np.array([[29, 1], [29, SIZE - 2]]), lambda p: p)) == 0
     assert len(rim_of(image, outline_of(image), lambda p: np.full_like(p, np.nan))) == 0
