@@ -86,8 +86,7 @@ def _table(args: argparse.Namespace) -> Table:
     from sim2real.camera.synthetic import scene_of
     from sim2real.vision.trial.rendered_calibration import estimated
 
-    setup, solved = estimated(*scene_of(name), seed=0)
-    return Table(setup, solved.scene)
+    return Table.of(*estimated(*scene_of(name), seed=0))
 
 
 def _things(args: argparse.Namespace) -> Any:
@@ -177,6 +176,7 @@ def _told(frames: SoundFrames, tracker: Tracker) -> dict[str, Any]:
         "dropped": frames.dropped,
         "markers": len(tracker.pose.residuals) // 4,
         "markers_rms_px": tracker.pose.rms,
+        "place_std_m": tracker.place_std,
         "troubles": {
             name: {"times": one.times, "first_s": one.first, "text": one.text} for name, one in frames.troubles.items()
         },
@@ -195,7 +195,8 @@ def _lines(args: argparse.Namespace, told: dict[str, Any]) -> list[str]:
     return [
         f"{told['frames']} frames: puck known in {told['seen']}, hidden in {told['hidden']}, not sure in "
         f"{told['unsure']}; {told['dropped']} dropped",
-        f"camera found by {told['markers']} markers, {told['markers_rms_px']:.2f} px rms",
+        f"camera found by {told['markers']} markers, {told['markers_rms_px']:.2f} px rms; the calibration has "
+        f"places off by some {1e3 * told['place_std_m']:.1f} mm along each axis, alike in all pictures",
         *_troubles(told),
         f"{args.out} holds them" + (f"; {args.video} shows it" if args.video else ""),
     ]

@@ -1,4 +1,4 @@
-"""Where on the table places are known worst, and how far the nearest measured point is."""
+"""How well places all over the table are known: typically, and where they are known worst."""
 
 from __future__ import annotations
 
@@ -29,18 +29,29 @@ class Weakest:
 
 
 def weakest(solved: Solved, length: float, width: float) -> Weakest:
-    """The place that is known worst on a table of some length and width [m]; what the bend may do beyond all points is
-    not counted."""
+    """The place that is known worst on a table of some length and width [m]."""
+    places, variances = _variances(solved, length, width)
+    measured = np.concatenate([view.places for view in solved.problem.views])
+    worst = int(np.argmax(variances))
+    away = float(np.hypot(*(measured - places[worst]).T).min())
+    return Weakest(places[worst], float(np.sqrt(variances[worst])), away)
+
+
+def place_std(solved: Solved, length: float, width: float) -> float:
+    """How far places are typically off along each axis [m], root mean square over the table."""
+    return float(np.sqrt(0.5 * _variances(solved, length, width)[1].mean()))
+
+
+def _variances(solved: Solved, length: float, width: float) -> tuple[np.ndarray, np.ndarray]:
+    """Places (n, 2) [m] all over the table, and how far off they are found, squared (n,) [m^2]; what the bend may do
+    beyond all points is not counted."""
     x, y = np.meshgrid(np.linspace(0.0, length, ALONG), np.linspace(0.0, width, ACROSS))
     places = np.stack([x.ravel(), y.ravel()], axis=1)
     grid = View("grid", {}, np.zeros_like(places), places)
     problem, covariance = solved.problem, solved.fitted.covariance
-    variance = np.zeros(len(places))
+    variances = np.zeros(len(places))
     for k, pose in enumerate(solved.poses):
         _, by = problem.of_view(grid, pose, solved.scene, 6 * k, len(covariance))
         by = np.linalg.solve(problem.by_place(grid, pose, solved.scene), by)
-        variance += np.einsum("nij,jk,nik->n", by, covariance, by, optimize=True) / len(solved.poses)
-    measured = np.concatenate([view.places for view in problem.views])
-    worst = int(np.argmax(variance))
-    away = float(np.hypot(*(measured - places[worst]).T).min())
-    return Weakest(places[worst], float(np.sqrt(variance[worst])), away)
+        variances += np.einsum("nij,jk,nik->n", by, covariance, by, optimize=True) / len(solved.poses)
+    return places, variances

@@ -6,6 +6,7 @@
 - surface: height (xx, xy, yy) [1/m] times X^2, X Y, Y^2 with X, Y from `middle_m`, level there.
 - frame: what coordinates as measured by hand are more than the rigid ones [m]: for each of `axis_i_j` a coefficient of
   the Legendre polynomials of order i in x and j in y over `box_m`; beyond the box as at its border.
+- place_std_m: how far off along each axis [m] places are typically found, alike in all pictures.
 - views: the cameras' motions and how far off each point was; for a reader, as is every `std`.
 """
 
@@ -20,6 +21,7 @@ import numpy as np
 
 from puckpilot_env.whole_file import write_text_whole
 from sim2real.vision.bend import TERMS, Bend
+from sim2real.vision.calibrate.coverage import place_std
 from sim2real.vision.calibrate.multiview import Solved
 from sim2real.vision.camera_file import Setup, camera_words, setup_of
 from sim2real.vision.json_file import numbers, read_object
@@ -28,6 +30,7 @@ from sim2real.vision.surface import Surface
 
 FORMAT = "puckpilot-table/1"
 CURVED, BENT = (-0.1, 0.1), (-0.05, 0.05)  # 1/m, m: far more than of any table
+STD = (0.0, 0.1)  # m
 AROUND = (-3.0, 8.0)  # m: where markers and the corners of the box are, each way
 IDS, SIDE = (0, 1023), (0.005, 1.0)  # of markers; their sides' lengths [m]
 WHAT = f"a calibration of format {FORMAT}, of puckpilot calibrate table"
@@ -35,10 +38,17 @@ WHAT = f"a calibration of format {FORMAT}, of puckpilot calibrate table"
 
 @dataclass(frozen=True)
 class Table:
-    """The setup and what is the same in every view of it: markers, surface and bend."""
+    """The setup and what is the same in every view of it: markers, surface and bend; and how far off along each axis
+    [m] places are typically found, 0 if nobody says."""
 
     setup: Setup
     scene: Scene
+    place_std: float = 0.0
+
+    @classmethod
+    def of(cls, setup: Setup, solved: Solved) -> Table:
+        """What a fit found."""
+        return cls(setup, solved.scene, place_std(solved, setup.length, setup.width))
 
 
 def write_table(path: Path, setup: Setup, solved: Solved) -> None:
@@ -67,6 +77,7 @@ def write_table(path: Path, setup: Setup, solved: Solved) -> None:
             {"id": marker, "corners_m": corners.tolist(), "std": spread.markers[marker].tolist()}
             for marker, corners in scene.markers.items()
         ],
+        "place_std_m": place_std(solved, setup.length, setup.width),
         "views": [_view(solved, k) for k in range(len(solved.poses))],
     }
     write_text_whole(path, json.dumps(words, indent=1, allow_nan=False) + "\n")
@@ -103,7 +114,8 @@ def read_table(path: Path) -> Table:
         Bend(((low_x, low_y), (high_x, high_y)), numbers(path, bend, "bend_m", (len(TERMS),), BENT, "metres")),
         _markers(path, found.get("markers")),
     )
-    return Table(setup, scene)
+    std = float(numbers(path, found, "place_std_m", (), STD, "metres")) if "place_std_m" in found else 0.0
+    return Table(setup, scene, std)
 
 
 def _markers(path: Path, found: Any) -> dict[int, np.ndarray]:

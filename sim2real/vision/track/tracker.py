@@ -84,6 +84,11 @@ class Tracker:
         return self._table.setup.camera
 
     @property
+    def place_std(self) -> float:
+        """How far off along each axis [m] the calibration typically has places, alike in all pictures."""
+        return self._table.place_std
+
+    @property
     def heights(self) -> tuple[float, float]:
         """Of the puck's top and of the opponent's ring above the table [m]."""
         return self._table.setup.puck_top, self.things.ring_height
@@ -121,6 +126,7 @@ class Tracker:
         self._eye = Eye(
             self.locator, image.shape[::-1], length=setup.length, width=setup.width, puck_radius=things.puck_radius,
             puck_height=setup.puck_top, ring_height=things.ring_height, level=things.level,
+            calibration_error=self.place_std,
         )  # fmt: skip
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from sim2real.vision.calibrate.check import check
-from sim2real.vision.calibrate.coverage import weakest
+from sim2real.vision.calibrate.coverage import place_std, weakest
 from sim2real.vision.calibrate.multiview import Solved, solve
 from tests.sim2real.vision import world
 from tests.sim2real.vision.calibrate.test_error_bars import view
@@ -23,6 +23,16 @@ def of_points(kept: np.ndarray, table: int) -> Solved:
 def test_points_all_over_the_table_suffice():
     found = weakest(of_points(np.arange(36), 0), world.LENGTH, world.WIDTH)
     assert not found.matters and 0.2e-3 < found.std < 1e-3 and found.away < 0.15
+
+
+def test_what_is_typical_is_what_exact_points_are_off_by():
+    """Of unused views, by the root mean square along each axis; PLACE_STD is that of the ruler."""
+    off, said = [], []
+    for table in range(8):
+        solved = of_points(np.arange(36), table)
+        said.append(place_std(solved, world.LENGTH, world.WIDTH))
+        off.append(check(SETUP, solved.scene, seen_from(world.EYES[3], table)).off)
+    assert 0.7 < np.sqrt((np.concatenate(off) ** 2).mean()) / np.sqrt((np.array(said) ** 2).mean()) < 1.4
 
 
 def test_places_far_from_any_point_are_named_with_their_uncertainty():

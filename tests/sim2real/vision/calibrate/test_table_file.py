@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from sim2real.vision.calibrate.multiview import solve
-from sim2real.vision.calibrate.table_file import FORMAT, read_table, write_table
+from sim2real.vision.calibrate.table_file import FORMAT, Table, read_table, write_table
 from sim2real.vision.camera_file import read_setup, write_camera
 from sim2real.vision.track.tracker import Things, Tracker
 from tests.sim2real.vision import world
@@ -30,6 +30,7 @@ def test_a_table_is_read_as_it_was_written(table: Path):
     assert list(found.scene.markers) == list(solved().scene.markers)
     np.testing.assert_array_equal(found.scene.vector(), solved().scene.vector())
     assert found.scene.bend.box == solved().scene.bend.box
+    assert found.place_std == Table.of(SETUP, solved()).place_std and 5e-5 < found.place_std < 1e-3
     assert [path.name for path in table.parent.iterdir()] == ["table.json"]
 
 
