@@ -13,7 +13,7 @@ import numpy as np
 
 from puckpilot_env.kernel import array_kernel, kernel
 from sim2real.vision.track.rim import Rim
-from sim2real.vision.track.two_by_two import deviation, inverse
+from sim2real.vision.track.two_by_two import deviation
 
 STARTS = 40  # first points of pairs
 JUDGES = 60  # points, about, by which a hypothesis is judged
@@ -49,18 +49,25 @@ class Disc:
 
 def find_disc(rim: Rim, radius: float) -> Disc | None:
     """The best disc of this radius [m]; None where no three points agree on one."""
-    centre = np.zeros(2)
-    if len(rim) < 3 or _guess(rim.places, rim.steps, radius, centre) <= 0.0:
+    centre, covariance, counts = np.zeros(2), np.zeros((2, 2)), np.zeros(3, np.int64)
+    if len(rim) < 3 or not _find(rim.places, rim.steps, radius, centre, covariance, counts):
         return None
+    on, outside, bins = counts.tolist()
+    return Disc(centre, covariance, bins / BINS, on, outside)
+
+
+@array_kernel
+def _find(places, steps, radius, centre, covariance, counts):
+    """Put the best disc's centre, its covariance and `_count` of it where they belong; whether there is one."""
+    if _guess(places, steps, radius, centre) <= 0.0:
+        return False
     normal, total = np.zeros((2, 2)), np.zeros(2)
-    counts, bins = np.zeros(2, np.int64), np.zeros(BINS, np.bool_)
-    scatter = _refine(rim.places, rim.steps, radius, centre, normal, total, counts, bins)
-    if counts[0] < 3:
-        return None
-    alone = inverse(normal)
-    leaning = COMMON * alone @ total
-    covariance = TOGETHER * scatter**2 * alone + np.outer(leaning, leaning)
-    return Disc(centre, covariance, float(bins.mean()), int(counts[0]), int(counts[1]))
+    scatter = _refine(places, steps, radius, centre, normal, total)
+    if scatter <= 0.0:
+        return False
+    _count(places, steps, radius, scatter, centre, np.zeros(BINS, np.bool_), counts)
+    _spread(normal, total, scatter, covariance)
+    return counts[0] >= 3
 
 
 @kernel
@@ -120,10 +127,10 @@ def _guess(places, steps, radius, centre):
 
 
 @array_kernel
-def _refine(places, steps, radius, centre, normal, total, counts, bins):
+def _refine(places, steps, radius, centre, normal, total):
     """Move `centre` to where the points' distances from the rim [px] are least (Gauss, Newton; Tukey's weights). Fill
-    the normal matrix (2, 2) [px^2/m^2], its right side (2,) [px/m] for points that all lie a pixel outside, how many
-    points are on the rim and outside, and which parts of it they show. The points' scatter [px]."""
+    the normal matrix (2, 2) [px^2/m^2], and its right side (2,) [px/m] for points that all lie a pixel outside. The
+    points' scatter [px]; 0 where they tell no centre."""
     count = places.shape[0]
     off, near = np.empty(count), np.empty(count)
     scatter = SPREAD[1]
@@ -152,8 +159,7 @@ def _refine(places, steps, radius, centre, normal, total, counts, bins):
         normal[1, 0] = normal[0, 1]
         det = normal[0, 0] * normal[1, 1] - normal[0, 1] ** 2
         if kept < 3 or det <= 0.0:
-            counts[0] = 0
-            return scatter
+            return 0.0
         move_x = (normal[1, 1] * right_x - normal[0, 1] * right_y) / det
         move_y = (normal[0, 0] * right_y - normal[0, 1] * right_x) / det
         centre[0] += move_x
@@ -161,12 +167,30 @@ def _refine(places, steps, radius, centre, normal, total, counts, bins):
         scatter = min(max(1.4826 * np.median(near[:kept]), SPREAD[0]), SPREAD[1])
         if max(abs(move_x), abs(move_y)) < STILL:
             break
-    for i in range(count):
+    return scatter
+
+
+@kernel
+def _spread(normal, total, scatter, covariance):
+    """The centre's covariance (2, 2) [m^2]: of what points err by, neighbours alike, and of what all err by."""
+    det = normal[0, 0] * normal[1, 1] - normal[0, 1] ** 2
+    xx, xy, yy = normal[1, 1] / det, -normal[0, 1] / det, normal[0, 0] / det
+    leaning_x, leaning_y = COMMON * (xx * total[0] + xy * total[1]), COMMON * (xy * total[0] + yy * total[1])
+    covariance[0, 0] = TOGETHER * scatter**2 * xx + leaning_x * leaning_x
+    covariance[1, 1] = TOGETHER * scatter**2 * yy + leaning_y * leaning_y
+    covariance[0, 1] = covariance[1, 0] = TOGETHER * scatter**2 * xy + leaning_x * leaning_y
+
+
+@kernel
+def _count(places, steps, radius, scatter, centre, bins, counts):
+    """Count points on the rim, points outside, and the parts of the rim, `bins`, that the former show."""
+    for i in range(places.shape[0]):
         away, faces = _off(places, steps, i, radius, centre[0], centre[1])
         if faces and abs(away) < CUT * scatter:
             counts[0] += 1
             angle = math.atan2(places[i, 1] - centre[1], places[i, 0] - centre[0])
-            bins[int((angle / (2.0 * math.pi) + 0.5) * BINS) % BINS] = True
+            part = int((angle / (2.0 * math.pi) + 0.5) * BINS) % BINS
+            counts[2] += not bins[part]
+            bins[part] = True
         elif away > 2.0 * NEAR and math.hypot(places[i, 0] - centre[0], places[i, 1] - centre[1]) < WIDE * radius:
             counts[1] += 1
-    return scatter

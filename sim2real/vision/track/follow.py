@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from puckpilot_env.kernel import kernel
-from sim2real.vision.track.two_by_two import deviation, inverse
+from sim2real.vision.track.two_by_two import deviation
 
 GATE = 16.0  # square of the distance in standard deviations at which a sighting still fits the path
 CLOSE = 0.01  # m: what is known no better, standard deviation, is followed by sure sightings alone,
@@ -60,21 +60,13 @@ class Estimate:
 
     def corrected(self, sighting: Sighting) -> Estimate:
         """With a sighting of the same time (Kalman 1960)."""
-        gain = self.covariance[:, :2] @ inverse(self.covariance[:2, :2] + sighting.covariance)
-        off = sighting.place - self.place
-        covariance = self.covariance - gain @ self.covariance[:2]
-        return Estimate(
-            self.time,
-            self.place + gain[:2] @ off,
-            self.velocity + gain[2:] @ off,
-            0.5 * (covariance + covariance.T),
-            self.pictures + 1,
-        )
+        state, covariance = np.concatenate([self.place, self.velocity]), np.empty((4, 4))
+        _correct(state, self.covariance, sighting.place, sighting.covariance, covariance)
+        return Estimate(self.time, state[:2], state[2:], covariance, self.pictures + 1)
 
     def far(self, sighting: Sighting) -> float:
         """Square of the distance to a sighting of the same time, in standard deviations."""
-        off = sighting.place - self.place
-        return float(off @ inverse(self.covariance[:2, :2] + sighting.covariance) @ off)
+        return _far(self.place, self.covariance, sighting.place, sighting.covariance)
 
 
 class Follower:
@@ -132,6 +124,34 @@ def _grow(before, dt, power, after):
             after[i, j + 2] = b + dt * d + noise * dt / 2.0
             after[i + 2, j] = c + dt * d + noise * dt / 2.0
             after[i + 2, j + 2] = d + noise
+
+
+@kernel
+def _inverse(covariance, error):
+    """Of the sum of a place's covariance and a sighting's (2, 2): xx, xy, yy [1/m^2]."""
+    xx, xy = covariance[0, 0] + error[0, 0], covariance[0, 1] + error[0, 1]
+    yy = covariance[1, 1] + error[1, 1]
+    det = xx * yy - xy * xy
+    return yy / det, -xy / det, xx / det
+
+
+@kernel
+def _far(place, covariance, seen, error):
+    xx, xy, yy = _inverse(covariance, error)
+    x, y = seen[0] - place[0], seen[1] - place[1]
+    return xx * x * x + 2.0 * xy * x * y + yy * y * y
+
+
+@kernel
+def _correct(state, before, seen, error, after):
+    """Correct place and velocity (4,) by a place that was seen, and write their covariance (4, 4) into `after`."""
+    xx, xy, yy = _inverse(before, error)
+    x, y = seen[0] - state[0], seen[1] - state[1]
+    for i in range(4):
+        by_x, by_y = before[i, 0] * xx + before[i, 1] * xy, before[i, 0] * xy + before[i, 1] * yy
+        state[i] += by_x * x + by_y * y
+        for j in range(i + 1):
+            after[i, j] = after[j, i] = before[i, j] - by_x * before[j, 0] - by_y * before[j, 1]
 
 
 def _apart(sighting: Sighting, estimate: Estimate) -> float:

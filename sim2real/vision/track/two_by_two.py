@@ -7,13 +7,6 @@ import math
 import numpy as np
 
 
-def inverse(matrix: np.ndarray) -> np.ndarray:
-    """The inverse (2, 2)."""
-    (a, b), (_, d) = matrix.tolist()
-    det = a * d - b * b
-    return np.array([[d / det, -b / det], [-b / det, a / det]])
-
-
 def deviation(covariance: np.ndarray) -> float:
     """Standard deviation in the least certain direction, of a covariance whose first two rows and columns are these."""
     return math.sqrt(eigenvalues(covariance)[1])

@@ -46,6 +46,30 @@ def off(path: Path, found: list[tuple[float, Estimate | None]]) -> np.ndarray:
     return np.array(rows)
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_a_step_is_the_textbooks(seed: int):
+    """Predict and correct with matrices (Kalman 1960; white acceleration: Bar-Shalom et al. 2001, 6.2.2)."""
+    rng = np.random.default_rng(seed)
+    half, error = rng.normal(size=(4, 4)), rng.normal(size=(2, 2))
+    before = Estimate(1.0, rng.normal(size=2), rng.normal(size=2), half @ half.T, 3)
+    one = Sighting(rng.normal(size=2), error @ error.T, True)
+    dt, eye = 0.3, np.eye(2)
+    on = np.block([[eye, dt * eye], [0.0 * eye, eye]])
+    grown = POWER * np.block([[dt**3 / 3.0 * eye, dt**2 / 2.0 * eye], [dt**2 / 2.0 * eye, dt * eye]])
+    state, spread = on @ np.r_[before.place, before.velocity], on @ before.covariance @ on.T + grown
+    there = before.after(1.3, POWER)
+    np.testing.assert_allclose(np.r_[there.place, there.velocity], state)
+    np.testing.assert_allclose(there.covariance, spread)
+    look = np.hstack([eye, 0.0 * eye])
+    sum_of_both, off = look @ spread @ look.T + one.covariance, one.place - look @ state
+    gain = spread @ look.T @ np.linalg.inv(sum_of_both)
+    assert there.far(one) == pytest.approx(off @ np.linalg.inv(sum_of_both) @ off)
+    after = there.corrected(one)
+    np.testing.assert_allclose(np.r_[after.place, after.velocity], state + gain @ off)
+    np.testing.assert_allclose(after.covariance, (np.eye(4) - gain @ look) @ spread, atol=1e-12)
+    assert (after.time, after.pictures) == (1.3, 4)
+
+
 @pytest.mark.parametrize("rate", [100.0, 120.0, 200.0])
 @pytest.mark.parametrize("velocity", [(0.0, 0.0), (1.3, 0.4), (-4.0, 3.0), (0.3, -9.0)])
 def test_between_walls_it_is_known_from_the_second_picture_on_and_within_its_deviations(rate, velocity):

@@ -38,7 +38,7 @@ def test_the_command_tells_times_and_errors(capsys):
     told = json.loads(capsys.readouterr().out)
     assert set(told) == {"full frame", "region of interest", "clear", "half hidden"}
     assert all(one["found"] == one["pictures"] == 3 for one in told["clear"].values())
-    assert told["region of interest"]["median_ms"] > 0.0
+    assert min(told["region of interest"][name] for name in ("median_ms", "p90_ms", "again_median_ms")) > 0.0
 
 
 @pytest.mark.parametrize("words", [["--pictures", "0"], ["--seed", "-1"]])
