@@ -27,7 +27,8 @@ def find_markers(image: np.ndarray, camera: Camera, dictionary: str) -> dict[int
     clear = {name: corners for name, corners in fine.items() if corners is not None}
     if len(clear) < FEWEST:
         raise ValueError(
-            f"{len(clear)} of {len(fine)} markers have clear edges; expected {FEWEST} at least: mend focus or light"
+            f"{len(clear)} of {len(fine)} markers have clear edges; expected {FEWEST} at least: mend focus, light, "
+            "or a film's compression"
         )
     return clear
 

@@ -14,12 +14,13 @@ from sim2real.vision.calibrate.robust_fit import Evaluate, Fitted, robust_fit
 from sim2real.vision.calibrate.start import start
 from sim2real.vision.calibrate.view import View
 from sim2real.vision.camera_file import Setup
+from sim2real.vision.markers import FEWEST
 from sim2real.vision.motion import rotation
 from sim2real.vision.scene import BEFORE, Scene
 from sim2real.vision.surface import TERMS
 
 FEWEST_VIEWS = 2
-FEWEST_MARKERS = 3
+
 BEND_STD = 1e-3  # m, where the search for how large the bend is begins,
 BEND_RANGE = (3e-5, 3e-3)  # and where it may end
 ROUNDS = 8  # of that search
@@ -67,10 +68,8 @@ def solve(setup: Setup, views: tuple[View, ...]) -> Solved:
     if len(views) < FEWEST_VIEWS:
         raise ValueError(f"{len(views)} view is given; expected {FEWEST_VIEWS} at least, better 3 from apart")
     poses, scene = start(setup.camera, views, setup.puck_top, (setup.length / 2.0, setup.width / 2.0))
-    if len(scene.markers) < FEWEST_MARKERS:
-        raise ValueError(
-            f"{len(scene.markers)} markers are seen in two views or more; expected {FEWEST_MARKERS} at least"
-        )
+    if len(scene.markers) < FEWEST:
+        raise ValueError(f"{len(scene.markers)} markers are seen in two views or more; expected {FEWEST} at least")
     problem = Problem(setup.camera, views, scene, setup.puck_top, BEND_STD)
     vector = np.concatenate([poses.ravel(), scene.vector()])
     fitted = _fit(problem, vector, None)
