@@ -3,8 +3,8 @@
 SOURCE is a folder of pictures, a video file, device:0, aravis:NAME, flir:SERIAL, synthetic, or synthetic:RECORDING.
 The first picture must show three markers of the calibration at least: they tell where the camera stands. Numbers at
 the ends of a folder's names are the pictures' own. Ctrl-C ends a live source, and what was seen so far is written. A
-cell is blank where the puck is not known: under the gantry, and in the first picture after. Ends with 1 if something
-was wrong with the pictures, which is named, in the recording's note too.
+cell is blank where the puck is not known: under the gantry, and in the first picture after, if it was struck there.
+Ends with 1 if something was wrong with the pictures, which is named, in the recording's note too.
 """
 
 from __future__ import annotations

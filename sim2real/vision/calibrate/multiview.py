@@ -20,7 +20,6 @@ from sim2real.vision.scene import BEFORE, Scene
 from sim2real.vision.surface import TERMS
 
 FEWEST_VIEWS = 2
-
 BEND_STD = 1e-3  # m, where the search for how large the bend is begins,
 BEND_RANGE = (3e-5, 3e-3)  # and where it may end
 ROUNDS = 8  # of that search

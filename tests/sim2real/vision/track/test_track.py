@@ -140,6 +140,15 @@ def test_after_a_bump_the_camera_is_found_anew(calibration: Path, tmp_path: Path
     assert np.abs(frames["puck_x"][known] - 1.0).max() < 1e-3 and np.abs(frames["puck_y"][known] - 0.3).max() < 1e-3
 
 
+def test_a_lamp_that_goes_out_is_named_and_places_from_then_on_are_blank(calibration: Path, tmp_path: Path, capsys):
+    dark = [np.random.default_rng(k).integers(0, 4, (1080, 1440), np.uint8) for k in range(6)]
+    assert run(calibration, folder_of([*still(6), *dark], tmp_path / "pictures"), tmp_path / "out", "--rate", "10") == 1
+    assert "markers lost, 1 times from 1.0 s on: no marker is seen where it was" in capsys.readouterr().out
+    frames = read_recording(tmp_path / "out").frames
+    assert frames is not None
+    np.testing.assert_array_equal(np.isfinite(frames["puck_x"]), [False, *[True] * 5, *[False] * 6])
+
+
 def test_a_table_on_which_no_puck_is_seen_is_named(calibration: Path, tmp_path: Path, capsys):
     images = [RENDERER.picture(Moment(opponent=Motion(1.6, 0.5)), k) for k in range(3)]
     assert run(calibration, folder_of(images, tmp_path / "pictures"), tmp_path / "out") == 1
