@@ -158,8 +158,11 @@ def _lines(told: dict[str, Any], solved: Solved, width: float) -> list[str]:
             "the puck there, too"
         )
     if "check" in told:
+        from sim2real.vision.calibrate.pose import FAR
+
         lines.append(
             f"check on {told['check']}, not used: mean {told['mean_mm']:.2f} mm, median {told['median_mm']:.2f} mm, "
             f"max {told['max_mm']:.2f} mm (point {told['farthest_point']}); markers {told['markers_rms_px']:.2f} px rms"
+            + ("" if told["markers_rms_px"] <= FAR else f", too far: expected {FAR:g} at most; was one of them moved?")
         )
     return [*lines, f"{told['file']} holds it; {told['picture']} shows it"]

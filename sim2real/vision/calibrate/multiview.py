@@ -8,7 +8,7 @@ from itertools import combinations
 import numpy as np
 
 from sim2real.vision.bend import TERMS as TERMS_OF_BEND
-from sim2real.vision.calibrate.pose import FAR
+from sim2real.vision.calibrate.pose import LOST
 from sim2real.vision.calibrate.residuals import PLACE, Problem
 from sim2real.vision.calibrate.robust_fit import Evaluate, Fitted, robust_fit
 from sim2real.vision.calibrate.start import start
@@ -112,9 +112,9 @@ def _check(solved: Solved) -> None:
             f"two cameras are {apart:.2f} m apart; add a photograph from half a metre aside"
         )
     for view, rms in zip(solved.problem.views, solved.corner_rms, strict=True):
-        if rms > FAR:
+        if rms > LOST:
             raise ValueError(
-                f"{view.name}: markers are {rms:.1f} px rms from where the other views have them; expected {FAR:g} at "
+                f"{view.name}: markers are {rms:.1f} px rms from where the other views have them; expected {LOST:g} at "
                 "most: was one moved between photographs, or is camera.json of another camera or lens?"
             )
     for view, off, wrong in zip(solved.problem.views, solved.off, solved.wrong, strict=True):

@@ -33,6 +33,17 @@ def test_a_point_that_is_mistyped_is_named():
         check(SETUP, solved().scene, replace(view(3), places=places))
 
 
+@pytest.mark.parametrize("moved, refused", [(8.0, False), (30.0, True)])
+def test_a_marker_that_is_off_shows_in_the_figures_unless_it_spoils_all(moved: float, refused: bool):
+    corners = {**view(3).corners, 3: view(3).corners[3] + [moved, 0.0]}
+    if refused:
+        with pytest.raises(ValueError, match="expected 3 at most: it is marker 3"):
+            check(SETUP, solved().scene, replace(view(3), corners=corners))
+        return
+    found = check(SETUP, solved().scene, replace(view(3), corners=corners))
+    assert 1.0 < found.pose.rms < moved / np.sqrt(6.0) and 1e-3 < np.median(found.distances) < 5e-3
+
+
 def test_figures_are_of_the_distances():
     """A shift of 1 mm of every place shows as one of every distance."""
     exact = check(SETUP, solved().scene, replace(view(3), places=world.grid()))
