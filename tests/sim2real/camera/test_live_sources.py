@@ -140,9 +140,11 @@ def test_a_webcams_pictures_are_turned_grey_and_its_end_is_told(monkeypatch) -> 
     with open_source("device:0") as source, pytest.raises(CameraError, match="device:0 gives no more pictures"):
         frames = [source.newest(PATIENCE) for _ in range(9)]
         assert not frames
+    before = time.perf_counter()
     with open_source("device:0") as source:
         frame = source.newest(PATIENCE)
-    assert frame and frame.image.shape == (4, 6) and frame.image.dtype == np.uint8
+    assert frame and before < frame.time == frame.host_time < time.perf_counter()
+    assert frame.image.shape == (4, 6) and frame.image.dtype == np.uint8
     assert abs(int(frame.image[0, 0]) - 0.587 * 200) < 1  # ITU-R BT.601
     with pytest.raises(CameraError, match="device:7 cannot be opened"), open_source("device:7"):
         pass
