@@ -20,6 +20,8 @@ FORBIDDEN = {
     "agents": ("sim2real", "puckpilot", "tests"),
     "firmware": ("agents", "baselines", "sim2real", "puckpilot", "tests"),
     "sim2real": ("agents", "puckpilot", "tests"),
+    "sim2real/vision/calibrate": ("sim2real.vision.track", "sim2real.vision.trial"),
+    "sim2real/vision/track": ("sim2real.vision.trial",),
     "tests/reality": (*PACKAGES, "puckpilot"),
     "tests/mujoco_table": (*PACKAGES, "puckpilot"),
 }
@@ -120,6 +122,12 @@ def test_the_readers_of_imports_see_what_they_should(tmp_path: Path, monkeypatch
     assert {"house", "house.door", "torch", "cv2", "PIL", "PIL.Image"} <= set(everything)
     at_start = _imports(path, _at_start_up(ast.parse(path.read_text())))
     assert "cv2" in at_start and "torch" not in at_start and "PIL" not in at_start
+
+
+def test_the_name_of_a_test_file_is_its_own() -> None:
+    """pytest refuses a second one of the same name, but only where it is told to run both."""
+    names = [path.name for path in (ROOT / "tests").rglob("test_*.py")]
+    assert len(names) > 100 and sorted(set(names)) == sorted(names)
 
 
 def test_nothing_heavy_is_loaded_with_the_simulator() -> None:

@@ -82,7 +82,7 @@ def test_each_can_be_asked_for_and_changes_the_recording(name: str, tmp_path: Pa
 
 
 @pytest.mark.parametrize(
-    "names", combinations(["friction_anisotropy", "air_drift", "friction_patch", "linear_drag"], 2)
+    "names", list(combinations(["friction_anisotropy", "air_drift", "friction_patch", "linear_drag"], 2))
 )
 def test_brakes_that_come_as_two_are_both_felt(names: tuple[str, str]):
     """Each of two that brake a puck changes what the other leaves, by at least half of what it does alone."""
