@@ -65,10 +65,10 @@ class SoundFrames:
             if self._judge(frame, now):
                 yield frame
 
-    def note(self, trouble: Trouble) -> None:
-        """Keep what is wrong."""
+    def note(self, trouble: Trouble, first: float | None = None) -> None:
+        """Keep what is wrong, first at a time [s], or now."""
         known = self.troubles.get(trouble.name)
-        times, first = (known.times + 1, known.first) if known else (1, self.since)
+        times, first = (known.times + 1, known.first) if known else (1, self.since if first is None else first)
         self.troubles[trouble.name] = Account(trouble.text, times, first)
 
     def _judge(self, frame: Frame | None, now: float) -> bool:

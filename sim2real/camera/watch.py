@@ -109,4 +109,5 @@ class Watch:
         last, self._last = self._last, image
         if last is None or not np.array_equal(image[::SPARSE], last[::SPARSE]):
             return None
-        return Trouble("repeated", "a picture is the one before once more, to the last pixel; see what doubles frames")
+        text = "a picture is the one before once more, to the last pixel; see what doubles them, or makes all black"
+        return Trouble("repeated", text)

@@ -16,7 +16,7 @@ from sim2real.vision.calibrate.pose import Pose, camera_pose
 from sim2real.vision.calibrate.table_file import Table
 from sim2real.vision.camera import Camera
 from sim2real.vision.locate import Locator
-from sim2real.vision.markers import find_markers
+from sim2real.vision.markers import FEWEST, find_markers
 from sim2real.vision.photograph import check_size
 from sim2real.vision.track.eye import Eye, Seen
 from sim2real.vision.track.follow import Estimate
@@ -24,7 +24,7 @@ from sim2real.vision.track.moved import MOST, Moved, hidden, moved
 
 COLUMNS = ("t", "puck_x", "puck_y", "opponent_x", "opponent_y")
 NOWHERE = (np.nan, np.nan)
-NOTHING = Seen(None, None, 0)
+BLIND = -1  # things that may be the puck, in a picture of a camera that nobody knows where it stands
 
 
 @dataclass(frozen=True)
@@ -53,10 +53,10 @@ class Tracker:
         """Look at one. ValueError, in one line, if the first does not show where the camera is."""
         if self._moved is None:
             try:
-                self._begin(frame.image)
+                self._begin(frame.image, FEWEST)
             except ValueError as error:
                 raise ValueError(f"the first picture does not tell where the camera is: {error}") from None
-        found = self._eye.look(frame.image, frame.time) if self._eye else NOTHING
+        found = self._eye.look(frame.image, frame.time) if self._eye else Seen(None, None, BLIND)
         self._rows.append((frame.time, *_cells(found.puck), *_cells(found.opponent), found.pucks))
         return found
 
@@ -71,10 +71,10 @@ class Tracker:
         if self._eye and shifts.max() <= MOST:
             self._trusted = len(self._rows)
             return None
-        self._rows[self._trusted :] = [(row[0], *NOWHERE, *NOWHERE, 0) for row in self._rows[self._trusted :]]
+        self._rows[self._trusted :] = [(row[0], *NOWHERE, *NOWHERE, BLIND) for row in self._rows[self._trusted :]]
         self._eye = self.locator = None
         with suppress(ValueError):
-            self._begin(image)
+            self._begin(image, FEWEST + 1)
             self._trusted = len(self._rows)
         return moved(shifts) if len(shifts) else hidden()
 
@@ -95,7 +95,8 @@ class Tracker:
 
     @property
     def counts(self) -> dict[str, int]:
-        """Frames: in which the puck is known, in which there is none, and in which what there is is not it."""
+        """Frames: in which the puck is known, in which there is none, and in which what there is is not it; of those
+        in which the camera's place was known."""
         known, pucks = (np.array([row[k] for row in self._rows]) for k in (1, -1))
         blank = np.isnan(known)
         return {"seen": int((~blank).sum()), "hidden": int((blank & (pucks == 0)).sum()),
@@ -116,11 +117,15 @@ class Tracker:
         }
         return Recording(name, meta, frames=Stream(dict(zip(COLUMNS, columns, strict=True))))
 
-    def _begin(self, image: np.ndarray) -> None:
+    def _begin(self, image: np.ndarray, fewest: int) -> None:
+        """By so many markers at least: three have little that could contradict them, which after a bump matters."""
         setup, scene, things = self._table.setup, self._table.scene, self.things
         check_size("it", image, setup.camera)
         corners = find_markers(image, setup.camera, setup.dictionary)
-        self.pose = camera_pose(setup, scene, corners)
+        pose = camera_pose(setup, scene, corners)
+        if 4 * min(fewest, len(scene.markers)) > len(pose.residuals):
+            raise ValueError(f"{len(pose.residuals) // 4} markers are seen; expected {fewest} at least")
+        self.pose = pose
         self.locator = Locator(setup.camera, self.pose.motion, scene.surface, scene.bend)
         self._moved = Moved(image, corners)
         self._eye = Eye(
