@@ -122,7 +122,7 @@ def _told(names: list[str], found: Intrinsics) -> dict[str, Any]:
 def _lines(told: dict[str, Any], width: int, height: int) -> list[str]:
     """The same for a reader."""
     return [
-        *(f"no board is seen in {path}" for path in told["without_board"]),
+        *(f"no board is seen in {path}; a checkerboard must be in it whole" for path in told["without_board"]),
         f"{told['photographs']} photographs of {width}x{height} pixels, {told['rms_px']:.3f} px rms",
         *(
             f"{one['photograph']} stands out: its corners are {one['off_px']:.2f} px off where the others put the "

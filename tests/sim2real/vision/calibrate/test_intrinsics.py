@@ -219,7 +219,10 @@ def test_photographs_without_a_board_are_told(tmp_path: Path, capsys):
     paths = photographs(tmp_path, False)
     cv2.imwrite(paths[2], np.full((600, 800), 99, np.uint8))
     assert puckpilot.main(["calibrate", "camera", *paths, "--out", str(tmp_path / "camera.json")]) == 0
-    assert f"no board is seen in {paths[2]}\n6 photographs of 800x600" in capsys.readouterr().out
+    assert (
+        f"no board is seen in {paths[2]}; a checkerboard must be in it whole\n6 photographs of 800x600"
+        in capsys.readouterr().out
+    )
     assert puckpilot.main(["calibrate", "camera", *paths, "--board", "8x6"]) == 2
     assert "8x6 inner corners is seen in none of 7 photographs" in capsys.readouterr().err
 
