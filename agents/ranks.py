@@ -6,6 +6,7 @@ results and, with the same random numbers, takes the same decisions.
 
 from __future__ import annotations
 
+import atexit
 import os
 from typing import Any
 
@@ -40,6 +41,8 @@ def join(device: str) -> dict[str, int] | None:
         return None
     if not dist.is_initialized():
         dist.init_process_group("cpu:gloo,cuda:nccl" if device.startswith("cuda") else "gloo")
+        # Its threads must end before the interpreter does: one that frees a tensor later takes the process with it.
+        atexit.register(dist.destroy_process_group)
     if device.startswith("cuda"):
         torch.cuda.set_device(device)
     return {"global_rank": rank(), "local_rank": int(os.environ.get("LOCAL_RANK", "0")), "world_size": world()}
