@@ -77,11 +77,12 @@ def find_kinks(t: np.ndarray, p: np.ndarray, noise: Noise, cuts: np.ndarray, exp
             new = _peaks(t, p, noise, cuts, rows, half, common * np.where(expected, SURE_WHERE_EXPECTED, SURE))
             if not new:
                 break
-            for k, strength in new.items():
-                found[k], cuts[k] = strength, True
             near = np.zeros(len(t) - 1, bool)
-            for k in new:
-                near[max(0, k - 2 * half) : k + 2 * half + 1] = True
+            for k, strength in new.items():
+                best = settle(t, p, noise, cuts, k)  # at once: a break a frame off would make another one
+                best = k if cuts[best] else best
+                found[best], cuts[best] = strength, True
+                near[max(0, best - 2 * half) : best + 2 * half + 1] = True
             rows = rows[near[rows] & ~cuts[rows]]
     for k in np.flatnonzero(found):
         best = settle(t, p, noise, cuts, int(k))
