@@ -17,7 +17,7 @@ META_FIELDS: dict[str, dict[str, float]] = {
     "table": {"length_m": 20.0, "width_m": 20.0, "goal_width_m": 20.0},
     "puck": {"radius_m": 1.0},
     "mallet": {"radius_m": 1.0},
-    "camera": {"rate_hz": 1e5, "position_std_m": 1.0},
+    "camera": {"rate_hz": 1e5, "position_std_m": 1.0, "place_std_m": 0.1},
     "gantry": {"supply_V": 1e3, "pulley_radius_m": 1.0},
 }
 OPTIONAL = ("gantry",)

@@ -92,7 +92,8 @@ def _missed(met: np.ndarray, rest: list[int], k: int) -> tuple[int, int]:
 def glides_of(recording: Recording, pieces: Pieces) -> GlideData:
     """The glides of a recording."""
     t = np.zeros(0) if recording.frames is None else recording.frames.t
-    return glide_data(pieces, geometry(recording), mallet_tracks(recording, t))
+    stated = recording.nominal("camera", "place_std_m") or 0.0
+    return glide_data(pieces, geometry(recording), mallet_tracks(recording, t), stated)
 
 
 def _rows(recording: Recording, part: GlideData) -> np.ndarray:

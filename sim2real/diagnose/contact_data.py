@@ -107,6 +107,12 @@ def known_apart(contacts: C, clusters: np.ndarray) -> C:
     return replace(contacts, drift=np.concatenate(drift, axis=3))
 
 
+def shared_variance(before: Side, after: Side) -> float:
+    """Variance [m^2] of each coordinate of a contact's place, between two motions, by what all contacts have in common:
+    the glides' law and the camera's calibration."""
+    return float(np.sum((0.5 * (before.drift[:2] + after.drift[:2])) ** 2)) / 2.0
+
+
 def in_axes(normal: np.ndarray, before: Side, after: Side) -> dict[str, np.ndarray]:
     """The fields `spread` and `drift` of a contact of this normal (2,), between two motions."""
     axes = np.array([normal, [-normal[1], normal[0]]])

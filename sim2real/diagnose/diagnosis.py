@@ -19,7 +19,7 @@ from sim2real.diagnose.explaining import explain_regime, too_little
 from sim2real.diagnose.finding import MUCH, TO_THE_NOISE, Account, Finding, Proof, Sight
 from sim2real.diagnose.gantry.problem import gantry_problem
 from sim2real.diagnose.gantry.run import UnusableError
-from sim2real.diagnose.glide.data import join
+from sim2real.diagnose.glide.data import GlideData, join
 from sim2real.diagnose.glide.problem import GlideProblem, States
 from sim2real.diagnose.impacts import Impact, find_impacts
 from sim2real.diagnose.mallet.data import Blows, blows
@@ -158,24 +158,26 @@ def _accounts(
         raise UndeterminedError(sensed.account.undetermined, sensed.account.next_recording)
     data = Cut(sensed.recordings, sensed.pieces, len(heldout), launches)
     values = parameters(recordings[0], shipped)
-    sights = tuple(sight(one, pieces) for one, pieces in zip(data.recordings, data.pieces, strict=True))
+    parts = [glides_of(one, pieces) for one, pieces in zip(data.recordings, data.pieces, strict=True)]
+    sights = tuple(sight(*one) for one in zip(data.recordings, data.pieces, parts, strict=True))
     gantry = _gantry(data, values, progress)
-    puck = _puck(data, sights, values, progress)
+    puck = _puck(data, parts, sights, values, progress)
     return (sensed.account, *(without_stretch(each, sensed.account) for each in puck), *gantry), sights
 
 
-def _puck(data: Cut, sights: Sequence[Sight], values: dict[str, float], progress: Progress) -> Iterator[Account]:
+def _puck(
+    data: Cut, parts: Sequence[GlideData], sights: Sequence[Sight], values: dict[str, float], progress: Progress
+) -> Iterator[Account]:
     """Accounts of the puck's regimes, in the order in which one leans on the other: hits are told by the glides. None
     where no puck was seen."""
     if not any(seen.frames and seen.dropped < 1.0 for seen in sights):
         return
     progress("glides", 0.2)
-    parts = [glides_of(one, pieces) for one, pieces in zip(data.recordings, data.pieces, strict=True)]
     if not sum(part.glides for part in parts):
         yield too_little("glide")
         return
-    glides = GlideProblem(join(parts), values)
     proof = data.launches.clusters_apart(data.recordings, parts)
+    glides = GlideProblem(join(parts), values, proof)
     tables = parts_of(glides.data, [one.name for one in data.recordings])
     law = dict(values)
     found, told, clear = explain_regime(glides, law, proof, tables)

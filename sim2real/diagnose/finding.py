@@ -93,13 +93,17 @@ class Parting:
 
 @dataclass(frozen=True)
 class Sight:
-    """What the sensor gave in one recording: `noise_m`, `clock_s` as in `sensor.Noise`; shares of all frames."""
+    """What the sensor gave in one recording: `noise_m`, `clock_s` as in `sensor.Noise`; `memory_s`, for which errors
+    hang together (0 where they do not); `place_std_m`, by which the calibration says that it has all places wrong;
+    shares of all frames."""
 
     recording: str
     seconds: float
     frames: int
     noise_m: float
     clock_s: float
+    memory_s: float
+    place_std_m: float
     dropped: float
     held: float
     wild: float

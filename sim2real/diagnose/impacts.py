@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from sim2real.diagnose.contacts import NEAR, wall_axis
+from sim2real.diagnose.glide.carry import carried
 from sim2real.diagnose.glide.problem import GlideProblem, States
 from sim2real.diagnose.hits import Hit
 from sim2real.diagnose.pieces import Pieces
 
 FARTHEST = 0.12  # s from a glide's last frame to the hit
+FAR_OFF = 6.0  # standard deviations
 SPIN_UNTOLD = ("post", "unexplained")  # the normal is uncertain, and so is the spin that such a contact gives
 
 
@@ -55,7 +58,6 @@ def find_impacts(pieces: Pieces, problem: GlideProblem, states: States, recordin
     here = np.flatnonzero(data.recording == recording)
     if not len(here):
         return []
-    motion, spread, drift = states.motion[here], states.spread[here], states.drift[here]
     begin, finish = data.t[data.first[here]], data.t[data.first[here + 1] - 1]
     found: list[Impact] = []
     for k, hit in enumerate(pieces.hits):
@@ -63,8 +65,11 @@ def find_impacts(pieces: Pieces, problem: GlideProblem, states: States, recordin
         if before is None:
             continue
         after = before + 1
-        left = _carry(motion[before, 1], spread[before, 1], drift[before, 1], hit.t - finish[before])
-        right = _carry(motion[after, 0], spread[after, 0], drift[after, 0], hit.t - begin[after])
+        left, right = (
+            _carry(states, here[glide], end, hit.t - at)
+            for glide, end, at in ((before, 1, finish[before]), (after, 0, begin[after]))
+        )
+        hit = _told_by(left, right, hit, pieces.lines)
         cluster = int(data.cluster[here[after]])
         last = found[-1] if found and found[-1].glide == before else None
         since = hit.t - last.hit.t if last else np.nan
@@ -100,14 +105,28 @@ def _others(pieces: Pieces, k: int, start: float, stop: float) -> bool:
     return any(start - 0.005 < other.t < stop + 0.005 for other in near)
 
 
-def _carry(state: np.ndarray, covariance: np.ndarray, drift: np.ndarray, duration: float) -> Side:
-    """A state (6,): place, velocity, acceleration, `duration` later (or before, if it is negative)."""
-    place, velocity, acceleration = state[:2], state[2:4], state[4:]
+def _told_by(before: Side, after: Side, hit: Hit, lines: dict[str, float]) -> Hit:
+    """The hit, if the wall that it is said to be of is where both motions meet. What a beam hides may have been another
+    thing, such as a blow of the mallet under it."""
+    if hit.kind != "wall":
+        return hit
+    axis, _ = wall_axis(hit.where)
+    places = np.array([side.place[axis] for side in (before, after)])
+    variances = np.array([side.covariance[axis, axis] for side in (before, after)])
+    weights = 1.0 / np.maximum(variances, 1e-18)
+    place, std = float(weights @ places / weights.sum()), float(weights.sum() ** -0.5)
+    if abs(place - lines[hit.where]) < NEAR + FAR_OFF * std:
+        return hit
+    return replace(hit, kind="unexplained", where="nothing near")
+
+
+def _carry(states: States, glide: int, end: int, duration: float) -> Side:
+    """The motion at an end of a glide, `duration` later (or before, if it is negative)."""
+    place, velocity, beyond = np.split(states.motion[glide, end], 3)
     moved = np.eye(4)
     moved[0, 2] = moved[1, 3] = duration
     return Side(
-        place + velocity * duration + 0.5 * acceleration * duration**2,
-        velocity + acceleration * duration,
-        moved @ covariance @ moved.T,
-        moved @ drift,
+        *carried(place, velocity, beyond, states.friction, states.drag, duration),
+        moved @ states.spread[glide, end] @ moved.T,
+        moved @ states.drift[glide, end],
     )

@@ -20,10 +20,9 @@ SLIGHT = 1e-6  # ridge, so that columns of which nothing is known stay 0
 def allowing_for(shared: np.ndarray, rows: np.ndarray) -> np.ndarray:
     """Rows (n, k) of unit white noise, made white again after shared noise is added: each column of `shared` (n, m)
     times a standard normal number of its own. The symmetric root of (I + S S')^-1, times the rows."""
-    if not shared.size:
-        return rows
-    vector, size, _ = np.linalg.svd(shared, full_matrices=False)
-    return rows - vector @ ((1.0 - 1.0 / np.sqrt(1.0 + size**2))[:, None] * (vector.T @ rows))
+    value, vector = np.linalg.eigh(shared.T @ shared)
+    root = np.sqrt(1.0 + np.maximum(value, 0.0))
+    return rows - shared @ ((vector / (root * (1.0 + root))) @ (vector.T @ (shared.T @ rows)))
 
 
 def dispersion(grams: Grams, units: Units, base: tuple[str, ...], laws: Sequence[Law], use: np.ndarray) -> float:

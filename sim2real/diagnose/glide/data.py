@@ -9,6 +9,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from sim2real.diagnose.contacts import Geometry, Track, near_mallets, near_posts, near_walls
+from sim2real.diagnose.glide.memory import Memory, remembered
 from sim2real.diagnose.pieces import Glide, Pieces
 from sim2real.diagnose.sensor import Noise
 
@@ -25,7 +26,8 @@ class GlideData:
     """`n` frames in `g` glides, of which number i has the frames first[i] … first[i + 1] − 1.
 
     `t` (n,) [s], `place` (n, 2) [m], `std` (n, 2) [m] of each coordinate; for each glide: its `cluster` (launch), its
-    `recording`, and `since` [s], the time of the contact before it (nan where none was seen).
+    `recording`, and `since` [s], the time of the contact before it (nan where none was seen). For each recording:
+    `memories` of its errors, and `place_std` [m], by which its calibration has all places wrong.
     """
 
     t: np.ndarray
@@ -35,6 +37,8 @@ class GlideData:
     cluster: np.ndarray
     recording: np.ndarray
     since: np.ndarray
+    memories: tuple[Memory, ...] = (Memory(),)
+    place_std: tuple[float, ...] = (0.0,)
 
     @property
     def glides(self) -> int:
@@ -49,12 +53,15 @@ class GlideData:
         return np.repeat(values, np.diff(self.first), axis=0)
 
 
-def glide_data(pieces: Pieces, g: Geometry, tracks: Mapping[str, Track]) -> GlideData:
+def glide_data(pieces: Pieces, g: Geometry, tracks: Mapping[str, Track], place_std: float = 0.0) -> GlideData:
     """The glides of `pieces` that move and are smooth; launches in order of time are the clusters.
 
-    `g` and `tracks` (of the mallets, at the recording's frames) say where a slow contact could have gone unnoticed.
+    `g` and `tracks` (of the mallets, at the recording's frames) say where a slow contact could have gone unnoticed;
+    `place_std` [m] by what the calibration has all places wrong.
 
-    Where most glides are less smooth than the sensor's noise explains, the noise is taken as what they leave.
+    Where most glides are less smooth than the sensor's noise explains, the noise is taken as what they leave; and where
+    errors hang together from frame to frame, as what `memory` finds. That is asked of a calibrated camera alone: of
+    another, what hangs together are errors of the places themselves, which last as long as forces do.
     """
     free = [_clear_part(glide, pieces, g, tracks) for glide in pieces.glides]
     long = [k for k, glide in enumerate(free) if _moves(glide)]
@@ -65,16 +72,20 @@ def glide_data(pieces: Pieces, g: Geometry, tracks: Mapping[str, Track]) -> Glid
     glides = [free[k] for k in kept]
     frames = [len(glide.t) for glide in glides]
     place = [np.stack([glide.x, glide.y], axis=1) for glide in glides]
-    speed = [_speed(glide) for glide in glides]
+    std = [np.sqrt(excess) * pieces.noise.std(_speed(glide)) for glide in glides]
+    errors = [p / s for p, s in zip(place, std, strict=True)]
+    memory = _memory([glide.t for glide in glides], errors) if place_std else Memory()
     ends = np.array([hit.t for hit in pieces.hits])
     return GlideData(
         np.concatenate([glide.t for glide in glides]) if glides else np.zeros(0),
         np.concatenate(place) if glides else np.zeros((0, 2)),
-        np.sqrt(excess) * pieces.noise.std(np.concatenate(speed)) if glides else np.zeros((0, 2)),
+        memory.scale * np.concatenate(std) if glides else np.zeros((0, 2)),
         np.concatenate([[0], np.cumsum(frames)]).astype(int),
         _clusters(pieces, glides),
         np.zeros(len(glides), int),
         np.array([_last_contact(glide, ends) for glide in glides]),
+        (memory,),
+        (place_std,),
     )
 
 
@@ -90,6 +101,8 @@ def join(parts: Sequence[GlideData]) -> GlideData:
         np.concatenate([part.cluster + n for part, n in zip(parts, launches, strict=False)]).astype(int),
         np.concatenate([np.full(part.glides, k) for k, part in enumerate(parts)]).astype(int),
         np.concatenate([part.since for part in parts]),
+        tuple(one for part in parts for one in part.memories),
+        tuple(one for part in parts for one in part.place_std),
     )
 
 
@@ -128,6 +141,11 @@ def _roughness(glide: Glide, noise: Noise) -> tuple[float, int]:
         a = design / std[:, None]
         rest += np.linalg.norm(q / std - a @ np.linalg.lstsq(a, q / std, rcond=None)[0]) ** 2
     return float(rest), 2 * (len(u) - order - 1)
+
+
+def _memory(times: list[np.ndarray], places: list[np.ndarray]) -> Memory:
+    period = float(np.median(np.concatenate([np.diff(t) for t in times]))) if times else 0.0
+    return remembered(times, places, SMOOTH_ORDER, period)
 
 
 def _clusters(pieces: Pieces, glides: list[Glide]) -> np.ndarray:

@@ -10,26 +10,32 @@ import numpy as np
 from puckpilot_env.parameters import BY_NAME
 from puckpilot_env.physics.advance import PUCK
 from sim2real.diagnose.engine.fit import Fit
+from sim2real.diagnose.glide.carry import braking
 from sim2real.diagnose.glide.data import GlideData
+from sim2real.diagnose.glide.errors import Errors
 from sim2real.diagnose.glide.families import SPEED_KNOTS, Motion, force
 from sim2real.diagnose.glide.laws import glide_columns
 from sim2real.diagnose.glide.trace import bend, trace
 from sim2real.diagnose.piecewise import spread_knots
 from sim2real.diagnose.problem import Columns, Residuals, Units, record_of
 
+NOBODY = np.zeros(0, int)
 ROUNDS = 3  # of Gauss-Newton at most, from the last law's starts, and again from a parabola's
 STEP = np.array([1e-6, 1e-6, 1e-5, 1e-5])  # of a start: m, m/s
 
 
 @dataclass(frozen=True)
 class States:
-    """The ends of glides, first and last frame. `motion` (g, 2, 6): place, velocity, acceleration; `spread`
-    (g, 2, 4, 4): covariance of place and velocity by the sensor's noise; `drift` (g, 2, 4, k): changes of them by each
-    independent standard deviation of the law, common to all glides."""
+    """The ends of glides, first and last frame. `motion` (g, 2, 6): place, velocity, and the acceleration beyond that
+    by `friction` and `drag`; `spread` (g, 2, 4, 4): covariance of place and velocity by the sensor's noise; `drift`
+    (g, 2, 4, k): changes of them by each independent standard deviation of the law and of the camera's calibration,
+    common to all glides."""
 
     motion: np.ndarray
     spread: np.ndarray
     drift: np.ndarray
+    friction: float
+    drag: float
 
 
 class GlideProblem:
@@ -39,11 +45,12 @@ class GlideProblem:
     base: tuple[str, ...] = ("friction", "drag")
     plain: tuple[str, ...] = base
 
-    def __init__(self, data: GlideData, values: Mapping[str, float]) -> None:
-        """`values`: sizes of the table, and what else every law has in common."""
+    def __init__(self, data: GlideData, values: Mapping[str, float], apart: np.ndarray = NOBODY) -> None:
+        """`values`: sizes of the table, and what else every law has in common; `apart`: clusters for the proof."""
         self.data = data
         self.clusters = data.clusters
         self._common = dict(values)
+        self.errors = Errors(data, self._size, apart)
         self._guess, speed = _first_guess(data)
         self._starts = self._guess.copy()
         self._speeds = spread_knots(speed, SPEED_KNOTS)
@@ -62,9 +69,8 @@ class GlideProblem:
         since, launch = data.t - data.of_frame(data.since), data.of_frame(data.cluster)
         begun = np.full(data.clusters, np.inf)
         np.minimum.at(begun, launch, data.t)
-        size = np.array([self._common["length"], self._common["width"]])
         aged = data.t - begun[launch]
-        return Motion(data.t, path[:, :2], path[:, 2:], since, launch.astype(float), aged, size, self._speeds)
+        return Motion(data.t, path[:, :2], path[:, 2:], since, launch.astype(float), aged, self._size, self._speeds)
 
     def residuals(self, values: Mapping[str, float], free: Sequence[str], clusters: np.ndarray) -> Residuals:
         """See `Problem.residuals`."""
@@ -88,15 +94,16 @@ class GlideProblem:
 
         `columns` (n, 2, k): how the predicted place moves with each parameter [m]; the result is d residual.
         """
-        data = self.data
-        r = ((data.place - path[:, :2]) / data.std).reshape(-1)
-        jacobian = -(columns / data.std[:, :, None]).reshape(len(r), -1)
-        starts = (by_start / data.std[:, :, None]).reshape(len(r), 4)
+        data, white = self.data, self.errors.white
+        changes = [(data.place - path[:, :2])[:, :, None], -columns, self.errors.modes(path[:, :2])]
+        rows = white(np.concatenate(changes, axis=2)).reshape(2 * len(data.t), -1)
+        starts = white(by_start).reshape(len(rows), 4)
         for a, b in zip(2 * data.first[:-1], 2 * data.first[1:], strict=True):
             q = np.linalg.qr(starts[a:b])[0]
-            r[a:b] -= q @ (q.T @ r[a:b])
-            jacobian[a:b] -= q @ (q.T @ jacobian[a:b])
-        return r, jacobian
+            rows[a:b] -= q @ (q.T @ rows[a:b])
+        known = 1 + columns.shape[2]
+        rows = self.errors.allowing(rows[:, known:], rows[:, :known])
+        return rows[:, 0], rows[:, 1:]
 
     def linearised(self, values: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
         """The path (n, 4) under a law with the starts fitted, and its derivatives (n, 2, 4) by the starts."""
@@ -126,20 +133,26 @@ class GlideProblem:
         if theta is not None:
             pull = force(smooth, self.motion(path), theta)
             change = np.concatenate(self.bent(path, law.values, pull[:, :, None]), axis=1)[:, :, 0]
-            starts = _steps(data, path + change, by_start)
+            starts = self._answers(by_start, (data.place - path[:, :2] - change[:, :2])[:, :, None])[:, :, 0]
             path = path + change + np.einsum("nai,ni->na", whole, data.of_frame(starts))
         ends = [data.first[:-1], data.first[1:] - 1]
-        inverse = np.linalg.inv(_normal(data, by_start)) * self._unrest(path)[:, None, None]
+        inverse = np.linalg.inv(self._normal(by_start)) * self._unrest(path)[:, None, None]
+        bent = self._answers(by_start, self.errors.modes(path[:, :2]))
+        friction, drag = float(record["friction"]), float(record["drag"])
+        beyond = [
+            _beyond(data.t, path[:, 2:], at, step, friction, drag) for at, step in zip(ends, (1, -1), strict=True)
+        ]
         return States(
-            np.stack([np.concatenate([path[at], _slope(data.t, path[:, 2:], at, step)], axis=1)
-                      for at, step in zip(ends, (1, -1), strict=True)], axis=1),
+            np.stack([np.concatenate([path[at], more], axis=1) for at, more in zip(ends, beyond, strict=True)], axis=1),
             np.stack([whole[at] @ inverse @ whole[at].transpose(0, 2, 1) for at in ends], axis=1),
-            self._drift(law, ends),
-        )  # fmt: skip
+            np.concatenate([self._drift(law, ends), np.stack([whole[at] @ bent for at in ends], axis=1)], axis=3),
+            friction,
+            drag,
+        )
 
     def _unrest(self, path: np.ndarray) -> np.ndarray:
         """How much more (g,) than the sensor's noise a glide scatters about its path, in variance; at least 1."""
-        square = ((self.data.place - path[:, :2]) / self.data.std) ** 2
+        square = self.errors.white(self.data.place - path[:, :2]) ** 2
         left, freedom = np.add.reduceat(square.sum(axis=1), self.data.first[:-1]), self.units.freedom
         return np.where(left > freedom + 3.0 * np.sqrt(2.0 * freedom), left / np.maximum(freedom, 1.0), 1.0)
 
@@ -173,7 +186,7 @@ class GlideProblem:
                 moved[:, k] += STEP[k]
                 self._trace(record, moved, other)
                 by_start[:, :, k] = (other[:, :2] - path[:, :2]) / STEP[k]
-            change = _steps(data, path, by_start)
+            change = self._answers(by_start, (data.place - path[:, :2])[:, :, None])[:, :, 0]
             self._starts[:, :4] += change
             astray = ~np.all(np.abs(change) < 10 * STEP, axis=1)
             if not astray.any():
@@ -182,6 +195,23 @@ class GlideProblem:
                 self._starts[astray] = self._guess[astray]
         self._trace(record, self._starts, path)
         return path, by_start
+
+    def _answers(self, by_start: np.ndarray, changes: np.ndarray) -> np.ndarray:
+        """By how much (g, 4, k) the starts move where all places change (n, 2, k), by least squares."""
+        white = self.errors.white
+        by, moved = white(by_start), white(changes)
+        right = np.add.reduceat(np.einsum("nai,nak->nik", by, moved), self.data.first[:-1], axis=0)
+        return np.linalg.solve(self._normal(by_start), right)
+
+    def _normal(self, by_start: np.ndarray) -> np.ndarray:
+        """Normal matrices (g, 4, 4) of the starts; a touch is added to what no frame tells."""
+        j = self.errors.white(by_start)
+        normal = np.add.reduceat(np.einsum("nai,naj->nij", j, j), self.data.first[:-1], axis=0)
+        return normal + 1e-9 * np.eye(4) * np.trace(normal, axis1=1, axis2=2)[:, None, None]
+
+    @property
+    def _size(self) -> np.ndarray:
+        return np.array([self._common["length"], self._common["width"]])
 
 
 def _kinds(velocity: np.ndarray) -> dict[str, np.ndarray]:
@@ -202,20 +232,9 @@ def _first_guess(data: GlideData) -> tuple[np.ndarray, np.ndarray]:
     return starts, speed
 
 
-def _steps(data: GlideData, path: np.ndarray, by_start: np.ndarray) -> np.ndarray:
-    """Gauss-Newton steps (g, 4) of the starts towards the data."""
-    r = (data.place - path[:, :2]) / data.std
-    right = np.add.reduceat(np.einsum("nai,na->ni", by_start / data.std[:, :, None], r), data.first[:-1], axis=0)
-    return np.linalg.solve(_normal(data, by_start), right[..., None])[..., 0]
-
-
-def _normal(data: GlideData, by_start: np.ndarray) -> np.ndarray:
-    """Normal matrices (g, 4, 4) of the starts; a touch is added to what no frame tells."""
-    j = by_start / data.std[:, :, None]
-    normal = np.add.reduceat(np.einsum("nai,naj->nij", j, j), data.first[:-1], axis=0)
-    return normal + 1e-9 * np.eye(4) * np.trace(normal, axis1=1, axis2=2)[:, None, None]
-
-
-def _slope(t: np.ndarray, velocity: np.ndarray, at: np.ndarray, step: int) -> np.ndarray:
-    """Acceleration (k, 2) [m/s^2] at the frames `at`, from the frame `step` beside them."""
-    return (velocity[at + step] - velocity[at]) / (t[at + step] - t[at])[:, None]
+def _beyond(t: np.ndarray, velocity: np.ndarray, at: np.ndarray, step: int, friction: float, drag: float) -> np.ndarray:
+    """Acceleration (k, 2) [m/s^2] at the frames `at`, from the frame `step` beside them, less that by friction and
+    drag."""
+    beside = at + step
+    slope = (velocity[beside] - velocity[at]) / (t[beside] - t[at])[:, None]
+    return slope - braking(0.5 * (velocity[beside] + velocity[at]), friction, drag)

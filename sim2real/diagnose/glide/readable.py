@@ -26,16 +26,10 @@ def readable(problem: GlideProblem, found: Explained, law: Law, use: np.ndarray)
     """The formula of a family of smooth forces that was found, fitted to the clusters `use`; and views that show it."""
     values = found.mended
     path, by_start = problem.linearised(values)
-    data, motion = problem.data, problem.motion(path)
-    by_start = (by_start / data.std[:, :, None]).reshape(-1, 4)
-    starts = [np.linalg.qr(block)[0] for block in np.split(by_start, 2 * data.first[1:-1])]
+    motion = problem.motion(path)
 
     def respond(forces: np.ndarray) -> np.ndarray:
-        moved, _ = problem.bent(path, values, forces)
-        columns = (moved / data.std[:, :, None]).reshape(2 * len(moved), -1)
-        for q, a, b in zip(starts, 2 * data.first[:-1], 2 * data.first[1:], strict=True):
-            columns[a:b] -= q @ (q.T @ columns[a:b])
-        return columns
+        return -problem.profiled(path, by_start, problem.bent(path, values, forces)[0])[1]
 
     left = problem.residuals(values, found.final.free, np.arange(problem.clusters))
     r = left.r

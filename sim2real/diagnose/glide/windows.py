@@ -39,17 +39,18 @@ class Windows:
 
 def windows(data: GlideData, span: float | None = None) -> Windows:
     """All glides in windows of about `span` [s], SPAN by default; a shorter glide is one."""
-    first, weights = [], []
-    for a, b in zip(data.first[:-1], data.first[1:], strict=True):
+    first, weights, stds = [], [], []
+    for a, b, recording in zip(data.first[:-1], data.first[1:], data.recording, strict=True):
         lasts = float(data.t[b - 1] - data.t[a])
         parts = int(np.clip(round(lasts / (span or SPAN)), 1, max((b - a) // FEWEST_FRAMES, 1)))
         for rows in np.array_split(np.arange(a, b), parts):
             first.append(int(rows[0]))
             weights.append(_second_derivative(data.t[rows], data.std[rows]))
+            erring, memory = weights[-1] * data.std[rows], data.memories[recording].covariance(data.t[rows])
+            stds.append(np.sqrt(np.einsum("na,nm,ma->a", erring, memory, erring)))
     weight = np.concatenate(weights) if weights else np.zeros((0, 2))
     starts = np.array(first, int)
-    variance = np.add.reduceat(weight**2 * data.std**2, starts, axis=0) if first else np.zeros((0, 2))
-    return Windows(starts, weight, np.sqrt(variance))
+    return Windows(starts, weight, np.array(stds).reshape(-1, 2))
 
 
 def missing(

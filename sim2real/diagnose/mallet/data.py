@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from sim2real.diagnose.contact_data import Contacts, contacts_of, in_axes
+from sim2real.diagnose.contact_data import Contacts, contacts_of, in_axes, shared_variance
 from sim2real.diagnose.contacts import Geometry
 from sim2real.diagnose.encoders import Encoders
 from sim2real.diagnose.impacts import Impact
@@ -68,7 +68,8 @@ def _row(impact: Impact, encoders: Encoders, g: Geometry) -> dict[str, Any] | No
     for axis in (0, 1):  # the encoders' axes err apart from each other
         onto = np.array([[axes[0, axis], 0.0], [axes[1, axis], 0.0], [0.0, axes[0, axis]]])
         swing += onto @ covariance[axis] @ onto.T
-    std = np.sqrt(np.trace(before.covariance[:2, :2] + after.covariance[:2, :2]) / 8) + encoders.noise
+    own = np.trace(before.covariance[:2, :2] + after.covariance[:2, :2]) / 8
+    std = np.sqrt(own + shared_variance(before, after)) + encoders.noise
     return {
         "normal": normal, "t": t, "place": place, "before": before.velocity, "after": after.velocity, "driven": driven,
         "step": step @ normal, "swing": swing, "turn": std / touch, "chain": impact.chain, "cluster": impact.cluster,

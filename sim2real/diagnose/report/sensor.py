@@ -39,6 +39,8 @@ ROWS: dict[str, Callable[[Sight], str]] = {
     "frames": lambda one: str(one.frames),
     "noise of a position [mm]": lambda one: number(1e3 * one.noise_m),
     "noise of the clock [ms]": lambda one: number(1e3 * one.clock_s),
+    "errors hang together for [ms]": lambda one: number(1e3 * one.memory_s) if one.memory_s else BLIND,
+    "places off by its calibration [mm]": lambda one: number(1e3 * one.place_std_m) if one.place_std_m else BLIND,
     "frames without the puck": lambda one: _share(one.dropped),
     "frames held": lambda one: _share(one.held),
     "frames wrong": lambda one: _share(one.wild),

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from puckpilot_env.physics import bounce
-from sim2real.diagnose.contact_data import Contacts, contacts_of, in_axes, kept
+from sim2real.diagnose.contact_data import Contacts, contacts_of, in_axes, kept, shared_variance
 from sim2real.diagnose.contacts import Geometry
 from sim2real.diagnose.impacts import Impact, Side
 
@@ -74,7 +74,8 @@ def _row(impact: Impact, g: Geometry) -> dict[str, Any] | None:
             w @ _on_circle(side, post, g.puck_radius) for w, side in zip(weight, (before, after), strict=True)
         )
         normal = (place - post) / np.linalg.norm(place - post)
-        kind, turn = bounce.POST, float(np.sqrt(np.trace(sure) / 2)) / g.puck_radius
+        turn = float(np.sqrt(np.trace(sure) / 2 + shared_variance(before, after))) / g.puck_radius
+        kind = bounce.POST
     elif hit.kind == "wall" and _meets(before, after):
         kind, normal, turn = KINDS[hit.where], hit.normal, 0.0
     else:

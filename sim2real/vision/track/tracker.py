@@ -112,7 +112,7 @@ class Tracker:
             "table": {"length_m": setup.length, "width_m": setup.width, "goal_width_m": setup.goal_width},
             "puck": {"radius_m": self.things.puck_radius},
             "mallet": {"radius_m": None},
-            "camera": {"rate_hz": rate, "position_std_m": None},
+            "camera": {"rate_hz": rate, "position_std_m": None, "place_std_m": self.place_std or None},
             "note": note,
         }
         return Recording(name, meta, frames=Stream(dict(zip(COLUMNS, columns, strict=True))))

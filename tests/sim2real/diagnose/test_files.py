@@ -15,7 +15,7 @@ from tests.reality.camera import Camera
 from tests.reality.law import Law
 from tests.reality.record import make_recording
 
-SEEN = Sight("table", 9.0, 900, 0.001, 0.001, 0.0, 0.0, 0.0, 9, 9, 9, 0)
+SEEN = Sight("table", 9.0, 900, 0.001, 0.001, 0.0, 0.0, 0.0, 0.0, 0.0, 9, 9, 9, 0)
 PLAIN = Finding("sensing", "held_frames", (), (), "", {}, 1e-9, 2.0, 1.0, values={"held_frames": 0.1})
 
 

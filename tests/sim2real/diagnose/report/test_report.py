@@ -17,7 +17,8 @@ from sim2real.diagnose.report.findings import how_much
 from sim2real.diagnose.report.page import page
 
 VOID = {"meta", "br", "img", "link", "input", "hr"}
-SIGHT = Sight("monday <script>alert(1)</script>", 61.5, 7380, 0.00061, 0.0002, 0.012, 0.004, 0.001, 12, 80, 66, 3,
+SIGHT = Sight("monday <script>alert(1)</script>", 61.5, 7380, 0.00061, 0.0002, 0.0125, 0.00018, 0.012, 0.004,
+              0.001, 12, 80, 66, 3,
               ("frames.csv: 2 positions <b>far</b> outside",))  # fmt: skip
 RANGES = ((-180, 180), (-0.02, 0.02), (-0.03, 0.01), (-0.01, 0.03), (-170, 170), (-0.02, 0.02), (0.001, 0.001))
 X, Y, LOW, HIGH, DATA_X, DATA_Y, ERROR = (np.linspace(low, high, 9) for low, high in RANGES)
