@@ -51,7 +51,7 @@ OPTIONS = {
     "bench vision": ["--pictures", "--seed", "--json"],
     "compare": ["--json", "--out"],
     "diagnose": ["--holdout", "--baseline", "--out", "--json"],
-    "study": ["--cases", "--seed", "--out", "--seconds", "--only", "--mechanism", "--peer", "--workers", "--json"],
+    "study": ["--cases", "--seed", "--out", "--only", "--mechanism", "--filmed", "--peer", "--workers", "--json"],
     "calibrate gantry": ["--baud", "--width", "--mallet-radius", "--jig", "--out", "--json"],
     "calibrate camera": ["--board", "--charuco", "--marker", "--out", "--json"],
     "calibrate table": ["--camera", "--out", "--check", "--json"],

@@ -29,6 +29,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seconds", type=float, default=60.0, help="length of a recording (default 60)")
     parser.add_argument("--only", choices=KINDS, metavar="KIND", help=f"one kind of case: {', '.join(KINDS)}")
     parser.add_argument("--mechanism", metavar="NAME", help="one mechanism, or one unlisted law")
+    parser.add_argument(
+        "--filmed",
+        action="store_true",
+        help="cases as `puckpilot track` sees them: 0.02 mm of noise, "
+        "places 0.2 mm off by a calibration, the puck hidden under the gantry",
+    )
     parser.add_argument("--holdout", action="store_true", help="give the diagnosis a second recording for its proof")
     parser.add_argument("--peer", action="store_true", help="ask PySINDy too, on the cases of gliding pucks")
     parser.add_argument("--tool", metavar="COMMAND", help="judge another program that is called as puckpilot is")
@@ -47,7 +53,7 @@ def run(args: argparse.Namespace) -> int:
             raise ValueError(f"--{option} is {getattr(args, option)}; expected more than 0")
     if args.seed < 0:
         raise ValueError(f"--seed is {args.seed}; expected 0 or more")
-    plan = Plan(args.cases, args.seed, args.seconds, args.only, args.mechanism)
+    plan = Plan(args.cases, args.seed, args.seconds, args.only, args.mechanism, args.filmed)
     tool = shlex.split(args.tool) if args.tool else None
     if tool and shutil.which(tool[0]) is None:
         raise ValueError(f"--tool {tool[0]}: there is no such program; give one that is called as puckpilot is")
@@ -85,7 +91,7 @@ def _figures(study: Study) -> Any:
     from rich.table import Table
 
     plan = study.plan
-    title = f"{plan.cases} cases of {plan.seconds:g} s, seed {plan.seed}"
+    title = f"{plan.cases} {'filmed cases' if plan.filmed else 'cases'} of {plan.seconds:g} s, seed {plan.seed}"
     table = _plain_table(Table, title)
     peers = dict(zip((f.name for f in study.peer_figures), study.peer_figures, strict=True))
     headings = ["figure", "value", "95 %", "of", "bar", ""] + (["PySINDy, glide", "of"] if peers else [])

@@ -29,13 +29,15 @@ ROOT = checkout(Path(__file__).resolve().parents[2], Path.cwd())
 
 @dataclass(frozen=True)
 class Plan:
-    """Which cases: how many, of which seed, how long [s], and whether of one kind or mechanism alone."""
+    """Which cases: how many, of which seed, how long [s], whether of one kind or mechanism alone, and whether a
+    calibrated camera filmed them."""
 
     cases: int
     seed: int
     seconds: float
     only: str | None = None
     mechanism: str | None = None
+    filmed: bool = False
 
     def as_dict(self) -> dict[str, object]:
         """The same as plain data."""
@@ -58,6 +60,7 @@ def make_cases(plan: Plan, folder: Path, workers: int, progress: Progress, root:
     ]  # fmt: skip
     for option, value in (("--only", plan.only), ("--mechanism", plan.mechanism)):
         command += [option, value] if value else []
+    command += ["--filmed"] if plan.filmed else []
     labels = []
     with subprocess.Popen(
         command, cwd=root, env=with_root(root), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True

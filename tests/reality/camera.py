@@ -6,13 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tests.reality import film
 from tests.reality.law import Law
 from tests.reality.scene import FINE, Scene
 
 
 @dataclass(frozen=True)
 class Camera:
-    """White noise on each coordinate, a jittered clock, and fractions of frames held, dropped or wild."""
+    """Noise on each coordinate, a jittered clock, and fractions of frames held, dropped or wild; and what a calibrated
+    camera beside the table has besides (`tests.reality.film`)."""
 
     rate: float = 120.0  # Hz
     noise: float = 0.0005  # m
@@ -21,6 +23,10 @@ class Camera:
     dropped: float = 0.0  # of the frames see no puck
     wild: float = 0.0  # of the frames are wrong by centimetres
     wild_by: float = 0.05  # m, the size of such an error
+    memory: float = 0.0  # s, for which film.SLOW of the noise's variance hangs together; 0: the noise is white
+    place_error: float = 0.0  # m, by which the calibration has all places wrong, and says so
+    calibration: int = 0  # its number: another one errs elsewhere
+    beam: float = 0.0  # m on either side of the robot's mallet, along the table, that its gantry hides
 
 
 def look_up(t: np.ndarray, path: np.ndarray) -> np.ndarray:
@@ -41,8 +47,12 @@ def see(law: Law, camera: Camera, scene: Scene, rng: np.random.Generator) -> tup
     stamps = (taken + law.camera_delay) * (1.0 + law.camera_clock)
     paths = [scene.puck, scene.mallets[1] if len(scene.mallets) > 1 else np.full_like(scene.puck, np.nan)]
     puck, opponent = (distort(law, look_up(taken, path)) for path in paths)
-    puck = puck + camera.noise * rng.standard_normal(puck.shape)
+    if camera.place_error:
+        puck = puck + camera.place_error * film.field(puck / (law.length, law.width), camera.calibration)
+    puck = puck + camera.noise * film.noise(rng, taken, camera.memory)
     opponent = opponent + camera.noise * rng.standard_normal(opponent.shape)
+    if camera.beam and len(scene.mallets):
+        puck[np.abs(puck[:, 0] - look_up(taken, scene.mallets[0])[:, 0]) < camera.beam] = np.nan
     fate = rng.uniform(size=len(taken))
     heading = rng.uniform(0.0, 2.0 * np.pi, len(taken))
     wild = fate < camera.wild

@@ -24,6 +24,7 @@ PLAIN_SCENARIOS = {"launches": 0.4, "posts": 0.1, "rally": 0.15, "match": 0.05, 
 PAIRS = {"launches": 0.5, "posts": 0.1, "rally": 0.2, "gantry": 0.2}
 LIFTED = {"rally": ("glide", "wall"), "posts": ("glide", "wall")}  # regimes that such a recording shows as well
 WEAKEST, STRONGEST = 0.5, 2.0
+FILM = Camera(noise=2e-5, jitter=0.0, dropped=0.005, memory=0.0125, place_error=1.8e-4, beam=0.05)
 
 
 @dataclass(frozen=True)
@@ -38,8 +39,9 @@ class Case:
     truth: dict[str, Any] = field(default_factory=dict)
 
 
-def draw_case(seed: int, number: int, kind: str | None = None, name: str | None = None) -> Case:
-    """Case `number` of a seed. `kind` and `name` (a mechanism, or an unlisted law) narrow what it may be."""
+def draw_case(seed: int, number: int, kind: str | None = None, name: str | None = None, filmed: bool = False) -> Case:
+    """Case `number` of a seed. `kind` and `name` (a mechanism, or an unlisted law) narrow what it may be; `filmed`: its
+    camera is a calibrated one."""
     if kind is not None and kind not in KINDS:
         raise ValueError(f"unknown kind {kind!r}: expected one of {', '.join(KINDS)}")
     if name is not None and name not in {**MECHANISMS, **LAWS}:
@@ -61,7 +63,8 @@ def draw_case(seed: int, number: int, kind: str | None = None, name: str | None 
     law = _table(rng)
     if kind == "parameters" or (names and rng.uniform() < 0.5):
         law = _other_parameters(rng, law)
-    return _with(rng, kind, scenario, law, names)
+    calibrated = replace(FILM, calibration=int(rng.integers(2**31))) if filmed else None
+    return _with(rng, kind, scenario, law, names, calibrated)
 
 
 def kind_of(seed: int, number: int) -> tuple[str, int]:
@@ -138,9 +141,9 @@ def _camera(rng: Rng) -> Camera:
     )
 
 
-def _with(rng: Rng, kind: str, scenario: str, law: Law, names: list[str]) -> Case:
-    """The case with its mechanisms put in, and the key written."""
-    camera = _camera(rng)
+def _with(rng: Rng, kind: str, scenario: str, law: Law, names: list[str], camera: Camera | None) -> Case:
+    """The case with its mechanisms put in, and the key written; with some camera, if none is given."""
+    camera = camera or _camera(rng)
     hand = Hand(patience=4.0, at_posts=True) if scenario == "posts" else Hand()
     values, where, shares = {}, {}, {}
     for name in names:

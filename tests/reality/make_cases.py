@@ -31,13 +31,15 @@ def key_file(out: Path, number: int) -> Path:
     return out / "key" / f"case_{number + 1:04d}.json"
 
 
-def make_case(out: Path, seed: int, seconds: float, kind: str | None, name: str | None, number: int) -> str:
+def make_case(
+    out: Path, seed: int, seconds: float, kind: str | None, name: str | None, filmed: bool, number: int
+) -> str:
     """Write one case, the key last, and return its name."""
     key = key_file(out, number)
     label = key.stem
     if key.exists():
         return label
-    case = draw_case(seed, number, kind, name)
+    case = draw_case(seed, number, kind, name, filmed)
     for part, (folder, lasts) in enumerate((("recordings", seconds), ("heldout", HELDOUT_SHARE * seconds))):
         draw = int(np.random.SeedSequence([seed, number, part]).generate_state(1)[0])
         make_recording(
@@ -58,6 +60,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--seconds", type=float, default=60.0, help="length of a recording (default 60)")
     parser.add_argument("--only", metavar="KIND", help="nothing, parameters, one, two or unlisted")
     parser.add_argument("--mechanism", metavar="NAME", help=f"one of {', '.join([*MECHANISMS, *LAWS])}")
+    parser.add_argument("--filmed", action="store_true", help="by a calibrated camera")
     parser.add_argument("--workers", type=int, default=2)
     args = parser.parse_args(arguments)
     try:
@@ -66,7 +69,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         parser.error(str(error))
     if not all(key_file(args.out, number).exists() for number in range(args.cases)):
         run(draw_case(args.seed, 0).law, (1.0, 0.5, 1.0, 0.0), [(0.3, 0.5)], duration=0.01)  # compiled before the fork
-    make = partial(make_case, args.out, args.seed, args.seconds, args.only, args.mechanism)
+    make = partial(make_case, args.out, args.seed, args.seconds, args.only, args.mechanism, args.filmed)
     with ProcessPoolExecutor(args.workers, multiprocessing.get_context("fork")) as pool:
         for label in pool.map(make, range(args.cases)):
             print(label, flush=True)

@@ -27,6 +27,7 @@ SCENARIOS = {
 PLAYERS = {"launches": 0, "posts": 0, "rally": 1, "match": 2}
 AT_POSTS = Hand(patience=4.0, at_posts=True)
 SUPPLY = 24.0  # V
+SHARP = 1e-4  # m, of noise below which ten micrometres matter
 
 
 def make_recording(
@@ -55,7 +56,7 @@ def make_recording(
     rng = np.random.default_rng([seed, 1])
     if scenario in PLAYERS:
         scene = play(law, seed, seconds, PLAYERS[scenario], hand or (AT_POSTS if scenario == "posts" else None), dt)
-        write_frames(folder, see(law, camera, scene, rng))
+        write_frames(folder, see(law, camera, scene, rng), 6 if camera.noise < SHARP else 5)
     else:
         scene = roam(law, seed, seconds, scenario == "drive", dt)
         write_frames(folder)
@@ -73,10 +74,10 @@ def make_recording(
     return scene
 
 
-def write_frames(folder: Path, seen: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None) -> None:
-    """frames.csv from stamps, puck and opponent; a header alone where no camera ran."""
+def write_frames(folder: Path, seen: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None, digits: int = 5) -> None:
+    """frames.csv from stamps, puck and opponent with so many digits of metres; a header alone where no camera ran."""
     rows = (
-        f"{t:.6f},{cell(x, 5)},{cell(y, 5)},{cell(ox, 5)},{cell(oy, 5)}"
+        f"{t:.6f},{cell(x, digits)},{cell(y, digits)},{cell(ox, digits)},{cell(oy, digits)}"
         for t, (x, y), (ox, oy) in (zip(*seen, strict=True) if seen is not None else ())
     )
     write(folder / "frames.csv", "t,puck_x,puck_y,opponent_x,opponent_y", rows)
@@ -118,7 +119,14 @@ def meta(law: Law, camera: Camera, note: str) -> dict[str, object]:
         "table": {"length_m": law.length, "width_m": law.width, "goal_width_m": law.goal_width},
         "puck": {"radius_m": law.puck_radius},
         "mallet": {"radius_m": law.mallet_radius},
-        "camera": {"rate_hz": camera.rate, "position_std_m": camera.noise},
+        "camera": {
+            "rate_hz": camera.rate,
+            **(
+                {"position_std_m": None, "place_std_m": camera.place_error}
+                if camera.place_error
+                else {"position_std_m": camera.noise}
+            ),
+        },
         "note": note,
     }
 

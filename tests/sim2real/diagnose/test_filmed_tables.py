@@ -3,21 +3,28 @@ something is."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from filmed import filmed
 
 from puckpilot_env.parameters import TABLE
 from sim2real.diagnose.diagnosis import Diagnosis, diagnose
+from sim2real.recording import read_recording
+from tests.reality.cases import FILM
 from tests.reality.law import Law
+from tests.reality.record import make_recording
 
 SHIPPED = {row.name: row.default for row in TABLE}
 SECONDS = 45.0
 
 
 def diagnosed(folder: Path, law: Law, scenario: str, seed: int, stated: bool = True) -> Diagnosis:
-    recording = filmed(folder / "film", law, scenario, seed, SECONDS, stated)
+    make_recording(folder / "film", law, scenario, seed, SECONDS, replace(FILM, calibration=seed))
+    recording = read_recording(folder / "film")
+    if not stated:
+        camera = {**recording.meta["camera"], "place_std_m": None}
+        recording = replace(recording, meta={**recording.meta, "camera": camera})
     return diagnose([recording], [], SHIPPED, lambda *_: None)
 
 
