@@ -1,4 +1,6 @@
-"""Launches kept apart: no fit sees them, not even the sensing's; they serve the proof alone."""
+"""Launches kept apart: no fit sees them, not even the sensing's; they serve the proof alone. How large the noise of
+their own recording is they tell with the others, which is the same before and after.
+"""
 
 from __future__ import annotations
 
@@ -47,7 +49,7 @@ def keep_apart(recordings: Sequence[Recording], pieces: Sequence[Pieces], heldou
     some that meet walls and some that meet the robot's mallet, if any do."""
     of_row, first, met = [], [0], []
     for recording, some in zip(recordings, pieces, strict=True):
-        part = glides_of(recording, some)
+        part = _launched(recording, some, 0.0)
         _, opening = np.unique(part.cluster, return_index=True)
         begun = _rows(recording, part)[opening]
         frames = 0 if recording.frames is None else recording.frames.rows
@@ -90,9 +92,12 @@ def _missed(met: np.ndarray, rest: list[int], k: int) -> tuple[int, int]:
 
 
 def glides_of(recording: Recording, pieces: Pieces) -> GlideData:
-    """The glides of a recording."""
+    """The glides of a recording, with what its calibration says that it errs by."""
+    return _launched(recording, pieces, recording.nominal("camera", "place_std_m") or 0.0)
+
+
+def _launched(recording: Recording, pieces: Pieces, stated: float) -> GlideData:
     t = np.zeros(0) if recording.frames is None else recording.frames.t
-    stated = recording.nominal("camera", "place_std_m") or 0.0
     return glide_data(pieces, geometry(recording), mallet_tracks(recording, t), stated)
 
 

@@ -26,6 +26,7 @@ class ContactProblem(ABC, Generic[C]):
     base: tuple[str, ...]
     each: int
     units_called: str
+    place_error_m = 0.0  # velocities are told by glides, which know it
 
     def __init__(self, data: C, clusters: int, common: Mapping[str, float]) -> None:
         """`clusters`: how many launches the recordings have; `common`: sizes of the table, and the glides' law."""

@@ -60,7 +60,8 @@ class Problem(Protocol):
 
     `clusters`: how many launches there are, by which intervals and proofs are resampled; `freedom` (clusters,): how
     many of each one's residuals are left free by its nuisances; `units`: its parts; `noise_m`: the sensor's noise [m],
-    rms over the residuals. `base`: the baseline's parameters that it can tell; `regime` as in the format.
+    rms over the residuals; `place_error_m`: by what a calibrated camera has places wrong [m], smoothly, else 0. `base`:
+    the baseline's parameters that it can tell; `regime` as in the format.
     `plain`: those of `base` that are fitted first; the rest may lead a fit astray that is far off still.
     """
 
@@ -71,6 +72,7 @@ class Problem(Protocol):
     freedom: np.ndarray
     units: Units
     noise_m: float
+    place_error_m: float
 
     def residuals(self, values: Mapping[str, float], free: Sequence[str], clusters: np.ndarray) -> Residuals:
         """Residuals of the pieces in `clusters` (indices) under the law whose parameters are `values`, by the names of

@@ -122,13 +122,16 @@ class Model:
 
 
 class Chooser:
-    """Compares models on the units of the clusters `use`; `dispersion` >= 1 is noise beyond the sensor's, in variance.
+    """Compares models on the units of the clusters `use`; `dispersion` >= 1 is noise beyond the sensor's, in variance;
+    `least`: what a law must explain to be told, in units of the noise, as where the sensor has errors of other kinds.
 
     Losses are soft (`gram.soft`): a few parts of the data that no law explains outweigh the rest in no comparison.
     """
 
-    def __init__(self, grams: Grams, units: Units, use: np.ndarray, dispersion: float = 1.0) -> None:
-        self.grams, self.use, self.dispersion = grams, units.of(use), dispersion
+    def __init__(
+        self, grams: Grams, units: Units, use: np.ndarray, dispersion: float = 1.0, least: float = 0.0
+    ) -> None:
+        self.grams, self.use, self.dispersion, self.least = grams, units.of(use), dispersion, least
         self._freedom = units.freedom[self.use] * dispersion
         self._launch = np.unique(units.cluster[self.use], return_inverse=True)[1]
         draws = np.random.default_rng(0).integers(self._launches, size=(RESAMPLED, self._launches))
@@ -185,10 +188,10 @@ class Chooser:
         assert best is not None
         return best
 
-    @staticmethod
-    def fits(gain: Gain) -> bool:
-        """Whether a law fits better than chance lets it."""
-        return gain.fitted > LEAST_FIT + 2.0 * len(gain.law.columns) + 2.0 * float(np.log(gain.law.searched))
+    def fits(self, gain: Gain) -> bool:
+        """Whether a law fits better than chance lets it, and explains enough."""
+        chance = LEAST_FIT + 2.0 * len(gain.law.columns) + 2.0 * float(np.log(gain.law.searched))
+        return gain.fitted > max(chance, self.least)
 
     def passes(self, gain: Gain) -> bool:
         """Whether a gain is more than chance, in the fit and on held-out units, and not the doing of few launches: any

@@ -18,6 +18,7 @@ from sim2real.diagnose.engine.ways import Way, completed, tellable
 from sim2real.diagnose.problem import Columns, Problem
 
 MOST_LISTED = 4
+CLEAR_OF = 2.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -133,7 +134,7 @@ def explain(
     screen = tellable(problem.columns(baseline.values, (), use), problem, use)
     laws = [*screen.listed, *screen.families]
     beyond = beyond or dispersion(screen.grams, problem.units, problem.base, laws, use)
-    chooser = Chooser(screen.grams, problem.units, use, beyond)
+    chooser = Chooser(screen.grams, problem.units, use, beyond, _least(problem))
     model = chooser.prune(chooser.add(Model(problem.base), screen.listed, MOST_LISTED))
     listed, law = standing(problem, baseline, model, screen, use)
     way = completed(problem, baseline, law, listed, chooser, screen, use) if clear else Way(listed, law, None, np.inf)
@@ -183,6 +184,13 @@ def bare(found: Explained) -> Explained:
 
 def _covariance(problem: Problem, smooth: Smooth | None, use: np.ndarray) -> np.ndarray:
     return smooth.covariance(problem, use) if smooth else np.zeros((0, 0))
+
+
+def _least(problem: Problem) -> float:
+    """What a law must explain, in units of the noise: places that a calibrated camera saw it must move, in the root of
+    the sum of squares, by more than CLEAR_OF times what the calibration has each of them wrong by. Where the outline of
+    a puck crosses a line of the table, some are off by half of that."""
+    return (CLEAR_OF * problem.place_error_m / problem.noise_m) ** 2 if problem.place_error_m else 0.0
 
 
 def _doubtful(chooser: Chooser, gains: Sequence[Gain]) -> Law | None:

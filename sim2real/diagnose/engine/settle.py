@@ -11,6 +11,7 @@ from puckpilot_env.parameters import BY_NAME
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.choose import Law, Model
 from sim2real.diagnose.engine.fit import Fit, fit, soft_loss
+from sim2real.diagnose.finding import TO_THE_NOISE
 from sim2real.diagnose.problem import Columns, Problem
 
 CLEAR = 1e-4  # chance at which the simulator's own numbers would be refused though they are right
@@ -28,18 +29,20 @@ FEW_ROUNDS = 4  # of a fit, to see which start leads farthest
 
 def far_off(problem: Problem, baseline: Fit, law: Fit, use: np.ndarray) -> bool:
     """Whether something must be missing still: a bare baseline leaves far more than noise of most launches (of most
-    units, where single ones may be wrong altogether) or of many; or listed laws do, or leave much of what it does."""
+    units, where single ones may be wrong altogether) or of many; or listed laws do, or leave much of what it does. What
+    a calibrated camera saw is noise up to TO_THE_NOISE: where a puck's outline crosses a line, it errs more."""
+    noisy = TO_THE_NOISE**2 if problem.place_error_m else 1.0
     before, after = (_typical(problem, one, use) - 1.0 for one in (baseline, law))
     if law is baseline:
-        return after > FAR_OFF or float(_astray(problem, law, use).mean()) > MANY_ASTRAY
+        return after > FAR_OFF or float(_astray(problem, law, use, noisy).mean()) > MANY_ASTRAY
     return after > NEAR and after > min(HALF_WAY * before, FAR_OFF)
 
 
-def _astray(problem: Problem, law: Fit, use: np.ndarray) -> np.ndarray:
-    """The launches (n,) bool of which a law leaves what noise alone hardly ever does."""
+def _astray(problem: Problem, law: Fit, use: np.ndarray, noisy: float = 1.0) -> np.ndarray:
+    """The launches (n,) bool of which a law leaves what noise, `noisy` times as large, alone hardly ever does."""
     seen = problem.freedom[use] > 0.0
     freedom = problem.freedom[use][seen]
-    return left_of(problem, law, use)[seen] * freedom > gram.soft_from(freedom)
+    return left_of(problem, law, use)[seen] * freedom > noisy * gram.soft_from(freedom)
 
 
 def nearly_all(problem: Problem, baseline: Fit, law: Fit, use: np.ndarray) -> bool:

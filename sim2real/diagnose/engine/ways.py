@@ -48,7 +48,7 @@ def completed(
     columns = screen
     if law is not baseline:
         columns = tellable(problem.columns(law.values, law.free, None), problem, use, law.free)
-    refitted = Chooser(columns.grams, problem.units, use, chooser.dispersion)
+    refitted = Chooser(columns.grams, problem.units, use, chooser.dispersion, chooser.least)
     rest = _remainder(chooser, listed, refitted, law, columns)
     if rest is None and not far_off(problem, baseline, law, use):
         return plain

@@ -40,6 +40,7 @@ class GantryProblem:
         self.freedom = np.concatenate([run.freedom() for run in runs])
         self.units = Units(np.arange(self.clusters), self.freedom)
         self.noise_m = float(np.sqrt(np.mean(np.concatenate([run.noise for run in runs]) ** 2)))
+        self.place_error_m = 0.0  # no camera
         self.proof = np.zeros(0, int) if proof is None else proof
         self.seen = np.setdiff1d(np.arange(self.clusters), self.proof)
         self._candidates: list[Candidate] | None = None

@@ -9,7 +9,8 @@ import numpy as np
 from scipy.stats import chi2
 
 from sim2real.diagnose.contacts import Geometry, Track, near_mallets, near_posts, near_walls
-from sim2real.diagnose.glide.memory import Memory, remembered
+from sim2real.diagnose.glide.memory import Memory, Stretch, remembered
+from sim2real.diagnose.glide.uneven import uneven, unevenness
 from sim2real.diagnose.pieces import Glide, Pieces
 from sim2real.diagnose.sensor import Noise
 
@@ -73,8 +74,9 @@ def glide_data(pieces: Pieces, g: Geometry, tracks: Mapping[str, Track], place_s
     frames = [len(glide.t) for glide in glides]
     place = [np.stack([glide.x, glide.y], axis=1) for glide in glides]
     std = [np.sqrt(excess) * pieces.noise.std(_speed(glide)) for glide in glides]
-    errors = [p / s for p, s in zip(place, std, strict=True)]
-    memory = _memory([glide.t for glide in glides], errors) if place_std else Memory()
+    memory = Memory()
+    if place_std:
+        std, memory = _calibrated(glides, place, std)
     ends = np.array([hit.t for hit in pieces.hits])
     return GlideData(
         np.concatenate([glide.t for glide in glides]) if glides else np.zeros(0),
@@ -143,9 +145,20 @@ def _roughness(glide: Glide, noise: Noise) -> tuple[float, int]:
     return float(rest), 2 * (len(u) - order - 1)
 
 
-def _memory(times: list[np.ndarray], places: list[np.ndarray]) -> Memory:
-    period = float(np.median(np.concatenate([np.diff(t) for t in times]))) if times else 0.0
-    return remembered(times, places, SMOOTH_ORDER, period)
+def _calibrated(glides: list[Glide], place: list[np.ndarray], std: list[np.ndarray]) -> tuple[list[np.ndarray], Memory]:
+    """The noise (n, 2) of a calibrated camera in each glide, by where it was, and what hangs together of it."""
+    told = unevenness(_stretches(glides, place, std), SMOOTH_ORDER)
+    std = [one * uneven(there, told) for one, there in zip(std, place, strict=True)]
+    return std, remembered(_stretches(glides, place, std), SMOOTH_ORDER, _period(glides))
+
+
+def _stretches(glides: list[Glide], place: list[np.ndarray], std: list[np.ndarray]) -> list[Stretch]:
+    return [Stretch(glide.t, *both) for glide, *both in zip(glides, place, std, strict=True)]
+
+
+def _period(glides: list[Glide]) -> float:
+    """Time between frames [s]."""
+    return float(np.median(np.concatenate([np.diff(glide.t) for glide in glides]))) if glides else 0.0
 
 
 def _clusters(pieces: Pieces, glides: list[Glide]) -> np.ndarray:

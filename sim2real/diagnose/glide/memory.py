@@ -16,7 +16,8 @@ from scipy.linalg import solve_triangular
 SHARES = (0.15, 0.3, 0.45, 0.6, 0.75, 0.9)
 FRAMES = (0.7, 1.5, 3.0)  # of memory; forces, which act for longer, are no errors
 SURE = 12.0  # of the likelihood's logarithm that a memory must gain: chance gains 5 in one of a hundred recordings
-MOST_FRAMES = 120  # of a glide, that are looked at
+TOGETHER = 120  # frames of a glide, about, that are looked at together
+ODD = 4.0  # times the variance that is usual: more counts as so much
 
 
 @dataclass(frozen=True)
@@ -35,46 +36,62 @@ class Memory:
         return fading
 
 
-def remembered(times: Sequence[np.ndarray], places: Sequence[np.ndarray], order: int, period: float) -> Memory:
-    """The memory of errors of glides, at `times` (n,) [s] each with coordinates `places` (n, 2) in units of their
-    assumed deviation, about polynomials of an `order`; `period` [s] of the frames. None, and scale 1, where errors are
-    white."""
-    glides = list(_short(times, places, order))
-    if not glides:
+@dataclass(frozen=True)
+class Stretch:
+    """A glide, or a part of one: times `t` (n,) [s], places (n, 2) [m], and their assumed deviation `std` (n, 2)."""
+
+    t: np.ndarray
+    place: np.ndarray
+    std: np.ndarray
+
+    def cut(self, frames: int) -> Iterator[Stretch]:
+        """Parts of it, of about so many frames."""
+        for rows in np.array_split(np.arange(len(self.t)), max(len(self.t) // frames, 1)):
+            yield Stretch(self.t[rows], self.place[rows], self.std[rows])
+
+
+def remembered(glides: Sequence[Stretch], order: int, period: float) -> Memory:
+    """The memory of the errors of glides about polynomials of an `order`; `period` [s] of the frames. None, and scale
+    1, where errors are white."""
+    parts = [part for glide in glides for part in glide.cut(TOGETHER)]
+    if not parts:
         return Memory()
-    plain = _likelihood(glides, Memory())[0]
+    plain, _ = _likelihood(parts, Memory(), order)
     tried = [Memory(share, many * period) for share in SHARES for many in FRAMES]
-    found = [_likelihood(glides, one) for one in tried]
+    found = [_likelihood(parts, one, order) for one in tried]
     best = int(np.argmax([likelihood for likelihood, _ in found]))
-    if found[best][0] - plain < SURE:
-        return Memory()
-    return replace(tried[best], scale=float(np.sqrt(np.median(found[best][1]))))
+    return replace(tried[best], scale=found[best][1]) if found[best][0] > plain + SURE else Memory()
 
 
-def _short(
-    times: Sequence[np.ndarray], places: Sequence[np.ndarray], order: int
-) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """Times, coordinates and the polynomials' columns of glides, cut to MOST_FRAMES."""
-    for t, place in zip(times, places, strict=True):
-        part = slice(0, MOST_FRAMES)
-        u = (t[part] - t[0]) / np.ptp(t[part]) - 0.5
-        yield t[part], place[part], np.vander(u, min(order, len(u) // 4) + 1)
+def polynomials(t: np.ndarray, order: int) -> np.ndarray:
+    """Columns (n, k) of polynomials of the times (n,) up to an `order`, or a lower one for few frames."""
+    return np.vander((t - t[0]) / np.ptp(t) - 0.5, min(order, len(t) // 4) + 1)
 
 
-def _likelihood(
-    glides: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]], memory: Memory
-) -> tuple[float, list[float]]:
-    """Logarithm of the restricted likelihood, up to a constant, with the scale that suits each glide best, so that no
-    rough one outweighs the others; and the squares of these scales."""
-    total, scales = 0.0, []
-    for t, place, columns in glides:
-        root = np.linalg.cholesky(memory.covariance(t))
-        white = solve_triangular(root, np.concatenate([columns, place], axis=1), lower=True)
-        q, r = np.linalg.qr(white[:, : columns.shape[1]])
-        rest = white[:, columns.shape[1] :]
-        rest = rest - q @ (q.T @ rest)
-        count = rest.size - 2 * columns.shape[1]
-        scales.append(float(np.sum(rest**2)) / count)
-        logs = np.log(np.diag(root)).sum() + np.log(np.abs(np.diag(r))).sum()
-        total -= 0.5 * count * float(np.log(scales[-1])) + 2.0 * float(logs)
-    return total, scales
+def left_of(part: Stretch, order: int, root: np.ndarray | None = None) -> tuple[float, int, float]:
+    """What polynomials leave of a stretch, its noise made white by a `root` (n, n) of its covariance: the sum of
+    squares in units of the assumed noise, its degrees of freedom, and half the logarithm of the information on the
+    polynomials' numbers."""
+    columns, squares, count, told = polynomials(part.t, order), 0.0, 0, 0.0
+    for place, std in zip(part.place.T, part.std.T, strict=True):
+        both = np.concatenate([columns, place[:, None]], axis=1) / std[:, None]
+        both = both if root is None else solve_triangular(root, both, lower=True, check_finite=False)
+        q, r = np.linalg.qr(both[:, :-1])
+        rest = both[:, -1] - q @ (q.T @ both[:, -1])
+        squares, count = squares + float(rest @ rest), count + len(rest) - len(r)
+        told += float(np.log(np.abs(np.diag(r))).sum())
+    return squares, count, told
+
+
+def _likelihood(parts: Sequence[Stretch], memory: Memory, order: int) -> tuple[float, float]:
+    """Logarithm of the restricted likelihood, up to a constant, with the scale that suits each part best, so that no
+    rough one outweighs the others; and the scale of all, the odd ones counted as little."""
+    total, variances, counts = 0.0, [], []
+    for part in parts:
+        root = np.linalg.cholesky(memory.covariance(part.t))
+        squares, count, told = left_of(part, order, root)
+        variances.append(squares / count)
+        counts.append(count)
+        total -= 0.5 * count * float(np.log(variances[-1])) + 2.0 * float(np.log(np.diag(root)).sum()) + told
+    usual = np.minimum(variances, ODD * np.median(variances))
+    return total, max(float(np.sqrt(np.average(usual, weights=counts))), 1.0)

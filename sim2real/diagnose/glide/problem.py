@@ -58,6 +58,7 @@ class GlideProblem:
         self.units = Units(data.cluster, 2.0 * np.diff(data.first) - 4.0, "glides", _kinds(self._starts[:, 2:4]))
         self.freedom = np.bincount(data.cluster, self.units.freedom, data.clusters)
         self.noise_m = float(np.sqrt(np.mean(data.std**2)))
+        self.place_error_m = max(data.place_std)
 
     def columns(self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None) -> Columns:
         """See `Problem.columns`."""
@@ -136,7 +137,7 @@ class GlideProblem:
             starts = self._answers(by_start, (data.place - path[:, :2] - change[:, :2])[:, :, None])[:, :, 0]
             path = path + change + np.einsum("nai,ni->na", whole, data.of_frame(starts))
         ends = [data.first[:-1], data.first[1:] - 1]
-        inverse = np.linalg.inv(self._normal(by_start)) * self._unrest(path)[:, None, None]
+        inverse = np.linalg.inv(self._normal(self.errors.white(by_start))) * self._unrest(path, by_start)[:, None, None]
         bent = self._answers(by_start, self.errors.modes(path[:, :2]))
         friction, drag = float(record["friction"]), float(record["drag"])
         beyond = [
@@ -150,10 +151,11 @@ class GlideProblem:
             drag,
         )
 
-    def _unrest(self, path: np.ndarray) -> np.ndarray:
-        """How much more (g,) than the sensor's noise a glide scatters about its path, in variance; at least 1."""
-        square = self.errors.white(self.data.place - path[:, :2]) ** 2
-        left, freedom = np.add.reduceat(square.sum(axis=1), self.data.first[:-1]), self.units.freedom
+    def _unrest(self, path: np.ndarray, by_start: np.ndarray) -> np.ndarray:
+        """How much more (g,) than the sensor's noise and the calibration explain a glide scatters about its path, in
+        variance; at least 1."""
+        rest = self.profiled(path, by_start, np.zeros((len(path), 2, 0)))[0]
+        left, freedom = np.add.reduceat(rest**2, 2 * self.data.first[:-1]), self.units.freedom
         return np.where(left > freedom + 3.0 * np.sqrt(2.0 * freedom), left / np.maximum(freedom, 1.0), 1.0)
 
     def _drift(self, law: Fit, ends: Sequence[np.ndarray]) -> np.ndarray:
@@ -201,11 +203,11 @@ class GlideProblem:
         white = self.errors.white
         by, moved = white(by_start), white(changes)
         right = np.add.reduceat(np.einsum("nai,nak->nik", by, moved), self.data.first[:-1], axis=0)
-        return np.linalg.solve(self._normal(by_start), right)
+        return np.linalg.solve(self._normal(by), right)
 
-    def _normal(self, by_start: np.ndarray) -> np.ndarray:
-        """Normal matrices (g, 4, 4) of the starts; a touch is added to what no frame tells."""
-        j = self.errors.white(by_start)
+    def _normal(self, j: np.ndarray) -> np.ndarray:
+        """Normal matrices (g, 4, 4) of the starts, from derivatives by them (n, 2, 4) in units of white noise; a touch
+        is added to what no frame tells."""
         normal = np.add.reduceat(np.einsum("nai,naj->nij", j, j), self.data.first[:-1], axis=0)
         return normal + 1e-9 * np.eye(4) * np.trace(normal, axis1=1, axis2=2)[:, None, None]
 

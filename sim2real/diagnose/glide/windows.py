@@ -46,7 +46,10 @@ def windows(data: GlideData, span: float | None = None) -> Windows:
         for rows in np.array_split(np.arange(a, b), parts):
             first.append(int(rows[0]))
             weights.append(_second_derivative(data.t[rows], data.std[rows]))
-            erring, memory = weights[-1] * data.std[rows], data.memories[recording].covariance(data.t[rows])
+            erring, memory = (
+                weights[-1] * data.std[rows],
+                data.memories[recording].covariance(data.t[rows]),
+            )
             stds.append(np.sqrt(np.einsum("na,nm,ma->a", erring, memory, erring)))
     weight = np.concatenate(weights) if weights else np.zeros((0, 2))
     starts = np.array(first, int)

@@ -5,7 +5,7 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from sim2real.diagnose.contact_data import Contacts, contacts_of, in_axes, join, kept
+from sim2real.diagnose.contact_data import Contacts, contacts_of, in_axes, join, kept, shared_variance
 from sim2real.diagnose.impacts import Side
 from sim2real.diagnose.mallet.data import Blows
 
@@ -55,3 +55,13 @@ def test_covariances_are_turned_into_the_normal_s_axes() -> None:
     found = in_axes(np.array([0.0, 1.0]), before, before)  # along y, and then along -x
     assert found["spread"][0] == pytest.approx(np.diag([4.0, 1.0]))
     assert found["drift"][1] == pytest.approx(np.array([[2.0], [-1.0]]))
+
+
+def test_what_all_contacts_have_in_common_moves_their_places_by_its_mean() -> None:
+    """Two numbers of the law: one moves both motions' places by 3 and 4 mm, the other moves them apart."""
+    nothing, covariance = np.zeros(2), np.zeros((4, 4))
+    first, second = np.zeros((4, 2)), np.zeros((4, 2))
+    first[:, 0] = second[:, 0] = (0.003, 0.004, 1.0, 1.0)
+    first[0, 1], second[0, 1] = 0.01, -0.01
+    sides = [Side(nothing, nothing, covariance, drift) for drift in (first, second)]
+    assert shared_variance(*sides) == pytest.approx((0.003**2 + 0.004**2) / 2.0)

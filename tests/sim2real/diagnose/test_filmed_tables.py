@@ -57,3 +57,18 @@ def test_what_is_missing_is_named(tmp_path: Path, law: Law, mechanism: str, name
     truth = law.linear_drag if name == "k" else getattr(law, name)
     assert estimate.low < truth < estimate.high
     assert found.findings[0].after < 1.3 < found.findings[0].before
+
+
+def test_what_untouched_recordings_err_by_tells_the_fit_nothing(tmp_path: Path) -> None:
+    """The same recording, with one or another for the proof alone: the same numbers."""
+    names = ("fitted", "proof", "another")
+    for seed, name in enumerate(names, 1):
+        make_recording(tmp_path / name, Law(), "launches", seed, 15.0, replace(FILM, calibration=7))
+    fitted, *proofs = (read_recording(tmp_path / name) for name in names)
+    baselines = []
+    for proof in proofs:
+        (glide,) = (
+            one for one in diagnose([fitted], [proof], SHIPPED, lambda *_: None).accounts if one.regime == "glide"
+        )
+        baselines.append([glide.baseline[name].value for name in ("friction", "drag")])
+    assert baselines[0] == pytest.approx(baselines[1], rel=1e-6)

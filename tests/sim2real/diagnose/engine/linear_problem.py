@@ -29,6 +29,7 @@ class LinearProblem:
     base: tuple[str, ...] = ("friction", "drag")
     plain: tuple[str, ...] = base
     noise_m = 0.001
+    place_error_m = 0.0
 
     def __init__(
         self,

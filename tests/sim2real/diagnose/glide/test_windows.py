@@ -1,10 +1,14 @@
 """Accelerations of stretches of glides against parabolas and noise made by hand."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from sim2real.diagnose.glide.data import GlideData
+from sim2real.diagnose.glide.memory import Memory
 from sim2real.diagnose.glide.windows import windows
+from tests.reality import film
 
 RATE, NOISE = 100.0, 0.0005
 
@@ -41,3 +45,10 @@ def test_the_noise_is_what_it_says():
     data = _glides([0.7] * 400, [(0.0, 0.0)] * 400, np.random.default_rng(1))
     some = windows(data)
     assert some.of(data.place).std(axis=0) == pytest.approx(some.std[0], rel=0.08)
+
+
+def test_noise_that_hangs_together_is_what_it_says():
+    data, rng = _glides([0.7] * 400, [(0.0, 0.0)] * 400), np.random.default_rng(2)
+    drawn = NOISE * np.concatenate([film.noise(rng, t, 0.02) for t in np.split(data.t, data.first[1:-1])])
+    some = windows(replace(data, memories=(Memory(film.SLOW, 0.02),)))
+    assert some.of(data.place + drawn).std(axis=0) == pytest.approx(some.std[0], rel=0.08)
