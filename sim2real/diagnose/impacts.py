@@ -59,6 +59,7 @@ def find_impacts(pieces: Pieces, problem: GlideProblem, states: States, recordin
     if not len(here):
         return []
     begin, finish = data.t[data.first[here]], data.t[data.first[here + 1] - 1]
+    near = FAR_OFF * problem.place_error_m or NEAR  # a wall's line is where the camera sees it
     found: list[Impact] = []
     for k, hit in enumerate(pieces.hits):
         before = glide_before(pieces, begin, finish, k)
@@ -69,7 +70,7 @@ def find_impacts(pieces: Pieces, problem: GlideProblem, states: States, recordin
             _carry(states, here[glide], end, hit.t - at)
             for glide, end, at in ((before, 1, finish[before]), (after, 0, begin[after]))
         )
-        hit = _told_by(left, right, hit, pieces.lines)
+        hit = _told_by(left, right, hit, pieces.lines, near)
         cluster = int(data.cluster[here[after]])
         last = found[-1] if found and found[-1].glide == before else None
         since = hit.t - last.hit.t if last else np.nan
@@ -105,9 +106,9 @@ def _others(pieces: Pieces, k: int, start: float, stop: float) -> bool:
     return any(start - 0.005 < other.t < stop + 0.005 for other in near)
 
 
-def _told_by(before: Side, after: Side, hit: Hit, lines: dict[str, float]) -> Hit:
-    """The hit, if the wall that it is said to be of is where both motions meet. What a beam hides may have been another
-    thing, such as a blow of the mallet under it."""
+def _told_by(before: Side, after: Side, hit: Hit, lines: dict[str, float], near: float) -> Hit:
+    """The hit, if the wall that it is said to be of is where both motions meet, within `near` [m] beside the noise.
+    What a beam hides may have been another thing, such as a blow of the mallet under it."""
     if hit.kind != "wall":
         return hit
     axis, _ = wall_axis(hit.where)
@@ -115,7 +116,7 @@ def _told_by(before: Side, after: Side, hit: Hit, lines: dict[str, float]) -> Hi
     variances = np.array([side.covariance[axis, axis] for side in (before, after)])
     weights = 1.0 / np.maximum(variances, 1e-18)
     place, std = float(weights @ places / weights.sum()), float(weights.sum() ** -0.5)
-    if abs(place - lines[hit.where]) < NEAR + FAR_OFF * std:
+    if abs(place - lines[hit.where]) < near + FAR_OFF * std:
         return hit
     return replace(hit, kind="unexplained", where="nothing near")
 

@@ -39,7 +39,8 @@ def sense(recordings: Sequence[Recording], pieces: Sequence[Pieces], launches: L
     """
     recordings, pieces = list(recordings), list(pieces)
     found = _strikes(recordings, pieces, launches)
-    scale = _scale(found, geometry(recordings[0]), launches)
+    calibrated = any(one.nominal("camera", "place_std_m") for one in recordings)
+    scale = _scale(found, geometry(recordings[0]), launches, calibrated)
     if scale.findings:
         recordings = [corrected(one, scale.values) for one in recordings]
         pieces = [cut(one) for one in recordings]
@@ -70,15 +71,15 @@ def _strikes(recordings: list[Recording], pieces: list[Pieces], launches: Launch
     return found
 
 
-def _scale(found: list[list[Strike]], g: Geometry, launches: Launches) -> ScaleAccount:
+def _scale(found: list[list[Strike]], g: Geometry, launches: Launches, calibrated: bool) -> ScaleAccount:
     """The map by all recordings but those held out, proved on these or launch by launch; what is undone is, as far as
     they tell it, by the launches alone that are not kept apart."""
     every = [s for part in found for s in part]
     seen = [s for s in every if s.launch not in launches.apart]
     if launches.heldout:
-        return scale_account(seen, g, [s for s in every if s.launch in launches.apart])
-    told = scale_account(every, g)
-    values = scale_account(seen, g).values if told.findings else told.values
+        return scale_account(seen, g, [s for s in every if s.launch in launches.apart], calibrated)
+    told = scale_account(every, g, calibrated=calibrated)
+    values = scale_account(seen, g, calibrated=calibrated).values if told.findings else told.values
     return replace(told, values=np.where((values != 0.0) & (told.values != 0.0), values, told.values))
 
 

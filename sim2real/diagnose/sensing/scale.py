@@ -44,9 +44,12 @@ class ScaleAccount:
     undetermined: str = ""
 
 
-def scale_account(found: list[Strike], g: Geometry, unseen: Sequence[Strike] = ()) -> ScaleAccount:
+def scale_account(
+    found: list[Strike], g: Geometry, unseen: Sequence[Strike] = (), calibrated: bool = False
+) -> ScaleAccount:
     """What the strikes `found` at the walls say of the camera's map; those of `unseen` launches serve the proof, or,
-    where there are none, each launch that of the fits without it."""
+    where there are none, each launch that of the fits without it. Against a camera that was `calibrated` nothing is
+    told that does not explain nearly all: what looks like touches may be blows under the gantry."""
     values, covariance = fitted_map(found, g)
     std = np.sqrt(np.diag(covariance))
     wrong = wrong_size(values, std, g)
@@ -61,7 +64,7 @@ def scale_account(found: list[Strike], g: Geometry, unseen: Sequence[Strike] = (
     apart = _distances(lines(list(unseen), g), kept, {s.launch for s in unseen}, g)
     sizes = measured(*np.concatenate([apart, _foretold(found, g)]).T)
     share = 0.0 if sizes is None else explained(sizes.before, sizes.after)
-    if sizes is None or share <= 0.0 or (share < STRETCHED and chance > BEYOND_DOUBT):
+    if sizes is None or share <= 0.0 or (share < STRETCHED and (calibrated or chance > BEYOND_DOUBT)):
         return ScaleAccount(np.zeros(3), (), None)
     sizes = measured(*apart.T) or sizes
     half = NORMAL_REACH * std
