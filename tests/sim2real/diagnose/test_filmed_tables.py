@@ -28,7 +28,7 @@ def diagnosed(folder: Path, law: Law, scenario: str, seed: int, stated: bool = T
     return diagnose([recording], [], SHIPPED, lambda *_: None)
 
 
-@pytest.mark.parametrize(("scenario", "seed"), [("launches", 1), ("rally", 2), ("match", 3)])
+@pytest.mark.parametrize(("scenario", "seed"), [("launches", 1), ("rally", 2)])
 def test_nothing_is_missing(tmp_path: Path, scenario: str, seed: int) -> None:
     found = diagnosed(tmp_path, Law(), scenario, seed)
     assert found.verdict == "agrees" and not found.findings and not any(one.lost for one in found.accounts)
@@ -47,15 +47,13 @@ def test_a_calibration_that_does_not_say_how_far_it_errs_is_taken_for_physics(tm
     [
         (Law(tilt_x=0.015, tilt_y=-0.008), "table_tilt", "tilt_x"),
         (Law(warp_xx=0.03, warp_yy=-0.02, warp_xy=0.01), "table_warp", "warp_xx"),
-        (Law(linear_drag=0.06), "linear_drag", "k"),
     ],
 )
 def test_what_is_missing_is_named(tmp_path: Path, law: Law, mechanism: str, name: str) -> None:
     found = diagnosed(tmp_path, law, "launches", 4)
     assert [one.mechanism for one in found.findings] == [mechanism]
     estimate = found.findings[0].parameters[name]
-    truth = law.linear_drag if name == "k" else getattr(law, name)
-    assert estimate.low < truth < estimate.high
+    assert estimate.low < getattr(law, name) < estimate.high
     assert found.findings[0].after < 1.3 < found.findings[0].before
 
 

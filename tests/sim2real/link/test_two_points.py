@@ -98,7 +98,7 @@ def test_the_command_finds_the_radius_of_an_emulated_gantry(
 ):
     out = tmp_path / "gantry.toml"
     words = ["--jig", "0.0095", "0.0045", "--out", str(out), "--json"]
-    assert call(robot, [1.0, 4.5], monkeypatch, *words) == 0
+    assert call(robot, [1.0, 9.0], monkeypatch, *words) == 0  # the hand is done after 3 s, or later on a busy machine
     told = capsys.readouterr()
     found = json.loads(told.out)
     assert found["pulley_radius"] == pytest.approx(0.035306, abs=2e-6) and abs(found["sideways"]) < 1e-4
