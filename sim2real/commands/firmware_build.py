@@ -22,7 +22,8 @@ def run(args: argparse.Namespace) -> int:
 
     missing = [name for name in ("make", "arm-none-eabi-gcc") if not shutil.which(name)]
     if missing:
-        raise ValueError(f"building needs {' and '.join(missing)}; install Debian's make and gcc-arm-none-eabi")
+        packages = "make, gcc-arm-none-eabi and libnewlib-arm-none-eabi"
+        raise ValueError(f"building needs {' and '.join(missing)}; install Debian's {packages}")
     for path in write(read_protocol()):
         print(f"wrote {path}")
     done = subprocess.run(["make", "-s", "-C", str(FOLDER), "f103"], capture_output=True, text=True)
