@@ -1,7 +1,7 @@
 """One table through one interval, from event to event: the nearest contact, apply it, again.
 
 The puck is a record that is updated in place; the mallets, an array of two, follow their plans (see `mallet`).
-Between two events everything is a closed form; only the forces of effects cut time into intervals (see `slide`).
+Between two events everything is a closed form; only under the forces of effects the puck goes leg by leg (`ride`).
 """
 
 from __future__ import annotations
@@ -11,10 +11,11 @@ import math
 import numpy as np
 
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics import bounce, compose, contact, glide, slide
-from puckpilot_env.physics.hit import closes_on, hit
+from puckpilot_env.physics import bounce, compose, contact, force, glide, slide
+from puckpilot_env.physics.hit import hit
 from puckpilot_env.physics.mallet import halt, place_now, reach
 from puckpilot_env.physics.rebound import rebound
+from puckpilot_env.physics.ride import ride
 from puckpilot_env.physics.vector import size
 
 PUCK = np.dtype(
@@ -25,15 +26,15 @@ PUCK = np.dtype(
         ("vy", np.float64),
         ("spin", np.float64),  # rad/s, counter-clockwise
         ("turned", np.int64),  # 1 where the table, and with it every effect, was turned round
+        ("touched", np.int64, 2),  # of each mallet: 1 if it touched the puck since that last changed halves
     ],
     align=True,
 )
 # Columns of an event log: time in the interval [s], kind (see bounce), the puck's place, and its velocity before, after
 EVENT_COLUMNS = 8
-MANY_EVENTS = 2000  # in one interval: a puck caught so is set to rest, and the mallets stall
-LEANING = 1e-7  # m; a puck this near to a wall leans against it if the forces push it there
-MOST_CUTS = 5  # of an interval of `slide`, so that it ends in an event
-NEARLY_ALL, AT_ONCE = 0.99, 1e-3  # of an interval: where an event counts as being at its end, or at its beginning
+# More in an interval, and a puck is set to rest and the mallets stall: events, and legs of a puck that forces drive
+FEW_EVENTS, EVENTS_A_SECOND = 200, 2000.0
+FEW_LEGS, LEGS_A_SECOND = 500, 5000.0
 
 
 @kernel
@@ -71,10 +72,11 @@ def _first_strike(puck, p, mallets, ux, uy, v, friction, drag, t, end, travel):
 
 
 @kernel
-def _look_ahead(puck, p, mallets, vx, vy, friction, drag, t, end):
-    """`(kind, time, ux, uy, v)`: what a puck of velocity `v u` from `t` on meets first; NOTHING at `end`."""
-    v = math.sqrt(vx * vx + vy * vy)
-    ux, uy = (vx / v, vy / v) if v > 0.0 else (1.0, 0.0)
+def _look_ahead(puck, p, mallets, t, end):
+    """`(kind, time, ux, uy, v)`: what a gliding puck, of velocity `v u`, meets first from `t` on; NOTHING at `end`."""
+    friction, drag = p.friction, p.drag
+    v = size(puck.vx, puck.vy)
+    ux, uy = (puck.vx / v, puck.vy / v) if v > 0.0 else (1.0, 0.0)
     travel = glide.distance(v, end - t, friction, drag)
     gap, kind = travel, bounce.NOTHING
     if v > 0.0:  # a resting puck meets no wall, however near
@@ -96,60 +98,6 @@ def _look_ahead(puck, p, mallets, vx, vy, friction, drag, t, end):
 
 
 @kernel
-def _not_through(puck, p, before_x, before_y, vx, vy):
-    """The velocity (or force) `v` of a puck whose velocity was `before`, less what a wall or post it leans on holds."""
-    for _ in range(2):  # in a corner there are two
-        speed = size(vx, vy)
-        if speed == 0.0:
-            break
-        kind, wx, wy = bounce.touched(
-            puck.x, puck.y, vx / speed, vy / speed, LEANING, p.length, p.width, p.goal_width, p.puck_radius
-        )
-        if kind == bounce.NOTHING or before_x * wx + before_y * wy < -bounce.SLIDING:
-            break
-        into = vx * wx + vy * wy
-        vx, vy = vx - into * wx, vy - into * wy
-    return vx, vy
-
-
-@kernel
-def _look_ahead_forced(puck, p, mallets, clock, t, end):
-    """`_look_ahead` for one interval of `slide`, which is shortened so that it ends in the event; then what it needs:
-    `(friction, drag, pull, duration)`."""
-    ax, ay = slide.force(puck, p, clock + t, puck.vx, puck.vy)
-    ax, ay = _not_through(puck, p, puck.vx, puck.vy, ax, ay)
-    pull, h = slide.plan_interval(puck, p, clock + t, ax, ay)
-    h = min(h, end - t)
-    cuts = 0
-    while True:
-        vx, vy = slide.kicked(puck, p, clock + t, puck.vx, puck.vy, pull, 0.5 * h)
-        vx, vy = _not_through(puck, p, puck.vx, puck.vy, vx, vy)
-        friction, drag = slide.interval_law(puck, p, clock + t, vx, vy, pull, h)
-        until = end if h == end - t else t + h
-        kind, until, ux, uy, v = _look_ahead(puck, p, mallets, vx, vy, friction, drag, t, until)
-        soon, cuts = until - t, cuts + 1
-        if kind == bounce.NOTHING or soon >= NEARLY_ALL * h or cuts > MOST_CUTS:
-            break
-        if soon > AT_ONCE * h:
-            h = soon
-        elif kind >= bounce.MALLET_0 and not closes_on(
-            puck, puck.vx, puck.vy, p, mallets[kind - bounce.MALLET_0], t
-        ):  # it was the kick that turned the puck round
-            h *= 0.125
-        else:
-            break
-    return kind, until, ux, uy, v, friction, drag, pull, h
-
-
-@kernel
-def _finish_forced(puck, p, now, pull, duration):
-    """The kick at the end of an interval, at the time `now` of the episode."""
-    before_x, before_y = puck.vx, puck.vy
-    slide.finish(puck, p, now, pull, duration)
-    puck.vx, puck.vy = _not_through(puck, p, before_x, before_y, puck.vx, puck.vy)
-
-
-@kernel
 def _apply(puck, p, mallets, kind, clock, t, film):
     """What happens to the puck, and to what is noted of it, at an event."""
     if kind == bounce.GOAL_X0 or kind == bounce.GOAL_X1:
@@ -158,12 +106,20 @@ def _apply(puck, p, mallets, kind, clock, t, film):
     elif kind >= bounce.MALLET_0:
         ax, ay = 0.0, 0.0
         if compose.is_forced(p):
-            ax, ay = slide.force(puck, p, clock + t, puck.vx, puck.vy)
+            ax, ay = force.push(puck, p, clock + t)
         hit(puck, p, mallets, kind - bounce.MALLET_0, clock, t, ax, ay)
     else:
         nx, ny = bounce.boundary_normal(kind, puck.x, puck.y, p.length, p.width, p.goal_width)
         rebound(puck, p, clock + t, kind, nx, ny)
     _keep_inside(puck, p)
+
+
+@kernel
+def _give_up(puck, mallets, t):
+    """Set a puck to rest of which too much would have to be said, and let the mallets stall."""
+    puck.vx, puck.vy = 0.0, 0.0
+    halt(mallets[0], t)
+    halt(mallets[1], t)
 
 
 @kernel
@@ -177,21 +133,22 @@ def advance(puck, p, mallets, clock, start, end, log, film):
     time <= end, the puck's places then [m].
     """
     t = start
-    events = 0
+    events, legs = 0, 0
+    most_events, most_legs = FEW_EVENTS + EVENTS_A_SECOND * (end - start), FEW_LEGS + LEGS_A_SECOND * (end - start)
     forced = compose.is_forced(p)
-    pull, planned = 1.0, 0.0
     while t < end:
         if forced:
-            kind, until, ux, uy, v, friction, drag, pull, planned = _look_ahead_forced(puck, p, mallets, clock, t, end)
+            legs += 1
+            kind, until = ride(puck, p, mallets, clock, t, end, film)
         else:
-            friction, drag = p.friction, p.drag
-            kind, until, ux, uy, v = _look_ahead(puck, p, mallets, puck.vx, puck.vy, friction, drag, t, end)
-        if film.shape[0] > 0:
-            _take_pictures(film, puck, ux, uy, v, t, until, friction, drag)
-        slide.move(puck, p, ux, uy, v, until - t, friction, drag)
-        if forced:
-            _finish_forced(puck, p, clock + until, pull, until - t - 0.5 * planned)
+            kind, until, ux, uy, v = _look_ahead(puck, p, mallets, t, end)
+            if film.shape[0] > 0:
+                _take_pictures(film, puck, ux, uy, v, t, until, p.friction, p.drag)
+            slide.move(puck, p, ux, uy, v, until - t, p.friction, p.drag)
         t = until
+        if legs >= most_legs:
+            _give_up(puck, mallets, t)
+            break
         if kind == bounce.NOTHING:
             continue
         if kind == bounce.MIDDLE_LINE:
@@ -207,10 +164,8 @@ def advance(puck, p, mallets, clock, start, end, log, film):
         events += 1
         if kind == bounce.GOAL_X0 or kind == bounce.GOAL_X1:
             return kind, t, events
-        if events >= MANY_EVENTS:
-            puck.vx, puck.vy = 0.0, 0.0
-            halt(mallets[0], t)
-            halt(mallets[1], t)
+        if events >= most_events:
+            _give_up(puck, mallets, t)
             break
     _keep_inside(puck, p)
     return bounce.NOTHING, end, events

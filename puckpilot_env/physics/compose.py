@@ -6,7 +6,9 @@ An effect's file has the hooks of its regime, every one a kernel; those that it 
 | --- | --- | --- |
 | glide | `is_on(p)` | whether the record `p` has this effect at all; every effect of the regime has it |
 | glide | `acceleration(p, t, x, y, vx, vy, spin)` | (ax, ay) [m/s^2], which is added to that of the others |
-| glide | `friction(p, t, x, y, dx, dy, friction)` | friction [m/s^2] from that so far: its mean over the way (dx, dy) |
+| glide | `friction(p, t, x, y, vx, vy, friction)` | friction [m/s^2] from that so far; less than none is none |
+| glide | `edge(p, t, x, y, v, t1, x1, y1, v1)` | see below; of a law that jumps or has a kink |
+| glide | `stride(p, v)` | how long [s] the law is well told by its values at begin, middle and end; of waves |
 | wall, corner | `restitution(p, kind, closing, e)` | restitution from that so far; `kind` as in `bounce` |
 | wall | `tangent(p, closing, e, along, spin, after)` | (tangential speed, spin) after it, from the speed so far |
 | wall | `shares(p, t, kind, x, y, closing, along)` | (of the normal speed, of the tangential): kept beyond all this |
@@ -21,10 +23,14 @@ An effect's file has the hooks of its regime, every one a kernel; those that it 
 
 `t` [s] is the time of the episode, (x, y) [m] a place, spin [rad/s] counter-clockwise, `closing` [m/s] > 0 the normal
 speed before; the tangent is the normal turned counter-clockwise. Impulses are per unit mass of the puck.
+
+`edge`: the share of the straight way from the time t, the place (x, y) and the speed v [m/s] to t1, (x1, y1) and v1, at
+which the law next jumps or has a kink; above 0, infinite if there is none, and it may lie beyond the way's end.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import reduce
 from typing import Any
@@ -33,6 +39,29 @@ from puckpilot_env.kernel import inner
 from puckpilot_env.physics.effects import MODULES
 
 Hook = Callable[..., Any]
+
+
+def _where_on(name: str, make: Callable[[Hook, Hook], Hook]) -> list[Hook]:
+    """The hooks `name` of the glide, each asked only on tables that have its effect: of many effects few are on."""
+    return [make(module.is_on, getattr(module, name)) for module in MODULES.values() if hasattr(module, name)]
+
+
+def _acceleration_where_on(is_on: Hook, acceleration: Hook) -> Hook:
+    @inner
+    def where_on(p, t, x, y, vx, vy, spin):
+        if is_on(p):
+            return acceleration(p, t, x, y, vx, vy, spin)
+        return 0.0, 0.0
+
+    return where_on
+
+
+def _friction_where_on(is_on: Hook, friction: Hook) -> Hook:
+    @inner
+    def where_on(p, t, x, y, vx, vy, so_far):
+        return friction(p, t, x, y, vx, vy, so_far) if is_on(p) else so_far
+
+    return where_on
 
 
 def _hooks(name: str) -> list[Hook]:
@@ -59,8 +88,40 @@ def _sum(first: Hook, second: Hook) -> Hook:
 
 def _friction(first: Hook, second: Hook) -> Hook:
     @inner
-    def both(p, t, x, y, dx, dy, friction):
-        return second(p, t, x, y, dx, dy, first(p, t, x, y, dx, dy, friction))
+    def both(p, t, x, y, vx, vy, friction):
+        return second(p, t, x, y, vx, vy, first(p, t, x, y, vx, vy, friction))
+
+    return both
+
+
+def _edge_where_on(is_on: Hook, edge: Hook) -> Hook:
+    @inner
+    def where_on(p, t, x, y, v, t1, x1, y1, v1):
+        return edge(p, t, x, y, v, t1, x1, y1, v1) if is_on(p) else math.inf
+
+    return where_on
+
+
+def _edge(first: Hook, second: Hook) -> Hook:
+    @inner
+    def both(p, t, x, y, v, t1, x1, y1, v1):
+        return min(first(p, t, x, y, v, t1, x1, y1, v1), second(p, t, x, y, v, t1, x1, y1, v1))
+
+    return both
+
+
+def _stride_where_on(is_on: Hook, stride: Hook) -> Hook:
+    @inner
+    def where_on(p, v):
+        return stride(p, v) if is_on(p) else math.inf
+
+    return where_on
+
+
+def _stride(first: Hook, second: Hook) -> Hook:
+    @inner
+    def both(p, v):
+        return min(first(p, v), second(p, v))
 
     return both
 
@@ -153,8 +214,11 @@ def _delivered(first: Hook, second: Hook) -> Hook:
 
 
 is_forced = reduce(_either, _hooks("is_on"))
-acceleration = reduce(_sum, _hooks("acceleration"))
-friction = reduce(_friction, _hooks("friction"))
+acceleration = reduce(_sum, _where_on("acceleration", _acceleration_where_on))
+friction = reduce(_friction, _where_on("friction", _friction_where_on))
+edge = reduce(_edge, _where_on("edge", _edge_where_on))
+has_edges = reduce(_either, [module.is_on for module in MODULES.values() if hasattr(module, "edge")])
+stride = reduce(_stride, _where_on("stride", _stride_where_on))
 restitution = reduce(_restitution, _hooks("restitution"))
 tangent = reduce(_tangent, _hooks("tangent"))
 shares = reduce(_shares, _hooks("shares"))

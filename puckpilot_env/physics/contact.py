@@ -4,6 +4,7 @@ The distance between puck and mallet, `g`, has `g'' >= -A` where `A` bounds the 
 (the rest of `g''` is the square of the sideways speed over `g`, which is never negative). So `g(t) >= g0 + g0' t -
 A t^2/2`, and advancing to the smallest root of that parabola again and again can never jump over a contact; near the
 contact it converges quadratically. This is sharper than the bound by speeds in report appendix H (errata row H.5).
+The root is that at a gap of `-TOUCH`: a puck that slides along a mallet advances by `sqrt(2 TOUCH/A)` at the least.
 """
 
 from __future__ import annotations
@@ -16,12 +17,13 @@ from puckpilot_env.physics.mallet import acceleration_bound, axis_at, axis_veloc
 from puckpilot_env.physics.vector import size
 
 TOUCH = 1e-11  # m; a gap below it is a contact
-SHORTEST_ADVANCE = 1e-12  # s
-MOST_ADVANCES = 20000
+SLOWEST = 1e-9  # m/s; two that touch and close in more slowly, by rounding, are no contact: it would have no end
+SHORTEST_ADVANCE = 1e-12  # s; less than the rounding of a time may be no advance at all
+MOST_ADVANCES = 2000  # of one search; a puck that grazes a mallet for longer touches it
 REST_BETWEEN_TOUCHES = 1e-3  # s; a mallet that pushes the puck along touches it about this often
 PINCH_SLACK = 5e-5  # m; a puck this near to a wall while a mallet strikes it is between the two
 LEAST_REBOUND = 1e-6  # m/s; a puck squeezed against a wall leaves it, so that rounding makes no bounce of it
-SQUEEZED_SPEED = 1e3  # m/s; only a puck between two that close in on each other, both perfectly elastic, gets so fast
+SQUEEZED_SPEED = 300.0  # m/s; only a puck squeezed by two that close in on each other, all elastic, gets so fast
 STEEPEST_WEDGE = 0.0625  # sin^2 of the angle (14.5 degrees) under which a pinched puck cannot slip out
 
 
@@ -51,7 +53,7 @@ def first_contact(x, y, ux, uy, v, friction, drag, mallet, start, end, distance)
 
     `(x, y)`, unit `u` and speed `v` [m/s] are the puck's at `start` [s]; `distance` [m] is the sum of the radii.
     """
-    t = start
+    t = max(start, 0.0)  # before the plans begin there is no contact
     for _ in range(MOST_ADVANCES):
         path_length, speed = glide.advance(v, t - start, friction, drag)
         rest_x, slow_x, fast_x, volts_x = axis_at(mallet.x, t)
@@ -64,14 +66,14 @@ def first_contact(x, y, ux, uy, v, friction, drag, mallet, start, end, distance)
             + dy * (uy * speed - axis_velocity(mallet.y, slow_y, fast_y))
         ) / apart
         gap = apart - distance
-        if gap <= TOUCH and rate < 0.0:
+        if gap <= TOUCH and rate < -SLOWEST:
             return t
         bound_x = acceleration_bound(mallet.x, slow_x, fast_x, volts_x)
         bound_y = acceleration_bound(mallet.y, slow_y, fast_y, volts_y)
         bound = math.sqrt(bound_x * bound_x + bound_y * bound_y)
         if speed > 0.0:
             bound += friction + drag * speed * speed
-        ahead = t + max(time_to_parabola(max(gap, 0.0), rate, bound), SHORTEST_ADVANCE)
+        ahead = t + max(time_to_parabola(max(gap, 0.0) + TOUCH, rate, bound), SHORTEST_ADVANCE)
         t = min(ahead, next_switch(mallet, t))
         if t >= end:
             return math.inf

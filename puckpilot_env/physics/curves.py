@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from puckpilot_env.kernel import kernel
 
 
@@ -31,3 +33,23 @@ def over_even_knots(share, values):
     place = min(max(share, 0.0), 1.0) * (len(values) - 1)
     i = min(int(place), len(values) - 2)
     return values[i] + (values[i + 1] - values[i]) * (place - i)
+
+
+@kernel
+def next_knot(x, x1, knots):
+    """Share of the way from `x` to `x1` at which the next knot lies; infinite if there is none, in that direction."""
+    share = math.inf
+    for i in range(len(knots)):
+        if (knots[i] - x) * (x1 - x) > 0.0:
+            share = min(share, (knots[i] - x) / (x1 - x))
+    return share
+
+
+@kernel
+def next_even_knot(x, x1, first, last, count):
+    """The same of `count` even knots from `first` to `last`, where x1 > x."""
+    gap = (last - first) / (count - 1)
+    if not gap > 0.0 or x >= last:
+        return math.inf
+    knot = first + gap * max(math.floor((x - first) / gap) + 1.0, 0.0)
+    return (knot - x) / (x1 - x)

@@ -11,8 +11,8 @@ import math
 
 from puckpilot_env.kernel import kernel
 from puckpilot_env.physics import compose
-from puckpilot_env.physics.decay import fade
-from puckpilot_env.physics.mallet import axis_at
+from puckpilot_env.physics.decay import decay, fade
+from puckpilot_env.physics.mallet import axis_at, idle
 from puckpilot_env.physics.plan import ROUNDING, SMALLEST_VOLTAGE
 
 HALVINGS = 50  # of a time span, to find when an axis meets the rail
@@ -28,34 +28,39 @@ def weaken(mallet, p, area, max_voltage):
 
 
 @kernel
-def note(mallet, orders):
-    """Write down the orders of a mallet's plan."""
+def send(p, plans, orders):
+    """Write down the orders of a mallet's `plans`, see `plan_orders`, as they arrive at the motors under `p`."""
+    load = abs(plans[0][0]) + abs(plans[1][0])
     for a in range(2):
-        axis = mallet.x if a == 0 else mallet.y
-        orders[a, 0], orders[a, 1], orders[a, 2] = axis.volts, axis.t1, axis.t2
+        orders[a, 0] = compose.delivered(p, plans[a][0], load)
+        orders[a, 1], orders[a, 2] = plans[a][1], plans[a][2]
 
 
 @kernel
-def exchange(mallet, orders, area, max_voltage):
-    """Let a mallet follow `orders` from where it is; they are then those that it followed. The others as in
-    `plan_mallet`."""
+def follow(mallet, orders, area, max_voltage):
+    """Let a mallet follow `orders` from where it is; the others as in `plan_mallet`."""
     limit = 2.0 * (max_voltage - SMALLEST_VOLTAGE)
     for a in range(2):
         axis = mallet.x if a == 0 else mallet.y
-        volts, t1, t2 = orders[a, 0], orders[a, 1], orders[a, 2]
-        orders[a, 0], orders[a, 1], orders[a, 2] = axis.volts, axis.t1, axis.t2
-        axis.t1, axis.t2, axis.halt = t1, t2, math.inf
-        _weaken_axis(axis, volts, area[2 * a], area[2 * a + 1], limit)
+        axis.t1, axis.t2, axis.halt = orders[a, 1], orders[a, 2], math.inf
+        _weaken_axis(axis, orders[a, 0], area[2 * a], area[2 * a + 1], limit)
 
 
 @kernel
 def carry_on(mallet, elapsed):
-    """Make the orders those that are left after `elapsed` [s], for a mallet whose modes are those of then already."""
+    """Make the plan what is left of it after `elapsed` [s], for a mallet whose modes are those of then already."""
     for a in range(2):
         axis = mallet.x if a == 0 else mallet.y
         if elapsed >= axis.halt:
-            axis.volts = 0.0
-        axis.t1, axis.t2 = max(axis.t1 - elapsed, 0.0), max(axis.t2 - elapsed, 0.0)
+            idle(axis)
+            continue
+        axis.halt -= elapsed
+        axis.t1 -= elapsed
+        axis.t2 -= elapsed
+        if axis.t1 <= 0.0:
+            axis.t1, axis.rest1, axis.slow1, axis.fast1 = 0.0, axis.rest, axis.slow, axis.fast
+        if axis.t2 <= 0.0:
+            axis.t2, axis.rest2, axis.slow2, axis.fast2 = 0.0, axis.rest, axis.slow, axis.fast
 
 
 @kernel
@@ -65,14 +70,39 @@ def _weaken_axis(axis, volts, low, high, limit):
     slow_end, fast_end = -axis.slow_gain * volts, axis.fast_gain * volts
     braking = axis.t2 - axis.t1
     axis.rest1 = axis.rest + axis.rest_gain * volts * axis.t1
-    axis.slow1 = slow_end + (axis.slow - slow_end) * math.exp(-axis.slow_rate * axis.t1)
+    axis.slow1 = slow_end + (axis.slow - slow_end) * decay(axis.slow_rate * axis.t1)
     axis.fast1 = fast_end + (axis.fast - fast_end) * fade(axis.fast_rate, axis.t1)
     axis.rest2 = axis.rest1 - axis.rest_gain * volts * braking
-    axis.slow2 = -slow_end + (axis.slow1 + slow_end) * math.exp(-axis.slow_rate * braking)
+    axis.slow2 = -slow_end + (axis.slow1 + slow_end) * decay(axis.slow_rate * braking)
     axis.fast2 = -fast_end + (axis.fast1 + fast_end) * fade(axis.fast_rate, braking)
     margin = 2.0 * axis.fast_gain * limit
     place = axis.rest + axis.slow + axis.fast
-    _stop_at_rail(axis, min(low + margin, place - ROUNDING), max(high - margin, place + ROUNDING))
+    low, high = min(low + margin, place - ROUNDING), max(high - margin, place + ROUNDING)
+    if not _stays_inside(axis, slow_end, low, high):
+        _stop_at_rail(axis, low, high)
+
+
+@kernel
+def _stays_inside(axis, slow_end, low, high):
+    """True where it is plain that a plan never leads out of [low, high] [m]: its parts end inside, and so does each
+    turn on the way, which is where the slow mode passes zero."""
+    for place in (axis.rest1 + axis.slow1 + axis.fast1, axis.rest2 + axis.slow2 + axis.fast2, axis.rest2):
+        if not low <= place <= high:
+            return False
+    if axis.slow * axis.slow1 < 0.0 and not _turns_inside(axis, axis.rest, axis.slow, slow_end, axis.volts, low, high):
+        return False
+    return axis.slow1 * axis.slow2 >= 0.0 or _turns_inside(
+        axis, axis.rest1, axis.slow1, -slow_end, -axis.volts, low, high
+    )
+
+
+@kernel
+def _turns_inside(axis, rest, slow, slow_end, volts, low, high):
+    """Whether a part of a plan, which begins with these modes and in which the axis turns, turns inside; the fast mode,
+    which is under twice its end, left out."""
+    place = rest + axis.rest_gain * volts * math.log(1.0 - slow / slow_end) / axis.slow_rate
+    beside = 2.0 * axis.fast_gain * abs(volts) + abs(axis.fast) + abs(axis.fast1)
+    return low + beside <= place <= high - beside
 
 
 @kernel

@@ -5,6 +5,7 @@ from __future__ import annotations
 from puckpilot_env.kernel import kernel
 from puckpilot_env.physics import bounce, contact, rebound
 from puckpilot_env.physics.mallet import halt, motion_at, push_at
+from puckpilot_env.physics.support import stands
 from puckpilot_env.physics.vector import size
 
 
@@ -25,6 +26,13 @@ def _other_obstacle(puck, p, mallets, k, t, nx, ny):
 
 
 @kernel
+def _leans(mallet, t, leaving, pull):
+    """Whether the forces alone, `pull` [m/s^2] along the normal, press a puck on a mallet at rest: so slow are both
+    that nothing squeezes the puck. `leaving` [m/s] is the puck's speed along the normal."""
+    return -leaving < -pull * contact.REST_BETWEEN_TOUCHES and stands(mallet, t)
+
+
+@kernel
 def closes_on(puck, vx, vy, p, mallet, t):
     """Whether a puck of velocity `v` that touches this mallet runs into it."""
     mx, my, mvx, mvy = motion_at(mallet, t)
@@ -39,6 +47,7 @@ def hit(puck, p, mallets, k, clock, t, ax, ay):
 
     `clock` [s]: the time of the episode when the plans began; `a` [m/s^2]: what the effects' forces do to the puck.
     """
+    puck.touched[k] = 1
     mx, my, mvx, mvy = motion_at(mallets[k], t)
     dx, dy = puck.x - mx, puck.y - my
     apart = size(dx, dy)
@@ -48,10 +57,13 @@ def hit(puck, p, mallets, k, clock, t, ax, ay):
     rebound.strike(puck, p, clock + t, mvx, mvy, nx, ny)
     vx, vy = contact.part(puck.vx, puck.vy, mvx, mvy, nx, ny, push, p.friction, p.drag)
     other, wx, wy, ox, oy = _other_obstacle(puck, p, mallets, k, t, nx, ny)
+    if _leans(mallets[k], t, before_x * nx + before_y * ny, ax * nx + ay * ny):
+        other = -2
     if other != -2 and (vx - ox) * wx + (vy - oy) * wy < 0.0:
         separation = (vx - mvx) * nx + (vy - mvy) * ny
-        held, vx, vy = contact.pinch(
-            before_x, before_y, mvx, mvy, nx, ny, ox, oy, wx, wy, separation, p.wall_restitution
+        impulse = separation + (mvx - before_x) * nx + (mvy - before_y) * ny
+        held, vx, vy = contact.pinch(  # which the mallet's rim has rubbed already, but not pushed
+            vx - impulse * nx, vy - impulse * ny, mvx, mvy, nx, ny, ox, oy, wx, wy, separation, p.wall_restitution
         )
         third, tx, ty = bounce.touched(
             puck.x, puck.y, vx, vy, contact.PINCH_SLACK, p.length, p.width, p.goal_width, p.puck_radius
@@ -65,7 +77,7 @@ def hit(puck, p, mallets, k, clock, t, ax, ay):
                 halt(mallets[other], t)
             if not held:
                 vx, vy = 0.0, 0.0
-    elif vx * vx + vy * vy > contact.SQUEEZED_SPEED * contact.SQUEEZED_SPEED:
+    if vx * vx + vy * vy > contact.SQUEEZED_SPEED * contact.SQUEEZED_SPEED:
         halt(mallets[0], t)
         halt(mallets[1], t)
         vx, vy = 0.0, 0.0

@@ -93,6 +93,14 @@ def place_axis(axis, position, velocity, acceleration):
     axis.rest = position - axis.slow - axis.fast
 
 
+@kernel
+def idle(axis):
+    """Leave an axis without a plan: it coasts on from its present modes."""
+    axis.volts, axis.t1, axis.t2, axis.halt = 0.0, 0.0, 0.0, math.inf
+    axis.rest1, axis.slow1, axis.fast1 = axis.rest, axis.slow, axis.fast
+    axis.rest2, axis.slow2, axis.fast2 = axis.rest, axis.slow, axis.fast
+
+
 @inlined_kernel
 def axis_at(axis, t):
     """`(rest, slow, fast, volts)` at time `t` [s] of the plan."""

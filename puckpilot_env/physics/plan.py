@@ -124,13 +124,8 @@ def _least_voltage(axis, low, high):
 
 
 @kernel
-def plan_mallet(mallet, x_f, y_f, vx, vy, area, max_voltage):
-    """Plan a mallet's next move from any finite request.
-
-    `x_f, y_f` [m]: target, in the table's frame; `vx, vy` [V]: wanted magnitudes; `area` = (x_low, x_high, y_low,
-    y_high) [m] in which the mallet's centre must stay. The rest position keeps clear of the area's edge by twice the
-    largest fast mode, so that the mallet itself never crosses it.
-    """
+def _settle_voltages(mallet, x_f, y_f, vx, vy, area, max_voltage):
+    """`(target, volts)` of x and of y for a request as in `plan_mallet`."""
     x, y = mallet.x, mallet.y
     limit = 2.0 * (max_voltage - SMALLEST_VOLTAGE)
     margin_x = 2.0 * x.fast_gain * limit
@@ -141,5 +136,32 @@ def plan_mallet(mallet, x_f, y_f, vx, vy, area, max_voltage):
     if not (_stops_inside(x, volts_x, x_low, x_high) and _stops_inside(y, volts_y, y_low, y_high)):
         least_x, least_y = _least_voltage(x, x_low, x_high), _least_voltage(y, y_low, y_high)
         volts_x, volts_y = share_voltage(vx, vy, least_x, least_y, limit)
-    plan_axis(x, min(max(x_f, x_low), x_high), volts_x)
-    plan_axis(y, min(max(y_f, y_low), y_high), volts_y)
+    return min(max(x_f, x_low), x_high), volts_x, min(max(y_f, y_low), y_high), volts_y
+
+
+@kernel
+def plan_mallet(mallet, x_f, y_f, vx, vy, area, max_voltage):
+    """Plan a mallet's next move from any finite request.
+
+    `x_f, y_f` [m]: target, in the table's frame; `vx, vy` [V]: wanted magnitudes; `area` = (x_low, x_high, y_low,
+    y_high) [m] in which the mallet's centre must stay. The rest position keeps clear of the area's edge by twice the
+    largest fast mode, so that the mallet itself never crosses it.
+    """
+    to_x, volts_x, to_y, volts_y = _settle_voltages(mallet, x_f, y_f, vx, vy, area, max_voltage)
+    plan_axis(mallet.x, to_x, volts_x)
+    plan_axis(mallet.y, to_y, volts_y)
+
+
+@kernel
+def _axis_orders(axis, target, volts):
+    sign, t1, t2, _ = switching_times(
+        axis.rest, axis.slow, target, axis.rest_gain, axis.slow_gain, axis.slow_rate, volts
+    )
+    return sign * volts, t1, t2
+
+
+@kernel
+def plan_orders(mallet, x_f, y_f, vx, vy, area, max_voltage):
+    """What `plan_mallet` would plan, and nothing changed: (signed volts, t1, t2) of x and of y."""
+    to_x, volts_x, to_y, volts_y = _settle_voltages(mallet, x_f, y_f, vx, vy, area, max_voltage)
+    return _axis_orders(mallet.x, to_x, volts_x), _axis_orders(mallet.y, to_y, volts_y)

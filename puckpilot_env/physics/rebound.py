@@ -5,6 +5,8 @@ Where no effect changes anything, the result is the baseline's to the last digit
 
 from __future__ import annotations
 
+import math
+
 from puckpilot_env.kernel import kernel
 from puckpilot_env.physics import bounce, compose, contact
 
@@ -23,6 +25,15 @@ def kept_beyond(before, after, more):
     that turns no speed round and adds none."""
     least, most = min(after, min(before, 0.0)), max(after, max(before, 0.0))
     return min(max(after + more * before, least), most) - after
+
+
+@kernel
+def kept_along(p, before, after, spin, turned, more):
+    """`kept_beyond` of the speed along a contact that also turns `spin` [rad/s] into `turned`: motion and spin have no
+    more energy than before it."""
+    radius2 = p.spin_inertia * p.puck_radius * p.puck_radius
+    most = math.sqrt(max(before * before + radius2 * (spin * spin - turned * turned), after * after))
+    return min(max(after + kept_beyond(before, after, more), -most), most) - after
 
 
 @kernel
@@ -52,13 +63,15 @@ def rebound(puck, p, t, kind, nx, ny):
     e = wall_restitution(p, kind, closing, puck.turned)
     along = puck.vy * nx - puck.vx * ny
     kept = e * along
-    after, puck.spin = compose.tangent(p, closing, e, along, puck.spin, kept)
+    spin = puck.spin
+    after, puck.spin = compose.tangent(p, closing, e, along, spin, kept)
     puck.vx, puck.vy = bounce.reflect(puck.vx, puck.vy, nx, ny, e)
     if after != kept:
         puck.vx, puck.vy = puck.vx - (after - kept) * ny, puck.vy + (after - kept) * nx
     more, more_along = more_shares(puck, p, t, kind, closing, along)
     if more != 0.0 or more_along != 0.0:
-        kick(puck, nx, ny, kept_beyond(closing, e * closing, more), kept_beyond(along, after, more_along))
+        further = kept_along(p, along, after, spin, puck.spin, more_along)
+        kick(puck, nx, ny, kept_beyond(closing, e * closing, more), further)
 
 
 @kernel
@@ -83,10 +96,12 @@ def strike(puck, p, t, mx, my, nx, ny):
     plain = (1.0 + e) * closing
     impulse = compose.mallet_impulse(p, plain)
     along = vy * nx - vx * ny
-    after, puck.spin = compose.mallet_tangent(p, impulse, along, puck.spin, along)
+    spin = puck.spin
+    after, puck.spin = compose.mallet_tangent(p, impulse, along, spin, along)
     puck.vx, puck.vy = contact.reflect(puck.vx, puck.vy, mx, my, nx, ny, e)
     if impulse != plain or after != along:
         kick(puck, nx, ny, impulse - plain, after - along)
     more, more_along = more_shares_past_mallet(puck, p, t, closing, along)
     if more != 0.0 or more_along != 0.0:
-        kick(puck, nx, ny, kept_beyond(closing, impulse - closing, more), kept_beyond(along, after, more_along))
+        further = kept_along(p, along, after, spin, puck.spin, more_along)
+        kick(puck, nx, ny, kept_beyond(closing, impulse - closing, more), further)

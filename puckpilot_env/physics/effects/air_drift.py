@@ -28,6 +28,6 @@ def is_on(p):
 
 
 @kernel
-def friction(p, t, x, y, dx, dy, friction):
+def friction(p, t, x, y, vx, vy, friction):
     """In proportion to the friction so far; never less than none."""
     return friction * max(1.0 + p.air_drift * t, 0.0)

@@ -34,12 +34,12 @@ def is_on(p):
 
 
 @kernel
-def friction(p, t, x, y, dx, dy, friction):
-    """By the heading of the way; a resting puck has none."""
-    square = dx * dx + dy * dy
+def friction(p, t, x, y, vx, vy, friction):
+    """By the heading; a resting puck has none."""
+    square = vx * vx + vy * vy
     if square == 0.0:
         return friction
-    return friction * (1.0 + p.friction_anisotropy * (dx * dx - dy * dy) / square)
+    return friction * (1.0 + p.friction_anisotropy * (vx * vx - vy * vy) / square)
 
 
 @kernel

@@ -31,21 +31,22 @@ def is_on(p):
 
 
 @kernel
-def friction(p, t, x, y, dx, dy, friction):
-    """More by the share of the way that lies inside."""
-    return friction + p.patch_extra * share_inside(x - p.patch_x, y - p.patch_y, dx, dy, p.patch_radius)
+def friction(p, t, x, y, vx, vy, friction):
+    """More inside."""
+    dx, dy = x - p.patch_x, y - p.patch_y
+    return friction + p.patch_extra if dx * dx + dy * dy < p.patch_radius * p.patch_radius else friction
 
 
 @kernel
-def share_inside(x, y, dx, dy, radius):
-    """Share of the way from (x, y) on by (dx, dy) that is less than `radius` from the origin; of a point, 0 or 1."""
-    square = dx * dx + dy * dy
-    room = radius * radius - x * x - y * y
-    if square == 0.0:
-        return 1.0 if room > 0.0 else 0.0
-    nearest = -(x * dx + y * dy) / square
-    reach2 = nearest * nearest + room / square
-    if reach2 <= 0.0:
-        return 0.0
-    reach = math.sqrt(reach2)
-    return max(min(nearest + reach, 1.0) - max(nearest - reach, 0.0), 0.0)
+def edge(p, t, x, y, v, t1, x1, y1, v1):
+    """Where a straight way meets the circle."""
+    dx, dy = x1 - x, y1 - y
+    x, y = x - p.patch_x, y - p.patch_y
+    square, half = dx * dx + dy * dy, x * dx + y * dy
+    chord = half * half - square * (x * x + y * y - p.patch_radius * p.patch_radius)
+    if chord <= 0.0 or square == 0.0:
+        return math.inf
+    root = math.sqrt(chord)
+    if -half - root > 0.0:
+        return (-half - root) / square
+    return (root - half) / square if root > half else math.inf

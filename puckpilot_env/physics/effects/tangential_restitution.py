@@ -9,7 +9,7 @@ _SOURCE = "a documented choice; 1 is the report's law"
 
 EFFECT = Effect(
     regime="wall",
-    law="v_t -> ratio e0 v_t (ratio 1: as the normal component, whatever slows that)",
+    law="v_t -> min(1, ratio e0) v_t (ratio 1: as the normal component, whatever slows that)",
     rows={
         "ratio": Parameter(
             "tangential_ratio",
@@ -29,5 +29,7 @@ EFFECT = Effect(
 
 @kernel
 def tangent(p, closing, e, along, spin, after):
-    """A constant share, whatever the normal one does; at 1 the tangent keeps what the normal keeps."""
-    return (after if p.tangential_ratio == 1.0 else p.tangential_ratio * p.wall_restitution * along), spin
+    """A constant share, at most all, whatever the normal one does; at 1 the tangent keeps what the normal keeps."""
+    if p.tangential_ratio == 1.0:
+        return after, spin
+    return min(p.tangential_ratio * p.wall_restitution, 1.0) * along, spin

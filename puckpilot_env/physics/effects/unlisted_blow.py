@@ -19,8 +19,9 @@ law found with the mallet of player_0 says by its last knot of x what that of pl
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
-from puckpilot_env.effect import Effect, Parameter
+from puckpilot_env.effect import Effect, Parameter, falling
 from puckpilot_env.kernel import kernel
 from puckpilot_env.physics.curves import over_knots
 from puckpilot_env.physics.effects.unlisted_bounce import OF_NORMAL, OF_TANGENT
@@ -28,6 +29,14 @@ from puckpilot_env.physics.effects.unlisted_bounce import OF_NORMAL, OF_TANGENT
 BY_SPEED, BY_ANGLE, BY_PLACE_ALONG, BY_PLACE_ACROSS, BY_TIME = range(1, 6)
 KNOTS = 4
 _SOURCE = "found by a diagnosis; no mallet is known to have it"
+_RANGE = f"{_SOURCE}. The largest numbers are knots of time, to the end of a recording of three hours"
+MOST = 1e4  # of a number of its table
+
+
+def misfit(numbers: Mapping[str, float]) -> str:
+    """Of which numbers no straight pieces can be made."""
+    return falling([numbers[f"c{k:02}"] for k in range(KNOTS)]) if numbers["kind"] else ""
+
 
 EFFECT = Effect(
     regime="mallet",
@@ -40,7 +49,7 @@ EFFECT = Effect(
             "blow_share", "1", 1.0, 1.0, 3.0, "which share: 1 of the normal speed, 2 of that along, 3 both", _SOURCE
         ),
         **{
-            f"c{k:02}": Parameter(f"blow_{k:02}", "SI", 0.0, -1e5, 1e5, f"number {k} of its table", _SOURCE)
+            f"c{k:02}": Parameter(f"blow_{k:02}", "SI", 0.0, -MOST, MOST, f"number {k} of its table", _RANGE)
             for k in range(2 * KNOTS)
         },
     },
@@ -48,6 +57,7 @@ EFFECT = Effect(
     excited_by="strikes everywhere, slow and fast, straight and oblique",
     source="straight pieces, as far as a recording of some minutes can tell them",
     listed=False,
+    misfit=misfit,
 )
 
 

@@ -17,8 +17,9 @@ adds nothing to one. A place s is that of the puck's middle along its wall; by p
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
-from puckpilot_env.effect import Effect, Parameter
+from puckpilot_env.effect import Effect, Parameter, falling
 from puckpilot_env.kernel import kernel
 from puckpilot_env.physics import bounce
 from puckpilot_env.physics.curves import cosines, over_knots
@@ -28,6 +29,21 @@ OF_NORMAL, OF_TANGENT, OF_BOTH = range(1, 4)
 KNOTS, WAVES, RIPPLES = 5, 4, 10
 NUMBERS = 4 + 4 * WAVES
 _SOURCE = "found by a diagnosis; no table is known to have it"
+_RANGE = f"{_SOURCE}. The largest numbers are knots of time, to the end of a recording of three hours"
+MOST = 1e4  # of a number of its table
+LENGTHS = {BY_PLACE: 4, BY_PLACE_ALIKE: 2, BY_WAVE: 1}  # kind: how many of its numbers, the first ones, are lengths
+SHORTEST = 1e-3  # m, of a length
+
+
+def misfit(numbers: Mapping[str, float]) -> str:
+    """Of which numbers no straight pieces or waves can be made."""
+    kind = int(numbers["kind"])
+    first = [numbers[f"c{k:02}"] for k in range(LENGTHS.get(kind, KNOTS))]
+    if kind not in LENGTHS:
+        return falling(first) if kind else ""
+    short = next((length for length in first if length < SHORTEST), None)
+    return "" if short is None else f"a length is {short:g} m; expected at least {SHORTEST:g} m"
+
 
 EFFECT = Effect(
     regime="wall",
@@ -40,7 +56,7 @@ EFFECT = Effect(
             "bounce_share", "1", 1.0, 1.0, 3.0, "which share: 1 of the normal speed, 2 of that along, 3 both", _SOURCE
         ),
         **{
-            f"c{k:02}": Parameter(f"bounce_{k:02}", "SI", 0.0, -1e5, 1e5, f"number {k} of its table", _SOURCE)
+            f"c{k:02}": Parameter(f"bounce_{k:02}", "SI", 0.0, -MOST, MOST, f"number {k} of its table", _RANGE)
             for k in range(NUMBERS)
         },
     },
@@ -48,6 +64,7 @@ EFFECT = Effect(
     excited_by="hits of all walls everywhere, slow and fast, steep and flat",
     source="straight pieces and cosines, as far as a recording of some minutes can tell them",
     listed=False,
+    misfit=misfit,
 )
 
 

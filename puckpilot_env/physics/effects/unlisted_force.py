@@ -21,10 +21,11 @@ brake and the baseline's friction together a negative sum is none, but for a bra
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
-from puckpilot_env.effect import Effect, Parameter
+from puckpilot_env.effect import Effect, Parameter, falling
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics.curves import cosines, over_even_knots, over_knots
+from puckpilot_env.physics.curves import cosines, next_even_knot, next_knot, over_even_knots, over_knots
 
 PUSH_BY_PLACE, BRAKE_BY_PLACE, PUSH_BY_X, PUSH_BY_Y, BRAKE_BY_X, BRAKE_BY_Y = range(1, 7)
 BRAKE_BY_SPEED, SIDE_BY_SPEED, BY_HEADING, PUSH_BY_TIME, BRAKE_BY_TIME, BRAKE_BY_WAVE = range(7, 13)
@@ -32,6 +33,35 @@ NUMBERS = 48
 WAVES_X, WAVES_Y, RIPPLES, HARMONICS = 6, 4, 14, 4
 SPEED_KNOTS, TIME_KNOTS = 10, 20
 _SOURCE = "found by a diagnosis; no table is known to have it"
+_RANGE = f"{_SOURCE}. The largest numbers are times, to the end of a recording of three hours; forces: see `misfit`"
+MOST = 1e4  # of a number of its table
+STRONGEST = 5.0  # m/s^2, of a force along either axis, half of gravity: a puck would slide down 30 degrees so
+SHORTEST = 0.01  # s, of a wave in time or of all knots of time
+
+
+def misfit(numbers: Mapping[str, float]) -> str:
+    """Of which numbers no force can be made, or a stronger one than a puck on a table meets."""
+    kind = int(numbers["kind"])
+    values = [numbers[f"c{k:02}"] for k in range(NUMBERS)]
+    if kind in (BRAKE_BY_SPEED, SIDE_BY_SPEED):
+        knots, values = values[:SPEED_KNOTS], values[SPEED_KNOTS : 2 * SPEED_KNOTS]
+        strongest, wrong = max(map(abs, values)), falling(knots)
+    elif kind in (PUSH_BY_TIME, BRAKE_BY_TIME):
+        strongest, wrong = max(map(abs, values[2:])), _short("time from first to last knot", values[1] - values[0])
+    elif kind == BRAKE_BY_WAVE:
+        strongest, wrong = math.hypot(values[1], values[2]), _short("period", values[0])
+    else:
+        half = {PUSH_BY_PLACE: WAVES_X * WAVES_Y, PUSH_BY_X: RIPPLES, PUSH_BY_Y: RIPPLES, BY_HEADING: 2 * HARMONICS}
+        each = half.get(kind, NUMBERS)
+        strongest, wrong = max(sum(map(abs, values[:each])), sum(map(abs, values[each : 2 * each]))), ""
+    if kind and strongest > STRONGEST:
+        return f"its force is up to {strongest:.3g} m/s^2; expected at most {STRONGEST:g}"
+    return wrong
+
+
+def _short(what: str, duration: float) -> str:
+    return "" if duration >= SHORTEST else f"its {what} is {duration:g} s; expected at least {SHORTEST:g} s"
+
 
 EFFECT = Effect(
     regime="glide",
@@ -41,7 +71,7 @@ EFFECT = Effect(
             "unlisted_kind", "1", 0.0, 0.0, 12.0, "what the force is a function of; 0: no force", _SOURCE
         ),
         **{
-            f"c{k:02}": Parameter(f"unlisted_{k:02}", "SI", 0.0, -1e5, 1e5, f"number {k} of its table", _SOURCE)
+            f"c{k:02}": Parameter(f"unlisted_{k:02}", "SI", 0.0, -MOST, MOST, f"number {k} of its table", _RANGE)
             for k in range(NUMBERS)
         },
     },
@@ -49,6 +79,7 @@ EFFECT = Effect(
     excited_by="glides everywhere, in all directions, at all speeds",
     source="cosines, harmonics and straight pieces, as far as a recording of some minutes can tell them",
     listed=False,
+    misfit=misfit,
 )
 
 
@@ -93,25 +124,51 @@ def by_motion(p, kind, ux, uy, v):
 
 
 @kernel
-def friction(p, t, x, y, dx, dy, friction):
-    """With the brakes that do not depend on the speed, at the middle of the way."""
+def friction(p, t, x, y, vx, vy, friction):
+    """With the brakes that do not depend on the speed."""
     kind = p.unlisted_kind
     if kind == BRAKE_BY_PLACE:
-        return friction + over_place(p, x + 0.5 * dx, y + 0.5 * dy, numbers_0_to_23(p))
+        return friction + over_place(p, x, y, numbers_0_to_23(p))
     if kind == BRAKE_BY_X:
-        return friction + cosines(math.cos(math.pi * (x + 0.5 * dx) / p.length), numbers_0_to_13(p))
+        return friction + cosines(math.cos(math.pi * x / p.length), numbers_0_to_13(p))
     if kind == BRAKE_BY_Y:
-        return friction + cosines(math.cos(math.pi * (y + 0.5 * dy) / p.width), numbers_0_to_13(p))
+        return friction + cosines(math.cos(math.pi * y / p.width), numbers_0_to_13(p))
     if kind == BRAKE_BY_TIME:
         share = (t - p.unlisted_00) / (p.unlisted_01 - p.unlisted_00)
         return friction + over_even_knots(share, numbers_2_to_21(p))
     if kind == BRAKE_BY_WAVE and p.unlisted_00 > 0.0:
         turns = 2.0 * math.pi * t / p.unlisted_00
         return friction + p.unlisted_01 * math.sin(turns) + p.unlisted_02 * math.cos(turns)
-    way = math.sqrt(dx * dx + dy * dy)
-    if kind == BY_HEADING and way > 0.0:
-        return friction + over_heading(dx / way, dy / way, numbers_0_to_7(p))
+    v = math.sqrt(vx * vx + vy * vy)
+    if kind == BY_HEADING and v > 0.0:
+        return friction + over_heading(vx / v, vy / v, numbers_0_to_7(p))
     return friction
+
+
+@kernel
+def edge(p, t, x, y, v, t1, x1, y1, v1):
+    """The next knot of a table over speed or time."""
+    kind = p.unlisted_kind
+    if kind in (BRAKE_BY_SPEED, SIDE_BY_SPEED):
+        return next_knot(v, v1, numbers_0_to_9(p))
+    if kind in (PUSH_BY_TIME, BRAKE_BY_TIME):
+        return next_even_knot(t, t1, p.unlisted_00, p.unlisted_01, TIME_KNOTS)
+    return math.inf
+
+
+@kernel
+def stride(p, v):
+    """A sixth of the shortest wave of a table over place or time, at the speed `v`."""
+    kind = p.unlisted_kind
+    if kind == BRAKE_BY_WAVE:
+        return abs(p.unlisted_00) / 6.0 if p.unlisted_00 != 0.0 else math.inf
+    if v == 0.0 or kind > BRAKE_BY_Y:
+        return math.inf
+    if kind in (PUSH_BY_PLACE, BRAKE_BY_PLACE):
+        wave = min(2.0 * p.length / (WAVES_X - 1), 2.0 * p.width / (WAVES_Y - 1))
+    else:
+        wave = 2.0 * (p.length if kind in (PUSH_BY_X, BRAKE_BY_X) else p.width) / (RIPPLES - 1)
+    return wave / (6.0 * v)
 
 
 @kernel

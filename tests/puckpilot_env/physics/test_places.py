@@ -23,7 +23,7 @@ def planned() -> Tables:
         actions = np.clip(rng.uniform(low, high, (COUNT, 2, 4)).astype(np.float32), low, high)
         tables.step(actions)
     for table, p, row in zip(tables.states, tables.params, actions, strict=True):
-        plan_both(table, p, row, np.zeros(2, np.float32))
+        plan_both(table, p, tables.nominal[0], row, np.zeros(2, np.float32))
     return tables
 
 

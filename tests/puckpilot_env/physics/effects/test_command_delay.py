@@ -67,6 +67,30 @@ def test_the_camera_sees_both_stretches_of_a_step() -> None:
     assert len(into_step) == 5 and min(into_step) < DELAY < max(into_step)
 
 
+def test_the_puck_goes_where_the_reference_goes() -> None:
+    """Four milliseconds late, so that pucks mostly meet nothing meanwhile, and then the mallet's new plan."""
+    effects, rng, p = {"command_delay": {"delay_s": 0.004}}, np.random.default_rng(8), record()
+    tables = Tables("match-v0", 6, seed=3, effects=effects)
+    before, states, struck = _places(tables), tables.states.view(np.recarray), 0
+    for table in range(len(tables)):
+        puck, x, y = states[table].puck, *before[0]
+        puck.x, puck.y, puck.vx, puck.vy = x + 0.1 + 0.005 * table, y + 0.002 * table, -1.0, 0.05
+    begun = [(q.x, q.y, q.vx, q.vy) for q in states.puck]
+    actions = np.repeat(gentle(tables, rng)[:1], len(tables), axis=0)
+    requests = actions[0].astype(float)
+    requests[1, :2] = (p.length, p.width) - requests[1, :2]
+    copy = tables.states.copy().view(np.recarray)[0]
+    plan_both(copy.mallets, requests, areas(p), p.max_voltage)
+    plans = [[(0.0, (m.x.volts, m.y.volts, m.x.t1, m.y.t1, m.x.t2, m.y.t2))] for m in copy.mallets]
+    tables.step(actions)
+    for table, start in enumerate(begun):
+        late, prompt = (run(Law(command_delay=d), start, before, plans, 0.1, 1e-5) for d in (0.004, 0.0))
+        found = states[table].puck
+        assert np.hypot(found.x - late.puck[-1, 0], found.y - late.puck[-1, 1]) < 1e-4
+        struck += np.hypot(*(late.puck[-1, :2] - prompt.puck[-1, :2])) > 2e-4
+    assert struck > 0
+
+
 def test_a_turned_table_plays_the_same_game() -> None:
     tables, turned = (Tables("match-v0", 16, seed=3, effects=LATE) for _ in range(2))
     rng, (low, high) = np.random.default_rng(1), tables.action_bounds

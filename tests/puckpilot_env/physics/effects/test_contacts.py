@@ -146,3 +146,26 @@ def test_a_turned_table_turns_its_walls() -> None:
     rebound(puck, p, 0.0, bounce.WALL_Y1, 0.0, -1.0)
     assert puck.vy == pytest.approx(-0.5)
     assert [bounce.opposite(bounce.opposite(kind)) for kind in range(11)] == list(range(11))
+
+
+@given(
+    velocity, velocity, st.floats(-100.0, 100.0), st.floats(0.1, 1.0), st.floats(0.0, 2.0),
+    st.floats(-1e4, 1e4), st.floats(0.0, 1.0), st.booleans(),
+)  # fmt: skip
+def test_nothing_at_a_wall_or_mallet_adds_energy(vx, vy, spin, inertia, ratio, change, mu, at_mallet) -> None:
+    """Whatever shares a table says, and a spin that they do not know of; the energy of motion and spin, by hand."""
+    law = {"bounce_kind": 1.0, "bounce_share": 3.0, "blow_kind": 1.0, "blow_share": 3.0}
+    law |= {f"bounce_{k:02}": change for k in range(5, 10)} | {f"blow_{k:02}": change for k in range(4, 8)}
+    p = record(
+        wall_mu=mu, mallet_mu=mu, spin_inertia=inertia, tangential_ratio=ratio, wall_restitution=1.0,
+        mallet_restitution=1.0, restitution_power=-1.0, mallet_restitution_slope=-0.1, **law,
+    )  # fmt: skip
+    puck = new_puck(0.5, 0.5, vx, -abs(vy) - 0.01, spin)
+    before = puck.vx**2 + puck.vy**2 + inertia * (p.puck_radius * puck.spin) ** 2
+    if at_mallet:
+        strike(puck, p, 0.0, 0.0, 0.0, 0.0, 1.0)
+    else:
+        rebound(puck, p, 0.0, bounce.WALL_Y0, 0.0, 1.0)
+    after = puck.vx**2 + puck.vy**2 + inertia * (p.puck_radius * puck.spin) ** 2
+    assert after <= before * (1.0 + 1e-12)
+    assert puck.vy >= -1e-12

@@ -12,13 +12,12 @@ from hypothesis import strategies as st
 from puckpilot_env.physics import glide
 from puckpilot_env.physics.advance import PUCK
 from puckpilot_env.physics.effects import EFFECTS
-from puckpilot_env.physics.effects.friction_patch import share_inside
 from puckpilot_env.physics.slide import slide
 from tests.puckpilot_env.physics.effects.pairs import GLIDE
 from tests.puckpilot_env.physics.table_driver import record
 from tests.reality import Law, run
 
-CLOSE = 1e-5  # m, after a second
+CLOSE = 1e-6  # m, after a second
 STARTS = 12
 FRICTION = 0.125  # m/s^2, of the default table
 
@@ -53,7 +52,8 @@ def test_a_second_of_sliding_is_the_reference_s(name: str) -> None:
         clock = rng.uniform(0.0, 20.0)
         puck = new_puck(x, y, *rest)
         slide(puck, record(**values), clock, 1.0)
-        end = run(shifted(law, away), (x + away, y + away, *rest), duration=1.0, clock=clock).end_puck
+        dt = 2e-6 if law.patch_radius > 0.0 else 1e-5  # the reference meets the patch's edge at a step's end
+        end = run(shifted(law, away), (x + away, y + away, *rest), duration=1.0, clock=clock, dt=dt).end_puck
         assert math.hypot(puck.x + away - end[0], puck.y + away - end[1]) < CLOSE, (x, y, rest)
         assert math.hypot(puck.vx - end[2], puck.vy - end[3]) < CLOSE, (x, y, rest)
         assert puck.spin == pytest.approx(end[4], abs=1e-6)
@@ -115,15 +115,6 @@ def test_a_force_across_the_velocity_does_no_work() -> None:
     slide(puck, record(side_force=1.0, friction=0.0, drag=0.0), 0.0, 2.0)
     assert math.hypot(puck.vx, puck.vy) == pytest.approx(2.0, abs=1e-6)
     assert math.atan2(puck.vy, puck.vx) == pytest.approx(2.0, abs=1e-5)
-
-
-@given(*[st.floats(-0.4, 0.4)] * 4, st.floats(0.01, 0.3))
-def test_the_share_of_a_way_inside_a_disc(x: float, y: float, dx: float, dy: float, radius: float) -> None:
-    """Counted on 20,000 points of the way."""
-    s = (np.arange(20_000) + 0.5) / 20_000
-    counted = np.mean(np.hypot(x + s * dx, y + s * dy) < radius)
-    if math.hypot(dx, dy) > 1e-6:
-        assert share_inside(x, y, dx, dy, radius) == pytest.approx(counted, abs=2e-3)
 
 
 def test_a_turned_table_turns_its_effects() -> None:

@@ -104,7 +104,7 @@ def test_time_is_that_of_the_episode() -> None:
     tables.states["steps"], tables.states["time"] = 500, 50.0
     x, y = tables.observations[0, 0, :2].astype(float)
     touch = tables.params["puck_radius"][0] + tables.params["mallet_radius"][0]
-    tables.states["puck"][0] = (x + touch + 0.05, y, -1.0, 0.0, 0.0, 0)
+    tables.states["puck"][0] = (x + touch + 0.05, y, -1.0, 0.0, 0.0, 0, (0, 0))
     stay = np.concatenate([tables.observations[:, :, :2], np.full((1, 2, 2), 0.3, np.float32)], axis=2)
     tables.step(stay)
     assert tables.states["puck"]["vx"][0] == pytest.approx(E + 0.1, abs=1e-5)

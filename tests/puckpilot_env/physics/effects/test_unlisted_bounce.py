@@ -134,7 +134,7 @@ def test_time_is_that_of_the_episode() -> None:
     plain = {"drag": 0.0, "friction": 0.0, "wall_restitution": E}
     tables = Tables("match-v0", 1, effects={"unlisted_bounce": law}, parameters=plain, period=0.1)
     tables.states["steps"], tables.states["time"] = 500, 50.0
-    tables.states["puck"][0] = (0.8, tables.params["puck_radius"][0] + 0.05, 0.0, -1.0, 0.0, 0)
+    tables.states["puck"][0] = (0.8, tables.params["puck_radius"][0] + 0.05, 0.0, -1.0, 0.0, 0, (0, 0))
     stay = np.concatenate([tables.observations[:, :, :2], np.full((1, 2, 2), 0.3, np.float32)], axis=2)
     tables.step(stay)
     assert tables.states["puck"]["vy"][0] == pytest.approx(E + 0.1, abs=1e-12)
