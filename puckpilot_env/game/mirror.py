@@ -25,6 +25,20 @@ def place(player, x, y, p):
 
 
 @kernel
+def shown(player, x, y, p, nominal):
+    """A place [m] of the table's frame as the player is told it: from its corner of a table of the nominal size, which
+    lies on the true one, middle on middle. So both ends look the same, and no place tells the true size."""
+    return place(player, x - 0.5 * (p.length - nominal.length), y - 0.5 * (p.width - nominal.width), nominal)
+
+
+@kernel
+def meant(player, x, y, p, nominal):
+    """The place [m] of the table's frame that the player calls `(x, y)`: `shown` the other way round."""
+    x, y = place(player, x, y, nominal)
+    return x + 0.5 * (p.length - nominal.length), y + 0.5 * (p.width - nominal.width)
+
+
+@kernel
 def velocity(player, vx, vy):
     """A velocity [m/s] of the table's frame in player's frame, or back."""
     return (vx, vy) if player == 0 else (-vx, -vy)
@@ -56,8 +70,9 @@ def turn_table(tables: np.ndarray, frames: np.ndarray, length: np.ndarray, width
             mallets[name] = extent[:, None] - mallets[name]
         for name in ("slow", "fast", "slow1", "fast1", "slow2", "fast2", "volts"):
             mallets[name] *= -1.0
-    for name in ("mallets", "gantry_scale", "streams", "score", "last_score", "defending"):
+    for name in ("mallets", "gantry_scale", "streams", "score", "last_score", "fouls", "last_fouls", "defending"):
         tables[name] = tables[name][:, ::-1].copy()
+    tables["puck"]["touched"] = tables["puck"]["touched"][:, ::-1].copy()
     tables["subject"] = 1 - tables["subject"]
     tables["winner"] = np.where(tables["winner"] < 0, -1, 1 - tables["winner"])
     tables["puck"]["turned"] = 1 - tables["puck"]["turned"]

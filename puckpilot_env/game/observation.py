@@ -1,6 +1,8 @@
 """What an agent sees, column by column; everything in its own frame, SI units, float32, clipped to the space.
 
-`columns` describes what `write` writes, in the same order; a test holds each column against a hand-set table.
+`columns` describes what `write` writes, in the same order; a test holds each column against a hand-set table. What is
+computed for the agent is computed with the `nominal` parameters, which it may know; of a table's own `p`, which may be
+drawn, only the size is read, for places to be told from the middle (`mirror.shown`).
 """
 
 from __future__ import annotations
@@ -69,7 +71,8 @@ def columns(rules: np.void, p: np.void) -> list[Column]:
         found.append(Column("own_score", "1", 0.0, top, "own points"))
         found.append(Column("other_score", "1", 0.0, top, "opponent's points"))
         found.append(Column("time_left", "s", 0.0, float(rules["match_time"]), "until the match ends"))
-        found.append(Column("held", "s", 0.0, float(rules["possession_time"]), "since the puck last changed halves"))
+        most = float(rules["possession_time"])
+        found.append(Column("held", "s", 0.0, most, "since the puck last changed halves; then it is a foul"))
     return found
 
 
@@ -80,8 +83,8 @@ def space_bounds(rules: np.void, p: np.void) -> np.ndarray:
 
 
 @kernel
-def _put_place(row, at, k, x, y, p):
-    row[at], row[at + 1] = mirror.place(k, x, y, p)
+def _put_place(row, at, k, x, y, p, nominal):
+    row[at], row[at + 1] = mirror.shown(k, x, y, p, nominal)
     return at + 2
 
 
@@ -92,91 +95,94 @@ def _put_velocity(row, at, k, vx, vy):
 
 
 @kernel
-def _put_mallet(table, p, row, at, k, player):
+def _put_mallet(table, p, nominal, row, at, k, player):
     """Place and velocity of `player`'s mallet as `k` sees them."""
     x, y, vx, vy = motion_now(table.mallets[player])
-    return _put_velocity(row, _put_place(row, at, k, x, y, p), k, vx, vy)
+    return _put_velocity(row, _put_place(row, at, k, x, y, p, nominal), k, vx, vy)
 
 
 @kernel
-def _put_expected(p, rows, at, x, y, vx, vy, now):
-    """Where the puck is expected that is at `(x, y)` with `(vx, vy)` at `now` [s]: one prediction for both players."""
+def _put_expected(nominal, rows, at, x, y, vx, vy, now):
+    """Where the puck is expected that is at `(x, y)` with `(vx, vy)` at `now` [s], all as player 0 is told it: one
+    prediction for both players."""
     for horizon in HORIZONS:
-        x, y, vx, vy = predict.expected_place(x, y, vx, vy, p, horizon - now)
+        x, y, vx, vy = predict.expected_place(x, y, vx, vy, nominal, horizon - now)
         now = horizon
-        _put_place(rows[0], at, 0, x, y, p)
-        at = _put_place(rows[1], at, 1, x, y, p)
+        rows[0, at], rows[0, at + 1] = x, y
+        rows[1, at], rows[1, at + 1] = mirror.place(1, x, y, nominal)
+        at += 2
     return at
 
 
 @kernel
-def _put_exact(table, p, rows, at):
+def _put_exact(table, p, nominal, rows, at):
     """Puck, opponent and expected places, known exactly."""
     x, y, vx, vy = table.puck.x, table.puck.y, table.puck.vx, table.puck.vy
     for k in range(2):
-        i = _put_velocity(rows[k], _put_place(rows[k], at, k, x, y, p), k, vx, vy)
-        _put_mallet(table, p, rows[k], i, k, 1 - k)
-    return _put_expected(p, rows, at + 8, x, y, vx, vy, 0.0)
+        i = _put_velocity(rows[k], _put_place(rows[k], at, k, x, y, p, nominal), k, vx, vy)
+        _put_mallet(table, p, nominal, rows[k], i, k, 1 - k)
+    x, y = mirror.shown(0, x, y, p, nominal)
+    return _put_expected(nominal, rows, at + 8, x, y, vx, vy, 0.0)
 
 
 @kernel
-def _estimate(camera, p, now, then):
+def _estimate(camera, nominal, now, then):
     """Estimate the puck's velocity [m/s] by difference over VELOCITY_LAG frames; if it is in both of them."""
     if now.seen > 0.5 and then.seen > 0.5:
-        rate = p.frame_rate / sensing.VELOCITY_LAG
+        rate = nominal.frame_rate / sensing.VELOCITY_LAG
         camera.puck_vx = (now.puck.x - then.puck.x) * rate
         camera.puck_vy = (now.puck.y - then.puck.y) * rate
 
 
 @kernel
-def _put_estimated(table, p, frames, rows, at):
+def _put_estimated(table, p, nominal, frames, rows, at):
     """Puck and opponent as the camera has them, and where the puck is expected, allowing for the delay."""
-    newest = sensing.newest_frame(table, p, table.time)
-    now = frames[sensing.slot(frames, newest)]
-    then = frames[sensing.slot(frames, newest - sensing.VELOCITY_LAG)]
-    _estimate(table.camera, p, now, then)
+    now = frames[sensing.slot(frames, table.newest)]
+    then = frames[sensing.slot(frames, table.newest - sensing.VELOCITY_LAG)]
+    _estimate(table.camera, nominal, now, then)
     x, y, vx, vy = now.puck.x, now.puck.y, table.camera.puck_vx, table.camera.puck_vy
-    rate = p.frame_rate / sensing.VELOCITY_LAG
+    rate = nominal.frame_rate / sensing.VELOCITY_LAG
     for k in range(2):
-        i = _put_velocity(rows[k], _put_place(rows[k], at, k, x, y, p), k, vx, vy)
+        i = _put_velocity(rows[k], _put_place(rows[k], at, k, x, y, p, nominal), k, vx, vy)
         mallet, before = now.mallets[1 - k], then.mallets[1 - k]
-        i = _put_place(rows[k], i, k, mallet.x, mallet.y, p)
+        i = _put_place(rows[k], i, k, mallet.x, mallet.y, p, nominal)
         _put_velocity(rows[k], i, k, (mallet.x - before.x) * rate, (mallet.y - before.y) * rate)
-    x = min(max(x, p.puck_radius), p.length - p.puck_radius)
-    y = min(max(y, p.puck_radius), p.width - p.puck_radius)
-    at = _put_expected(p, rows, at + 8, x, y, vx, vy, -sensing.mean_delay(p))
+    x, y = mirror.shown(0, x, y, p, nominal)
+    x = min(max(x, nominal.puck_radius), nominal.length - nominal.puck_radius)
+    y = min(max(y, nominal.puck_radius), nominal.width - nominal.puck_radius)
+    at = _put_expected(nominal, rows, at + 8, x, y, vx, vy, -sensing.mean_delay(nominal))
     rows[0, at] = rows[1, at] = now.seen
     return at + 1
 
 
 @kernel
-def _put_history(table, p, frames, rows, at):
-    newest = sensing.newest_frame(table, p, table.time)
+def _put_history(table, p, nominal, frames, rows, at):
     for lag in sensing.LAGS:
-        frame = frames[sensing.slot(frames, newest - lag)]
+        frame = frames[sensing.slot(frames, table.newest - lag)]
         for k in range(2):
-            i = _put_place(rows[k], at, k, frame.puck.x, frame.puck.y, p)
+            i = _put_place(rows[k], at, k, frame.puck.x, frame.puck.y, p, nominal)
             other = frame.mallets[1 - k]
-            i = _put_place(rows[k], i, k, other.x, other.y, p)
+            i = _put_place(rows[k], i, k, other.x, other.y, p, nominal)
             rows[k, i] = frame.seen
         at += 5
     return at
 
 
 @kernel
-def write(table, p, rules, frames, bounds, rows):
-    """Write both players' observations of a table. rows: float32 (2, columns); bounds: `space_bounds`."""
+def write(table, p, nominal, rules, frames, bounds, rows):
+    """Write both players' observations of a table. p: its own parameters; nominal: those that players may know; rows:
+    float32 (2, columns); bounds: `space_bounds`."""
     at = 4
     for k in range(2):
-        _put_mallet(table, p, rows[k], 0, k, k)
+        _put_mallet(table, p, nominal, rows[k], 0, k, k)
         rows[k, at] = table.defending[k]
     at += 1
     if rules.sensing == sensing.EXACT:
-        at = _put_exact(table, p, rows, at)
+        at = _put_exact(table, p, nominal, rows, at)
     elif rules.sensing == sensing.HISTORY:
-        at = _put_history(table, p, frames, rows, at)
+        at = _put_history(table, p, nominal, frames, rows, at)
     else:
-        at = _put_estimated(table, p, frames, rows, at)
+        at = _put_estimated(table, p, nominal, frames, rows, at)
     if rules.shows_gantry == 1:
         for k in range(2):
             for a in range(2):

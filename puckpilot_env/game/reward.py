@@ -37,8 +37,15 @@ def scored_reward():
 
 
 @kernel
+def foul_reward():
+    """Match only, not in the report: the puck was held for too long. As dear as a goal against, or a player would gain
+    by clearing the puck, holding it, and clearing it again."""
+    return -1.0
+
+
+@kernel
 def possession_lost_reward(speed, outcome):
-    """J.1 case 3: the puck crossed the middle line at `speed` while the player defended."""
+    """J.1 case 3: the player, in defence, hit the puck over the middle line, which it crossed at `speed`."""
     if outcome == SCORES:
         return 5.0 * speed / 120.0
     if outcome == SAVED:

@@ -2,9 +2,10 @@
 
 One camera hangs over the table, and both players get its frames. Between it and the table move the beams of both
 gantries, and either may hide the puck. Frame j is exposed at
-`(j + frame_phase)/frame_rate` and can be used `camera_latency` later, so that at a decision the newest one is
-`camera_latency + U(0, 1/frame_rate)` old. Only frames that some decision will look at are taken; a held frame shows
-what the one before it showed, at the beginning of the step at the earliest.
+`(j + frame_phase)/frame_rate`, give or take its `frame_jitter` but within the step, and can be used `camera_latency`
+later, so that at a decision the newest one is `camera_latency + U(0, 1/frame_rate)` old. Only frames that some
+decision will look at are taken; a held frame shows what the one before it showed, at the beginning of the step at the
+earliest.
 """
 
 from __future__ import annotations

@@ -47,7 +47,7 @@ def place_mallet(table, p, k, x, y):
     for a in range(2):
         axis = table.mallets[k].x if a == 0 else table.mallets[k].y
         mallet.place_axis(axis, x if a == 0 else y, 0.0, 0.0)
-        axis.volts = 0.0  # of late orders, those before are forgotten
+        mallet.idle(axis)  # of late orders, those before are forgotten
 
 
 @kernel
@@ -57,6 +57,7 @@ def place_puck(table, p, player, x, y, vx, vy):
     puck.x, puck.y = mirror.place(player, x, y, p)
     puck.vx, puck.vy = mirror.velocity(player, vx, vy)
     puck.spin = 0.0
+    puck.touched[0] = puck.touched[1] = 0
     table.held = 0.0
 
 
@@ -74,7 +75,7 @@ def face_off(table, p):
 
 @kernel
 def serve(table, p, player):
-    """Both at home, the puck at rest in front of `player`, who conceded the last goal."""
+    """Both at home, the puck at rest in front of `player`: who conceded the last goal, or whose opponent fouled."""
     for k in range(2):
         place_mallet(table, p, k, HOME * p.length, 0.5 * p.width)
     y = p.width * random_stream.between(table.streams[player], 0.25, 0.75)
@@ -126,6 +127,8 @@ def begin_episode(table, p, row, drawn, game):
     for k in range(2):
         table.last_score[k] = table.score[k]
         table.score[k] = 0
+        table.last_fouls[k] = table.fouls[k]
+        table.fouls[k] = 0
     table.defending[0] = table.defending[1] = 1
     table.frame_phase = random_stream.uniform(table.stream)
     face_off(table, p)

@@ -8,20 +8,22 @@ from puckpilot_env.game.start import begin_episode
 from puckpilot_env.kernel import kernel
 from puckpilot_env.physics import bounce, compose, drive
 from puckpilot_env.physics.advance import advance
-from puckpilot_env.physics.mallet import place_at, place_now, settle
-from puckpilot_env.physics.plan import plan_mallet
+from puckpilot_env.physics.mallet import halt, place_at, place_now, settle
+from puckpilot_env.physics.plan import plan_mallet, plan_orders
 
-MOST_CROSSINGS = 200  # of the middle line in one stretch; a puck that jitters there more often is set to rest
+MOST_CROSSINGS = (
+    200  # of the middle line in one stretch; a puck that jitters there more often is set to rest, and the mallets stall
+)
 
 
 @kernel
-def plan_both(table, p, actions, rewards):
+def plan_both(table, p, nominal, actions, rewards):
     """Both players' plans, and what J.3 charges for them. actions: float32 (2, 4) in each player's own frame. Where
     orders are late, the mallets go on with those before, and the table keeps what is on its way."""
     late = compose.delay(p) > 0.0
     for k in range(2):
         mallet = table.mallets[k]
-        x_f, y_f = mirror.place(k, actions[k, 0], actions[k, 1], p)
+        x_f, y_f = mirror.meant(k, actions[k, 0], actions[k, 1], p, nominal)
         vx, vy = float(actions[k, 2]), float(actions[k, 3])
         x, y = place_now(mallet)
         rewards[k] = reward.movement_cost(x, y, x_f, y_f) + reward.voltage_cost(vx, vy)
@@ -31,18 +33,11 @@ def plan_both(table, p, actions, rewards):
             vy *= 1.0 + p.action_noise * dy
         area = mirror.area(k, p)
         if late:
-            drive.note(mallet, table.orders[k])
-            _plan(mallet, x_f, y_f, vx, vy, area, p)
-            drive.exchange(mallet, table.orders[k], area, p.max_voltage)
+            drive.send(p, plan_orders(mallet, x_f, y_f, vx, vy, area, p.max_voltage), table.orders[k])
         else:
-            _plan(mallet, x_f, y_f, vx, vy, area, p)
-
-
-@kernel
-def _plan(mallet, x_f, y_f, vx, vy, area, p):
-    plan_mallet(mallet, x_f, y_f, vx, vy, area, p.max_voltage)
-    if compose.loses(p):
-        drive.weaken(mallet, p, area, p.max_voltage)
+            plan_mallet(mallet, x_f, y_f, vx, vy, area, p.max_voltage)
+            if compose.loses(p):
+                drive.weaken(mallet, p, area, p.max_voltage)
 
 
 @kernel
@@ -62,18 +57,38 @@ def play(table, p, rule, until, rewards, log, film):
         else:
             return True
     table.puck.vx, table.puck.vy = 0.0, 0.0
+    halt(table.mallets[0], now)
+    halt(table.mallets[1], now)
     return False
 
 
 @kernel
-def _first_after(film, moment):
-    """The first shot of `film` that is later than `moment` [s]; from then on that is their times' zero."""
+def _play_late(table, p, rule, until, delay, rewards, log, film):
+    """`play_step` where the plans of this step begin `delay` [s] late, and the mallets are on those before till then.
+
+    From then on the new plans' time counts.
+    """
     first = 0
-    while first < film.shape[0] and film[first, 0] <= moment:
+    while first < film.shape[0] and film[first, 0] <= delay:
         first += 1
+    sensing.shoot_mallets(table.mallets, film[:first])
+    over = play(table, p, rule, delay, rewards, log, film)
     for i in range(first, film.shape[0]):
-        film[i, 0] -= moment
-    return first
+        film[i, 0] -= delay
+    for k in range(2):
+        settle(table.mallets[k], delay)
+        drive.follow(table.mallets[k], table.orders[k], mirror.area(k, p), p.max_voltage)
+    table.time += delay
+    table.held += delay
+    if not over:
+        over = play(table, p, rule, until - delay, rewards, log, film[first:])
+    sensing.shoot_mallets(table.mallets, film[first:])
+    for k in range(2):
+        settle(table.mallets[k], until - delay)
+        drive.carry_on(table.mallets[k], until - delay)
+    table.time -= delay
+    table.held -= delay
+    return over
 
 
 @kernel
@@ -81,27 +96,12 @@ def play_step(table, p, rule, until, rewards, log, film):
     """`play` for a step up to `until` [s], with both mallets' places in the shots of `film`; afterwards the mallets are
     where they are then."""
     delay = min(compose.delay(p), until)
-    over, rest, first = False, until, 0
     if delay > 0.0:
-        over = play(table, p, rule, delay, rewards, log, film)
-        sensing.shoot_mallets(table.mallets, film)
-        rest -= delay
-        first = _first_after(film, delay)
-        for k in range(2):
-            settle(table.mallets[k], delay)
-            drive.exchange(table.mallets[k], table.orders[k], mirror.area(k, p), p.max_voltage)
-        table.time += delay
-        table.held += delay
-    if not over:
-        over = play(table, p, rule, rest, rewards, log, film[first:])
-    sensing.shoot_mallets(table.mallets, film[first:])
+        return _play_late(table, p, rule, until, delay, rewards, log, film)
+    over = play(table, p, rule, until, rewards, log, film)
+    sensing.shoot_mallets(table.mallets, film)
     for k in range(2):
-        settle(table.mallets[k], rest)
-        if delay > 0.0:
-            drive.carry_on(table.mallets[k], rest)
-    if delay > 0.0:
-        table.time -= delay
-        table.held -= delay
+        settle(table.mallets[k], until)
     return over
 
 
@@ -115,6 +115,9 @@ def play_and_film(table, p, rule, frames, rewards, log, film):
         if left & 1:
             repeats = random_stream.uniform(table.stream) < p.held_frames
             shown = sensing.exposure(table, p, frame - 1 if repeats else frame) - table.time
+            if p.frame_jitter > 0.0:
+                shown = min(shown + p.frame_jitter * random_stream.normal_pair(table.stream)[0], rule.period)
+                shown = max(shown, film[shots - 1, 0] if shots else 0.0)  # shots are in the order of their times
             film[shots, 0], film[shots, 1], film[shots, 2] = max(shown, 0.0), table.puck.x, table.puck.y
             held |= repeats << shots
             shots += 1
@@ -140,15 +143,15 @@ def _random_impulse(table, p, period):
 
 
 @kernel
-def step_table(table, p, rule, frames, actions, rewards, log, film):
+def step_table(table, p, nominal, rule, frames, actions, rewards, log, film):
     """Play one step. Afterwards `table.ending` says whether and how the episode ended.
 
-    table: a `state.TABLE` record; p: its parameters; rule: a `rules.RULES` record; frames: its camera frames;
-    actions: float32 (2, 4), finite; rewards: float32 (2,), written; log: see `physics.advance`; film: (MOST_WANTED,
-    SHOT_COLUMNS), scratch.
+    table: a `state.TABLE` record; p: its parameters; nominal: those that players may know; rule: a `rules.RULES`
+    record; frames: its camera frames; actions: float32 (2, 4), finite; rewards: float32 (2,), written; log: see
+    `physics.advance`; film: (MOST_WANTED, SHOT_COLUMNS), scratch.
     """
     table.ending = rules.RUNNING
-    plan_both(table, p, actions, rewards)
+    plan_both(table, p, nominal, actions, rewards)
     if rule.sensing == sensing.EXACT:
         scored = play_step(table, p, rule, rule.period, rewards, log, film[:0])
     else:
@@ -166,9 +169,11 @@ def step_table(table, p, rule, frames, actions, rewards, log, film):
         if p.impulse_rate > 0.0:
             _random_impulse(table, p, rule.period)
     if table.ending == rules.RUNNING:
-        refilled = rules.keep_time(table, p, rule) or refilled
-    if refilled and rule.sensing != sensing.EXACT:
-        sensing.fill_frames(table, p, frames)
+        refilled = rules.keep_time(table, p, rule, rewards) or refilled
+    if rule.sensing != sensing.EXACT:
+        if refilled:
+            sensing.fill_frames(table, p, frames)
+        table.newest = sensing.newest_frame(table, p, table.time)
 
 
 @kernel
@@ -177,9 +182,10 @@ def begin_table(table, p, row, drawn, rule, frames):
     begin_episode(table, p, row, drawn, rule.game)
     if rule.sensing != sensing.EXACT:
         sensing.begin_frames(table, p, frames)
+        table.newest = sensing.newest_frame(table, p, table.time)
 
 
 @kernel
-def observe_table(table, p, rule, frames, bounds, rows):
+def observe_table(table, p, nominal, rule, frames, bounds, rows):
     """Write both players' observations; see `observation.write`."""
-    observation.write(table, p, rule, frames, bounds, rows)
+    observation.write(table, p, nominal, rule, frames, bounds, rows)

@@ -25,6 +25,11 @@ def put_puck(tables: Tables, x: Any, y: Any, vx: Any = 0.0, vy: Any = 0.0, playe
     puck["vx"], puck["vy"] = (-vx, -vy) if flip else (vx, vy)
 
 
+def touch(tables: Tables, player: int) -> None:
+    """Let `player`'s mallet have touched every table's puck since that last changed halves."""
+    tables.states["puck"]["touched"][:, player] = 1
+
+
 def put_mallet(tables: Tables, player: int, x: Any, y: Any, seen_by: int | None = None) -> None:
     """Put `player`'s mallet at rest there, as `seen_by` (itself by default) sees it [m]."""
     if (player if seen_by is None else seen_by) == 1:
@@ -53,8 +58,8 @@ def observe(tables: Tables) -> None:
     frames = tables.snapshot().frames
     for i in range(len(tables)):
         observe_table(
-            tables.states[i], tables.params[i], tables.variant.rules()[0], frames[i], tables.observation_bounds,
-            tables.observations[i],
+            tables.states[i], tables.params[i], tables.nominal[0], tables.variant.rules()[0], frames[i],
+            tables.observation_bounds, tables.observations[i],
         )  # fmt: skip
 
 

@@ -143,10 +143,8 @@ def set_frames(tables: Tables, lags: dict[int, tuple[float, ...]], player: int) 
     """Write camera frames (puck x, y, opponent x, y, seen, as `player` sees them) so many before the newest.
 
     What the camera knows of the player's own mallet is set to what nobody may see.
-    At 42 s with a latency of 13.4 ms, frame j being exposed at (j + 0.25)/120 s, the newest is number
-    floor(41.9866 * 120 - 0.25) = 5038.
     """
-    tables.states["frame_phase"] = 0.25
+    tables.states["newest"] = 5038
     snapshot = tables.snapshot()
     for lag, frame in lags.items():
         x, y, other_x, other_y, seen = frame

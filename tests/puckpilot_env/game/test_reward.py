@@ -10,7 +10,7 @@ import pytest
 from puckpilot_env import Tables
 from puckpilot_env.game import reward
 from puckpilot_env.game.predict import MISSES, SAVED, SCORES
-from tests.puckpilot_env.game.hand import FRICTIONLESS, PUCK, STAYING_COST, WIDTH, put_mallet, put_puck, staying
+from tests.puckpilot_env.game.hand import FRICTIONLESS, PUCK, STAYING_COST, WIDTH, put_mallet, put_puck, staying, touch
 
 
 @pytest.mark.parametrize(
@@ -87,6 +87,7 @@ def test_crossing_the_middle_line(attacks, player, y, slope, mallet, outcome):
     put_puck(tables, 0.99, y, 3.0, 3.0 * slope, player)
     tables.states["defending"] = 1
     tables.states["defending"][0, player] = 0 if attacks else 1
+    touch(tables, player)
     tables.step(staying(tables))
     speed = 3.0 * math.hypot(1.0, slope)
     if attacks:
@@ -104,6 +105,7 @@ def test_speed_is_that_on_the_line():
     tables = Tables("match-v0", 1)
     put_mallet(tables, 1, 1.9, 0.1, seen_by=0)
     put_puck(tables, 0.8, 0.5, 3.0)
+    touch(tables, 0)
     tables.step(staying(tables))
     speed = math.sqrt((9.0 + 1.0) * math.exp(-2 * 0.125 * 0.2) - 1.0)
     assert tables.rewards[0, 0] == pytest.approx(5 * speed / 120 - STAYING_COST, abs=1e-7)
@@ -116,6 +118,7 @@ def test_clear_pays_once_and_starts_an_attack(variant, player):
     tables.states["defending"] = 1
     tables.states["subject"] = player
     put_puck(tables, 0.6, 0.3, 0.05, 0.6, player)
+    touch(tables, player)
     tables.step(staying(tables))
     assert tables.rewards[0, player] == pytest.approx(2.0 - STAYING_COST, abs=1e-6)
     assert tables.rewards[0, 1 - player] == pytest.approx(-STAYING_COST, abs=1e-7)

@@ -5,11 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from baselines.match import play
 from puckpilot_env import Tables, find_variant
 from puckpilot_env.game import rules
+from puckpilot_env.infos import outcome_info
 from puckpilot_env.motion import mallet_motion, puck_motion
 from puckpilot_env.parallel_env import TableEnv
-from tests.puckpilot_env.game.hand import FRICTIONLESS, put_mallet, put_puck, staying
+from tests.puckpilot_env.game.hand import FRICTIONLESS, STAYING_COST, put_mallet, put_puck, staying, touch
 
 DRILLS = ["defence-v0", "attack-v0"]
 
@@ -107,7 +109,8 @@ def test_a_goal_in_the_last_step_counts():
 
 @pytest.mark.parametrize("period, steps", [(0.1, 70), (0.05, 140), (1 / 120, 840), (0.3, 24)])
 @pytest.mark.parametrize("player", [0, 1])
-def test_face_off_after_seven_seconds_in_one_half(player, period, steps):
+def test_holding_the_puck_for_seven_seconds_is_a_foul(player, period, steps):
+    """It costs a point's worth and the puck, which the opponent serves."""
     tables = make("match-v0", period=period)
     park(tables)
     put_puck(tables, 0.6, 0.3, player=player)
@@ -116,11 +119,67 @@ def test_face_off_after_seven_seconds_in_one_half(player, period, steps):
     for _ in range(steps - 1):
         stay(tables)
     assert abs(puck_motion(tables.states)[0, 0] - [0.6, 1.4][player]) < 1e-12
+    assert tables.states["fouls"][0].tolist() == [0, 0]
     stay(tables)
     puck = puck_motion(tables.states)[0]
-    assert puck[0] == 1.0 and 0.2 <= puck[1] <= 0.8 and 0.3 <= np.hypot(*puck[2:]) <= 0.8
+    assert puck[0] == pytest.approx([1.4, 0.6][player]) and 0.25 <= puck[1] <= 0.75 and puck[2:].tolist() == [0, 0]
+    np.testing.assert_allclose(mallet_motion(tables.states)[0, :, :2], [[0.25, 0.5], [1.75, 0.5]])
+    assert tables.states["fouls"][0].tolist() == ([1, 0] if player == 0 else [0, 1])
+    assert tables.rewards[0, player] == pytest.approx(-1.0 - STAYING_COST, abs=1e-6)
+    assert tables.rewards[0, 1 - player] == pytest.approx(-STAYING_COST, abs=1e-7)
     assert tables.states["held"][0] == 0 and tables.states["defending"][0].tolist() == [1, 1]
     assert not tables.terminated[0] and tables.states["score"][0].tolist() == [0, 0]
+
+
+def face_off_due(tables: Tables) -> None:
+    """The next step ends the seven seconds."""
+    tables.states["held"] = 6.95
+    stay(tables)
+    puck = puck_motion(tables.states)[0]
+    assert tables.states["fouls"][0].tolist() == [0, 0] and tables.rewards.max() > -0.01
+    assert puck[0] == 1.0 and 0.2 <= puck[1] <= 0.8 and 0.3 <= np.hypot(*puck[2:]) <= 0.8
+
+
+@pytest.mark.parametrize("player", [0, 1])
+def test_a_puck_out_of_reach_is_faced_off(player):
+    """A mallet of 0.1 m does not come to a puck of 1 cm in a corner: their middles stay 0.127 m apart."""
+    tables = make("match-v0", parameters={**FRICTIONLESS, "mallet_radius": 0.1, "puck_radius": 0.01})
+    park(tables)
+    put_puck(tables, 0.01, 0.01, player=player)
+    face_off_due(tables)
+
+
+def test_a_puck_in_a_corner_is_within_reach():
+    tables = make("match-v0")
+    park(tables)
+    put_puck(tables, 0.031, 0.031)
+    tables.states["held"] = 6.95
+    stay(tables)
+    assert tables.states["fouls"][0].tolist() == [1, 0]
+
+
+def test_a_puck_on_the_middle_line_is_faced_off():
+    tables = make("match-v0")
+    park(tables)
+    put_puck(tables, 1.0, 0.3)
+    face_off_due(tables)
+
+
+def test_fouls_outlast_an_automatic_reset_and_are_told():
+    tables = make("match-v0", autoreset=True)
+    tables.states["fouls"], tables.states["steps"] = (2, 3), 1799
+    park(tables)
+    stay(tables)
+    assert tables.terminated[0] and tables.states["fouls"][0].tolist() == [0, 0]
+    told = outcome_info(tables, np.array([1]))
+    assert told["fouls"].tolist() == [[3, 2]]
+
+
+@pytest.mark.parametrize("passive", ["still", "goalie"])
+def test_a_player_that_never_attacks_loses(passive):
+    """Before, held pucks were faced off: games against them ended 0:0."""
+    result = play("match-v0", "interceptor", passive, 20, seed=1)
+    assert result.wins[0] > 2 * result.wins[1]
 
 
 def test_crossing_the_middle_starts_the_seven_seconds_anew():
@@ -133,7 +192,7 @@ def test_crossing_the_middle_starts_the_seven_seconds_anew():
     assert puck_motion(tables.states)[0].tolist() == pytest.approx([1.05, 0.3, 1.0, 0.0])
 
 
-def test_no_face_off_in_drills():
+def test_no_fouls_in_drills():
     tables = make("attack-v0")
     park(tables)
     for _ in range(99):
@@ -147,7 +206,7 @@ def test_no_face_off_in_drills():
     [
         ("defence-v0", (0.6, 0.3, 0.02, 0.6), "clear", 0),
         ("defence-v0", (0.1, 0.5, -3.0, 0.0), "conceded", 1),
-        ("defence-v0", (0.95, 0.5, 3.0, 0.0), "possession lost", 0),
+        ("defence-v0", (0.95, 0.5, 3.0, 0.0), "possession lost", -1),
         ("defence-v0", (1.05, 0.5, -1.0, 0.0), "running", None),
         ("attack-v0", (0.95, 0.5, 3.0, 0.0), "shot on goal", 0),
         ("attack-v0", (0.95, 0.3, 3.0, 0.0), "shot missed", 1),
@@ -165,10 +224,39 @@ def test_endings_of_drills(variant, puck, ending, winner, subject):
     tables.states["defending"][0, subject] = int(variant == "defence-v0")
     tables.states["defending"][0, 1 - subject] = int(variant == "attack-v0")
     put_puck(tables, *puck, player=subject)
+    touch(tables, subject)
     stay(tables)
     assert outcome(tables)[0] == ending and not tables.truncated[0]
     if winner is not None:
-        assert outcome(tables)[1] == (winner if subject == 0 else 1 - winner)
+        assert outcome(tables)[1] == (winner if subject == 0 or winner < 0 else 1 - winner)
+
+
+@pytest.mark.parametrize("variant", ["match-v0", "defence-v0"])
+@pytest.mark.parametrize("puck", [(0.95, 0.5, 3.0, 0.0), (0.6, 0.3, 0.02, 0.6)])
+def test_a_puck_that_was_not_touched_is_neither_lost_nor_cleared(variant, puck):
+    """It passes through: the defence goes on, and pays nothing."""
+    tables = make(variant)
+    park(tables)
+    tables.states["defending"] = (1, 0)
+    touch(tables, 1)
+    put_puck(tables, *puck)
+    stay(tables)
+    assert not tables.terminated[0] and tables.states["defending"][0].tolist() == [1, 0]
+    assert tables.rewards[0, 0] == pytest.approx(-STAYING_COST, abs=1e-7)
+
+
+def test_a_touch_counts_until_the_puck_changes_halves():
+    """A resting mallet is hit, the puck flies over the line and off the far wall back again."""
+    tables = make("match-v0")
+    park(tables)
+    put_mallet(tables, 0, 0.5, 0.3)
+    put_puck(tables, 0.7, 0.3, -3.0)
+    stay(tables)
+    assert tables.states["puck"]["touched"][0].tolist() == [1, 0]
+    put_puck(tables, 0.95, 0.3, 3.0)
+    stay(tables)
+    assert tables.states["puck"]["touched"][0].tolist() == [0, 0]
+    assert tables.rewards[0, 0] == pytest.approx(-0.05 - STAYING_COST, abs=1e-7)  # lost, and no shot on goal
 
 
 def test_the_other_player_ends_no_drill():
@@ -178,17 +266,21 @@ def test_the_other_player_ends_no_drill():
     put_mallet(tables, 1, 0.2, 0.2)
     tables.states["defending"] = 1
     put_puck(tables, 0.6, 0.3, 0.02, 0.6, player=1)
+    touch(tables, 1)
     stay(tables)
     assert not tables.terminated[0] and tables.states["defending"][0].tolist() == [1, 0]
 
 
-@pytest.mark.parametrize("variant, ending", [("attack-v0", "shot on goal"), ("defence-v0", "possession lost")])
-def test_a_shot_that_is_in_within_its_step_is_still_a_shot(variant, ending):
+@pytest.mark.parametrize(
+    "variant, ending, winner", [("attack-v0", "shot on goal", 0), ("defence-v0", "possession lost", -1)]
+)
+def test_a_shot_that_is_in_within_its_step_is_still_a_shot(variant, ending, winner):
     tables = make(variant)
     park(tables)
     put_puck(tables, 0.95, 0.5, 20.0)
+    touch(tables, 0)
     stay(tables)
-    assert tables.states["score"][0].tolist() == [0, 0] and outcome(tables) == (ending, 0)
+    assert tables.states["score"][0].tolist() == [0, 0] and outcome(tables) == (ending, winner)
 
 
 @pytest.mark.parametrize("period, limit", [(0.1, 100), (0.05, 200), (1 / 120, 1200), (0.03, 333)])
@@ -228,9 +320,10 @@ def test_infos_at_the_end(winner):
     env.reset(seed=1)
     env.tables.states["score"] = score = {0: (3, 1), 1: (1, 3), -1: (2, 2)}[winner]
     env.tables.states["steps"] = 1799
+    env.tables.states["fouls"] = (4, 0)
     park(env.tables)
     actions = staying(env.tables)[0]
     infos = env.step({"player_0": actions[0], "player_1": actions[1]})[4]
     name = None if winner < 0 else f"player_{winner}"
-    assert infos["player_0"] == {"ending": "clock", "winner": name, "score": score}
-    assert infos["player_1"] == {"ending": "clock", "winner": name, "score": score[::-1]}
+    assert infos["player_0"] == {"ending": "clock", "winner": name, "score": score, "fouls": (4, 0)}
+    assert infos["player_1"] == {"ending": "clock", "winner": name, "score": score[::-1], "fouls": (0, 4)}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -108,6 +109,57 @@ def test_frames_before_the_start():
         np.testing.assert_allclose(seen(tables, 0, f"puck_{lag}_x"), puck["x"] + puck["vx"] * t, atol=1e-6)
         np.testing.assert_allclose(seen(tables, 1, f"puck_{lag}_y"), 1.0 - puck["y"] - puck["vy"] * t, atol=1e-6)
         np.testing.assert_allclose(seen(tables, 0, f"opponent_{lag}_x"), 1.75, atol=1e-6)
+
+
+def off_its_time(tables: Tables, now: float, lag: int) -> np.ndarray:
+    """By how much later than regular a frame shows the sliding puck [s]."""
+    newest = np.floor(
+        (now - tables.params["camera_latency"]) * tables.params["frame_rate"] - tables.states["frame_phase"]
+    )
+    regular = (newest - lag + tables.states["frame_phase"]) / tables.params["frame_rate"]
+    return time_shown(tables, 0, f"puck_{lag}_x") - regular
+
+
+def test_frames_come_a_little_off_their_time():
+    """Each for itself, normally about the regular time; all of these are far from the ends of a step."""
+    tables, now = sliding("match-sensors-v0", 0.1, {"frame_jitter": 0.0003})
+    off = np.array([off_its_time(tables, now, lag) for lag in LAGS]) / 0.0003
+    for each in off:
+        assert stats.kstest(each, "norm").pvalue > 1e-3
+    assert np.abs(np.corrcoef(off) - np.eye(len(LAGS))).max() < 4.5 / np.sqrt(COUNT)
+    for player, sign in ((0, 1.0), (1, -1.0)):  # and the mallets are where they were then, here at rest
+        assert (sign * (seen(tables, player, "opponent_0_x") - 1.75) < 1e-6).all()
+    tables, now = sliding("match-sensors-v0", 0.1, {})
+    assert np.abs(off_its_time(tables, now, 0)).max() < 2e-6
+
+
+def test_frames_stay_within_their_step_and_in_order():
+    """However far off: a frame of one step shows nothing of another, and none what is older than the one before."""
+    camera = {"frame_jitter": 0.002, "frame_rate": 300.0}
+    tables, now = sliding("match-sensors-v0", 1 / 120, camera)
+    shown = {lag: time_shown(tables, 0, f"puck_{lag}_x") for lag in LAGS}
+    at_ends = {}
+    for lag, time in shown.items():
+        regular = time - off_its_time(tables, now, lag)
+        begun = np.floor(regular * 120.0 + 1e-6) / 120.0
+        assert (time > begun - 2e-6).all() and (time < begun + 1 / 120 + 2e-6).all()
+        at_ends[lag] = (np.minimum(time - begun, begun + 1 / 120 - time) < 2e-6).mean()
+    assert at_ends[0] > 0.1 and at_ends[11] > 0.1 and max(at_ends.values()) < 0.5  # cut off there
+    for newer, older in pairwise(LAGS):
+        assert (shown[newer] > shown[older] - 2e-6).all()
+
+
+def test_a_drawn_latency_is_that_of_its_table():
+    """Each table's newest frame is as old as its own camera is late, and up to a frame more."""
+    drawn = {"camera_latency": {"low": 0.005, "high": 0.06}}
+    tables = Tables("match-sensors-v0", COUNT, seed=3, parameters=CLEAN, draws=drawn)
+    put_puck(tables, 0.7, 0.3, SPEED)
+    now = play(tables, 0.1, {})
+    age = now - time_shown(tables, 0, "puck_0_x")
+    assert stats.kstest(tables.params["camera_latency"], stats.uniform(0.005, 0.055).cdf).pvalue > 1e-3
+    waited = (age - tables.params["camera_latency"]) * 120.0
+    assert waited.min() > -2e-4 and waited.max() < 1.0 + 2e-4
+    assert stats.kstest(waited, "uniform").pvalue > 1e-3 and np.ptp(age) > 0.055
 
 
 @pytest.mark.parametrize("period", [0.05, 0.1, 0.037])
