@@ -53,11 +53,11 @@ def seed_range(states, seed):
 
 
 @kernel
-def reset_range(states, params, rows, drawn, rules, frames, bounds, observations):
+def reset_range(states, params, nominal, rows, drawn, rules, frames, bounds, observations):
     """Begin a new episode on every table."""
     for i in range(states.size):
         begin_table(states[i], params[i], rows[i], drawn, rules[0], frames[i])
-        observe_table(states[i], params[i], rules[0], frames[i], bounds, observations[i])
+        observe_table(states[i], params[i], nominal[0], rules[0], frames[i], bounds, observations[i])
 
 
 @kernel
@@ -74,8 +74,8 @@ def scratch(threads: int) -> tuple[np.ndarray, np.ndarray]:
 
 @kernel
 def step_range(
-    states, params, rows, drawn, rules, frames, bounds, actions, observations, finals, rewards, terminated, truncated,
-    autoreset, log, film, first, last,
+    states, params, nominal, rows, drawn, rules, frames, bounds, actions, observations, finals, rewards, terminated,
+    truncated, autoreset, log, film, first, last,
 ):  # fmt: skip
     """Play one step on tables `first` to `last`, and begin a new episode where one ended, if `autoreset`.
 
@@ -84,21 +84,21 @@ def step_range(
     rule = rules[0]
     for i in range(first, last):
         table, p = states[i], params[i]
-        step_table(table, p, rule, frames[i], actions[i], rewards[i], log, film)
+        step_table(table, p, nominal[0], rule, frames[i], actions[i], rewards[i], log, film)
         ended = table.ending != RUNNING
         truncated[i] = table.ending == STEP_LIMIT
         terminated[i] = ended and not truncated[i]
-        observe_table(table, p, rule, frames[i], bounds, observations[i])
+        observe_table(table, p, nominal[0], rule, frames[i], bounds, observations[i])
         if ended and autoreset:
             _copy_rows(observations[i], finals[i])
             begin_table(table, p, rows[i], drawn, rule, frames[i])
-            observe_table(table, p, rule, frames[i], bounds, observations[i])
+            observe_table(table, p, nominal[0], rule, frames[i], bounds, observations[i])
 
 
 @kernel
 def step_ranges(
-    states, params, rows, drawn, rules, frames, bounds, actions, observations, finals, rewards, terminated, truncated,
-    autoreset, log, films, ranges, counters, member, patience,
+    states, params, nominal, rows, drawn, rules, frames, bounds, actions, observations, finals, rewards, terminated,
+    truncated, autoreset, log, films, ranges, counters, member, patience,
 ):  # fmt: skip
     """`step_range` for what one thread of a team takes of the `ranges`; see `team.Team`."""
     while True:
@@ -106,7 +106,7 @@ def step_ranges(
         if part < 0:
             break
         step_range(
-            states, params, rows, drawn, rules, frames, bounds, actions, observations, finals, rewards, terminated,
-            truncated, autoreset, log, films[member], ranges[part, 0], ranges[part, 1],
+            states, params, nominal, rows, drawn, rules, frames, bounds, actions, observations, finals, rewards,
+            terminated, truncated, autoreset, log, films[member], ranges[part, 0], ranges[part, 1],
         )  # fmt: skip
         hand_in(counters)

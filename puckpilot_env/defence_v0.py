@@ -6,16 +6,17 @@ side wall, at least 0.3 s before it can reach the goal line; player_1 stands beh
 
 from puckpilot_env.entry_points import entry_points
 from puckpilot_env.game.start import DEFENCE
-from puckpilot_env.variants import Variant
+from puckpilot_env.variants import TOUCHES, Variant
 
 VARIANT = Variant(
     name="defence",
     version=0,
     summary="A shot comes from the other half; player_0 has to keep it out and take control.",
     game=DEFENCE,
-    ending="When player_0 clears the puck, concedes, or loses it over the middle line (terminated), or after 10 s "
-    "(truncated).",
+    ending="When player_0 clears the puck, concedes, or hits it over the middle line (terminated), or after 10 s "
+    "(truncated). A shot that leaves its half untouched ends nothing: player_1 has the puck again.",
     step_limit=100,
+    history=("v0: first version", TOUCHES),
 )
 
 env, parallel_env, raw_env = entry_points(VARIANT)

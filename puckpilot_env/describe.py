@@ -50,6 +50,7 @@ RECEIVERS: dict[str, dict[int, str]] = {
         MATCH: _IN_MATCH,
     },
     "scored_reward": {MATCH: _IN_MATCH},
+    "foul_reward": {MATCH: _IN_MATCH},
     "possession_lost_reward": {
         DEFENCE: "player_0; ends the episode",
         MATCH: _IN_MATCH,
@@ -77,6 +78,7 @@ INFOS_AT_END = (
     ("ending", "name of the ending, see above"),
     ("winner", "`player_0`, `player_1` or None"),
     ("score", "(own points, opponent's points)"),
+    ("fouls", "(own, the opponent's): how often each held the puck for too long"),
 )
 INFOS_AT_RESET = (
     ("parameters", "the drawn parameters by name"),
@@ -131,7 +133,7 @@ def describe(variant: Variant) -> dict[str, Any]:
             for name, effect in EFFECTS.items()
             if not effect.not_simulated
         ],
-        "draws": [vars(draw) for draw in variant.draws],
+        "draws": [{**vars(draw), "unit": parameters.BY_NAME[draw.parameter].unit} for draw in variant.draws],
         "infos_at_reset": dict(INFOS_AT_RESET) if variant.draws else {},
         "infos_at_end": dict(INFOS_AT_END),
         "history": list(variant.history),

@@ -6,7 +6,7 @@ the randomization, and by the diagnosis (regime, bounds, what excites it).
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 
@@ -27,6 +27,19 @@ class Parameter:
         return float(min(max(value, self.low), self.high))
 
 
+def _nothing(numbers: Mapping[str, float]) -> str:
+    """A misfit that no numbers have."""
+    return ""
+
+
+def falling(knots: Sequence[float]) -> str:
+    """The misfit of knots that fall; "" if they do not."""
+    down = next((k for k in range(1, len(knots)) if knots[k] < knots[k - 1]), None)
+    if down is None:
+        return ""
+    return f"knot {down} is {knots[down]:g} after {knots[down - 1]:g}; expected knots that do not fall"
+
+
 @dataclass(frozen=True)
 class Effect:
     """Physics that a table may have beyond the baseline. It is off while all its rows are at their defaults.
@@ -36,6 +49,8 @@ class Effect:
     impulse depends on (position, speed, heading, time, history, command). `excited_by`: the recording that shows it.
     `listed`: whether it is one mechanism with a name, and not a table of numbers that may hold any.
     `not_simulated`: why no table can be given it, "" if it can; the diagnosis alone knows such an effect.
+    `misfit`: what keeps numbers of a table of them, by their short names, from being a law that can be simulated; ""
+    if nothing does.
     """
 
     regime: str
@@ -46,6 +61,7 @@ class Effect:
     source: str
     listed: bool = True
     not_simulated: str = ""
+    misfit: Callable[[Mapping[str, float]], str] = _nothing
 
     @property
     def row_names(self) -> tuple[str, ...]:

@@ -13,15 +13,15 @@ tilt_x = 0.02
 
 from __future__ import annotations
 
-import difflib
-import tomllib
 from collections.abc import Iterable, Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
+from puckpilot_env.inputs import in_short
 from puckpilot_env.parameters import BY_NAME, EFFECT_ROWS, checked, refuse_not_simulated
 from puckpilot_env.physics.effects import EFFECTS
+from puckpilot_env.toml_file import check_format, read_toml, refuse_unknown, section
 
 FORMAT = "puckpilot-effects/1"
 NOT_SWITCHED = "# not in the simulator:"  # begins a line of a file on what was found and cannot be switched on
@@ -39,17 +39,17 @@ def effect_values(effects: Effects | None) -> dict[str, float]:
         return {}
     if isinstance(effects, Mapping):
         return _read(effects) if "format" in effects else _by_name(effects, "effects")
-    path = Path(effects)
-    try:
-        return _read(tomllib.loads(path.read_text(encoding="utf-8")))
-    except OSError as error:
-        words = f"cannot read effects from '{path}': {error.strerror or error}"
-        raise ValueError(f"{words}; expected a file such as effects.toml of puckpilot diagnose") from None
-    except tomllib.TOMLDecodeError as error:
-        words = f"{path}: not a TOML file ({error})"
-        raise ValueError(f"{words}; expected lines like 'tilt_x = 0.02' below [effects.table_tilt]") from None
-    except ValueError as error:  # of TOML and of text among them
-        raise ValueError(f"{path}: {' '.join(str(error).split())}") from None
+    if not isinstance(effects, str | PathLike):
+        words = "expected a dict, as in {'table_tilt': {'tilt_x': 0.02}}, or a file such as effects.toml"
+        raise ValueError(f"effects is {in_short(effects)}; {words}")
+    return read_toml(
+        effects, "effects", "effects.toml of puckpilot diagnose", "'tilt_x = 0.02' below [effects.table_tilt]", _read
+    )
+
+
+def as_content(values: Mapping[str, float]) -> dict[str, Any]:
+    """What a file of these parameters holds, of effects among them: `effect_values` the other way round."""
+    return {"format": FORMAT, "parameters": dict(values)}
 
 
 def described(path: str | PathLike[str], apart_from: Iterable[str] = ()) -> list[str]:
@@ -74,48 +74,22 @@ def described(path: str | PathLike[str], apart_from: Iterable[str] = ()) -> list
 
 
 def _read(content: Mapping[str, Any]) -> dict[str, float]:
-    if content.get("format") != FORMAT:
-        said = f"format is {content['format']!r}" if "format" in content else "there is no line with its format"
-        raise ValueError(f'{said}; expected the line format = "{FORMAT}"')
-    _refuse_unknown(content, ("format", "parameters", "effects"), "entry")
-    values = {name: _number(name, value) for name, value in _section(content, "parameters").items()}
+    check_format(content, FORMAT, ("parameters", "effects"))
+    values = {name: checked(name, value) for name, value in section(content, "parameters").items()}
     refuse_not_simulated(values)
-    return values | _by_name(_section(content, "effects"), "effects")
+    return values | _by_name(section(content, "effects"), "effects")
 
 
 def _by_name(effects: Mapping[str, Any], where: str) -> dict[str, float]:
     """The effects' values by the simulator's names."""
     values = {}
-    _refuse_unknown(effects, EFFECTS, "effect")
+    refuse_unknown(effects, EFFECTS, "effect")
     for effect in effects:
         rows = EFFECTS[effect].rows
-        given = _section(effects, effect, where)
+        given = section(effects, effect, where)
         if not given:
             raise ValueError(f"{where}.{effect} has no numbers; expected some of {', '.join(list(rows)[:FEW])}")
-        _refuse_unknown(given, rows, f"number of {effect}")
-        values |= {rows[short].name: _number(rows[short].name, value) for short, value in given.items()}
+        refuse_unknown(given, rows, f"number of {effect}")
+        values |= {rows[short].name: checked(rows[short].name, value) for short, value in given.items()}
     refuse_not_simulated(values)
     return values
-
-
-def _section(content: Mapping[str, Any], name: str, where: str = "") -> Mapping[str, Any]:
-    section = content.get(name, {})
-    if not isinstance(section, Mapping):
-        raise ValueError(f"{where + '.' if where else ''}{name} is {section!r}; expected numbers by name")
-    return section
-
-
-def _number(name: str, value: object) -> float:
-    """`parameters.checked`, but a text or a truth value is no number."""
-    if isinstance(value, str | bool):
-        raise ValueError(f"parameter '{name}' is {value!r}; expected a number")
-    return checked(name, value)  # pyright: ignore[reportArgumentType] - it refuses what is no number
-
-
-def _refuse_unknown(given: Iterable[str], known: Iterable[str], what: str) -> None:
-    known = list(known)
-    for name in given:
-        if name not in known:
-            near = difflib.get_close_matches(str(name), known, n=1)
-            hint = f"did you mean '{near[0]}'?" if near else f"known: {', '.join(known)}"
-            raise ValueError(f"unknown {what} '{name}'; {hint}")

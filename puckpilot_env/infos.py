@@ -33,16 +33,18 @@ def drawn_info(tables: Tables, seats: NDArray[np.integer]) -> dict[str, Any]:
 def outcome_info(tables: Tables, seats: NDArray[np.integer]) -> dict[str, Any]:
     """How the episodes that ended in the last step did so, for the players in `seats` (n,): arrays with a row a table.
 
-    `ending` in words, `outcome` (1 won, 0 nobody won, -1 lost) and `score` (n, 2), the player's own first. Rows of
-    tables whose episode goes on mean nothing.
+    `ending` in words, `outcome` (1 won, 0 nobody won, -1 lost), `score` (n, 2) and `fouls` (n, 2), the player's own
+    first. Rows of tables whose episode goes on mean nothing.
     """
     states, rows = tables.states, np.arange(len(tables))
-    score = states["last_score"] if tables.autoreset else states["score"]
+    last = "last_" if tables.autoreset else ""
+    score, fouls = states[f"{last}score"], states[f"{last}fouls"]
     winner = states["winner"]
     return {
         "ending": _ENDINGS[states["ending"]],
         "outcome": np.where(winner < 0, 0, np.where(winner == seats, 1, -1)),
         "score": np.stack([score[rows, seats], score[rows, 1 - seats]], axis=1),
+        "fouls": np.stack([fouls[rows, seats], fouls[rows, 1 - seats]], axis=1),
     }
 
 

@@ -14,6 +14,10 @@ from puckpilot_env.variants import Variant, all_variants
 
 FOLDER = Path(__file__).parent / "pages"
 REGENERATE = "puckpilot envs --write-pages"
+DRAWS = (
+    'Option `draws="draws.toml"`: other ranges, and of more parameters (see `puckpilot_env/draws_file.py`); '
+    "one that is given is not drawn."
+)
 
 USAGE = """\
 ## Usage
@@ -205,12 +209,12 @@ def _parameters(facts: dict[str, Any]) -> str:
 def _draws(facts: dict[str, Any]) -> str:
     text = "## Drawn for every episode\n\n"
     if not facts["draws"]:
-        return text + "Nothing; every table is the same.\n"
+        return text + f"Nothing; every table is the same. {DRAWS}\n"
     draws = [
-        (f"`{d['parameter']}`", d["distribution"], f"{d['low']:g}", f"{d['high']:g}", d["source"])
+        (f"`{d['parameter']}`", d["unit"], d["distribution"], f"{d['low']:g}", f"{d['high']:g}", d["source"])
         for d in facts["draws"]
     ]
-    return text + _table(("parameter", "distribution", "low", "high", "source"), draws)
+    return f"{text}{DRAWS}\n\n" + _table(("parameter", "unit", "distribution", "low", "high", "source"), draws)
 
 
 def _effects(facts: dict[str, Any]) -> str:
@@ -224,9 +228,9 @@ def _effects(facts: dict[str, Any]) -> str:
 
     rows = [(f"`{e['name']}`", e["regime"], e["law"], numbers(e)) for e in facts["effects"]]
     return (
-        "## Effects\n\nPhysics that the baseline leaves out; all are off. Option `effects={effect: {number: value}}`, "
-        "or a file's name.\nA number is a parameter too, by the name in brackets.\n\n"
-        + _table(("effect", "where", "law", "numbers"), rows)
+        "## Effects\n\nPhysics that the baseline leaves out; what is not drawn is off. Option "
+        "`effects={effect: {number: value}}`,\nor a file's name. A number is a parameter too, by the name in "
+        "brackets.\n\n" + _table(("effect", "where", "law", "numbers"), rows)
     )
 
 

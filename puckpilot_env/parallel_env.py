@@ -11,10 +11,13 @@ from gymnasium.spaces import Box
 from numpy.typing import NDArray
 from pettingzoo import ParallelEnv
 
+from puckpilot_env.draws_file import Draws
 from puckpilot_env.effects_file import Effects
 from puckpilot_env.game.rules import ENDING_NAMES
 from puckpilot_env.infos import drawn_info, only_row
+from puckpilot_env.inputs import in_short, one_of, reset_options
 from puckpilot_env.motion import mallet_motion, puck_motion
+from puckpilot_env.one_thread import one_thread
 from puckpilot_env.real_numbers import real_numbers
 from puckpilot_env.tables import ACTION_COLUMNS, Tables
 from puckpilot_env.variants import Variant
@@ -50,18 +53,20 @@ class TableEnv(ParallelEnv):
         period: float | None = None,
         parameters: Mapping[str, float] | None = None,
         effects: Effects | None = None,
+        draws: Draws | None = None,
     ) -> None:
         """`max_cycles`: truncate after so many steps; `period` [s] of a step, from 1/120 s; `parameters` by name;
-        `effects`: physics beyond the baseline, by name or from a file (see `effects_file`).
+        `effects`: physics beyond the baseline, by name or from a file (see `effects_file`); `draws`: what differs from
+        episode to episode, likewise (see `draws_file`).
 
         Raises ValueError, in one line, for anything that cannot be.
         """
-        if render_mode not in (None, *self.metadata["render_modes"]):
-            raise ValueError(f"render_mode is {render_mode!r}; expected None or 'rgb_array'")
+        one_of(render_mode, "render_mode", None, *self.metadata["render_modes"])
         self._tables = Tables(
             variant, 1, autoreset=False, period=period, max_cycles=max_cycles, parameters=parameters, effects=effects,
-            seed=fresh_seed(),
+            draws=draws, seed=fresh_seed(),
         )  # fmt: skip
+        self.inside = self._tables.inside
         self.metadata = {
             **self.metadata,
             "name": variant.module,
@@ -90,14 +95,17 @@ class TableEnv(ParallelEnv):
         """The same space object for an agent at each call."""
         return self._action_spaces[agent]
 
+    @one_thread
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[dict[str, NDArray[np.float32]], dict[str, dict[str, Any]]]:
-        """Begin a new episode; without a seed the random streams go on. `options` is not used."""
+        """Begin a new episode; without a seed the random streams go on. `options`, a dict or None, is not used."""
+        reset_options(options)
         self._tables.reset(seed)
         self.agents = list(AGENTS)
         return self._observations(), {agent: self._drawn(k) for k, agent in enumerate(AGENTS)}
 
+    @one_thread
     def step(
         self, actions: Mapping[str, Any]
     ) -> tuple[
@@ -110,16 +118,7 @@ class TableEnv(ParallelEnv):
         """Play one step. Raises ValueError, having changed nothing, for an action missing or not in its space."""
         if not self.agents:
             raise ValueError("the episode is over (or has not begun); call reset() before step()")
-        if not isinstance(actions, Mapping):
-            raise ValueError(f"actions is a {type(actions).__name__}; expected a dict with an action for each agent")
-        rows = self._actions[0]
-        for k, agent in enumerate(AGENTS):
-            if agent not in actions:
-                raise ValueError(f"no action for {agent}; expected one for each of {', '.join(AGENTS)}")
-            action = real_numbers(actions[agent], f"the action of {agent}")
-            if action.shape != (4,):
-                raise ValueError(f"the action of {agent} has shape {action.shape}; expected (4,): {_action_names()}")
-            rows[k] = action
+        self._take(actions)
         tables = self._tables
         tables.step(self._actions)
         rewards = tables.rewards[0].tolist()
@@ -136,6 +135,21 @@ class TableEnv(ParallelEnv):
             infos,
         )
 
+    def _take(self, actions: Mapping[str, Any]) -> None:
+        """Put each agent's action into its row."""
+        if not isinstance(actions, Mapping):
+            raise ValueError(f"actions is a {type(actions).__name__}; expected a dict with an action for each agent")
+        for k, agent in enumerate(AGENTS):
+            if agent not in actions:
+                raise ValueError(f"no action for {agent}; expected one for each of {', '.join(AGENTS)}")
+            action = real_numbers(actions[agent], f"the action of {agent}")
+            if action.shape != (4,):
+                raise ValueError(f"the action of {agent} has shape {action.shape}; expected (4,): {_action_names()}")
+            self._actions[0, k] = action
+        if len(actions) > len(AGENTS):
+            unknown = next(agent for agent in actions if agent not in AGENTS)
+            raise ValueError(f"actions has one for {in_short(unknown)}; expected them for {' and '.join(AGENTS)} alone")
+
     def _observations(self) -> dict[str, NDArray[np.float32]]:
         rows = self._tables.observations[0].copy()
         return {"player_0": rows[0], "player_1": rows[1]}
@@ -150,6 +164,7 @@ class TableEnv(ParallelEnv):
             "ending": ENDING_NAMES[int(table["ending"])],
             "winner": None if winner < 0 else AGENTS[winner],
             "score": (int(table["score"][player]), int(table["score"][1 - player])),
+            "fouls": (int(table["fouls"][player]), int(table["fouls"][1 - player])),
         }
 
     def state(self) -> NDArray[np.float64]:

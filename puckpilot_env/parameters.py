@@ -10,15 +10,22 @@ from __future__ import annotations
 import difflib
 import math
 from collections.abc import Mapping
+from itertools import product
 
 import numpy as np
 
 from puckpilot_env.effect import Parameter
+from puckpilot_env.inputs import in_short, real_number
 from puckpilot_env.physics.effects import EFFECTS
 
 _CHOICE = "not in the report; a documented choice (errata, last row)"
 _FRAMES = "0 to 7 % in recordings of a real table"
 _E2 = "report, appendix E.2"
+# Of a gantry with all volts on one axis, and how much of each can be simulated: a place is a sum of modes, of which the
+# slow one may be rounded by a picometre, and the fast one keeps the mallet off the rails
+_OF_A_GANTRY = ("top speed", "acceleration", "slow mode", "fast mode")
+_MOST_OF_A_GANTRY = (50.0, 1e4, 1e4, 5e-3)
+_UNITS_OF_A_GANTRY = ("m/s", "m/s^2", "m", "m")
 
 NOT_SIMULATED = {
     row.name: (name, e.not_simulated) for name, e in EFFECTS.items() if e.not_simulated for row in e.rows.values()
@@ -51,6 +58,15 @@ TABLE: tuple[Parameter, ...] = (
     Parameter("frame_rate", "Hz", 120.0, 10.0, 300.0, "camera frames a second", "camera of the real table"),
     Parameter(
         "camera_latency", "s", 0.0134, 0.0, 0.06, "from exposure to a usable position", "measured on the real table"
+    ),
+    Parameter(
+        "frame_jitter",
+        "s",
+        0.0,
+        0.0,
+        0.002,
+        "spread of a frame's exposure about its regular time",
+        "0.08 to 0.27 ms in the stamps of a real camera",
     ),
     Parameter("camera_noise", "m", 0.0002, 0.0, 0.02, "white noise of a position", "measured on the real table"),
     Parameter("beam_noise", "m", 0.0006, 0.0, 0.02, "white noise near the gantry beam", "measured on the real table"),
@@ -97,24 +113,22 @@ def as_matrix(records: np.ndarray) -> np.ndarray:
     return records.view(np.float64).reshape(len(records), len(TABLE))
 
 
-def checked(name: str, value: float) -> float:
-    """`value` as a float if `name` is a parameter and it lies in its range; otherwise ValueError."""
+def checked(name: str, value: object) -> float:
+    """`value` as a float if `name` is a parameter and it lies in its range; otherwise ValueError, for texts and truth
+    values too."""
     if name not in BY_NAME:
-        near = difflib.get_close_matches(name, BY_NAME, n=1)
+        near = difflib.get_close_matches(str(name), BY_NAME, n=1)
         hint = (
             f"; did you mean '{near[0]}'?"
             if near
             else f"; known: {', '.join(row.name for row in TABLE if row not in EFFECT_ROWS)}"
         )
-        raise ValueError(f"unknown parameter '{name}'{hint}")
+        raise ValueError(f"unknown parameter {in_short(name)}{hint}")
     row = BY_NAME[name]
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        number = math.nan
+    number = real_number(value)
     if not row.low <= number <= row.high:
         raise ValueError(
-            f"parameter '{name}' is {value!r}; expected a number in [{row.low:g}, {row.high:g}] {row.unit}"
+            f"parameter '{name}' is {in_short(value)}; expected a number in [{row.low:g}, {row.high:g}] {row.unit}"
         )
     return number
 
@@ -137,11 +151,40 @@ def check_together(record: np.void) -> None:
         record["mallet_radius"] + record["puck_radius"]
     ):  # then puck and mallet do not overlap in any start
         raise ValueError("the table is too small: expected width >= 6 mallet radii, length >= 14 of mallet and puck")
+    for name, effect in EFFECTS.items():
+        if effect.listed:
+            continue
+        reason = effect.misfit({short: float(record[row.name]) for short, row in effect.rows.items()})
+        if reason:
+            raise ValueError(f"{name} cannot be simulated: {reason}")
     for sign, axis in ((-1.0, "x"), (1.0, "y")):
-        c5, c6, c7 = (record[f"a{i}"] + sign * record[f"b{i}"] for i in (1, 2, 3))
-        spread = record["gantry_spread"]
+        c5, c6, c7 = (float(record[f"a{i}"] + sign * record[f"b{i}"]) for i in (1, 2, 3))
+        spread = float(record["gantry_spread"])
         if not (c5 > 0 and c6 > 0 and c7 > 0 and (1 - spread) ** 2 * c6 * c6 > (1 + spread) ** 2 * 4 * c5 * c7):
             raise ValueError(
                 f"gantry axis {axis} is not overdamped: C5, C6, C7 = {c5:g}, {c6:g}, {c7:g}, each up to {spread:g} of "
                 "itself off; change a, b or gantry_spread"
             )
+        drive = float(record["pulley_radius"] * record["max_voltage"])  # half the radius, and twice the voltage
+        found = _extremes(c5, c6, c7, spread, drive)
+        for what, value, most, unit in zip(_OF_A_GANTRY, found, _MOST_OF_A_GANTRY, _UNITS_OF_A_GANTRY, strict=True):
+            if value > most:
+                raise ValueError(
+                    f"gantry axis {axis} cannot be simulated: its {what} is {value:.3g} {unit} with all volts; "
+                    f"expected at most {most:g}: change a, b, gantry_spread, pulley_radius or max_voltage"
+                )
+
+
+def _extremes(c5: float, c6: float, c7: float, spread: float, drive: float) -> tuple[float, float, float, float]:
+    """The numbers `_OF_A_GANTRY` of an axis whose coefficients are each up to `spread` of themselves off.
+
+    `drive` [V m]: half the pulley's radius times all volts. The modes are those of `physics.mallet.axis_constants`.
+    """
+    found = []
+    for s5, s6, s7 in product((1.0 - spread, 1.0 + spread), repeat=3):
+        jerk, force, drag = s5 * c5, s6 * c6, s7 * c7
+        fast = (force + math.sqrt(force * force - 4.0 * jerk * drag)) / (2.0 * jerk)
+        slow = drag / (jerk * fast)
+        acceleration = drive / (jerk * (fast - slow))  # of either mode alone
+        found.append((drive / drag, acceleration, acceleration / slow**2, acceleration / fast**2))
+    return tuple(max(column) for column in zip(*found, strict=True))  # pyright: ignore[reportReturnType] - four columns

@@ -7,6 +7,7 @@ from typing import Any, Protocol, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from puckpilot_env.inputs import one_of
 from puckpilot_env.real_numbers import real_numbers
 from puckpilot_env.tables import ACTION_COLUMNS, Tables
 
@@ -34,8 +35,7 @@ class Seats:
 
     def __init__(self, tables: Tables, opponent: Opponent, seat: int | str) -> None:
         """seat: 0, 1, or "alternate": 0 on every even table and 1 on every odd one. ValueError for another."""
-        if isinstance(seat, bool) or seat not in (0, 1, ALTERNATE):
-            raise ValueError(f"seat is {seat!r}; expected 0, 1 or '{ALTERNATE}'")
+        seat = one_of(seat, "seat", 0, 1, ALTERNATE)
         if not (callable(getattr(opponent, "reset", None)) and callable(getattr(opponent, "act", None))):
             raise ValueError(f"the opponent is a {type(opponent).__name__}; expected an object with reset and act")
         self.tables, self.opponent = tables, opponent

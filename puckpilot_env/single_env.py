@@ -10,6 +10,9 @@ from gymnasium.spaces import Box
 from numpy.typing import NDArray
 
 from puckpilot_env.infos import drawn_info, only_row, outcome_info
+from puckpilot_env.inputs import one_of, reset_options
+from puckpilot_env.one_thread import one_thread
+from puckpilot_env.real_numbers import real_numbers
 from puckpilot_env.seats import Opponent, Seats
 from puckpilot_env.tables import Tables
 
@@ -27,32 +30,34 @@ class SingleEnv(gymnasium.Env[NDArray[Any], NDArray[Any]]):
 
     def __init__(self, tables: Tables, opponent: Opponent, *, seat: int = 0, render_mode: str | None = None) -> None:
         """tables: one, that does not reset itself; seat: 0 or 1, the caller's. Raises ValueError, in one line."""
-        if len(tables) != 1 or tables.autoreset:
+        if not isinstance(tables, Tables) or len(tables) != 1 or tables.autoreset:
             raise ValueError("expected Tables of one table with autoreset=False")
-        if seat not in (0, 1):
-            raise ValueError(f"seat is {seat!r}; expected 0 or 1")
-        check_render_mode(render_mode)
+        one_of(seat, "seat", 0, 1)
+        one_of(render_mode, "render_mode", None, *RENDER_MODES)
         self._seats = Seats(tables, opponent, seat)
         self._over = True
-        self.tables = tables
+        self.tables, self.inside = tables, tables.inside
         self.render_mode = render_mode
         self.metadata = {**self.metadata, "render_fps": round(1.0 / tables.variant.period)}
         self.observation_space, self.action_space = seat_spaces(tables)
 
+    @one_thread
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
-        """Begin a new episode; without a seed the random streams go on. `options` is not used."""
+        """Begin a new episode; without a seed the random streams go on. `options`, a dict or None, is not used."""
+        reset_options(options)
         self._seats.reset(seed)
         super().reset(seed=None if seed is None else int(seed))
         self._over = False
         return self._observation(), only_row(drawn_info(self.tables, self._seats.own))
 
+    @one_thread
     def step(self, action: NDArray[np.float32]) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
         """Play one step. Raises ValueError, having changed nothing, for an action that is not in the space."""
         if self._over:
             raise ValueError("the episode is over (or has not begun); call reset() before step()")
-        action = np.asarray(action)
+        action = real_numbers(action, "the action")
         if action.shape != (4,):
             raise ValueError(f"the action has shape {action.shape}; expected (4,)")
         self._seats.step(action[None])
@@ -79,12 +84,6 @@ def seat_spaces(tables: Tables) -> tuple[Box, Box]:
         Box(*bounds, dtype=np.float32) for bounds in (tables.observation_bounds, tables.action_bounds)
     )
     return observation, action
-
-
-def check_render_mode(render_mode: str | None) -> None:
-    """ValueError for an unknown one."""
-    if render_mode not in (None, *RENDER_MODES):
-        raise ValueError(f"render_mode is {render_mode!r}; expected None or 'rgb_array'")
 
 
 def draw_table(tables: Tables, table: int, seat: int) -> NDArray[np.uint8]:

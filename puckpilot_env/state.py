@@ -35,6 +35,7 @@ TABLE = np.dtype(
         ("gantry_scale", np.float64, (2, 2, 3)),  # C5, C6, C7 relative to the parameters', of player, axis
         ("frame_phase", np.float64),  # frame j is exposed at (j + frame_phase)/frame_rate
         ("last_frame", np.int64),  # newest frame taken
+        ("newest", np.int64),  # newest frame that has arrived by now
         ("camera", CAMERA),
         ("time", np.float64),  # since the episode began [s]
         ("held", np.float64),  # since the puck last changed halves [s]
@@ -42,6 +43,8 @@ TABLE = np.dtype(
         ("episode", np.int64),  # how many this table has begun
         ("score", np.int64, 2),
         ("last_score", np.int64, 2),  # of the episode before this one
+        ("fouls", np.int64, 2),  # of each player: how often it held the puck for too long
+        ("last_fouls", np.int64, 2),  # of the episode before this one
         ("defending", np.int64, 2),  # 1 defence, 0 attack (report, appendix J)
         ("subject", np.int64),  # the player whose episode a drill is
         ("ending", np.int64),  # how the last step ended the episode (see game.rules), 0 if it did not

@@ -17,12 +17,12 @@ from puckpilot_env.tables import Tables
 
 
 @array_kernel
-def trace_step(moments, p, rules, frames, actions, times, scored):
+def trace_step(moments, p, nominal, rules, frames, actions, times, scored):
     """Play copies of a table from where it is to different moments of its step.
 
-    moments: (m,) `state.TABLE` records, all equal to the table; each is left as it is at its own time. p, rules: (1,)
-    records; frames: its (kept,) camera frames, scratch; actions: float32 (2, 4); times: (m,) [s], from 0 to
-    the period of a step; scored: (m,) bool, written: the puck is in a goal.
+    moments: (m,) `state.TABLE` records, all equal to the table; each is left as it is at its own time. p, nominal,
+    rules: (1,) records; frames: its (kept,) camera frames, scratch; actions: float32 (2, 4); times: (m,) [s], from 0
+    to the period of a step; scored: (m,) bool, written: the puck is in a goal.
 
     Each copy is played from the start in one stretch, because a stretch cut in two differs in its last digits.
     """
@@ -32,7 +32,7 @@ def trace_step(moments, p, rules, frames, actions, times, scored):
     rule = rules[0]
     for i in range(times.size):
         table = moments[i]
-        plan_both(table, p[0], actions, rewards)
+        plan_both(table, p[0], nominal[0], actions, rewards)
         if times[i] >= rule.period and rule.sensing != EXACT:
             scored[i] = play_and_film(table, p[0], rule, frames, rewards, log, film)
         else:
@@ -60,5 +60,5 @@ def trace(
     moments = np.zeros(len(times), state.TABLE)
     moments[:] = now.states[0]
     scored = np.zeros(len(times), np.bool_)
-    trace_step(moments, now.params, tables.variant.rules(), now.frames[0], actions, times, scored)
+    trace_step(moments, now.params, tables.nominal, tables.variant.rules(), now.frames[0], actions, times, scored)
     return moments, scored

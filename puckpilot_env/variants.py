@@ -16,7 +16,13 @@ import numpy as np
 
 from puckpilot_env.game import sensing
 from puckpilot_env.game.rules import RULES
+from puckpilot_env.inputs import in_short
 from puckpilot_env.randomization import Draw, as_rows
+
+# What changed in place before anything was released.
+FOULS = "v0, before the first release: a puck held for 7 s is a foul and the opponent serves; it was faced off"
+TOUCHES = "v0, before the first release: possession is lost, and a clear is made, by who touched the puck alone"
+NOMINAL = "v0, before the first release: where the puck is expected follows the nominal parameters, not the drawn ones"
 
 
 @dataclass(frozen=True)
@@ -71,6 +77,8 @@ def all_variants() -> dict[str, Variant]:
 
 def find_variant(name: str) -> Variant:
     """The variant of an id, with or without `puckpilot/`. Raises ValueError, in one line, for an unknown one."""
+    if not isinstance(name, str):
+        raise ValueError(f"variant is {in_short(name)}; expected an id such as 'match-v0', or a Variant")
     known = all_variants()
     full = name if name.startswith("puckpilot/") else f"puckpilot/{name}"
     if full not in known:

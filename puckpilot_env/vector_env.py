@@ -10,8 +10,10 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
 from puckpilot_env.infos import drawn_info, masked, outcome_info
+from puckpilot_env.inputs import one_of, reset_options, truth
+from puckpilot_env.one_thread import one_thread
 from puckpilot_env.seats import Opponent, Seats
-from puckpilot_env.single_env import RENDER_MODES, check_render_mode, draw_table, seat_spaces
+from puckpilot_env.single_env import RENDER_MODES, draw_table, seat_spaces
 from puckpilot_env.tables import Tables
 
 Arrays = NDArray[Any]
@@ -38,13 +40,13 @@ class TablesVectorEnv(VectorEnv[Arrays, Arrays, Arrays]):
 
         With `copy` False, observations may be views that the next step overwrites. Raises ValueError, in one line.
         """
-        if not tables.autoreset:
+        if not isinstance(tables, Tables) or not tables.autoreset:
             raise ValueError("expected Tables with autoreset=True")
-        check_render_mode(render_mode)
+        one_of(render_mode, "render_mode", None, *RENDER_MODES)
         self._seats = Seats(tables, opponent, seat)
-        self._copy = copy
+        self._copy = truth(copy, "copy")
         self._begun = False
-        self.tables = tables
+        self.tables, self.inside = tables, tables.inside
         self.num_envs = len(tables)
         self.render_mode = render_mode
         self.metadata = {
@@ -56,6 +58,7 @@ class TablesVectorEnv(VectorEnv[Arrays, Arrays, Arrays]):
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
         self.action_space = batch_space(self.single_action_space, self.num_envs)
 
+    @one_thread
     def reset(  # pyright: ignore[reportIncompatibleMethodOverride] - gymnasium's own seeds may be lists
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
@@ -63,13 +66,14 @@ class TablesVectorEnv(VectorEnv[Arrays, Arrays, Arrays]):
 
         Without a seed the random streams go on. Raises ValueError for a list of seeds and for a `reset_mask`.
         """
-        if options and "reset_mask" in options:
+        if "reset_mask" in reset_options(options):
             raise ValueError("options has a 'reset_mask'; tables begin anew by themselves, reset() is for all of them")
         self._seats.reset(seed)
         super().reset(seed=None if seed is None else int(seed))
         self._begun = True
         return self._observations(), masked(drawn_info(self.tables, self._seats.own), np.ones(self.num_envs, np.bool_))
 
+    @one_thread
     def step(
         self, actions: ArrayLike
     ) -> tuple[NDArray[np.float32], NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:

@@ -29,6 +29,7 @@ OPTIONS = {
         "--variant",
         "--device",
         "--effects",
+        "--draws",
         "--seed",
         "--threads",
     ],

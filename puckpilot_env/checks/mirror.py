@@ -26,12 +26,13 @@ COPY_EVERY = 5  # steps
 TOLERANCE = 1e-3
 ROUNDING = 1e-12  # m, m/s; of turning twice
 
-# Shaken and hurried, so that endings, face-offs, impulses and noise come in a few seconds of any variant.
+# Shaken and hurried, so that endings, fouls, impulses and noise come in a few seconds of any variant.
 _SHAKEN = {
     "impulse_rate": 2.0,
     "action_noise": 0.05,
     "gantry_spread": 0.1,
     "camera_noise": 0.002,
+    "frame_jitter": 0.0003,
     "dropped_frames": 0.1,
 }
 
@@ -40,16 +41,15 @@ _SHAKEN = {
 class _Seen:
     goals: int = 0
     ends: int = 0
-    faceoffs: int = 0
+    fouls: int = 0
 
     def count(self, before: np.ndarray, tables: Tables) -> None:
         """Note what the last step brought; `before`: the states before it."""
         ended = tables.terminated | tables.truncated
         goals = (tables.states["score"].sum(1) > before["score"].sum(1)) & ~ended
-        full = before["held"] + tables.variant.period >= tables.variant.possession_time - 1e-9
         self.ends += int(ended.sum())
         self.goals += int(goals.sum())
-        self.faceoffs += int((full & (tables.states["held"] == 0.0) & ~goals & ~ended).sum())
+        self.fouls += int((tables.states["fouls"] - before["fouls"])[~ended].sum())
 
 
 def _versions(variant: variants.Variant) -> tuple[variants.Variant, ...]:
@@ -122,7 +122,7 @@ def _symmetric(subject: Subject) -> str:
     for variant in _versions(own.variant):
         _play_both(variant, steps, subject.seed, seen)
     return (
-        f"{2 * steps * TABLES:,} steps of turned tables agree, through {seen.goals} goals, {seen.faceoffs} face-offs "
+        f"{2 * steps * TABLES:,} steps of turned tables agree, through {seen.goals} goals, {seen.fouls} fouls "
         f"and {seen.ends} endings"
     )
 

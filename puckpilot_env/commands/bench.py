@@ -37,6 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seconds", type=float, default=5.0, help="how long to measure (5)")
     parser.add_argument("--against", metavar="ID", help="measure this variant too, in turn, and print the ratio")
     parser.add_argument("--effects", metavar="FILE", help="physics beyond the baseline on the first variant's tables")
+    parser.add_argument("--draws", metavar="FILE", help="what differs from table to table there, from a file")
     instead = parser.add_mutually_exclusive_group()
     instead.add_argument("--dicts", action="store_true", help="one table behind PettingZoo's dictionaries instead")
     instead.add_argument("--startup", action="store_true", help="a fresh process to its first step instead")
@@ -56,7 +57,7 @@ def run(args: argparse.Namespace) -> int:
     elif args.dicts:
         report = _dicts(variant, args.seconds)
     else:
-        report = _batches(rivals, args.tables, args.threads, args.seconds, args.effects)
+        report = _batches(rivals, args.tables, args.threads, args.seconds, args.effects, args.draws)
     if args.json:
         print(json.dumps(report, indent=1))
     else:
@@ -71,16 +72,18 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _batches(
-    variants: list[Any], tables: int, threads: int, seconds: float, effects: str | None = None
+    variants: list[Any], tables: int, threads: int, seconds: float, effects: str | None = None, draws: str | None = None
 ) -> dict[str, Any]:
     """Median speed of the first variant. Of a second one, and of one thread beside several, the median ratio of
     stretches measured in turn."""
     from puckpilot_env.tables import Tables
 
-    given = [effects] + [None] * (len(variants) - 1)
-    batches = [Tables(v, tables, seed=1, threads=threads, effects=e) for v, e in zip(variants, given, strict=True)]
+    given: list[dict[str, Any]] = [{"effects": effects, "draws": draws}, {}]
+    batches = [
+        Tables(v, tables, seed=1, threads=threads, **options) for v, options in zip(variants, given, strict=False)
+    ]
     if threads > 1:
-        batches.append(Tables(variants[0], tables, seed=1, effects=effects))
+        batches.append(Tables(variants[0], tables, seed=1, **given[0]))
     actions = [_draw_actions(batch) for batch in batches]
     for batch, drawn in zip(batches, actions, strict=True):
         for step in range(WARM_UP):

@@ -1,4 +1,10 @@
-"""Does an environment keep its promises? Each finding is a fact, what it means, and what to do."""
+"""Does an environment keep its promises? Each finding is a fact, what it means, and what to do.
+
+With --adversarial it plays so many steps of tables at the ends of their ranges, with none, one, two or many effects,
+against players that pin, press and hit the puck, and holds each step against what no game may break: numbers are
+finite, the puck is inside and in no mallet, mallets keep to their areas, no energy comes from nowhere, and the slowest
+step takes no more than 50 times what half of them take. What breaks is printed with the command that shows it again.
+"""
 
 from __future__ import annotations
 
@@ -15,11 +21,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("ids", nargs="*", metavar="ID|module:attribute", help="environments; default: all of puckpilot")
     parser.add_argument("--steps", type=int, default=2000, help="steps that each check plays (default 2000, a match)")
     parser.add_argument("--seed", type=int, default=0, help="seed of the games (default 0)")
+    parser.add_argument(
+        "--adversarial", type=int, metavar="STEPS", help="play so many steps at the ends of all ranges instead"
+    )
     parser.add_argument("--json", action="store_true", help="print findings as JSON")
 
 
 def run(args: argparse.Namespace) -> int:
     """0 if all checks passed, 1 if an environment failed one. Raises ValueError, in one line, where it cannot check."""
+    if args.adversarial is not None:
+        return _run_adversarial(args.ids, args.adversarial, args.seed, args.json)
     from puckpilot_env.checks.runner import find_maker
     from puckpilot_env.variants import all_variants
 
@@ -32,6 +43,42 @@ def run(args: argparse.Namespace) -> int:
     else:
         _print_tables(found)
     return int(any(result.failed for results in found.values() for result in results))
+
+
+def _run_adversarial(ids: list[str], steps: int, seed: int, as_json: bool) -> int:
+    """0 if nothing broke and no step took too long, else 1."""
+    from rich.console import Console
+    from rich.progress import Progress
+
+    from puckpilot_env.checks.adversarial import MOST_MEDIANS, Found
+    from puckpilot_env.checks.patience import play_many
+    from puckpilot_env.variants import all_variants, find_variant
+
+    if steps < 1:
+        raise ValueError(f"--adversarial is {steps}; expected a number of steps, at least 1")
+    if seed < 0:
+        raise ValueError(f"--seed is {seed}; expected a whole number, at least 0")
+    names = [find_variant(name).id for name in ids] or list(all_variants())
+    console = Console(stderr=True)
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
+        task = bar.add_task("playing", total=steps)
+
+        def show(batch: Found) -> None:
+            bar.update(task, advance=batch.steps)
+            for breach in () if as_json else batch.breaches:
+                print(breach, flush=True)
+
+        found = play_many(names, steps, seed, show)
+    ratio = found.slowest.seconds / found.median
+    if as_json:
+        slowest = {**dataclasses.asdict(found.slowest), "medians": ratio}
+        report = {"steps": found.steps, "median_s": found.median, "slowest": slowest}
+        print(json.dumps({**report, "breaches": [dataclasses.asdict(each) for each in found.breaches]}, indent=2))
+    else:
+        print(f"{found.steps:,} steps, {len(found.breaches)} broke something")
+        print(f"a step takes {1e6 * found.median:.3g} us (median), the slowest {1e6 * found.slowest.seconds:.4g} us,")
+        print(f"{ratio:.3g} times that (at most {MOST_MEDIANS:g}): {found.slowest}")
+    return int(bool(found.breaches) or ratio > MOST_MEDIANS)
 
 
 def _check_all(names: list[str], steps: int, seed: int) -> dict[str, list[Any]]:

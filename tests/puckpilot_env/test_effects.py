@@ -92,7 +92,7 @@ def test_an_effect_too_small_to_see_changes_nothing(variant: str) -> None:
 
 def test_explicitly_off_is_off() -> None:
     off = {row.name: row.default for row in parameters.EFFECT_ROWS}
-    plain, given = Tables("match-randomized-v0", 32, seed=3), Tables("match-randomized-v0", 32, seed=3, parameters=off)
+    plain, given = Tables("match-sensors-v0", 32, seed=3), Tables("match-sensors-v0", 32, seed=3, parameters=off)
     for actions in actions_of(plain, 200):
         plain.step(actions)
         given.step(actions)
@@ -116,7 +116,7 @@ def test_every_entry_point_takes_them(tmp_path: Path) -> None:
 
 def test_a_resting_puck_runs_down_a_tilted_table() -> None:
     tables = Tables("match-v0", 1, effects={"table_tilt": {"tilt_y": 0.2}})
-    tables.states["puck"][0] = (1.2, 0.3, 0.0, 0.0, 0.0, 0)
+    tables.states["puck"][0] = (1.2, 0.3, 0.0, 0.0, 0.0, 0, (0, 0))
     stay = np.concatenate([tables.observations[:, :, :2], np.full((1, 2, 2), 0.3, np.float32)], axis=2)
     for _ in range(10):
         tables.step(stay)
@@ -126,7 +126,7 @@ def test_a_resting_puck_runs_down_a_tilted_table() -> None:
 
 def test_a_puck_comes_to_rest_against_the_lower_wall() -> None:
     tables = Tables("match-v0", 1, effects={"table_tilt": {"tilt_y": 0.2, "tilt_x": -0.05}}, period=0.1)
-    tables.states["puck"][0] = (0.5, 0.8, 0.3, 0.1, 0.0, 0)
+    tables.states["puck"][0] = (0.5, 0.8, 0.3, 0.1, 0.0, 0, (0, 0))
     stay = np.concatenate([tables.observations[:, :, :2], np.full((1, 2, 2), 0.3, np.float32)], axis=2)
     for _ in range(60):
         tables.step(stay)
@@ -139,7 +139,7 @@ def test_air_drift_counts_from_the_begin_of_the_episode() -> None:
     """Friction (1 + t/100 s) from a start at 50 s: 1.5 times as much."""
     tables = Tables("match-v0", 1, effects={"air_drift": {"rate": 0.01}}, parameters={"drag": 0.0, "friction": 0.1})
     tables.states["steps"], tables.states["time"] = 500, 50.0
-    tables.states["puck"][0] = (0.8, 0.3, 0.0, 0.5, 0.0, 0)
+    tables.states["puck"][0] = (0.8, 0.3, 0.0, 0.5, 0.0, 0, (0, 0))
     stay = np.concatenate([tables.observations[:, :, :2], np.full((1, 2, 2), 0.3, np.float32)], axis=2)
     tables.step(stay)
     assert tables.states["puck"]["vy"][0] == pytest.approx(0.5 - 0.1 * 0.1 * 1.5005, abs=1e-7)

@@ -108,7 +108,7 @@ def test_film_has_its_frame_rate(fps, frames):
 def test_film_holds_a_goal_and_counts_it():
     tables = Tables(MATCH, 1, seed=6)
     actions = stand_still(tables)
-    tables.states["puck"][0] = (0.3, 0.5, -5.0, 0.0, 0.0, 0)
+    tables.states["puck"][0] = (0.3, 0.5, -5.0, 0.0, 0.0, 0, (0, 0))
     reel = Reel(20)
     film = Film(tables, reel, scale=100, hold=1.0)
     for _ in range(3):
@@ -125,7 +125,7 @@ def test_film_holds_a_goal_and_counts_it():
 def test_film_pauses_where_the_puck_is_placed_anew():
     tables = Tables(find_variant("defence-v0"), 1, seed=7)
     actions = stand_still(tables)
-    tables.states["puck"][0] = (1.2, 0.1, 0.0, 0.0, 0.0, 0)
+    tables.states["puck"][0] = (1.2, 0.1, 0.0, 0.0, 0.0, 0, (0, 0))
     tables.states["steps"][0] = 99  # the drill's last step
     reel = Reel(20)
     film = Film(tables, reel, scale=100, hold=1.0)

@@ -16,7 +16,7 @@ from puckpilot_env.game import reward
 from puckpilot_env.game.rules import ENDING_NAMES, RUNNING
 from puckpilot_env.game.start import ATTACK, MATCH
 from puckpilot_env.parallel_env import TableEnv
-from puckpilot_env.parameters import EFFECT_ROWS, TABLE
+from puckpilot_env.parameters import BY_NAME, EFFECT_ROWS, TABLE
 from puckpilot_env.physics.effects import EFFECTS
 from puckpilot_env.variants import Variant, all_variants
 
@@ -85,7 +85,8 @@ def test_every_reward_term_is_on_the_pages_where_it_applies(variant: Variant) ->
     terms = [name for name in functions if name.endswith(("_reward", "_cost"))]
     assert len(terms) >= 7
     assert sorted(RECEIVERS) == sorted(terms), "describe.RECEIVERS says who gets which term, of all terms"
-    elsewhere = {"scored_reward"} | ({"clear_reward", "possession_lost_reward"} if variant.game == ATTACK else set())
+    elsewhere = {"scored_reward", "foul_reward"}
+    elsewhere |= {"clear_reward", "possession_lost_reward"} if variant.game == ATTACK else set()
     expected = [name for name in terms if name not in elsewhere or variant.game == MATCH]
     rows = _rows(_section(page.write_page(variant), "Rewards"))
     assert [row[0] for row in rows] == [f"`{name}`" for name in expected]
@@ -141,7 +142,9 @@ def test_parameters_and_draws_are_all_there(variant: Variant) -> None:
         assert float(re.split(r"[ ,]", row[2])[0]) == pytest.approx(float(nominal[name][0]), rel=1e-5)
     drawn = _rows(_section(text, "Drawn for every episode"))
     assert [row[0] for row in drawn] == [f"`{draw.parameter}`" for draw in variant.draws]
-    assert all(row[4] for row in drawn)
+    assert all(row[1] == BY_NAME[row[0].strip("`")].unit and row[2] and row[5] for row in drawn)
+    for row, draw in zip(drawn, variant.draws, strict=True):
+        assert (float(row[3]), float(row[4])) == (draw.low, draw.high)
 
 
 @every_variant

@@ -84,6 +84,14 @@ def test_unknown_names_come_with_a_suggestion():
         ({"b2": -0.0057}, "gantry axis y is not overdamped"),
         ({"b2": 0.0058}, "gantry axis x is not overdamped"),
         ({"b3": 0.06}, "gantry axis x is not overdamped"),
+        ({"a3": 0.01, "pulley_radius": 0.2}, "gantry axis x cannot be simulated: its top speed is 480 m/s"),
+        ({"a3": 0.01, "pulley_radius": 0.02}, None),  # 48 m/s
+        (
+            {"a1": 1.9165e-6, "a2": 0.003139, "a3": 0.1, "pulley_radius": 0.2},
+            "gantry axis y .* its acceleration is 1.*e",
+        ),
+        ({"a2": 1.0, "a3": 3e-3, "pulley_radius": 0.005}, "gantry axis x .* its slow mode is 1.34e"),
+        ({"a1": 3e-4, "a2": 0.02}, "gantry axis x .* its fast mode is .* expected at most 0.005"),
     ],
 )
 def test_impossible_combinations(values, told):
@@ -94,6 +102,33 @@ def test_impossible_combinations(values, told):
     with pytest.raises(ValueError, match=f"^{told}") as refusal:
         parameters.make_records(3, values)
     assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    "effects, told",
+    [
+        ({"unlisted_force": {"kind": 1.0, "c00": 4.0, "c07": -2.0}}, "unlisted_force .* force is up to 6 m/s^2"),
+        ({"unlisted_force": {"kind": 1.0, "c00": 4.0, "c24": 4.0}}, None),  # along x and along y
+        ({"unlisted_force": {"kind": 9.0, "c08": 5.5}}, "unlisted_force .* force is up to 5.5 m/s^2"),
+        ({"unlisted_force": {"kind": 8.0, "c00": 2.0, "c01": 1.0}}, "unlisted_force .* knot 1 is 1 after 2"),
+        ({"unlisted_force": {"kind": 11.0, "c02": 0.1}}, "unlisted_force .* time from first to last knot is 0 s"),
+        ({"unlisted_force": {"kind": 11.0, "c01": 1e4, "c02": 0.1}}, None),
+        ({"unlisted_force": {"kind": 12.0, "c01": 0.1}}, "unlisted_force .* period is 0 s"),
+        ({"unlisted_bounce": {"kind": 6.0, "c01": 0.1}}, "unlisted_bounce .* a length is 0 m"),
+        ({"unlisted_bounce": {"kind": 5.0, "c00": 2.0, "c01": -1.0}}, "unlisted_bounce .* a length is -1 m"),
+        ({"unlisted_bounce": {"kind": 3.0, "c04": -1.0}}, "unlisted_bounce .* knot 4 is -1 after 0"),
+        ({"unlisted_blow": {"kind": 1.0, "c02": 1.0}}, "unlisted_blow .* knot 3 is 0 after 1"),
+        ({"unlisted_blow": {"kind": 1.0, "c07": 1.0}}, None),
+        ({"unlisted_force": {"c00": 9.0}, "unlisted_bounce": {"c00": 9.0}, "unlisted_blow": {"c00": 9.0}}, None),
+    ],
+)
+def test_tables_of_numbers_that_make_no_law(effects, told):
+    """Waves without a length, knots that fall, and forces that no puck on a table meets."""
+    if told is None:
+        Tables("match-v0", 1, effects=effects)
+        return
+    with pytest.raises(ValueError, match=told.replace("^", r"\^")):
+        Tables("match-v0", 1, effects=effects)
 
 
 def test_by_name_and_never_by_position():

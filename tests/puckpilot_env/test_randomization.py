@@ -58,6 +58,15 @@ def test_all_else_keeps_its_default(drawn):
             assert (drawn[row.name] == row.default).all(), row.name
 
 
+def test_neither_side_nor_end_of_a_table_is_favoured():
+    """What a left-right flip or a turn of the table changes the sign of is drawn evenly about none."""
+    odd = {"tilt_x", "tilt_y", "warp_xy", "friction_turning", "side_force", "spin_side_force", "camera_shear"}
+    odd |= {"restitution_x0", "restitution_x1", "restitution_y0", "restitution_y1", "patch_extra"}
+    about_none = [draw for draw in REALITY if draw.parameter in odd]
+    assert {draw.parameter for draw in about_none} == {"tilt_x", "tilt_y", "warp_xy"}
+    assert all(draw.distribution == "uniform" and draw.low == -draw.high for draw in about_none)
+
+
 def test_gantries_differ_by_their_spread():
     """Each player's gantry has numbers of its own, uniform within the table's spread, and works with them."""
     tables = Tables("match-randomized-v0", COUNT, seed=4)

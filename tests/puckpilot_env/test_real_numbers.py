@@ -27,7 +27,7 @@ def test_what_is_no_number_is_refused_wherever_it_comes_in(bad) -> None:
     before = env.state()
     with pytest.raises(ValueError, match=r"^the action of player_1 has numbers of dtype [^ ]+; expected real numbers$"):
         env.step({"player_0": good, "player_1": bad})
-    with pytest.raises(ValueError, match=r"^the array of actions has numbers of dtype"):
+    with pytest.raises(ValueError, match=r"^the action has numbers of dtype"):
         seat.step(bad)
     with pytest.raises(ValueError, match=r"^the array of actions has numbers of dtype"):
         tables.step([[bad, bad], [bad, bad]])  # pyright: ignore[reportArgumentType] - what is refused
