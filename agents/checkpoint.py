@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import io
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import torch
 
-from puckpilot_env.tables import Snapshot, Tables
+from puckpilot_env.tables import Tables
 from puckpilot_env.whole_file import write_whole
 
 FORMAT = "puckpilot-checkpoint-1"
@@ -59,7 +60,7 @@ def restore_tables(tables: Tables, kept: Mapping[str, Any]) -> None:
         if data.size != like.nbytes:
             raise ValueError(f"the checkpoint's {name} have {data.size} bytes; these tables have {like.nbytes}")
         arrays[name] = np.frombuffer(data.tobytes(), like.dtype).reshape(like.shape)
-    tables.restore(Snapshot(tables.variant.id, **arrays))
+    tables.restore(replace(now, **arrays))
 
 
 def _bytes(array: np.ndarray) -> np.ndarray:

@@ -8,7 +8,6 @@ from itertools import combinations
 from typing import Any
 
 from agents.fan_out import fan_out
-from baselines.intervals import paired_win_rate
 from baselines.match import MatchResult, Progress, play
 from baselines.payoff import Payoff, count_games
 from baselines.rating import Ratings, fit_ratings_from_pairs
@@ -75,14 +74,11 @@ def games_among(player: str, opponents: Sequence[str], variants: Sequence[str], 
 
 
 def meeting_row(game: Game, result: MatchResult) -> dict[str, Any]:
-    """One meeting, as JSON can hold it: who won, the share of decisive games, and in a drill how its job was done."""
+    """One meeting, as JSON can hold it: of a match who won and the share of decisive games, of a drill how those of its
+    episodes ended in which the player was tested."""
     role = role_of(find_variant(game.variant), result)
-    return {
-        "variant": game.variant, "opponent": game.opponent, "games": game.games, "wins": list(result.wins),
-        "draws": result.draws, "goals": list(result.goals),
-        "decisive_win_rate": paired_win_rate(result.padded_results).as_dict(),
-        "role": role.as_dict() if role else None,
-    }  # fmt: skip
+    met = {"variant": game.variant, "opponent": game.opponent, "games": game.games}
+    return {**met, **(result.counts() if role is None else {}), "role": role.as_dict() if role else None}
 
 
 def rate(player: str, played: dict[Game, MatchResult], seed: int) -> list[Rated]:

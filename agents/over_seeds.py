@@ -55,4 +55,5 @@ def rows_over_seeds(meetings: Mapping[str, Sequence[Mapping[str, Any]]], seed: i
 
 def _share(row: Mapping[str, Any]) -> float | None:
     """Of an attack drill or a defence, the share of its own job; else of decisive games."""
-    return row["role"]["value"] if row["role"] else row["decisive_win_rate"]["value"]
+    role = row["role"]
+    return role["endings"][role["job"]]["value"] if role else row["decisive_win_rate"]["value"]

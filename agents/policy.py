@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from agents.decoder import Decoder
 from agents.network import SQUASHES, Network
 from agents.run_folder import RunFolder
 from agents.scaling import Reading, Scaling
@@ -107,7 +108,9 @@ class PolicyPlayer(Player):
         self.seat = seat
         self.policy = policy
         scaling = policy.scaling
-        self._index = Reading.of(scaling, policy.columns, list(seat.columns)).index
+        self._decoder = Decoder(seat) if Decoder.is_needed(policy.columns, seat) else None
+        given = self._decoder.columns if self._decoder else list(seat.columns)
+        self._index = Reading.of(scaling, policy.columns, given).index
         self._reads = np.stack([scaling.centre, scaling.span])
         middle, half = 0.5 * (scaling.low + scaling.high), 0.5 * (scaling.high - scaling.low)
         self._acts = np.stack([middle, half, *seat.action_bounds]).astype(np.float32)
@@ -115,6 +118,8 @@ class PolicyPlayer(Player):
     def act(self, observation: NDArray[np.float32]) -> NDArray[np.float32]:
         """observation: (n, d) float32; returns (n, 4) float32 actions inside the seat's bounds."""
         policy = self.policy
+        if self._decoder:
+            observation = self._decoder.decode(observation)
         return policy.network.decide(observation, self._index, self._reads, self._acts, policy.squash)
 
 

@@ -1,6 +1,6 @@
 """The folder of a training run: what lies where, and that only one process at a time works in it.
 
-run.json        what is trained: variant, seed, threads, effects, preset (its whole text)
+run.json        what is trained: variant, seed, threads, effects, draws, preset (its whole text)
 checkpoint.pt   everything that the run needs to go on; written whole after each round
 curve.csv       a row a round
 selves/*.npz    earlier selves of the league

@@ -15,8 +15,10 @@ class Tally:
     def __init__(self, seating: Seating) -> None:
         self._first = seating.blocks[0].first if seating.blocks else seating.tables
         self._starts = np.array([block.first - self._first for block in seating.blocks], np.int64)
-        tables = np.arange(self._first, seating.tables)
-        self._tables, self._seats = tables, tables % 2  # the learner's
+        self._tables = np.arange(self._first, seating.tables)
+        self._seats = np.concatenate(
+            [np.zeros(0, np.int64), *(block.seats for block in seating.blocks)]
+        )  # the learner's
         self.clear()
 
     def clear(self) -> None:

@@ -27,6 +27,8 @@ from agents.runner import Iteration, SelfPlayRunner
 from agents.seating import Seating
 from baselines import make_player
 from baselines.player import Player, Seat
+from puckpilot_env.effects_file import as_content
+from puckpilot_env.game.start import MATCH
 from puckpilot_env.tables import Tables
 
 RANKS_APART = 2**32  # between the seeds of processes that train together
@@ -36,15 +38,16 @@ Row = dict[str, Any]
 
 @dataclass(frozen=True)
 class Settings:
-    """What is trained. `effects`: parameters of an effects file, or None; `against`: the one player that is met, else
-    a league is; `start`: folder of the run whose networks it begins with, else they know nothing; `device`: where the
-    networks are, in torch's words."""
+    """What is trained. `effects`: parameters of an effects file, or None; `draws`: what a file of draws holds, or None;
+    `against`: the one player that is met, else a league is; `start`: folder of the run whose networks it begins with,
+    else they know nothing; `device`: where the networks are, in torch's words."""
 
     variant: str
     seed: int
     threads: int
     preset: Preset
     effects: Mapping[str, float] | None = None
+    draws: Mapping[str, Any] | None = None
     against: str | None = None
     start: str | None = None
     device: str = "cpu"
@@ -67,7 +70,7 @@ class Training:
 
     def __init__(self, folder: RunFolder, settings: Settings) -> None:
         preset = against(settings.preset, settings.against) if settings.against else settings.preset
-        if settings.effects:  # a table that leans to a side is no mirror image of itself
+        if settings.effects or settings.draws:  # a table that leans to a side is no mirror image of itself
             preset = replace(preset, flip="none")
         self.preset = preset
         torch.set_num_threads(settings.threads)
@@ -185,7 +188,14 @@ def _hall(preset: Preset, settings: Settings, seed: int) -> tuple[Hall, list[str
     sizes = [(settings.variant, preset.tables, [*preset.anchors.values(), *preset.earlier])]
     sizes += [(one.variant, one.tables, [*one.anchors.values(), *one.earlier]) for one in preset.beside]
     batches = [
-        Tables(variant, tables, seed=seed + PARTS_APART * part, parameters=settings.effects, threads=settings.threads)
+        Tables(
+            variant,
+            tables,
+            seed=seed + PARTS_APART * part,
+            effects=as_content(settings.effects or {}),
+            draws=settings.draws,
+            threads=settings.threads,
+        )
         for part, (variant, tables, _) in enumerate(sizes)
     ]
     for part, tables in enumerate(batches):
@@ -193,7 +203,7 @@ def _hall(preset: Preset, settings: Settings, seed: int) -> tuple[Hall, list[str
     read, columns = readings(batches)
     parts = [
         LearnerEnv(
-            tables, Seating.of(count, blocks), reading, preset.rewards,
+            tables, Seating.of(count, blocks, drill=tables.variant.game != MATCH), reading, preset.rewards,
             gamma=preset.ppo["gamma"], flip=preset.flip == "rows", critic=preset.critic,
         )
         for tables, reading, (_, count, blocks) in zip(batches, read, sizes, strict=True)

@@ -1,12 +1,12 @@
 """How good a player is, and whether it could play on a real gantry.
 
 It meets every script in paired games of match-v0, match-randomized-v0 and the drills. Matches give its rating among the
-scripts; drills, where the two seats have different jobs, give how often it did its own: shots kept out, attacks scored.
-Then what it asks of the gantry is measured, how long it thinks, and how its win rate falls when the table is seen late
-or noisily.
+scripts; drills, where the two seats have different jobs, give how the episodes ended in which it was tested: half of
+the games, as player_0. Then what it asks of the gantry is measured, how long it thinks, and how its win rate falls when
+the table is seen late or noisily.
 
 Several policies, such as those of one recipe and five seeds, are compared with the scripts alone: their shares of
-decisive games (in drills, of jobs done) and the interquartile mean over them, with a bootstrap interval.
+decisive games (in drills, of clears and shots on goal) and the interquartile mean over them, with a bootstrap interval.
 """
 
 from __future__ import annotations

@@ -14,6 +14,7 @@ from agents.deployability import Deployability, Robustness
 from agents.meetings import Rated
 from baselines.intervals import Estimate
 from baselines.payoff_table import payoff_table, rating_table
+from baselines.role_table import role_table
 
 TEXTS = {
     "wall_margin_m": ("nearest to an edge of its half, 1st percentile", "{:.3f} m"),
@@ -27,24 +28,23 @@ LONGEST = 24  # characters of a player's name in a payoff matrix, where it stand
 
 
 def print_meetings(name: str, rows: Sequence[dict[str, Any]]) -> None:
-    """Matches, then drills."""
+    """Matches, then each drill."""
     matches = [row for row in rows if row["role"] is None]
-    drills = [row for row in rows if row["role"] is not None]
     if matches:
-        table = _table(f"{name}, decisive games won", "won", "drawn", "lost", "goals", "share", "95 %")
+        headings = ("won", "drawn", "lost", "goals", "fouls a game", "share", "95 %")
+        table = _table(f"{name}, decisive games won", *headings)
         for row in matches:
             won, lost = (str(number) for number in row["wins"])
-            goals = "{}:{}".format(*row["goals"])
-            table.add_row(*_who(row), won, str(row["draws"]), lost, goals, *_share(row["decisive_win_rate"]))
+            goals, fouls = (
+                "{}:{}".format(*row["goals"]),
+                "{:.1f}:{:.1f}".format(*(n / row["games"] for n in row["fouls"])),
+            )
+            share = _share(row["decisive_win_rate"])
+            table.add_row(*_who(row), won, str(row["draws"]), lost, goals, fouls, *share)
         _show(table)
-    if drills:
-        headings = ("in seat player_0", "share", "95 %", "won/drawn/lost", "of decisive", "95 %")
-        table = _table(f"{name} in drills: how often it did its job, and games won from both seats", *headings)
-        for row in drills:
-            role, wins = row["role"], row["wins"]
-            job, games = f"{role['done']}/{role['of']} {role['job']}", f"{wins[0]}/{row['draws']}/{wins[1]}"
-            table.add_row(*_who(row), job, *_share(role), games, *_share(row["decisive_win_rate"]))
-        _show(table)
+    for drill in dict.fromkeys(row["variant"] for row in rows if row["role"] is not None):
+        roles = [row["role"] for row in rows if row["variant"] == drill]
+        _show(role_table(f"{_short(drill)}, how the episodes ended in which {name} was tested", roles))
 
 
 def print_over_seeds(names: Sequence[str], games: int, rows: Sequence[dict[str, Any]]) -> None:
@@ -52,7 +52,7 @@ def print_over_seeds(names: Sequence[str], games: int, rows: Sequence[dict[str, 
     for number, name in enumerate(names, start=1):
         print(f"{number}: {name}")
     few = "; of fewer than four the IQM is the mean" if len(names) < 4 else ""
-    title = f"\nshare of decisive games won, or in drills of jobs done, of {games} games each{few}"
+    title = f"\nshare of decisive games won, or in drills of clears and shots on goal, of {games} games each{few}"
     table = _table(title, *(str(k) for k in range(1, len(names) + 1)), "IQM", "95 %")
     for row in rows:
         shares = ["-" if share is None else f"{100 * share:.1f} %" for share in row["shares"]]

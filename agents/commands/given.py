@@ -10,7 +10,9 @@ if TYPE_CHECKING:
     from agents.run_folder import RunFolder
     from agents.training import Settings
 
-DEFAULTS = {"variant": "match-v0", "preset": "fast", "seed": 0, "threads": 1, "device": "cpu", "effects": None}
+DEFAULTS = {
+    "variant": "match-v0", "preset": "fast", "seed": 0, "threads": 1, "device": "cpu", "effects": None, "draws": None,
+}  # fmt: skip
 FEW = 8  # numbers of effects that are told one by one
 
 
@@ -18,6 +20,7 @@ def new_settings(args: argparse.Namespace) -> Settings:
     """The settings of a new run. An option that was not given is None in `args`. ValueError for what cannot be."""
     from agents.preset import find_preset
     from agents.training import Settings
+    from puckpilot_env.draws_file import read_draws
     from puckpilot_env.effects_file import effect_values
     from puckpilot_env.variants import find_variant
 
@@ -27,10 +30,11 @@ def new_settings(args: argparse.Namespace) -> Settings:
     if asked["seed"] < 0:
         raise ValueError(f"--seed is {asked['seed']}; expected a whole number from 0 on")
     effects = effect_values(asked["effects"]) if asked["effects"] else None
+    draws = read_draws(asked["draws"]).as_dict() if asked["draws"] else None
     start = str(_start(args.start)) if args.start else None
     variant, preset = find_variant(asked["variant"]).id, find_preset(asked["preset"])
     return Settings(
-        variant, asked["seed"], asked["threads"], preset, effects, start=start, device=_device(asked["device"])
+        variant, asked["seed"], asked["threads"], preset, effects, draws, start=start, device=_device(asked["device"])
     )
 
 
@@ -75,6 +79,7 @@ def kept_settings(args: argparse.Namespace, folder: RunFolder) -> Settings:
 def _contradicted(args: argparse.Namespace, settings: Settings) -> dict[str, str]:
     """What the run has, in words, by the name of each option that was given and says otherwise."""
     from agents.preset import find_preset
+    from puckpilot_env.draws_file import read_draws
     from puckpilot_env.effects_file import effect_values
     from puckpilot_env.variants import find_variant
 
@@ -89,6 +94,8 @@ def _contradicted(args: argparse.Namespace, settings: Settings) -> dict[str, str
     if args.effects is not None and effect_values(args.effects) != (settings.effects or {}):
         values = [f"{name} {value:.4g}" for name, value in (settings.effects or {}).items()]
         found["effects"] = "none" if not values else " ".join(values) if len(values) <= FEW else "others, in run.json"
+    if args.draws is not None and read_draws(args.draws) != read_draws(settings.draws):
+        found["draws"] = "others, in run.json" if settings.draws else "none"
     return found
 
 

@@ -53,6 +53,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--effects", metavar="FILE", help="physics beyond the baseline, as `diagnose` writes it (no flip then)"
     )
+    parser.add_argument(
+        "--draws", metavar="FILE", help="what differs from game to game, as `diagnose` writes it (no flip then)"
+    )
 
 
 def run(args: argparse.Namespace) -> int:

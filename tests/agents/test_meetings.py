@@ -26,6 +26,7 @@ def test_ratings_are_those_of_a_tournament_of_the_same_games() -> None:
     played = play_all([*games_of(*asked), *games_among(*asked)], _silent)
     (rated,) = rate("follower", played, 2)
     whole = play_tournament("match-v0", ["follower", *OTHERS], 6, 2)
+    assert rated.payoff is not None and whole.payoff is not None
     assert rated.payoff.as_dict() == whole.payoff.as_dict()
     assert rated.ratings == whole.ratings and rated.variant == whole.variant and rated.among_others == 6
     assert rated.ratings.low is not None

@@ -35,7 +35,7 @@ def test_the_interval_holds_the_truth_about_as_often_as_it_says() -> None:
 def _row(opponent: str, share: float | None, job: float | None = None) -> dict:
     return {
         "variant": "puckpilot/match-v0", "opponent": opponent, "decisive_win_rate": {"value": share},
-        "role": None if job is None else {"value": job},
+        "role": None if job is None else {"job": "clear", "endings": {"clear": {"value": job}}},
     }  # fmt: skip
 
 

@@ -20,12 +20,12 @@ ROWS = np.arange(4)
 def by_hand(variant: str = "match-randomized-v0") -> Tables:
     """Two tables; on the first a puck a quarter up and across, flying at 2.5 and -1 m/s."""
     tables = Tables(variant, 2, seed=1)
-    length, width = (float(tables.nominal[name][0]) for name in ("length", "width"))
+    length, width = tables.params["length"], tables.params["width"]
     puck = tables.states["puck"]
     puck["x"], puck["y"], puck["vx"], puck["vy"] = 0.25 * length, 0.75 * width, 2.5, -1.0
-    for axis, places in (("x", (0.1 * length, 0.8 * length)), ("y", (0.3 * width, 0.6 * width))):
+    for axis, extent, shares in (("x", length, (0.1, 0.8)), ("y", width, (0.3, 0.6))):
         mallets = tables.states["mallets"][axis]
-        mallets["rest"], mallets["slow"], mallets["fast"] = [places], 0.0, 0.0
+        mallets["rest"], mallets["slow"], mallets["fast"] = np.outer(extent, shares), 0.0, 0.0
     return tables
 
 
@@ -33,7 +33,7 @@ def test_each_player_s_true_state_is_in_its_own_frame() -> None:
     found = true_state(by_hand(), ROWS)
     assert found[0].tolist() == pytest.approx([-0.5, 0.5, 0.5, -0.2, 0.6, 0.2], abs=1e-6)
     assert found[1].tolist() == pytest.approx([0.5, -0.5, -0.5, 0.2, 0.8, 0.4], abs=1e-6)
-    np.testing.assert_array_equal(found[:2], found[2:])
+    np.testing.assert_allclose(found[:2], found[2:], atol=1e-6)
 
 
 def test_where_a_player_sees_exactly_both_are_the_same() -> None:

@@ -19,8 +19,8 @@ def names(tables: Tables) -> list[str]:
 
 
 def played(variant: str, steps: int = 4) -> Tables:
-    """Tables some random steps into their games."""
-    tables, rng = Tables(variant, 12, seed=3), np.random.default_rng(5)
+    """Tables of the stated width, about whose middle a network flips, some random steps into their games."""
+    tables, rng = Tables(variant, 12, seed=3, parameters={"width": 1.0}), np.random.default_rng(5)
     for _ in range(steps):
         tables.step(random_actions(tables, rng))
     return tables

@@ -40,6 +40,12 @@ def test_blocks_that_do_not_fit_are_refused(tables: int, sizes: list[int]) -> No
         Seating.of(tables, sizes)
 
 
+def test_in_a_drill_the_learner_has_the_tested_seat() -> None:
+    seating = Seating.of(5, [2, 2], drill=True)
+    assert seating.learners.tolist() == [0, 1, 2, 4, 6, 8]
+    assert [block.rows.tolist() for block in seating.blocks] == [[3, 5], [7, 9]]
+
+
 def test_tables_may_all_be_the_learner_s_or_none() -> None:
     assert Seating.of(3, []).learners.tolist() == [0, 1, 2, 3, 4, 5]
     assert Seating.of(2, [2]).learners.tolist() == [0, 3]

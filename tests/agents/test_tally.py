@@ -40,6 +40,14 @@ def test_games_are_won_drawn_or_lost_where_one_ended() -> None:
     assert not tally.points.any()
 
 
+def test_in_a_drill_the_learner_is_always_player_0() -> None:
+    tally = Tally(Seating.of(4, [2, 2], drill=True))
+    scored = np.array([[1, 0], [1, 0], [0, 1], [1, 0]])
+    tally.add(scored, np.ones(4, np.bool_), np.array([0, 0, 1, -1]))
+    assert tally.points.tolist() == [[2.0, 0.0], [1.0, 1.0]]
+    assert tally.games.tolist() == [[2.0, 0.0, 0.0], [0.0, 1.0, 1.0]]
+
+
 def test_without_blocks_there_is_nothing_to_count() -> None:
     tally = Tally(Seating.of(5, []))
     tally.add(goals(t0p0=1), np.ones(5, np.bool_), NOBODY)

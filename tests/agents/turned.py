@@ -31,7 +31,7 @@ def observed(tables: Tables, snapshot: Snapshot) -> np.ndarray:
     seen = np.zeros_like(tables.observations)
     for i in range(len(tables)):
         observe_table(
-            snapshot.states[i], snapshot.params[i], tables.variant.rules()[0], snapshot.frames[i],
+            snapshot.states[i], snapshot.params[i], tables.nominal[0], tables.variant.rules()[0], snapshot.frames[i],
             tables.observation_bounds, seen[i],
         )  # fmt: skip
     return seen

@@ -21,12 +21,15 @@ def test_it_says_what_the_games_say(capsys: pytest.CaptureFixture[str]) -> None:
     assert found["player"] == "goalie" and [row["opponent"] for row in found["meetings"]] == ["still", "random"]
     for row in found["meetings"]:
         result = play("defence-v0", "goalie", row["opponent"], 6, 3)
-        assert (row["wins"], row["draws"], row["goals"]) == (list(result.wins), result.draws, list(result.goals))
         assert row["variant"] == "puckpilot/defence-v0" and row["games"] == 6
-        conceded = sum(ENDING_NAMES[ending] == "conceded" for ending in result.endings[:3])  # as player_0
+        assert not {"wins", "draws", "goals", "decisive_win_rate"} & set(row)  # those would add up two seats
+        endings = [ENDING_NAMES[ending] for ending in result.endings[:3]]  # as player_0
         role = row["role"]
-        assert (role["job"], role["done"], role["of"]) == ("shots kept out", 3 - conceded, 3)
-        assert role["value"] == 1.0 - conceded / 3 and role["low"] <= role["value"] <= role["high"]
+        assert (role["tested"], role["job"], role["episodes"]) == ("goalie", "clear", 3)
+        for name in ("clear", "possession lost", "step limit"):
+            share = role["endings"][name]
+            assert share["count"] == endings.count(name) and share["value"] == endings.count(name) / 3
+            assert share["low"] <= share["value"] <= share["high"]
     assert found["ratings"] == []  # drills rate nobody
     measured = found["deployability"]
     assert 0.0 < measured["voltage_share"] < measured["voltage_most"] + 1e-6 < 1.0 + 2e-6
@@ -39,14 +42,18 @@ def test_tables_show_jobs_in_drills_and_ratings_in_matches(capsys: pytest.Captur
     assert main([*words, "--variants", "attack-v0", "match-v0", "drills"]) == 0
     told = capsys.readouterr().out.splitlines()
     rows = [line.split() for line in told]
-    drills = [row for row in rows if row[:1] in (["attack-v0"], ["defence-v0"])]
-    assert [row[0] for row in drills] == ["attack-v0"] * 2 + ["defence-v0"] * 2  # each once, in the order asked for
-    for row in drills:
-        result = play(row[0], "follower", row[1], 4, 0)
-        ending, job = ("shot on goal", "attacks scored") if row[0] == "attack-v0" else ("conceded", "shots kept out")
-        seen = sum(ENDING_NAMES[number] == ending for number in result.endings[:2])
-        assert " ".join(row[2:]).startswith(f"{seen if row[0] == 'attack-v0' else 2 - seen}/2 {job} ")
-        assert f"{result.wins[0]}/{result.draws}/{result.wins[1]}" in row
+    titles = [line for line in told if "how the episodes ended in which follower was tested" in line]
+    assert [title.split(",")[0] for title in titles] == ["attack-v0", "defence-v0"]  # each once, in the order asked for
+    drills = [row for row in rows if row[:1] == ["follower"] and row[2:3] == ["2"]]
+    played = [(drill, other) for drill in ("attack-v0", "defence-v0") for other in ("still", "random")]
+    for row, (drill, other) in zip(drills, played, strict=True):
+        result = play(drill, "follower", other, 4, 0)
+        job = "shot on goal" if drill == "attack-v0" else "clear"
+        done = sum(ENDING_NAMES[number] == job for number in result.endings[:2])
+        assert row[1] == other and row[3:5] == [f"{50 * done:.1f}", "%"]
+    game = play("match-v0", "follower", "still", 4, 0)
+    match = next(row for row in rows if row[:2] == ["match-v0", "still"])
+    assert match[6] == "{:.1f}:{:.1f}".format(*(fouls / 4 for fouls in game.fouls))
     assert "match-v0, rated by 4 games of follower with each and 4 of every two of the others:" in told
     ranked = [row[0] for row in rows[[row[:1] for row in rows].index(["player"]) :] if row and row[0] in PLAYERS]
     assert ranked[0] == "follower" and sorted(ranked) == sorted(PLAYERS)

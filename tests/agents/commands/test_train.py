@@ -143,6 +143,7 @@ def test_a_preset_is_shown_and_can_be_trained_with(tmp_path: Path, capsys: pytes
 
 
 EFFECTS = 'format = "puckpilot-effects/1"\n[effects.table_tilt]\ntilt_x = {}\n'
+DRAWS = 'format = "puckpilot-draws/1"\n[draws.tilt_y]\nlow = -0.01\nhigh = {}\nsource = "{}"\n'
 # option: what the run has, what contradicts it, what says the same in other words, and how the run's is told
 CONTRADICTIONS = {
     "variant": ("defence-v0", "match-v0", "puckpilot/defence-v0", "puckpilot/defence-v0"),
@@ -150,6 +151,7 @@ CONTRADICTIONS = {
     "seed": ("7", "0", "07", "7"),
     "threads": ("1", "2", "01", "1"),
     "effects": ("tilt.toml", "more.toml", "tilt_again.toml", "tilt_x 0.02"),
+    "draws": ("drawn.toml", "drawn_more.toml", "drawn_again.toml", "others, in run.json"),
 }
 
 
@@ -159,6 +161,8 @@ def run(preset: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
     for name, tilt in (("tilt", 0.02), ("tilt_again", 0.02), ("more", 0.03)):
         (tmp_path / f"{name}.toml").write_text(EFFECTS.format(tilt))
+    for name, high in (("drawn", 0.01), ("drawn_again", 0.01), ("drawn_more", 0.02)):
+        (tmp_path / f"{name}.toml").write_text(DRAWS.format(high, f"a level, {name}"))
     (tmp_path / "same.toml").write_text(TINY)
     words = [word for option, (has, *_) in CONTRADICTIONS.items() for word in (f"--{option}", has)]
     assert main(["train", "--out", "run", "--steps", "1", *words]) == 0
@@ -197,10 +201,13 @@ def test_a_run_of_a_shipped_preset_is_told_by_its_name_and_no_effects_as_none(
     run: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     kept = json.loads((run / "run.json").read_text())
-    (run / "run.json").write_text(json.dumps({**kept, "preset": find_preset("fast").text, "effects": None}))
-    words = ["--resume", "--out", "run", "--preset", "paper", "--effects", "tilt.toml"]
+    (run / "run.json").write_text(
+        json.dumps({**kept, "preset": find_preset("fast").text, "effects": None, "draws": None})
+    )
+    words = ["--resume", "--out", "run", "--preset", "paper", "--effects", "tilt.toml", "--draws", "drawn.toml"]
     told = refused(capsys, *words)
-    assert "--preset is paper where the run has fast, --effects is tilt.toml where the run has none;" in told
+    assert "--preset is paper where the run has fast, --effects is tilt.toml where the run has none, " in told
+    assert "--draws is drawn.toml where the run has none;" in told
 
 
 OPTIONS = {
@@ -215,6 +222,7 @@ OPTIONS = {
     "a device without torch": ["--device", "abacus"],
     "a GPU that is not there": ["--device", "cuda:99"],
     "no such effects": ["--effects", "no/such/file.toml"],
+    "no such draws": ["--draws", "no/such/file.toml"],
 }
 
 
