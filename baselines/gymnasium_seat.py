@@ -15,11 +15,13 @@ from numpy.typing import NDArray
 
 from baselines import find_player
 from baselines.player import Player, Seat
+from puckpilot_env.draws_file import Draws
 from puckpilot_env.effects_file import Effects
+from puckpilot_env.inputs import in_short, whole_number
 from puckpilot_env.parallel_env import fresh_seed
 from puckpilot_env.seats import Opponent
 from puckpilot_env.single_env import SingleEnv
-from puckpilot_env.tables import Tables
+from puckpilot_env.tables import MOST_TABLES, Tables
 from puckpilot_env.variants import Variant
 from puckpilot_env.vector_env import TablesVectorEnv
 
@@ -56,11 +58,12 @@ def make_seat(
     max_cycles: int | None = None,
     parameters: Mapping[str, float] | None = None,
     effects: Effects | None = None,
+    draws: Draws | None = None,
 ) -> SingleEnv:
     """A Gymnasium environment of one seat (0 or 1); `opponent` plays the other.
 
-    `period` [s], `max_cycles`, `parameters` and `effects` are those of `Tables`. Raises
-    ValueError, in one line, for anything that cannot be.
+    `period` [s], `max_cycles`, `parameters`, `effects` and `draws` are those of `Tables`. Raises ValueError, in one
+    line, for anything that cannot be.
     """
     seed = fresh_seed()
     tables = Tables(
@@ -72,6 +75,7 @@ def make_seat(
         max_cycles=max_cycles,
         parameters=parameters,
         effects=effects,
+        draws=draws,
     )
     return SingleEnv(tables, find_opponent(opponent, tables, seed), seat=seat, render_mode=render_mode)
 
@@ -89,15 +93,18 @@ def make_seats(
     max_cycles: int | None = None,
     parameters: Mapping[str, float] | None = None,
     effects: Effects | None = None,
+    draws: Draws | None = None,
 ) -> TablesVectorEnv:
     """A Gymnasium vector environment of `num_envs` seats, one a table; `seat` may also be "alternate".
 
     The rest is as in `make_seat` and `TablesVectorEnv`.
     """
     seed = fresh_seed()
+    num_envs = whole_number(num_envs, "num_envs", 1, MOST_TABLES)
     tables = Tables(
         variant, num_envs, seed=seed, threads=threads, period=period, max_cycles=max_cycles, parameters=parameters,
         effects=effects,
+        draws=draws,
     )  # fmt: skip
     found = find_opponent(opponent, tables, seed)
     return TablesVectorEnv(tables, found, seat=seat, render_mode=render_mode, copy=copy)
@@ -110,5 +117,7 @@ def find_opponent(opponent: AnyOpponent, tables: Tables, seed: int) -> Opponent:
     elif not isinstance(opponent, type) and hasattr(opponent, "act"):
         return opponent  # pyright: ignore[reportReturnType] - what can act is an opponent
     if not callable(opponent):
-        raise ValueError(f"opponent is {opponent!r}; expected a player's name, what makes a Player, or an Opponent")
+        raise ValueError(
+            f"opponent is {in_short(opponent)}; expected a player's name, what makes a Player, or an Opponent"
+        )
     return SeededPlayer(opponent, Seat.from_tables(tables, seed=seed))

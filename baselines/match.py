@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from baselines import make_player
+from baselines.intervals import paired_win_rate
 from baselines.player import Player, Seat
+from puckpilot_env.draws_file import Draws
 from puckpilot_env.effects_file import Effects
+from puckpilot_env.inputs import whole_number
 from puckpilot_env.tables import Tables
 from puckpilot_env.variants import Variant
 
@@ -24,7 +28,7 @@ Watch = Callable[
 
 @dataclass(frozen=True)
 class MatchResult:
-    """What came of a match. `players`, `wins` and `goals` are first, second."""
+    """What came of a match. `players`, `wins`, `goals` and `fouls` are first, second."""
 
     players: tuple[str, str]
     games: int
@@ -34,11 +38,24 @@ class MatchResult:
     results: NDArray[np.float64]  # (pairs, 2): 1, 0, -1 as first won, drew, lost in seat 0 and in seat 1; NaN: unplayed
     lengths: NDArray[np.int64]  # (games,) steps; the games with first in seat 0 come first
     endings: NDArray[np.int64]  # (games,) how each ended, a number of `rules.ENDING_NAMES`; in the order of `lengths`
+    fouls: tuple[int, int] = (0, 0)  # how often each held the puck for too long
+
+    @property
+    def fouls_per_game(self) -> tuple[float, float]:
+        """`fouls` of a mean game."""
+        return self.fouls[0] / self.games, self.fouls[1] / self.games
 
     @property
     def padded_results(self) -> NDArray[np.float64]:
         """`results` with a game that was not played as a draw: neither says anything about a share of decided games."""
         return np.nan_to_num(self.results)
+
+    def counts(self) -> dict[str, Any]:
+        """What a meeting in a match is told by, as JSON can hold it; in a drill it would add up two different jobs."""
+        return {
+            "wins": list(self.wins), "draws": self.draws, "goals": list(self.goals), "fouls": list(self.fouls),
+            "decisive_win_rate": paired_win_rate(self.padded_results).as_dict(),
+        }  # fmt: skip
 
     @property
     def decisive_share(self) -> float:
@@ -51,6 +68,7 @@ class MatchResult:
 class _Half:
     winners: NDArray[np.int64]  # (n,) seat, or -1
     scores: NDArray[np.int64]  # (n, 2)
+    fouls: NDArray[np.int64]  # (n, 2)
     lengths: NDArray[np.int64]  # (n,)
     endings: NDArray[np.int64]  # (n,)
 
@@ -64,25 +82,32 @@ def play(
     *,
     parameters: Mapping[str, float] | None = None,
     effects: Effects | None = None,
+    draws: Draws | None = None,
     progress: Progress | None = None,
     threads: int = 1,
     watch: Watch | None = None,
 ) -> MatchResult:
     """Play `games` episodes of `variant` (or its id), half of them with the seats exchanged.
 
-    Pair i uses random stream i of `seed` in both halves; of an odd number, the last pair is half. `parameters` and
-    `effects` are those of `Tables`. `watch` sees every step of the games with first in seat 0, table 0 the first of
-    them. The same call gives the same result.
+    Pair i uses random stream i of `seed` in both halves; of an odd number, the last pair is half. `parameters`,
+    `effects` and `draws` are those of `Tables`. `watch` sees every step of the games with first in seat 0, table 0 the
+    first of them. The same call gives the same result.
     """
-    if not 1 <= games <= MOST_GAMES:
-        raise ValueError(f"games is {games!r}; expected a whole number from 1 to {MOST_GAMES:,}")
+    games = whole_number(games, "games", 1, MOST_GAMES)
     halves = []
     done = 0
     for seats, count in (((first, second), (games + 1) // 2), ((second, first), games // 2)):
         if count == 0:
             break
         tables = Tables(
-            variant, count, seed=seed, threads=threads, autoreset=False, parameters=parameters, effects=effects
+            variant,
+            count,
+            seed=seed,
+            threads=threads,
+            autoreset=False,
+            parameters=parameters,
+            effects=effects,
+            draws=draws,
         )
         tick = (lambda ended, before=done: progress(before + ended, games)) if progress else None
         halves.append(_play_half(tables, seats, seed, tick, None if halves else watch))
@@ -103,7 +128,7 @@ def _play_half(
     players = [_make(contestant, Seat.from_tables(tables, seed=2 * seed + k)) for k, contestant in enumerate(seats)]
     for player in players:
         player.reset(np.ones(count, np.bool_))
-    half = _Half(np.full(count, -1), np.zeros((count, 2), np.int64), *np.zeros((2, count), np.int64))
+    half = _Half(np.full(count, -1), *np.zeros((2, count, 2), np.int64), *np.zeros((2, count), np.int64))
     running = np.ones(count, np.bool_)
     actions = np.zeros((count, 2, 4), np.float32)
     while running.any():
@@ -116,6 +141,7 @@ def _play_half(
         ended = running & (tables.terminated | tables.truncated)
         half.winners[ended] = tables.states["winner"][ended]
         half.scores[ended] = tables.states["score"][ended]
+        half.fouls[ended] = tables.states["fouls"][ended]
         half.endings[ended] = tables.states["ending"][ended]
         running &= ~ended
         if tick and ended.any():
@@ -125,10 +151,11 @@ def _play_half(
 
 def _add_up(names: tuple[str, str], games: int, halves: list[_Half]) -> MatchResult:
     results = np.full((len(halves[0].winners), 2), np.nan)
-    goals = np.zeros(2, np.int64)
+    goals, fouls = np.zeros((2, 2), np.int64)
     for seat, half in enumerate(halves):  # of first
         results[: len(half.winners), seat] = np.where(half.winners < 0, 0.0, np.where(half.winners == seat, 1.0, -1.0))
-        goals += half.scores.sum(axis=0)[:: 1 if seat == 0 else -1]
+        goals += np.roll(half.scores.sum(axis=0), seat)
+        fouls += np.roll(half.fouls.sum(axis=0), seat)
     wins = (int((results == 1.0).sum()), int((results == -1.0).sum()))
     return MatchResult(
         names,
@@ -139,6 +166,7 @@ def _add_up(names: tuple[str, str], games: int, halves: list[_Half]) -> MatchRes
         results,
         np.concatenate([half.lengths for half in halves]),
         np.concatenate([half.endings for half in halves]),
+        (int(fouls[0]), int(fouls[1])),
     )
 
 

@@ -1,4 +1,5 @@
-"""All against all: every two players play the same paired games, and the ratings follow from all of them together."""
+"""All against all: every two players play the same paired games, and the ratings follow from all of them together; of a
+drill how each one's episodes ended."""
 
 from __future__ import annotations
 
@@ -11,37 +12,58 @@ from baselines.intervals import paired_win_rate
 from baselines.match import MatchResult, Progress, play
 from baselines.payoff import Payoff, count_games
 from baselines.rating import Ratings, fit_ratings_from_pairs
+from baselines.role import Role, roles_of
+from puckpilot_env.draws_file import Draws
 from puckpilot_env.effects_file import Effects
 from puckpilot_env.variants import find_variant
 
 
 @dataclass(frozen=True, eq=False)
 class Tournament:
-    """What came of a tournament. `matches`: of every two players, in the order of `players`."""
+    """What came of a tournament. `matches`: of every two players, in the order of `players`.
+
+    Matches have `payoff` and `ratings`. A drill rates nobody, for its seats have different jobs: it has `roles`, how
+    each player's own episodes ended when it was tested against each of the others.
+    """
 
     variant: str
     seed: int
     games: int  # of each match
     players: tuple[str, ...]
     matches: tuple[MatchResult, ...]
-    payoff: Payoff
-    ratings: Ratings
+    payoff: Payoff | None
+    ratings: Ratings | None
+    roles: tuple[Role, ...]
 
     def as_dict(self) -> dict[str, object]:
         """Everything, as JSON can hold it; `wins` and `draws` are matrices in the order of `players`."""
+        found: dict[str, object] = {
+            "variant": self.variant, "seed": self.seed, "games": self.games, "players": list(self.players),
+        }  # fmt: skip
+        if self.payoff is None or self.ratings is None:
+            return {**found, "tested": [role.as_dict() for role in self.roles]}
         return {
-            "variant": self.variant,
-            "seed": self.seed,
-            "games": self.games,
-            "players": list(self.players),
+            **found,
             "wins": self.payoff.wins.astype(int).tolist(),
             "draws": self.payoff.draws.astype(int).tolist(),
-            "matches": list(self.match_rows()),
+            "matches": list(self.rows()),
             "ratings": self.ratings.as_dict(),
         }
 
-    def match_rows(self) -> Iterator[dict[str, object]]:
-        """One flat record a match: counts, and the first one's share of decisive games with its 95 % interval."""
+    def rows(self) -> Iterator[dict[str, object]]:
+        """One flat record a match: counts, and the first one's share of decisive games with its 95 % interval; in a
+        drill one for each player and each other one: counts of the endings, and the shares with theirs."""
+        yield from (self._drill_rows() if self.roles else self._match_rows())
+
+    def _drill_rows(self) -> Iterator[dict[str, object]]:
+        for role in self.roles:
+            row: dict[str, object] = {"tested": role.player, "against": role.against, "episodes": role.episodes}
+            for name, count in role.counts.items():
+                share = role.share(name)
+                row |= {name: count, f"{name} share": share.value, f"{name} low": share.low, f"{name} high": share.high}
+            yield row
+
+    def _match_rows(self) -> Iterator[dict[str, object]]:
         for match in self.matches:
             rate = paired_win_rate(match.results)
             yield {
@@ -53,6 +75,8 @@ class Tournament:
                 "losses": match.wins[1],
                 "goals": match.goals[0],
                 "conceded": match.goals[1],
+                "fouls": match.fouls[0],
+                "fouls_of_second": match.fouls[1],
                 "decisive_win_rate": rate.value,
                 "low": rate.low,
                 "high": rate.high,
@@ -67,6 +91,7 @@ def play_tournament(
     *,
     parameters: Mapping[str, float] | None = None,
     effects: Effects | None = None,
+    draws: Draws | None = None,
     threads: int = 1,
     progress: Progress | None = None,
 ) -> Tournament:
@@ -75,7 +100,7 @@ def play_tournament(
     All matches begin with the same pucks, so a match comes out as it does by itself, whoever else takes part.
     Raises ValueError, in one line, for what cannot be played.
     """
-    variant = find_variant(variant).id
+    found = find_variant(variant)
     for name in players:
         find_player(name)
     if len(set(players)) < max(2, len(players)):
@@ -88,20 +113,28 @@ def play_tournament(
         tick = _counting_on(progress, number * games, len(pairs) * games)
         matches.append(
             play(
-                variant,
+                found,
                 first,
                 second,
                 games,
                 seed,
                 parameters=parameters,
                 effects=effects,
+                draws=draws,
                 progress=tick,
                 threads=threads,
             )
         )
+    order = tuple(players)
+    roles = sorted(
+        (role for match in matches for role in roles_of(found, match)),
+        key=lambda role: (order.index(role.player), order.index(role.against)),
+    )
+    if roles:
+        return Tournament(found.id, seed, games, order, tuple(matches), None, None, tuple(roles))
     results = {match.players: match.results for match in matches}
     payoff, ratings = count_games(results), fit_ratings_from_pairs(results, seed)
-    return Tournament(variant, seed, games, payoff.players, tuple(matches), payoff, ratings)
+    return Tournament(found.id, seed, games, payoff.players, tuple(matches), payoff, ratings, ())
 
 
 def _counting_on(progress: Progress | None, before: int, total: int) -> Progress | None:

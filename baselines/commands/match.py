@@ -1,4 +1,7 @@
-"""Two players against each other. Every start is played twice, with the seats exchanged, so that none is favoured."""
+"""Two players against each other. Every start is played twice, with the seats exchanged, so that none is favoured.
+
+In a drill each is tested in half of the episodes, as player_0, and what is told of it is how those ended.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,8 @@ from typing import TYPE_CHECKING
 from baselines.commands.options import add_options, parse_values, print_table, progress_bar
 
 if TYPE_CHECKING:
-    from baselines.intervals import Estimate
+    from collections.abc import Sequence
+
     from baselines.match import MatchResult
 
 
@@ -26,19 +30,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """0: played. Raises ValueError, in one line, for what cannot be played."""
     from baselines import find_player
-    from baselines.intervals import paired_win_rate
+    from baselines.role import roles_of
     from puckpilot_env.variants import find_variant
 
     for name in (args.first, args.second):
         find_player(name)
-    args.variant = find_variant(args.variant).id
+    variant = find_variant(args.variant)
+    args.variant = variant.id
     result, filmed = _play(args)
-    rate = paired_win_rate(result.padded_results)
+    roles = [role.as_dict() for role in roles_of(variant, result)]
     if args.json:
-        print(json.dumps(_as_dict(args, result, rate), indent=2))
+        print(json.dumps(_as_dict(args, result, roles), indent=2))
     else:
         print_table(args)
-        _print(args, result, rate)
+        _print_drill(args, result, roles) if roles else _print(args, result)
     if filmed:
         print(filmed, file=sys.stderr if args.json else sys.stdout)
     return 0
@@ -54,7 +59,7 @@ def _play(args: argparse.Namespace) -> tuple[MatchResult, str]:
         with progress_bar(f"{args.first} against {args.second}") as progress:
             return play(
                 args.variant, args.first, args.second, args.games, args.seed, parameters=parse_values(args.set),
-                effects=args.effects, progress=progress, threads=args.threads, watch=watch,
+                effects=args.effects, draws=args.draws, progress=progress, threads=args.threads, watch=watch,
             )  # fmt: skip
 
     if args.video is None:
@@ -65,7 +70,8 @@ def _play(args: argparse.Namespace) -> tuple[MatchResult, str]:
     return result, f"wrote {args.video}: {watch.seconds:.1f} s of the first game, {video.frames} frames"
 
 
-def _as_dict(args: argparse.Namespace, result: MatchResult, rate: Estimate) -> dict[str, object]:
+def _as_dict(args: argparse.Namespace, result: MatchResult, roles: Sequence[dict[str, object]]) -> dict[str, object]:
+    from puckpilot_env.draws_file import read_draws
     from puckpilot_env.effects_file import effect_values
 
     return {
@@ -73,16 +79,23 @@ def _as_dict(args: argparse.Namespace, result: MatchResult, rate: Estimate) -> d
         "seed": args.seed,
         "parameters": parse_values(args.set),
         "effects": effect_values(args.effects),
+        "drawn": read_draws(args.draws).as_dict() if args.draws else {},
         "players": list(result.players),
         "games": result.games,
-        "wins": list(result.wins),
-        "draws": result.draws,
-        "goals": list(result.goals),
-        "decisive_win_rate": rate.as_dict(),
+        **({"tested": roles} if roles else result.counts()),
     }
 
 
-def _print(args: argparse.Namespace, result: MatchResult, rate: Estimate) -> None:
+def _print_drill(args: argparse.Namespace, result: MatchResult, roles: Sequence[dict[str, object]]) -> None:
+    from rich.console import Console
+
+    from baselines.role_table import role_table
+
+    table = role_table(f"{result.games} episodes of {args.variant}, seed {args.seed}, and how they ended", roles)
+    Console(width=max(Console(width=10_000).measure(table).maximum, 80), highlight=False).print(table)
+
+
+def _print(args: argparse.Namespace, result: MatchResult) -> None:
     from rich import box
     from rich.console import Console
     from rich.table import Table
@@ -90,18 +103,20 @@ def _print(args: argparse.Namespace, result: MatchResult, rate: Estimate) -> Non
     title = f"{result.games} games of {args.variant}, seed {args.seed}"
     table = Table(title=title, box=box.SIMPLE_HEAD, title_justify="left")
     table.add_column("player", no_wrap=True)
-    for heading in ("wins", "draws", "losses", "goals"):
+    for heading in ("wins", "draws", "losses", "goals", "fouls a game"):
         table.add_column(heading, justify="right")
     for k, name in enumerate(result.players):
         row = (result.wins[k], result.draws, result.wins[1 - k], result.goals[k])
-        table.add_row(name, *(str(number) for number in row))
+        table.add_row(name, *(str(number) for number in row), f"{result.fouls_per_game[k]:.1f}")
     console = Console(highlight=False)
     console.print(table)
-    console.print(_in_words(result, rate), soft_wrap=True)
+    console.print(_in_words(result), soft_wrap=True)
 
 
-def _in_words(result: MatchResult, rate: Estimate) -> str:
-    decisive = sum(result.wins)
+def _in_words(result: MatchResult) -> str:
+    from baselines.intervals import paired_win_rate
+
+    rate, decisive = paired_win_rate(result.padded_results), sum(result.wins)
     if rate.value is None:
         return f"No game of {result.games} was decisive; this tells nothing about who is better."
     low, high = 100.0 * rate.low, 100.0 * rate.high

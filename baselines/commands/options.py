@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 
 from baselines.match import Progress
+from puckpilot_env import draws_file
 from puckpilot_env.effects_file import described
 
 
@@ -19,6 +20,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--set", action="append", default=[], metavar="NAME=VALUE", help="a parameter in place of the default, SI units"
     )
     parser.add_argument("--effects", metavar="FILE", help="physics beyond the baseline, as `diagnose` writes it")
+    parser.add_argument("--draws", metavar="FILE", help="what differs from game to game, as `diagnose` writes it")
     parser.add_argument("--json", action="store_true", help="print the result as JSON")
 
 
@@ -35,9 +37,11 @@ def parse_values(settings: Iterable[str]) -> dict[str, float]:
 
 
 def print_table(args: argparse.Namespace) -> None:
-    """Say what --effects and --set make of the table; nothing where neither is given."""
+    """Say what --effects, --draws and --set make of the table; nothing where none is given."""
     given = parse_values(args.set)
     for line in described(args.effects, apart_from=given) if args.effects else ():
+        print(line)
+    for line in draws_file.described(args.draws, apart_from=given) if args.draws else ():
         print(line)
     if given:
         print(f"set: {', '.join(f'{name} {value:.4g}' for name, value in given.items())}")

@@ -1,4 +1,7 @@
-"""All against all: who beats whom, and ratings with 95 % intervals. Writes tables and a picture into a folder."""
+"""All against all: who beats whom, and ratings with 95 % intervals. Writes tables and a picture into a folder.
+
+Of a drill: how each player's episodes ended when it was tested, as player_0, against each of the others.
+"""
 
 from __future__ import annotations
 
@@ -35,7 +38,7 @@ def run(args: argparse.Namespace) -> int:
     with progress_bar("tournament") as progress:
         tournament = play_tournament(
             args.variant, args.players or player_names(), args.games, args.seed, parameters=parse_values(args.set),
-            effects=args.effects, threads=args.threads, progress=progress,
+            effects=args.effects, draws=args.draws, threads=args.threads, progress=progress,
         )  # fmt: skip
     written = write_tournament(folder, tournament)
     if args.json:
@@ -50,9 +53,15 @@ def _print(tournament: Tournament, written: list[Path]) -> None:
     from rich.console import Console
 
     from baselines.payoff_table import payoff_table, rating_table
+    from baselines.role_table import CONCEDED, share_table
 
     print(f"{tournament.variant}, {tournament.games} games of every two players, seed {tournament.seed}\n")
-    for table in (payoff_table(tournament.payoff), rating_table(tournament.ratings)):
+    if tournament.payoff is None or tournament.ratings is None:
+        roles = [role.as_dict() for role in tournament.roles]
+        tables = [share_table(roles, ending) for ending in (tournament.roles[0].job, CONCEDED)]
+    else:
+        tables = [payoff_table(tournament.payoff), rating_table(tournament.ratings)]
+    for table in tables:
         needed = Console(width=10_000).measure(table).maximum  # a count that is cut would say something else
         Console(width=max(needed, len(str(table.title)))).print(table)
     print("wrote " + ", ".join(str(path) for path in written))

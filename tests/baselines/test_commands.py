@@ -14,6 +14,7 @@ from PIL import Image
 from baselines.commands import match, tournament
 from baselines.intervals import paired_win_rate
 from baselines.match import play
+from puckpilot_env.game import rules
 
 DRILL = ["--variant", "defence-v0"]
 
@@ -25,29 +26,19 @@ def call(module, *words: str) -> int:
 
 
 def test_match_as_json_says_what_was_played(capsys) -> None:
-    words = ["random", "still", "--games", "9", "--seed", "4", "--json", *DRILL]
+    words = ["follower", "still", "--games", "9", "--seed", "4", "--json", "--variant", "match-v0"]
     assert call(match, *words) == 0
     text = capsys.readouterr().out
     found = json.loads(text)
-    keys = [
-        "variant",
-        "seed",
-        "parameters",
-        "effects",
-        "players",
-        "games",
-        "wins",
-        "draws",
-        "goals",
-        "decisive_win_rate",
-    ]
-    assert list(found) == keys and list(found["decisive_win_rate"]) == ["value", "low", "high"]
-    result = play("defence-v0", "random", "still", 9, 4)
-    assert (found["variant"], found["seed"], found["players"]) == ("puckpilot/defence-v0", 4, ["random", "still"])
+    keys = ["variant", "seed", "parameters", "effects", "drawn", "players", "games"]
+    assert list(found) == [*keys, "wins", "draws", "goals", "fouls", "decisive_win_rate"]
+    assert list(found["decisive_win_rate"]) == ["value", "low", "high"]
+    result = play("match-v0", "follower", "still", 9, 4)
+    assert (found["variant"], found["seed"], found["players"]) == ("puckpilot/match-v0", 4, ["follower", "still"])
     assert (found["games"], found["wins"], found["draws"]) == (9, list(result.wins), result.draws)
     assert found["goals"] == list(result.goals) and sum(found["wins"]) + found["draws"] == 9
+    assert found["fouls"] == list(result.fouls)
     assert found["decisive_win_rate"]["value"] == pytest.approx(result.decisive_share)
-    assert found["decisive_win_rate"]["low"] < result.decisive_share < found["decisive_win_rate"]["high"]
     call(match, *words)
     assert capsys.readouterr().out == text
     call(match, *[word if word != "4" else "5" for word in words])
@@ -56,14 +47,34 @@ def test_match_as_json_says_what_was_played(capsys) -> None:
     assert json.loads(capsys.readouterr().out)["goals"] != found["goals"]
 
 
+def test_a_drill_tells_each_player_by_its_own_episodes(capsys) -> None:
+    words = ["random", "still", "--games", "9", "--seed", "4", *DRILL]
+    assert call(match, *words, "--json") == 0
+    found = json.loads(capsys.readouterr().out)
+    assert list(found)[-2:] == ["games", "tested"]  # and no won or lost, which would add up two seats
+    result = play("defence-v0", "random", "still", 9, 4)
+    for told, codes, name in zip(
+        found["tested"], (result.endings[:5], result.endings[5:]), ("random", "still"), strict=True
+    ):
+        assert (told["tested"], told["episodes"], told["job"]) == (name, len(codes), "clear")
+        for ending in (rules.CLEAR, rules.LOST, rules.STEP_LIMIT):
+            assert told["endings"][rules.ENDING_NAMES[ending]]["count"] == (codes == ending).sum()
+    assert call(match, *words) == 0
+    rows = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert [row[:3] for row in rows if row[1:2] in (["random"], ["still"])] == [
+        ["random", "still", "5"], ["still", "random", "4"]
+    ]  # fmt: skip
+
+
 def test_match_in_words(capsys) -> None:
-    assert call(match, "interceptor", "still", "--games", "20", "--threads", "2", *DRILL) == 0
+    assert call(match, "follower", "still", "--games", "6", "--threads", "2", "--variant", "match-v0") == 0
     words = capsys.readouterr().out
-    result = play("defence-v0", "interceptor", "still", 20, 0)
+    result = play("match-v0", "follower", "still", 6, 0)
     rate = paired_win_rate(result.results)
-    assert f"interceptor won {result.wins[0]} of {sum(result.wins)} decisive games" in words
+    assert f"follower won {result.wins[0]} of {sum(result.wins)} decisive games" in words
     assert f"95 % interval {100 * rate.low:.1f} to {100 * rate.high:.1f} %" in words
-    assert any(line.split()[:2] == ["still", str(result.wins[1])] for line in words.splitlines() if line.strip())
+    still = next(line.split() for line in words.splitlines() if line.split()[:1] == ["still"])
+    assert still[1] == str(result.wins[1]) and still[-1] == f"{result.fouls[1] / 6:.1f}"
 
 
 @pytest.mark.parametrize(
@@ -75,10 +86,14 @@ def test_what_a_file_switches_on_is_said(module, words, tmp_path: Path, capsys, 
     file.write_text(
         'format = "puckpilot-effects/1"\n[effects.table_tilt]\ntilt_x = 0.02\n# not in the simulator: clock_drift\n'
     )
-    call(module, *words, "--games", "2", "--effects", str(file), *DRILL)
+    drawn = tmp_path / "draws.toml"
+    drawn.write_text('format = "puckpilot-draws/1"\n[draws.friction]\nlow = 0.1\nhigh = 0.2\n')
+    both = ["--effects", str(file), "--draws", str(drawn)]
+    call(module, *words, "--games", "2", *both, *DRILL)
     told = capsys.readouterr().out
     assert "effect on: table_tilt (tilt_x 0.02)" in told and "not switched on: clock_drift" in told
-    call(module, *words, "--games", "2", "--effects", str(file), "--json", *DRILL)
+    assert "drawn for every episode: friction 0.1 to 0.2" in told
+    call(module, *words, "--games", "2", *both, "--json", *DRILL)
     json.loads(capsys.readouterr().out)
 
 
@@ -106,7 +121,7 @@ def test_match_films_its_first_game(tmp_path: Path, capsys, ending: str) -> None
 
 
 def test_tournament_writes_everything(tmp_path: Path, capsys) -> None:
-    words = ["still", "goalie", "interceptor", "--games", "10", "--seed", "3", *DRILL]
+    words = ["still", "goalie", "interceptor", "--games", "10", "--seed", "3"]
     assert call(tournament, *words, "--out", str(tmp_path / "a" / "b"), "--json") == 0
     printed = json.loads(capsys.readouterr().out)
     folder = tmp_path / "a" / "b"
@@ -115,7 +130,7 @@ def test_tournament_writes_everything(tmp_path: Path, capsys) -> None:
     assert list(printed) == ["variant", "seed", "games", "players", "wins", "draws", "matches", "ratings"]
     wins, draws = np.array(printed["wins"]), np.array(printed["draws"])
     np.testing.assert_array_equal(wins + wins.T + draws, 10 * (1 - np.eye(3)))
-    alone = play("defence-v0", "goalie", "interceptor", 10, 3)
+    alone = play("match-v0", "goalie", "interceptor", 10, 3)
     assert (wins[1, 2], wins[2, 1], draws[1, 2]) == (*alone.wins, alone.draws)
     with (folder / "payoff.csv").open() as file:
         rows = list(csv.DictReader(file))
@@ -138,6 +153,32 @@ def test_tournament_writes_everything(tmp_path: Path, capsys) -> None:
         cells.replace(" ", "")
         == "interceptor" + "".join(f"{wins[2, j]}/{draws[2, j]}/{wins[j, 2]}" for j in (0, 1)) + "-"
     )
+
+
+def test_a_tournament_of_a_drill_tells_the_tested_in_rows(tmp_path: Path, capsys) -> None:
+    words = ["still", "goalie", "interceptor", "--games", "10", "--seed", "3", "--out", str(tmp_path), *DRILL]
+    assert call(tournament, *words, "--json") == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert list(printed) == ["variant", "seed", "games", "players", "tested"]  # no wins, no ratings
+    pairs = [(one, other) for one in printed["players"] for other in printed["players"] if one != other]
+    assert [(role["tested"], role["against"]) for role in printed["tested"]] == pairs
+    alone = play("defence-v0", "goalie", "interceptor", 10, 3)
+    shares = {}
+    for role in printed["tested"]:
+        shares[role["tested"], role["against"]] = role["endings"]["clear"]["value"]
+    assert shares["goalie", "interceptor"] == (alone.endings[:5] == rules.CLEAR).mean()
+    assert shares["interceptor", "goalie"] == (alone.endings[5:] == rules.CLEAR).mean()
+    with (tmp_path / "payoff.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [(row["tested"], row["against"], row["episodes"]) for row in rows] == [(*pair, "5") for pair in pairs]
+    assert [float(row["clear share"]) for row in rows] == list(shares.values())
+    with Image.open(tmp_path / "payoff.png") as picture:
+        assert picture.width > 500
+    call(tournament, *words)
+    told = capsys.readouterr().out.splitlines()
+    cells = next(line.split() for line in told if line.split()[:1] == ["interceptor"])
+    each = [f"{100 * shares['interceptor', other]:.1f} %" for other in ("still", "goalie")]
+    assert " ".join(cells) == " ".join(["interceptor", *each, "-"])
 
 
 def test_all_players_take_part_and_no_count_is_cut(tmp_path: Path, capsys, monkeypatch) -> None:

@@ -27,13 +27,19 @@ def test_the_same_match_twice_is_the_same() -> None:
 def test_exchanging_the_players_mirrors_the_result() -> None:
     one, two = _match("follower", "random"), _match("random", "follower")
     np.testing.assert_array_equal(one.results, -two.results[:, ::-1])
-    assert (one.wins, one.goals) == (two.wins[::-1], two.goals[::-1])
+    assert (one.wins, one.goals, one.fouls) == (two.wins[::-1], two.goals[::-1], two.fouls[::-1])
 
 
 def test_a_player_against_itself_comes_out_even() -> None:
     result = _match("follower", "follower")
     assert result.wins[0] == result.wins[1]
     assert result.goals[0] == result.goals[1]
+
+
+def test_who_never_moves_fouls_by_holding_the_puck() -> None:
+    """A goalie takes the puck and never gives it back; a rival that stands still is served it, and fouls by that."""
+    result = play(SHORT, "goalie", "still", 4, 1)
+    assert min(result.fouls) > 0 and result.fouls_per_game == (result.fouls[0] / 4, result.fouls[1] / 4)
 
 
 def test_every_game_is_counted_once_and_an_odd_one_is_half_a_pair() -> None:

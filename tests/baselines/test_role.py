@@ -2,48 +2,100 @@
 
 from __future__ import annotations
 
+from io import StringIO
+from typing import Any
+
 import numpy as np
 import pytest
+from rich.console import Console
 
 from baselines import make_player
 from baselines.match import MatchResult, play
 from baselines.player import Seat
-from baselines.role import role_of
+from baselines.role import role_of, roles_of
+from baselines.role_table import role_table, share_table
 from puckpilot_env.game import rules
 from puckpilot_env.infos import outcome_info
 from puckpilot_env.tables import Tables
 from puckpilot_env.variants import find_variant
 
 
-def _result(outcomes: list[int], endings: list[int]) -> MatchResult:
-    """Games in seat 0 with these outcomes and endings, and as many in seat 1 that were all conceded."""
-    pairs, nothing = len(outcomes), np.zeros(2 * len(outcomes), np.int64)
-    results = np.column_stack([np.array(outcomes, float), -np.ones(pairs)])
-    codes = np.array([*endings, *[rules.CONCEDED] * pairs])
-    return MatchResult(("a", "b"), 2 * pairs, (0, 0), 0, (0, 0), results, nothing, codes)
+def _result(first: list[tuple[int, int]], second: list[tuple[int, int]]) -> MatchResult:
+    """Episodes with a in seat 0, then with b in seat 0: how each ended, and 1, 0, -1 as that seat won, drew, lost."""
+    results = np.full((len(first), 2), np.nan)
+    results[:, 0] = [won for _, won in first]
+    results[: len(second), 1] = [-won for _, won in second]
+    codes = np.array([code for code, _ in [*first, *second]])
+    return MatchResult(("a", "b"), len(codes), (0, 0), 0, (0, 0), results, np.zeros(len(codes), np.int64), codes)
 
 
-def test_a_defender_keeps_out_all_but_what_it_concedes() -> None:
-    endings = [rules.CLEAR, rules.LOST, rules.STEP_LIMIT, rules.CONCEDED, rules.CONCEDED]
-    role = role_of(find_variant("defence-v0"), _result([1, 1, 0, -1, 1], endings))  # the last: the attacker's own goal
-    assert role is not None and (role.job, role.done, role.of, role.share.value) == ("shots kept out", 4, 5, 0.8)
+def _counts(variant: str, result: MatchResult, player: int) -> dict[str, int]:
+    role = role_of(find_variant(variant), result, player)
+    assert role is not None and (role.player, role.against) == ("ab"[player], "ba"[player])
+    assert role.episodes == sum(role.counts.values())
+    return dict(role.counts)
+
+
+def test_each_player_is_told_by_its_own_defences() -> None:
+    a = [(rules.CLEAR, 1), (rules.LOST, 1), (rules.STEP_LIMIT, -1), (rules.CONCEDED, -1), (rules.CONCEDED, 1)]
+    b = [(rules.CONCEDED, -1), (rules.CONCEDED, -1), (rules.CLEAR, 1), (rules.CLEAR, 1)]  # of an odd number one less
+    result = _result(a, b)
+    own = {"clear": 1, "conceded": 1, "possession lost": 1, "step limit": 1, "opponent conceded": 1}
+    assert _counts("defence-v0", result, 0) == own
+    other = {"clear": 2, "conceded": 2, "possession lost": 0, "step limit": 0, "opponent conceded": 0}
+    assert _counts("defence-randomized-v0", result, 1) == other
+    first, second = roles_of(find_variant("defence-v0"), result)
+    assert (first.job, first.share("clear").value, second.share("clear").value) == ("clear", 0.2, 0.5)
+    assert first.share("possession lost").low < 0.2 < first.share("possession lost").high
 
 
 @pytest.mark.parametrize("variant", ["attack-v0", "attack-randomized-v0"])
-def test_an_attacker_scores_by_shots_on_goal_alone(variant: str) -> None:
-    endings = [rules.SHOT, rules.MISSED, rules.CONCEDED, rules.STEP_LIMIT]
-    role = role_of(find_variant(variant), _result([1, -1, -1, 0], endings))
-    assert role is not None and (role.job, role.done, role.of) == ("attacks scored", 1, 4)
-    assert role.share.low < 0.25 < role.share.high
-    assert role.as_dict()["value"] == 0.25
+def test_an_attacker_scores_by_shots_on_goal(variant: str) -> None:
+    a = [(rules.SHOT, 1), (rules.MISSED, -1), (rules.CONCEDED, -1), (rules.STEP_LIMIT, 0)]
+    result = _result(a, [(rules.MISSED, -1)] * 4)
+    own = {"shot on goal": 1, "conceded": 1, "shot missed": 1, "step limit": 1, "opponent conceded": 0}
+    assert _counts(variant, result, 0) == own
+    assert _counts(variant, result, 1) == dict.fromkeys(own, 0) | {"shot missed": 4}
+    told = roles_of(find_variant(variant), result)[0].as_dict()
+    assert {**told, "endings": None} == {
+        "tested": "a", "against": "b", "episodes": 4, "job": "shot on goal", "endings": None
+    }  # fmt: skip
+    endings: Any = told["endings"]
+    assert endings["shot on goal"]["count"] == 1 and endings["shot on goal"]["value"] == 0.25
+    low, high = (endings["shot on goal"][end] for end in ("low", "high"))
+    assert (low, high) == pytest.approx((0.00631, 0.80588), abs=1e-4)  # Clopper, Pearson: 1 of 4
+
+
+def test_who_was_never_tested_has_no_share() -> None:
+    result = _result([(rules.CLEAR, 1)], [])
+    role = role_of(find_variant("defence-v0"), result, 1)
+    assert role is not None and role.episodes == 0 and role.share("clear").value is None
+
+
+def test_a_table_lines_up_and_says_the_shares() -> None:
+    rows = [(rules.CLEAR, 1)] * 3 + [(rules.CONCEDED, -1)] * 1
+    result = _result(rows, [(rules.LOST, 1)] * 2 + [(rules.STEP_LIMIT, 0)] * 2)
+    roles = [role.as_dict() for role in roles_of(find_variant("defence-v0"), result)]
+    console = Console(width=160, file=StringIO())
+    with console.capture() as printed:
+        console.print(role_table("drill", roles), share_table(roles, "conceded"))
+    lines = [line.rstrip() for line in printed.get().splitlines()]
+    heading = next(line for line in lines if line.split()[:2] == ["tested", "against"])
+    assert " ".join(heading.split()) == "tested against episodes clear 95 % conceded 95 % possession lost step limit"
+    first, second = (line for line in lines if line.split()[:3] in (["a", "b", "4"], ["b", "a", "4"]))
+    assert " ".join(first.split()) == "a b 4 75.0 % 19.4-99.4 % 25.0 % 0.6-80.6 % 0.0 % 0.0 %"
+    assert " ".join(second.split()) == "b a 4 0.0 % 0.0-60.2 % 0.0 % 0.0-60.2 % 50.0 % 50.0 %"
+    assert len(first) == len(second) == len(heading)
+    assert any(line.split() == ["a", "-", "25.0", "%"] for line in lines)
 
 
 def test_a_match_has_no_roles() -> None:
-    assert role_of(find_variant("match-v0"), play("match-v0", "still", "still", 2, 0)) is None
+    result = play("match-v0", "still", "still", 2, 0)
+    assert role_of(find_variant("match-v0"), result) is None and roles_of(find_variant("match-v0"), result) == []
 
 
-@pytest.mark.parametrize(("variant", "ending"), [("defence-v0", "conceded"), ("attack-v0", "shot on goal")])
-def test_endings_are_those_that_the_environment_tells(variant: str, ending: str) -> None:
+@pytest.mark.parametrize("variant", ["defence-v0", "attack-v0"])
+def test_endings_are_those_that_the_environment_tells(variant: str) -> None:
     """Played again with automatic resets, where `outcome_info` names the first ending of each table."""
     tables = Tables(variant, 20, seed=3)
     players = [make_player(name, Seat.from_tables(tables)) for name in ("follower", "still")]
@@ -53,10 +105,12 @@ def test_endings_are_those_that_the_environment_tells(variant: str, ending: str)
         told = outcome_info(tables, np.zeros(20, int))["ending"]
         for table in np.flatnonzero(tables.terminated | tables.truncated):
             endings.setdefault(int(table), told[table])
-    counted = list(endings.values()).count(ending)
     result = play(variant, "follower", "still", 40, 3)
     role = role_of(find_variant(variant), result)
-    assert role is not None and role.of == 20 and 0 < counted < 20
-    assert role.done == (20 - counted if variant == "defence-v0" else counted)
+    assert role is not None and role.episodes == 20
+    goals = role.counts["conceded"] + role.counts["opponent conceded"]
+    assert goals == list(endings.values()).count("conceded")
+    for name in ("clear", "possession lost", "shot on goal", "shot missed", "step limit"):
+        assert role.counts.get(name, 0) == list(endings.values()).count(name)
     assert [rules.ENDING_NAMES[code] for code in result.endings[:20]] == [endings[table] for table in range(20)]
     assert len(result.endings) == 40 and rules.RUNNING not in result.endings
