@@ -33,6 +33,7 @@ def run(args: argparse.Namespace) -> int:
 
     from baselines import find_player
     from baselines.match import MOST_GAMES
+    from baselines.role_table import role_table
     from sim2real.compare import compare_recording, print_summary
 
     players = tuple(args.players or ("policy:champion", "veteran"))
@@ -53,8 +54,13 @@ def run(args: argparse.Namespace) -> int:
     console.print(_table(players, meetings))
     console.print(
         "Every start is played twice, with the seats exchanged. share: of the decisive games; 95 %: its interval,\n"
-        "in which the two games of a start count as one where they come out alike. In a drill the first seat is\n"
-        "tested (defence: no goal conceded; attack: a shot that would score), and it ends before a shot arrives.\n"
+        "in which the two games of a start count as one where they come out alike. fouls: puck held for over 7 s.\n"
+    )
+    for row in (row for row in meetings if "tested" in row):
+        console.print(role_table(f"{row['id'].removeprefix('puckpilot/')}, how the episodes ended", row["tested"]))
+    console.print(
+        "In a drill each player is tested in half of the episodes, in the first seat: a defence is done with a clear,\n"
+        "an attack with a shot that would score, and it ends before the shot arrives.\n"
     )
     if not args.players:
         console.print(
@@ -75,13 +81,13 @@ def _meet(players: tuple[str, str], games: int, seed: int, film: Path) -> list[d
     """One row an environment; the first game of FILMED goes to `film`."""
     from baselines.commands.options import progress_bar
     from baselines.filming import FirstGame
-    from baselines.intervals import paired_win_rate
     from baselines.match import play
+    from baselines.role import roles_of
     from puckpilot_env.variants import all_variants
     from puckpilot_env.video import VideoWriter
 
     rows = []
-    for id_ in all_variants():
+    for id_, variant in all_variants().items():
         with progress_bar(f"{players[0]} against {players[1]} in {id_}") as progress:
             if id_ == FILMED:
                 with VideoWriter(film) as video:
@@ -89,17 +95,8 @@ def _meet(players: tuple[str, str], games: int, seed: int, film: Path) -> list[d
                     result = play(id_, *players, games, seed, progress=progress, watch=watch)
             else:
                 result = play(id_, *players, games, seed, progress=progress)
-        rate = paired_win_rate(result.padded_results)
-        rows.append(
-            {
-                "id": id_,
-                "games": result.games,
-                "wins": list(result.wins),
-                "draws": result.draws,
-                "goals": list(result.goals),
-                "decisive_win_rate": rate.as_dict(),
-            }
-        )
+        tested = [role.as_dict() for role in roles_of(variant, result)]
+        rows.append({"id": id_, "games": result.games, **({"tested": tested} if tested else result.counts())})
     return rows
 
 
@@ -110,9 +107,11 @@ def _table(players: tuple[str, str], meetings: list[dict[str, Any]]) -> Any:
     title = f"{players[0]} against {players[1]}, in games won by {players[0]}"
     table = Table(title=title, box=box.SIMPLE_HEAD, title_justify="left", pad_edge=False)
     table.add_column("environment", no_wrap=True)
-    for heading in ("won", "drawn", "lost", "goals", "share", "95 %"):
+    for heading in ("won", "drawn", "lost", "goals", "fouls a game", "share", "95 %"):
         table.add_column(heading, justify="right", no_wrap=True)
     for row in meetings:
+        if "tested" in row:
+            continue
         rate = row["decisive_win_rate"]
         table.add_row(
             row["id"].removeprefix("puckpilot/"),
@@ -120,6 +119,7 @@ def _table(players: tuple[str, str], meetings: list[dict[str, Any]]) -> Any:
             str(row["draws"]),
             str(row["wins"][1]),
             f"{row['goals'][0]}:{row['goals'][1]}",
+            "{:.1f}:{:.1f}".format(*(fouls / row["games"] for fouls in row["fouls"])),
             "-" if rate["value"] is None else f"{100 * rate['value']:.0f} %",
             f"{100 * rate['low']:.0f}-{100 * rate['high']:.0f} %",
         )

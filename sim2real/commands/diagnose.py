@@ -1,8 +1,10 @@
 """Where a table and the simulator part, which physics is missing, and proof on untouched data that adding it helps.
 
 Give one or more recordings (folders in the format puckpilot-recording/1) of one table. Writes diagnosis.json,
-report.html (one page to look at) and effects.toml into --out; with `puckpilot match A B --effects OUT/effects.toml`
-players meet on the mended simulator.
+report.html (one page to look at), effects.toml and draws.toml into --out. With `puckpilot match A B --effects
+OUT/effects.toml` players meet on the mended simulator; with `puckpilot train --draws OUT/draws.toml` they learn on
+tables drawn anew from the intervals of all that was measured. draws.toml alone holds what can be drawn, and the numbers
+about which it is drawn; laws without a name are in effects.toml alone, so give both files where there are some.
 """
 
 from __future__ import annotations

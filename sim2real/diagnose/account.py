@@ -95,7 +95,7 @@ def _listed(found: Explained, law: Law, before: float, after: float) -> Finding:
     return Finding(
         effect.regime, law.name, also, effect.depends_on, effect.law, labelled(law, fitted),
         chance(found.chooser, found.model, law, found.screen), before, after, whereabouts(law, fitted.values),
-        own, rivals,
+        own, {name: fitted.estimate(name) for name in law.rows if name in fitted.free}, rivals,
     )  # fmt: skip
 
 
@@ -103,7 +103,7 @@ def _unlisted(problem: Problem, found: Explained, law: Law, before: float, after
     also, rivals = compare(found.chooser, found.model, law, found.screen)
     return Finding(
         problem.regime, law.mechanism, also, (law.family,), law.name, _sizes(found, law),
-        chance(found.chooser, found.model, law, found.screen), before, after, {}, found.switched(), rivals,
+        chance(found.chooser, found.model, law, found.screen), before, after, {}, found.switched(), {}, rivals,
     )  # fmt: skip
 
 

@@ -28,12 +28,7 @@ def effects_toml(diagnosis: Diagnosis) -> str:
     What it has no place for is named in a comment, such as a clock that drifts, since its players have one clock; and
     so are regimes that cannot tell, of which numbers are taken that foretell untouched launches better than its own.
     """
-    values = {name: value for name, value in diagnosis.sizes.items() if BY_NAME[name].within(value) == value}
-    told = [each for each in diagnosis.accounts if each.better or not each.undetermined]
-    values |= {name: one.value for each in told for name, one in each.baseline.items()}
-    for one in diagnosis.findings:
-        values |= one.values
-    near, apart = _together({name: BY_NAME[name].within(value) for name, value in values.items()}, diagnosis.sizes)
+    near, apart = found_numbers(diagnosis)
     plain = [row.name for row in TABLE if row.name in near and row not in EFFECT_ROWS]
     lines = [f'format = "{EFFECTS_FORMAT}"', "", "[parameters]", *(f"{name} = {near[name]!r}" for name in plain)]
     for name, effect in EFFECTS.items():
@@ -41,7 +36,9 @@ def effects_toml(diagnosis: Diagnosis) -> str:
         numbers = [f"{key} = {near[row.name]!r}" for key, row in taken.items() if row.name in near]
         lines += ["", *_comments(name, near), f"[effects.{name}]", *numbers] if numbers else []
     lines += [f"# in a formula, fitted for itself: {one.formula}" for one in diagnosis.findings if _is_table(one)]
-    lines += [f"{NOT_SWITCHED} {_size(name, value)}" for name, value in diagnosis.sizes.items() if name not in values]
+    lines += [
+        f"{NOT_SWITCHED} {_size(name, value)}" for name, value in diagnosis.sizes.items() if not _fits(name, value)
+    ]
     lines += [f"{NOT_SWITCHED} {_name(one)}" for one in diagnosis.findings if not _simulated(one)]
     lines += [f"{NOT_SWITCHED} {apart}"] if apart else []
     lines += [_not_told(each) for each in diagnosis.untold]
@@ -52,10 +49,35 @@ def effects_toml(diagnosis: Diagnosis) -> str:
     return "\n".join(lines) + "\n"
 
 
+def found_numbers(diagnosis: Diagnosis) -> tuple[Mapping[str, float], str]:
+    """The simulator's parameters by name of the table that was found, each within its range, and in words which were
+    left out because together they would make no table."""
+    values = {name: value for name, value in diagnosis.sizes.items() if _fits(name, value)}
+    values |= {name: one.value for each in told(diagnosis) for name, one in each.baseline.items()}
+    for one in diagnosis.findings:
+        values |= one.values
+    return _together({name: BY_NAME[name].within(value) for name, value in values.items()}, diagnosis.sizes)
+
+
+def told(diagnosis: Diagnosis) -> list[Account]:
+    """The accounts whose refitted numbers are taken."""
+    return [each for each in diagnosis.accounts if each.better or not each.undetermined]
+
+
+def _fits(name: str, value: float) -> bool:
+    return BY_NAME[name].within(value) == value
+
+
 def _together(values: Mapping[str, float], sizes: Mapping[str, float]) -> tuple[Mapping[str, float], str]:
-    """Those of `values` that make a table together, and in words which were left out for that: the sizes or, if that
-    is not enough, the gantry's numbers."""
+    """Those of `values` that make a table together, and in words which were left out for that: tables of numbers that
+    make no law, then the sizes or, if that is not enough, the gantry's numbers."""
     out, why = dict(values), []
+    for name, effect in EFFECTS.items():
+        rows = {short: row for short, row in effect.rows.items() if row.name in out}
+        reason = effect.misfit({short: out.get(row.name, row.default) for short, row in effect.rows.items()})
+        if rows and reason:
+            out = {name: value for name, value in out.items() if name not in effect.row_names}
+            why.append(f"{name}: {reason}")
     for some in (sizes, GANTRY):
         try:
             make_records(1, out)

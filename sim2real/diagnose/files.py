@@ -1,4 +1,5 @@
-"""A diagnosis as files: diagnosis.json (puckpilot-diagnosis/1), report.html, and effects.toml for the simulator."""
+"""A diagnosis as files: diagnosis.json (puckpilot-diagnosis/1), report.html, and for the simulator effects.toml, its
+best numbers, and draws.toml, how far they may be off."""
 
 from __future__ import annotations
 
@@ -10,6 +11,7 @@ from typing import Any
 from puckpilot_env.whole_file import write_text_whole
 from sim2real.diagnose.asked import PLAIN, Asked
 from sim2real.diagnose.diagnosis import Diagnosis
+from sim2real.diagnose.draws_toml import draws_toml
 from sim2real.diagnose.effects_toml import effects_toml
 from sim2real.diagnose.finding import Account, Curve, Estimate, Finding
 from sim2real.diagnose.untested import untested
@@ -101,5 +103,6 @@ def write(diagnosis: Diagnosis, folder: Path, asked: Asked = PLAIN) -> list[Path
         "diagnosis.json": json.dumps(as_dict(diagnosis), indent=1, allow_nan=False) + "\n",
         "report.html": page(diagnosis, asked),
         "effects.toml": effects_toml(diagnosis),
+        "draws.toml": draws_toml(diagnosis, asked),
     }
     return [write_text_whole(folder / name, text) for name, text in texts.items()]

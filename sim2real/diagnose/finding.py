@@ -129,8 +129,9 @@ class Twin:
 class Finding:
     """One missing piece of physics, in the words of the format puckpilot-diagnosis/1.
 
-    `values`: the simulator's parameters that switch it on, by their names in `puckpilot_env.parameters`. `twins`: the
-    same residuals before and after in controls where nothing is to be found, by the control's name (`engine.twins`).
+    `values`: the simulator's parameters that switch it on, by their names in `puckpilot_env.parameters`; `ranges`:
+    those fitted, with intervals. `twins`: the same residuals before and after in controls where nothing is to
+    be found, by the control's name (`engine.twins`).
     """
 
     regime: str
@@ -144,6 +145,7 @@ class Finding:
     after: float
     where: Mapping[str, Any] = field(default_factory=dict)
     values: Mapping[str, float] = field(default_factory=dict)
+    ranges: Mapping[str, Estimate] = field(default_factory=dict)
     rivals: tuple[Rival, ...] = ()
     curve: Curve | None = None
     twins: Mapping[str, Twin] = field(default_factory=dict)

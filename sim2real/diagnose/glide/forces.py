@@ -11,8 +11,6 @@ from puckpilot_env.physics import compose
 from sim2real.diagnose.glide.families import Motion
 from sim2real.diagnose.problem import record_of
 
-STEP = 1e-6  # s of motion, over which friction is asked for
-
 
 def accelerations(values: Mapping[str, float], motion: Motion) -> np.ndarray:
     """Accelerations (n, 2) [m/s^2] of a puck without spin by friction and all effects of a law, drag left out."""
@@ -27,6 +25,6 @@ def _accelerations(p, t, place, velocity, found):
     for i in range(len(t)):
         x, y, vx, vy = place[i, 0], place[i, 1], velocity[i, 0], velocity[i, 1]
         ax, ay = compose.acceleration(p, t[i], x, y, vx, vy, 0.0)
-        brake = max(compose.friction(p, t[i], x, y, STEP * vx, STEP * vy, p.friction), 0.0)
+        brake = max(compose.friction(p, t[i], x, y, vx, vy, p.friction), 0.0)
         speed = max((vx * vx + vy * vy) ** 0.5, 1e-9)
         found[i, 0], found[i, 1] = ax - brake * vx / speed, ay - brake * vy / speed

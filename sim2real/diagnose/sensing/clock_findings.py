@@ -115,6 +115,7 @@ def _finding(name: str, named, best: Fit, fits, chance, full: Fit, sizes: Measur
     unit, label = (("s", "delay_s"), (DRIFT.rows["ppm"].unit, "ppm"))[index]
     without = _chance(fits[("camera_delay", "clock_drift")[1 - index]], full, 1) if len(named) == 2 else chance["none"]
     other = ("camera_delay", "clock_drift")[1 - index]
+    estimate = Estimate(value, value - half, value + half, unit)
     rival = Rival(
         other, -float(np.log(max(chance[other], 1e-300))), f"alone it is rejected with p = {chance[other]:.1g}"
     )
@@ -125,11 +126,12 @@ def _finding(name: str, named, best: Fit, fits, chance, full: Fit, sizes: Measur
         also_possible=() if unlike else (other,),
         depends_on=("time",) if index else (),
         formula=FORMULAS[name],
-        parameters={label: Estimate(value, value - half, value + half, unit)},
+        parameters={label: estimate},
         p_value=max(without, 1e-300),
         before=sizes.before,
         after=sizes.after,
         where={"stream": "frames"} if index else {},
         values={"camera_latency": value} if index == 0 else {},
+        ranges={"camera_latency": estimate} if index == 0 else {},
         rivals=(rival,) if unlike and len(named) == 1 else (),
     )

@@ -87,17 +87,19 @@ def held_finding(counts: list[Repeats], apart: np.ndarray) -> tuple[Finding | No
     sizes = proved or _with_and_without(held, miss, std, launch)
     if sizes is None or sizes.after >= sizes.before:
         return None, None
+    share = Estimate(repeated / n, float(interval.low), float(interval.high), "1")
     finding = Finding(
         regime="sensing",
         mechanism="held_frames",
         also_possible=(),
         depends_on=(),
         formula=WORDS,
-        parameters={"fraction": Estimate(repeated / n, float(interval.low), float(interval.high), "1")},
+        parameters={"fraction": share},
         p_value=max(chance, 1e-300),
         before=sizes.before,
         after=sizes.after,
-        values={"held_frames": repeated / n},
+        values={"held_frames": share.value},
+        ranges={"held_frames": share},
     )
     return finding, None if proved is None else proved.proof
 

@@ -84,7 +84,8 @@ def scale_account(
         p_value=max(chance, 1e-300),
         before=sizes.before,
         after=sizes.after,
-        values={rows[name].name: float(values[k]) for k, name in enumerate(NAMES) if told[k]},
+        values={rows[name].name: one.value for name, one in estimates.items()},
+        ranges={rows[name].name: one for name, one in estimates.items()},
     )
     return ScaleAccount(kept, (finding,), sizes.proof)
 

@@ -105,6 +105,16 @@ def test_numbers_that_make_no_table_together_are_left_out_and_named(tmp_path):
         assert ("a1 0.001: gantry axis x is not overdamped" in file.read_text()) == bool(numbers)
 
 
+def test_a_law_that_cannot_be_simulated_is_left_out_and_named(tmp_path):
+    force = {"unlisted_kind": 6.0, **{f"unlisted_{k:02}": 1.0 for k in range(14)}}
+    sizes = {"length": 2.1, "width": 1.1}
+    found = dataclasses.replace(PLAIN, regime="glide", mechanism="unlisted", values=force)
+    file = tmp_path / "effects.toml"
+    file.write_text(effects_toml(Diagnosis((Account("glide", (found,), {}, False, None),), sizes=sizes)))
+    assert effect_values(file) == sizes
+    assert "# not in the simulator: unlisted_force: its force is up to 14 m/s^2; expected at most 5" in file.read_text()
+
+
 def test_every_regime_says_for_itself_what_it_has():
     proof = Proof(0.004, 0.001, 0.0009, 7)
     numbers = {"wall_restitution": Estimate(0.69, 0.6, 0.8, "1")}
