@@ -52,7 +52,7 @@ seen, before = tables.observations.copy(), tables.observations[:, 0, 1].copy()
 for _ in range(5):
     tables.step(np.stack([shadow.act(tables.observations[:, 0]), shadow.act(tables.observations[:, 1])], axis=1))
 windy = Tables("match-v0", 1, effects={"wind": {"wind": 2.0, "pull": 0.1}}, parameters={"friction": 0.0, "drag": 0.0})
-windy.states["puck"][0] = (1.2, 0.3, 0.0, 0.0, 0.0, 0)
+windy.states["puck"][0] = (1.2, 0.3, 0.0, 0.0, 0.0, 0, (0, 0))
 stay = np.concatenate([windy.observations[:, :, :2], np.full((1, 2, 2), 0.3, np.float32)], axis=2)
 windy.step(stay)
 gust = np.array([windy.states["puck"][0]["vx"], windy.states["puck"][0]["vy"]])
