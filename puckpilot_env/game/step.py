@@ -8,12 +8,15 @@ from puckpilot_env.game.start import begin_episode
 from puckpilot_env.kernel import kernel
 from puckpilot_env.physics import bounce, compose, drive
 from puckpilot_env.physics.advance import advance
+from puckpilot_env.physics.drift import drift
 from puckpilot_env.physics.mallet import halt, place_at, place_now, settle
 from puckpilot_env.physics.plan import plan_mallet, plan_orders
 
 MOST_CROSSINGS = (
     200  # of the middle line in one stretch; a puck that jitters there more often is set to rest, and the mallets stall
 )
+
+AT_MOST = 1.0 + 1e-6  # times a step: how long late orders are followed
 
 
 @kernel
@@ -41,9 +44,8 @@ def plan_both(table, p, nominal, actions, rewards):
 
 
 @kernel
-def play(table, p, rule, until, rewards, log, film):
-    """The puck's motion until `until` [s] of the plans with what it means; True if the point is over."""
-    now = 0.0
+def play(table, p, rule, now, until, rewards, log, film):
+    """The puck's motion from `now` until `until` [s] of the plans with what it means; True if the point is over."""
     for _ in range(MOST_CROSSINGS):
         kind, now, _ = advance(table.puck, p, table.mallets, table.time, now, until, log, film)
         if kind == bounce.NOTHING:
@@ -72,16 +74,17 @@ def _play_late(table, p, rule, until, delay, rewards, log, film):
     while first < film.shape[0] and film[first, 0] <= delay:
         first += 1
     sensing.shoot_mallets(table.mallets, film[:first])
-    over = play(table, p, rule, delay, rewards, log, film)
+    alone = drift(table.puck, p, table.mallets, table.orders, table.time, delay, until, film)
+    over = alone == 0.0 and play(table, p, rule, 0.0, delay, rewards, log, film)
     for i in range(first, film.shape[0]):
         film[i, 0] -= delay
     for k in range(2):
         settle(table.mallets[k], delay)
-        drive.follow(table.mallets[k], table.orders[k], mirror.area(k, p), p.max_voltage)
+        drive.follow(table.mallets[k], table.orders[k], mirror.area(k, p), p.max_voltage, AT_MOST * until)
     table.time += delay
     table.held += delay
     if not over:
-        over = play(table, p, rule, until - delay, rewards, log, film[first:])
+        over = play(table, p, rule, max(alone - delay, 0.0), until - delay, rewards, log, film[first:])
     sensing.shoot_mallets(table.mallets, film[first:])
     for k in range(2):
         settle(table.mallets[k], until - delay)
@@ -98,7 +101,7 @@ def play_step(table, p, rule, until, rewards, log, film):
     delay = min(compose.delay(p), until)
     if delay > 0.0:
         return _play_late(table, p, rule, until, delay, rewards, log, film)
-    over = play(table, p, rule, until, rewards, log, film)
+    over = play(table, p, rule, 0.0, until, rewards, log, film)
     sensing.shoot_mallets(table.mallets, film)
     for k in range(2):
         settle(table.mallets[k], until)

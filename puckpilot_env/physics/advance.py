@@ -14,6 +14,7 @@ from puckpilot_env.kernel import kernel
 from puckpilot_env.physics import bounce, compose, contact, force, glide, slide
 from puckpilot_env.physics.hit import hit
 from puckpilot_env.physics.mallet import halt, place_now, reach
+from puckpilot_env.physics.pictures import of_glide
 from puckpilot_env.physics.rebound import rebound
 from puckpilot_env.physics.ride import ride
 from puckpilot_env.physics.vector import size
@@ -35,15 +36,6 @@ EVENT_COLUMNS = 8
 # More in an interval, and a puck is set to rest and the mallets stall: events, and legs of a puck that forces drive
 FEW_EVENTS, EVENTS_A_SECOND = 200, 2000.0
 FEW_LEGS, LEGS_A_SECOND = 500, 5000.0
-
-
-@kernel
-def _take_pictures(film, puck, ux, uy, v, t, until, friction, drag):
-    """Note the places of a glide from `t` to `until` that `film` asks for."""
-    for i in range(film.shape[0]):
-        if t < film[i, 0] <= until:
-            path_length = glide.distance(v, film[i, 0] - t, friction, drag)
-            film[i, 1], film[i, 2] = puck.x + ux * path_length, puck.y + uy * path_length
 
 
 @kernel
@@ -102,7 +94,7 @@ def _apply(puck, p, mallets, kind, clock, t, film):
     """What happens to the puck, and to what is noted of it, at an event."""
     if kind == bounce.GOAL_X0 or kind == bounce.GOAL_X1:
         puck.vx, puck.vy, puck.spin = 0.0, 0.0, 0.0
-        _take_pictures(film, puck, 1.0, 0.0, 0.0, t, math.inf, p.friction, p.drag)
+        of_glide(film, puck, 1.0, 0.0, 0.0, t, math.inf, p.friction, p.drag)
     elif kind >= bounce.MALLET_0:
         ax, ay = 0.0, 0.0
         if compose.is_forced(p):
@@ -143,7 +135,7 @@ def advance(puck, p, mallets, clock, start, end, log, film):
         else:
             kind, until, ux, uy, v = _look_ahead(puck, p, mallets, t, end)
             if film.shape[0] > 0:
-                _take_pictures(film, puck, ux, uy, v, t, until, p.friction, p.drag)
+                of_glide(film, puck, ux, uy, v, t, until, p.friction, p.drag)
             slide.move(puck, p, ux, uy, v, until - t, p.friction, p.drag)
         t = until
         if legs >= most_legs:

@@ -114,7 +114,7 @@ def first_boundary(cx, cy, x1, y1, bend_x, bend_y, p, slowest, slowest_at_post):
 
 
 @inlined_kernel
-def _stays_clear(x, y, dx, dy, room, mallet_x, mallet_y, reach_x, reach_y):
+def stays_clear_of_curve(x, y, dx, dy, room, mallet_x, mallet_y, reach_x, reach_y):
     """True where a puck that stays within `room`, less the mallet's reach, of the chord (dx, dy) meets no mallet."""
     wx, wy = mallet_x - x, mallet_y - y
     square = dx * dx + dy * dy
@@ -161,7 +161,7 @@ def first_strike(cx, cy, x1, y1, bend_x, bend_y, p, mallets, start, h, end):
     for k in range(2):
         home_x, home_y = place_now(mallets[k])
         reach_x, reach_y = reach(mallets[k].x, end), reach(mallets[k].y, end)
-        if _stays_clear(cx[0], cy[0], x1 - cx[0], y1 - cy[0], room, home_x, home_y, reach_x, reach_y):
+        if stays_clear_of_curve(cx[0], cy[0], x1 - cx[0], y1 - cy[0], room, home_x, home_y, reach_x, reach_y):
             continue
         bend = math.sqrt(bend_x * bend_x + bend_y * bend_y)
         met = _strike(cx, cy, bend, h, mallets[k], start, min(end, first), distance)

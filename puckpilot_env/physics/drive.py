@@ -12,7 +12,7 @@ import math
 from puckpilot_env.kernel import kernel
 from puckpilot_env.physics import compose
 from puckpilot_env.physics.decay import decay, fade
-from puckpilot_env.physics.mallet import axis_at, idle
+from puckpilot_env.physics.mallet import axis_at, idle, reach
 from puckpilot_env.physics.plan import ROUNDING, SMALLEST_VOLTAGE
 
 HALVINGS = 50  # of a time span, to find when an axis meets the rail
@@ -23,8 +23,8 @@ def weaken(mallet, p, area, max_voltage):
     """Give a mallet that was just planned the volts that arrive under `p`; the others as in `plan_mallet`."""
     load = abs(mallet.x.volts) + abs(mallet.y.volts)
     limit = 2.0 * (max_voltage - SMALLEST_VOLTAGE)
-    _weaken_axis(mallet.x, compose.delivered(p, mallet.x.volts, load), area[0], area[1], limit)
-    _weaken_axis(mallet.y, compose.delivered(p, mallet.y.volts, load), area[2], area[3], limit)
+    _weaken_axis(mallet.x, compose.delivered(p, mallet.x.volts, load), area[0], area[1], limit, math.inf)
+    _weaken_axis(mallet.y, compose.delivered(p, mallet.y.volts, load), area[2], area[3], limit, math.inf)
 
 
 @kernel
@@ -37,13 +37,16 @@ def send(p, plans, orders):
 
 
 @kernel
-def follow(mallet, orders, area, max_voltage):
-    """Let a mallet follow `orders` from where it is; the others as in `plan_mallet`."""
+def follow(mallet, orders, area, max_voltage, duration):
+    """Let a mallet follow `orders` from where it is, for `duration` [s] at the longest; the others as in `plan_mallet`.
+
+    What would come later is not told of the plan: others follow before.
+    """
     limit = 2.0 * (max_voltage - SMALLEST_VOLTAGE)
     for a in range(2):
         axis = mallet.x if a == 0 else mallet.y
         axis.t1, axis.t2, axis.halt = orders[a, 1], orders[a, 2], math.inf
-        _weaken_axis(axis, orders[a, 0], area[2 * a], area[2 * a + 1], limit)
+        _weaken_axis(axis, orders[a, 0], area[2 * a], area[2 * a + 1], limit, duration)
 
 
 @kernel
@@ -64,22 +67,32 @@ def carry_on(mallet, elapsed):
 
 
 @kernel
-def _weaken_axis(axis, volts, low, high, limit):
-    """The modes of a plan whose times stay, under `volts` [V], and where the rail at `low` or `high` [m] ends it."""
+def _weaken_axis(axis, volts, low, high, limit, duration):
+    """The modes of a plan whose times stay, under `volts` [V], and where the rail at `low` or `high` [m] ends it; as
+    far as `duration` [s] asks for them."""
     axis.volts = volts
-    slow_end, fast_end = -axis.slow_gain * volts, axis.fast_gain * volts
-    braking = axis.t2 - axis.t1
-    axis.rest1 = axis.rest + axis.rest_gain * volts * axis.t1
-    axis.slow1 = slow_end + (axis.slow - slow_end) * decay(axis.slow_rate * axis.t1)
-    axis.fast1 = fast_end + (axis.fast - fast_end) * fade(axis.fast_rate, axis.t1)
-    axis.rest2 = axis.rest1 - axis.rest_gain * volts * braking
-    axis.slow2 = -slow_end + (axis.slow1 + slow_end) * decay(axis.slow_rate * braking)
-    axis.fast2 = -fast_end + (axis.fast1 + fast_end) * fade(axis.fast_rate, braking)
-    margin = 2.0 * axis.fast_gain * limit
+    margin, beside = 2.0 * axis.fast_gain * limit, reach(axis, duration)
     place = axis.rest + axis.slow + axis.fast
     low, high = min(low + margin, place - ROUNDING), max(high - margin, place + ROUNDING)
-    if not _stays_inside(axis, slow_end, low, high):
+    is_far = place - beside >= low and place + beside <= high
+    if is_far and axis.t1 >= duration:
+        return
+    _find_modes(axis)
+    if not (is_far or _stays_inside(axis, -axis.slow_gain * volts, low, high)):
         _stop_at_rail(axis, low, high)
+
+
+@kernel
+def _find_modes(axis):
+    """The modes at t1 and t2 of a plan whose volts are others than those that it was made for."""
+    slow_end, fast_end = -axis.slow_gain * axis.volts, axis.fast_gain * axis.volts
+    braking = axis.t2 - axis.t1
+    axis.rest1 = axis.rest + axis.rest_gain * axis.volts * axis.t1
+    axis.slow1 = slow_end + (axis.slow - slow_end) * decay(axis.slow_rate * axis.t1)
+    axis.fast1 = fast_end + (axis.fast - fast_end) * fade(axis.fast_rate, axis.t1)
+    axis.rest2 = axis.rest1 - axis.rest_gain * axis.volts * braking
+    axis.slow2 = -slow_end + (axis.slow1 + slow_end) * decay(axis.slow_rate * braking)
+    axis.fast2 = -fast_end + (axis.fast1 + fast_end) * fade(axis.fast_rate, braking)
 
 
 @kernel

@@ -239,7 +239,12 @@ def acceleration_bound(axis, slow, fast, volts):
 @kernel
 def reach(axis, duration):
     """A bound [m] on how far an axis can move from where its plan began, within `duration` [s]."""
-    volts = abs(axis.volts)
+    return reach_under(axis, abs(axis.volts), duration)
+
+
+@kernel
+def reach_under(axis, volts, duration):
+    """The same of an axis that is given at most `volts`, either way, however they change."""
     v0 = abs(axis_velocity(axis, axis.slow, axis.fast))
     start = abs(axis_acceleration(axis, axis.slow, axis.fast))
     steady = axis.slow_gain * volts

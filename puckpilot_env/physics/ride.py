@@ -2,25 +2,17 @@
 
 from __future__ import annotations
 
-from puckpilot_env.kernel import inlined_kernel, kernel
+from puckpilot_env.kernel import kernel
 from puckpilot_env.physics import bounce, curve
 from puckpilot_env.physics.curved_contact import first_boundary, first_strike
 from puckpilot_env.physics.leg import leg
+from puckpilot_env.physics.pictures import of_leg
 from puckpilot_env.physics.slide import fade_spin
 from puckpilot_env.physics.support import is_held, lean
 from puckpilot_env.physics.vector import size
 
 SLOW = 1e-2  # m/s; a faster puck is not asked whether something holds it
 SINKING = 2.5e-4  # s; a puck that forces press on a post may sink in for so long, by some 1e-8 m, between two bounces
-
-
-@inlined_kernel
-def _take_pictures(film, cx, cy, t, h, until):
-    """Note the places of a leg from `t` to `until` that `film` asks for."""
-    for i in range(film.shape[0]):
-        if t < film[i, 0] <= until:
-            s = (film[i, 0] - t) / h
-            film[i, 1], film[i, 2] = curve.place(cx, s), curve.place(cy, s)
 
 
 @kernel
@@ -60,7 +52,7 @@ def ride(puck, p, mallets, clock, t, end, film):
         x, y = curve.place(cx, share), curve.place(cy, share)
         vx, vy = curve.rate(cx, share) / h, curve.rate(cy, share) / h
     if film.shape[0] > 0:
-        _take_pictures(film, cx, cy, t, h, until)
+        of_leg(film, cx, cy, t, h, until)
     puck.x, puck.y, puck.vx, puck.vy = x, y, vx, vy
     if kind == bounce.POST:
         _lift_off_post(puck, p)
