@@ -33,9 +33,9 @@ PUCK = np.dtype(
 )
 # Columns of an event log: time in the interval [s], kind (see bounce), the puck's place, and its velocity before, after
 EVENT_COLUMNS = 8
-# More in an interval, and a puck is set to rest and the mallets stall: events, and legs of a puck that forces drive
-FEW_EVENTS, EVENTS_A_SECOND = 200, 2000.0
-FEW_LEGS, LEGS_A_SECOND = 500, 5000.0
+# More in an interval, and a puck is set to rest and mallets in its reach stall: events, and legs of a puck under forces
+FEW_EVENTS, EVENTS_A_SECOND = 100, 1500.0
+FEW_LEGS, LEGS_A_SECOND = 100, 1000.0
 
 
 @kernel
@@ -107,11 +107,14 @@ def _apply(puck, p, mallets, kind, clock, t, film):
 
 
 @kernel
-def _give_up(puck, mallets, t):
-    """Set a puck to rest of which too much would have to be said, and let the mallets stall."""
+def _give_up(puck, p, mallets, t, end):
+    """Set a puck to rest of which too much would have to be said, and let the mallets stall that could come near it."""
     puck.vx, puck.vy = 0.0, 0.0
-    halt(mallets[0], t)
-    halt(mallets[1], t)
+    for k in range(2):
+        x, y = place_now(mallets[k])
+        far = p.puck_radius + p.mallet_radius + size(reach(mallets[k].x, end), reach(mallets[k].y, end))
+        if size(puck.x - x, puck.y - y) <= far:
+            halt(mallets[k], t)
 
 
 @kernel
@@ -139,7 +142,7 @@ def advance(puck, p, mallets, clock, start, end, log, film):
             slide.move(puck, p, ux, uy, v, until - t, p.friction, p.drag)
         t = until
         if legs >= most_legs:
-            _give_up(puck, mallets, t)
+            _give_up(puck, p, mallets, t, end)
             break
         if kind == bounce.NOTHING:
             continue
@@ -157,7 +160,7 @@ def advance(puck, p, mallets, clock, start, end, log, film):
         if kind == bounce.GOAL_X0 or kind == bounce.GOAL_X1:
             return kind, t, events
         if events >= most_events:
-            _give_up(puck, mallets, t)
+            _give_up(puck, p, mallets, t, end)
             break
     _keep_inside(puck, p)
     return bounce.NOTHING, end, events

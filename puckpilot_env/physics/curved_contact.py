@@ -19,9 +19,11 @@ NEVER = 2.0  # a share of a leg's time beyond its end
 
 
 @inlined_kernel
-def _ahead(gap, rate, bend):
-    """How long a gap that is no contact can be left alone: then it has closed by TOUCH too much at most."""
-    return time_to_parabola(max(gap, 0.0) + TOUCH, rate, bend)
+def _ahead(gap, rate, bend, slowest):
+    """How long a gap that is no contact can be left alone: till then it has closed by TOUCH too much at most, or it
+    closes no faster than `slowest`."""
+    ahead = time_to_parabola(max(gap, 0.0) + TOUCH, rate, bend)
+    return max(ahead, (rate + slowest) / bend) if bend > 0.0 else ahead
 
 
 @kernel
@@ -32,7 +34,7 @@ def crossing(c, side, line, bend, begin, end, slowest):
         gap, rate = side * (curve.place(c, s) - line), side * curve.rate(c, s)
         if gap <= TOUCH and rate < -slowest:
             return s
-        s += _ahead(gap, rate, bend)
+        s += _ahead(gap, rate, bend, slowest)
         if s >= end:
             return NEVER
     return s
@@ -48,7 +50,7 @@ def _post(cx, cy, post_x, post_y, radius, bend, begin, end, slowest):
         gap, rate = apart - radius, (dx * curve.rate(cx, s) + dy * curve.rate(cy, s)) / apart
         if gap <= TOUCH and rate < -slowest:
             return s
-        s += _ahead(gap, rate, bend)
+        s += _ahead(gap, rate, bend, slowest)
         if s >= end:
             return NEVER
     return s
@@ -144,7 +146,7 @@ def _strike(cx, cy, bend, h, mallet, start, end, distance):
         bound_x = acceleration_bound(mallet.x, slow_x, fast_x, volts_x)
         bound_y = acceleration_bound(mallet.y, slow_y, fast_y, volts_y)
         bound = push + math.sqrt(bound_x * bound_x + bound_y * bound_y)
-        ahead = t + _ahead(gap, rate, bound)
+        ahead = t + _ahead(gap, rate, bound, SLOWEST)
         t = min(ahead, next_switch(mallet, t))
         if t >= end:
             return math.inf

@@ -16,14 +16,14 @@ SLOW = 1e-2  # m/s; a slower puck that forces drive may lean on something, which
 
 @kernel
 def _reach(mallet, orders, duration):
-    """`(x, y)`: bounds [m] on how far a mallet gets in `duration` [s] if it takes up `orders` at some time meanwhile."""
+    """`(x, y)`: bounds [m] on how far a mallet gets in `duration` [s] if it takes up `orders` meanwhile."""
     x = reach_under(mallet.x, max(abs(mallet.x.volts), abs(orders[0, 0])), duration)
     return x, reach_under(mallet.y, max(abs(mallet.y.volts), abs(orders[1, 0])), duration)
 
 
 @kernel
 def _stays_clear(puck, p, mallets, orders, ux, uy, travel, end):
-    """Whether a puck that moves `travel` [m] along the unit vector `u` is out of both mallets' reach until `end` [s]."""
+    """Whether a puck that moves `travel` [m] along the unit vector `u` is out of the mallets' reach until `end` [s]."""
     distance = p.puck_radius + p.mallet_radius
     for k in range(2):
         home_x, home_y = place_now(mallets[k])

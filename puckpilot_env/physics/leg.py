@@ -24,7 +24,7 @@ NEGLIGIBLE = 1e-9  # m/s; a puck so slow rests, or starts from a rest
 CREEP = 1e-3  # m/s; friction turns a slower puck into the forces' direction faster than any step could follow
 ALIGNED = 1e-3  # rad; by which a puck that creeps may turn in a leg
 AT_EDGE = 1e-8  # s; a leg ends so long before an edge of the law, and the next one crosses it
-HESITATION = 1e-4  # s; a puck whose start the forces undo within it, since they depend on its heading, rests
+TURNING = 1e-8  # m; of the way that a puck takes to fall in line with a force
 TRIES = 12  # of a leg, each shorter than the one before
 
 
@@ -52,8 +52,8 @@ def stop(puck, p, t, free_x, free_y):
 
 @kernel
 def _creep(puck, p, t, ax, ay, h, free_x, free_y):
-    """`runge_kutta.step` of a slow puck that the forces draw along: it keeps its acceleration `a`, as far as that at the
-    end agrees."""
+    """`runge_kutta.step` of a slow puck that the forces draw along: it keeps its acceleration `a`, as far as that at
+    the end agrees."""
     vx, vy = puck.vx + h * ax, puck.vy + h * ay
     x, y = puck.x + 0.5 * h * (puck.vx + vx), puck.y + 0.5 * h * (puck.vy + vy)
     spin = puck.spin * math.exp(-p.spin_decay * h)
@@ -76,22 +76,58 @@ def _up_to_an_edge(puck, p, t, h, x, y, vx, vy):
 
 
 @kernel
+def _begins_to_move(puck, p, t, ax, ay, free_x, free_y):
+    """Give a resting puck that accelerates with `a` a first, negligible velocity; False, and none, if the forces, which
+    may depend on its heading, undo that."""
+    a = size(ax, ay)
+    puck.vx, puck.vy = NEGLIGIBLE * ax / a, NEGLIGIBLE * ay / a
+    bx, by = acceleration(p, puck.turned, t, puck.x, puck.y, puck.vx, puck.vy, puck.spin, free_x, free_y)
+    if bx * ax + by * ay > 0.0:
+        return True
+    puck.vx, puck.vy = 0.0, 0.0
+    return False
+
+
+@kernel
+def _fall_in_line(puck, p, t, free_x, free_y):
+    """Give a puck so slow that friction turns it into the direction of a stronger force, which it goes along with, at
+    once and within TURNING, the speed that it comes to: friction v + force v cos(angle) grows evenly (see `stop`)."""
+    gx, gy, f = push_and_friction(p, puck.turned, t, puck.x, puck.y, puck.vx, puck.vy, puck.spin)
+    gx, gy = free_x * gx, free_y * gy
+    v, g = size(puck.vx, puck.vy), size(gx, gy)
+    down = puck.vx * gx + puck.vy * gy
+    if g > f and down > 0.0 and v * v < TURNING * f:
+        along = (f * v + down) / (f + g)
+        puck.vx, puck.vy = along * gx / g, along * gy / g
+
+
+@kernel
 def leg(puck, p, t, longest, free_x, free_y):
     """`(duration, ax, ay, x, y, vx, vy, bx, by)` of the puck's next leg from the time `t` of the episode, of at most
     `longest` [s]: the acceleration at its beginning, and place, velocity and acceleration at its end. `free` as in
-    `force.acceleration`. Of the puck nothing changes but a negligible velocity, which ends.
+    `force.acceleration`. Of the puck nothing changes but the velocity of one that creeps: a negligible one ends or
+    begins, others fall in line.
     """
     v = size(puck.vx, puck.vy)
     if v < NEGLIGIBLE:
         puck.vx, puck.vy, v = 0.0, 0.0, 0.0
+    elif v < CREEP:
+        _fall_in_line(puck, p, t, free_x, free_y)
+        v = size(puck.vx, puck.vy)
     ax, ay = acceleration(p, puck.turned, t, puck.x, puck.y, puck.vx, puck.vy, puck.spin, free_x, free_y)
-    if v == 0.0 and ax == 0.0 and ay == 0.0:
-        return resting_time(puck, p, t, longest), 0.0, 0.0, puck.x, puck.y, 0.0, 0.0, 0.0, 0.0
+    if v == 0.0:
+        if (ax == 0.0 and ay == 0.0) or not _begins_to_move(puck, p, t, ax, ay, free_x, free_y):
+            return resting_time(puck, p, t, longest), 0.0, 0.0, puck.x, puck.y, 0.0, 0.0, 0.0, 0.0
+        v = NEGLIGIBLE
+        ax, ay = acceleration(p, puck.turned, t, puck.x, puck.y, puck.vx, puck.vy, puck.spin, free_x, free_y)
     h = longest
     forward, across = ax * puck.vx + ay * puck.vy, abs(ay * puck.vx - ax * puck.vy)  # times v
     if v > 0.0:
         if h * across > SHARE_OF_TURN * v * v:
-            h = max(SHARE_OF_TURN * v * v / across, SHORTEST)
+            h = SHARE_OF_TURN * v * v / across
+            if h < SHORTEST:  # forces that depend on its heading turn it round and round
+                puck.vx, puck.vy = 0.0, 0.0
+                return min(longest, RESTING_LEG), 0.0, 0.0, puck.x, puck.y, 0.0, 0.0, 0.0, 0.0
         if -h * forward > SHARE_OF_STOP * v * v:
             h = max(SHARE_OF_STOP * v * v / -forward, SHORTEST)
             if 0.5 * v * v * v < LAST_WAY * -forward:
@@ -117,6 +153,4 @@ def leg(puck, p, t, longest, free_x, free_y):
             h = max(h * (0.7 if aimed else max(0.9 * (TOLERANCE / error) ** order, 0.1)), SHORTEST)
         else:
             break
-    if v == 0.0 and h <= HESITATION and bx * vx + by * vy < 0.0:
-        return min(longest, RESTING_LEG), 0.0, 0.0, puck.x, puck.y, 0.0, 0.0, 0.0, 0.0
     return h, ax, ay, x, y, vx, vy, bx, by

@@ -1,4 +1,4 @@
-"""The puck's places at the times at which a camera exposes: the rows of `film`, time [s], then written here x, y [m]."""
+"""The puck's places when a camera exposes: the rows of `film`, each a time [s] and, written here, x and y [m]."""
 
 from __future__ import annotations
 

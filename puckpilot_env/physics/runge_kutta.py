@@ -38,12 +38,24 @@ def step(puck, p, t, ax, ay, h, free_x, free_y):
     x4, y4 = x + k1 * vx + k2 * vx2 + k3 * vx3, y + k1 * vy + k2 * vy2 + k3 * vy3
     ax4, ay4 = acceleration(p, turned, t + k, x4, y4, vx4, vy4, s4, free_x, free_y)
 
-    k, k1, k2, k3, k4 = 8.0 / 9.0 * h, 19372.0 / 6561.0 * h, -25360.0 / 2187.0 * h, 64448.0 / 6561.0 * h, -212.0 / 729.0 * h
+    k, k1, k2, k3, k4 = (
+        8.0 / 9.0 * h,
+        19372.0 / 6561.0 * h,
+        -25360.0 / 2187.0 * h,
+        64448.0 / 6561.0 * h,
+        -212.0 / 729.0 * h,
+    )
     vx5, vy5 = vx + k1 * ax + k2 * ax2 + k3 * ax3 + k4 * ax4, vy + k1 * ay + k2 * ay2 + k3 * ay3 + k4 * ay4
     x5, y5 = x + k1 * vx + k2 * vx2 + k3 * vx3 + k4 * vx4, y + k1 * vy + k2 * vy2 + k3 * vy3 + k4 * vy4
     ax5, ay5 = acceleration(p, turned, t + k, x5, y5, vx5, vy5, s5, free_x, free_y)
 
-    k1, k2, k3, k4, k5 = 9017.0 / 3168.0 * h, -355.0 / 33.0 * h, 46732.0 / 5247.0 * h, 49.0 / 176.0 * h, -5103.0 / 18656.0 * h
+    k1, k2, k3, k4, k5 = (
+        9017.0 / 3168.0 * h,
+        -355.0 / 33.0 * h,
+        46732.0 / 5247.0 * h,
+        49.0 / 176.0 * h,
+        -5103.0 / 18656.0 * h,
+    )
     vx6 = vx + k1 * ax + k2 * ax2 + k3 * ax3 + k4 * ax4 + k5 * ax5
     vy6 = vy + k1 * ay + k2 * ay2 + k3 * ay3 + k4 * ay4 + k5 * ay5
     x6 = x + k1 * vx + k2 * vx2 + k3 * vx3 + k4 * vx4 + k5 * vx5
@@ -57,7 +69,14 @@ def step(puck, p, t, ax, ay, h, free_x, free_y):
     vy += k1 * ay + k3 * ay3 + k4 * ay4 + k5 * ay5 + k6 * ay6
     bx, by = acceleration(p, turned, t + h, x, y, vx, vy, s6, free_x, free_y)
 
-    e1, e3, e4, e5, e6, e7 = 71.0 / 57600.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0
+    e1, e3, e4, e5, e6, e7 = (
+        71.0 / 57600.0,
+        -71.0 / 16695.0,
+        71.0 / 1920.0,
+        -17253.0 / 339200.0,
+        22.0 / 525.0,
+        -1.0 / 40.0,
+    )
     error_x = e1 * ax + e3 * ax3 + e4 * ax4 + e5 * ax5 + e6 * ax6 + e7 * bx
     error_y = e1 * ay + e3 * ay3 + e4 * ay4 + e5 * ay5 + e6 * ay6 + e7 * by
     return x, y, vx, vy, bx, by, h * (abs(error_x) + abs(error_y))
