@@ -20,7 +20,9 @@ def need_compiler() -> None:
     """Skip, with the reason, where what is committed cannot be built byte for byte."""
     if not shutil.which("arm-none-eabi-gcc") or not shutil.which("make"):
         pytest.skip("arm-none-eabi-gcc or make is not installed (Debian: gcc-arm-none-eabi): nothing is rebuilt here")
-    headers = subprocess.run(["arm-none-eabi-gcc", "-E", "-"], input="#include <string.h>", capture_output=True, text=True)
+    headers = subprocess.run(
+        ["arm-none-eabi-gcc", "-E", "-"], input="#include <string.h>", capture_output=True, text=True
+    )
     if headers.returncode:
         pytest.skip("arm-none-eabi-gcc has no C headers (Debian: libnewlib-arm-none-eabi): nothing is rebuilt here")
     told = subprocess.run(["arm-none-eabi-gcc", "-dumpfullversion"], capture_output=True, text=True, check=True)
