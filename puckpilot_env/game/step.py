@@ -10,6 +10,7 @@ from puckpilot_env.physics import bounce, compose, drive
 from puckpilot_env.physics.advance import advance
 from puckpilot_env.physics.drift import drift
 from puckpilot_env.physics.mallet import halt, place_at, place_now, settle
+from puckpilot_env.physics.pictures import of_glide
 from puckpilot_env.physics.plan import plan_mallet, plan_orders
 
 MOST_CROSSINGS = (
@@ -59,6 +60,7 @@ def play(table, p, rule, now, until, rewards, log, film):
         else:
             return True
     table.puck.vx, table.puck.vy = 0.0, 0.0
+    of_glide(film, table.puck, 1.0, 0.0, 0.0, now, until, p.friction, p.drag)
     halt(table.mallets[0], now)
     halt(table.mallets[1], now)
     return False

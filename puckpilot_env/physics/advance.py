@@ -107,9 +107,10 @@ def _apply(puck, p, mallets, kind, clock, t, film):
 
 
 @kernel
-def _give_up(puck, p, mallets, t, end):
+def _give_up(puck, p, mallets, t, end, film):
     """Set a puck to rest of which too much would have to be said, and let the mallets stall that could come near it."""
     puck.vx, puck.vy = 0.0, 0.0
+    of_glide(film, puck, 1.0, 0.0, 0.0, t, end, p.friction, p.drag)
     for k in range(2):
         x, y = place_now(mallets[k])
         far = p.puck_radius + p.mallet_radius + size(reach(mallets[k].x, end), reach(mallets[k].y, end))
@@ -141,11 +142,11 @@ def advance(puck, p, mallets, clock, start, end, log, film):
                 of_glide(film, puck, ux, uy, v, t, until, p.friction, p.drag)
             slide.move(puck, p, ux, uy, v, until - t, p.friction, p.drag)
         t = until
-        if legs >= most_legs:
-            _give_up(puck, p, mallets, t, end)
-            break
-        if kind == bounce.NOTHING:
+        if kind == bounce.NOTHING and (legs < most_legs or t >= end):
             continue
+        if kind == bounce.NOTHING:
+            _give_up(puck, p, mallets, t, end, film)
+            break
         if kind == bounce.MIDDLE_LINE:
             puck.x = 0.5 * p.length
             return kind, t, events
@@ -159,8 +160,8 @@ def advance(puck, p, mallets, clock, start, end, log, film):
         events += 1
         if kind == bounce.GOAL_X0 or kind == bounce.GOAL_X1:
             return kind, t, events
-        if events >= most_events:
-            _give_up(puck, p, mallets, t, end)
+        if events >= most_events or legs >= most_legs:
+            _give_up(puck, p, mallets, t, end, film)
             break
     _keep_inside(puck, p)
     return bounce.NOTHING, end, events

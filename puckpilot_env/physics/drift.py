@@ -92,7 +92,7 @@ def _ride(puck, p, mallets, orders, clock, least, end, film):
 @kernel
 def drift(puck, p, mallets, orders, clock, least, end, film):
     """Move the puck on from where the plans begin, for `least` to `end` [s], if it meets nothing whenever the mallets
-    take up `orders`; how long it was moved, or 0 if nothing was changed. `clock` and `film` as in `advance.advance`."""
+    take up `orders`; how long it was moved, or 0 if it was not. `clock` and `film` as in `advance.advance`."""
     if compose.is_forced(p):
         return _ride(puck, p, mallets, orders, clock, least, end, film)
     return _glide(puck, p, mallets, orders, end, film)

@@ -13,7 +13,7 @@ from puckpilot_env.kernel import kernel
 from puckpilot_env.physics import compose
 from puckpilot_env.physics.force import acceleration, push_and_friction
 from puckpilot_env.physics.runge_kutta import step
-from puckpilot_env.physics.support import RESTING_LEG, resting_time
+from puckpilot_env.physics.support import resting_time
 from puckpilot_env.physics.vector import size
 
 SHARE_OF_TURN, SHARE_OF_STOP = 0.25, 0.6  # of the time to a turn or to a stop, that a leg may take
@@ -25,6 +25,7 @@ CREEP = 1e-3  # m/s; friction turns a slower puck into the forces' direction fas
 ALIGNED = 1e-3  # rad; by which a puck that creeps may turn in a leg
 AT_EDGE = 1e-8  # s; a leg ends so long before an edge of the law, and the next one crosses it
 TURNING = 1e-8  # m; of the way that a puck takes to fall in line with a force
+HEADINGS = 12  # that a resting puck tries, each halfway to where the force there points
 TRIES = 12  # of a leg, each shorter than the one before
 
 
@@ -70,22 +71,33 @@ def _up_to_an_edge(puck, p, t, h, x, y, vx, vy):
     if puck.turned != 0:
         x0, y0, x, y = p.length - x0, p.width - y0, p.length - x, p.width - y
     share = compose.edge(p, t, x0, y0, before, t + h, x, y, after)
-    if share < 1.0 and after < before:  # of the way, the first part takes less than its share of the time
-        share *= (before + after) / (before + math.sqrt(before * before + share * (after * after - before * before)))
     return max(share * h - AT_EDGE, 3.0 * AT_EDGE)
 
 
 @kernel
-def _begins_to_move(puck, p, t, ax, ay, free_x, free_y):
-    """Give a resting puck that accelerates with `a` a first, negligible velocity; False, and none, if the forces, which
-    may depend on its heading, undo that."""
+def _start(puck, p, t, ax, ay, free_x, free_y):
+    """`(ax, ay)` with which a resting puck that accelerates with `a` begins to move, along the negligible velocity that
+    it is given; none, and (0, 0), if the forces, which may depend on its heading, let it go nowhere."""
     a = size(ax, ay)
-    puck.vx, puck.vy = NEGLIGIBLE * ax / a, NEGLIGIBLE * ay / a
-    bx, by = acceleration(p, puck.turned, t, puck.x, puck.y, puck.vx, puck.vy, puck.spin, free_x, free_y)
-    if bx * ax + by * ay > 0.0:
-        return True
+    ux, uy = ax / a, ay / a
+    for _ in range(HEADINGS):
+        puck.vx, puck.vy = NEGLIGIBLE * ux, NEGLIGIBLE * uy
+        bx, by = acceleration(p, puck.turned, t, puck.x, puck.y, puck.vx, puck.vy, puck.spin, free_x, free_y)
+        along = bx * ux + by * uy
+        if along > 0.0 and abs(by * ux - bx * uy) <= ALIGNED * along:
+            return along * ux, along * uy
+        gx, gy, _ = push_and_friction(p, puck.turned, t, puck.x, puck.y, puck.vx, puck.vy, puck.spin)
+        gx, gy = free_x * gx, free_y * gy
+        g = size(gx, gy)
+        if g == 0.0:
+            break
+        ux, uy = ux + gx / g, uy + gy / g
+        both = size(ux, uy)
+        if both < ALIGNED:
+            break
+        ux, uy = ux / both, uy / both
     puck.vx, puck.vy = 0.0, 0.0
-    return False
+    return 0.0, 0.0
 
 
 @kernel
@@ -96,7 +108,7 @@ def _fall_in_line(puck, p, t, free_x, free_y):
     gx, gy = free_x * gx, free_y * gy
     v, g = size(puck.vx, puck.vy), size(gx, gy)
     down = puck.vx * gx + puck.vy * gy
-    if g > f and down > 0.0 and v * v < TURNING * f:
+    if g > f and down > 0.0 and v * v < TURNING * (2.0 * f - g):  # with less friction it is long in line
         along = (f * v + down) / (f + g)
         puck.vx, puck.vy = along * gx / g, along * gy / g
 
@@ -115,25 +127,25 @@ def leg(puck, p, t, longest, free_x, free_y):
         _fall_in_line(puck, p, t, free_x, free_y)
         v = size(puck.vx, puck.vy)
     ax, ay = acceleration(p, puck.turned, t, puck.x, puck.y, puck.vx, puck.vy, puck.spin, free_x, free_y)
-    if v == 0.0:
-        if (ax == 0.0 and ay == 0.0) or not _begins_to_move(puck, p, t, ax, ay, free_x, free_y):
-            return resting_time(puck, p, t, longest), 0.0, 0.0, puck.x, puck.y, 0.0, 0.0, 0.0, 0.0
-        v = NEGLIGIBLE
-        ax, ay = acceleration(p, puck.turned, t, puck.x, puck.y, puck.vx, puck.vy, puck.spin, free_x, free_y)
-    h = longest
     forward, across = ax * puck.vx + ay * puck.vy, abs(ay * puck.vx - ax * puck.vy)  # times v
-    if v > 0.0:
-        if h * across > SHARE_OF_TURN * v * v:
-            h = SHARE_OF_TURN * v * v / across
-            if h < SHORTEST:  # forces that depend on its heading turn it round and round
-                puck.vx, puck.vy = 0.0, 0.0
-                return min(longest, RESTING_LEG), 0.0, 0.0, puck.x, puck.y, 0.0, 0.0, 0.0, 0.0
-        if -h * forward > SHARE_OF_STOP * v * v:
-            h = max(SHARE_OF_STOP * v * v / -forward, SHORTEST)
-            if 0.5 * v * v * v < LAST_WAY * -forward:
-                duration, dx, dy = stop(puck, p, t, free_x, free_y)
-                if duration <= longest:
-                    return duration, ax, ay, puck.x + dx, puck.y + dy, 0.0, 0.0, ax, ay
+    if v > 0.0 and SHORTEST * across > SHARE_OF_TURN * v * v:  # it turns so fast that it may as well start anew
+        puck.vx, puck.vy, v = 0.0, 0.0, 0.0
+        ax, ay = acceleration(p, puck.turned, t, puck.x, puck.y, 0.0, 0.0, puck.spin, free_x, free_y)
+    if v == 0.0:
+        if ax != 0.0 or ay != 0.0:
+            ax, ay = _start(puck, p, t, ax, ay, free_x, free_y)
+        if ax == 0.0 and ay == 0.0:
+            return resting_time(puck, p, t, longest), 0.0, 0.0, puck.x, puck.y, 0.0, 0.0, 0.0, 0.0
+        v, forward, across = NEGLIGIBLE, NEGLIGIBLE * size(ax, ay), 0.0
+    h = longest
+    if h * across > SHARE_OF_TURN * v * v:
+        h = SHARE_OF_TURN * v * v / across
+    if -h * forward > SHARE_OF_STOP * v * v:
+        h = max(SHARE_OF_STOP * v * v / -forward, SHORTEST)
+        if 0.5 * v * v * v < LAST_WAY * -forward:
+            duration, dx, dy = stop(puck, p, t, free_x, free_y)
+            if duration <= longest:
+                return duration, ax, ay, puck.x + dx, puck.y + dy, 0.0, 0.0, ax, ay
     h = min(h, compose.stride(p, v))
     edged, aimed = compose.has_edges(p), False
     creeps = v < CREEP and forward >= 0.0 and h * across <= ALIGNED * v * v

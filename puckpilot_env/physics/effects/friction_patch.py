@@ -39,7 +39,16 @@ def friction(p, t, x, y, vx, vy, friction):
 
 @kernel
 def edge(p, t, x, y, v, t1, x1, y1, v1):
-    """Where a straight way meets the circle."""
+    """Where a straight way meets the circle; of a way along which the puck slows down, when."""
+    way = _way_to_circle(p, x, y, x1, y1)
+    if way < 1.0 and v1 < v:  # the first part of a way takes less than its share of the time
+        way *= (v + v1) / (v + math.sqrt(v * v + way * (v1 * v1 - v * v)))
+    return way
+
+
+@kernel
+def _way_to_circle(p, x, y, x1, y1):
+    """The share of the way after which it meets the circle, infinite if it does not."""
     dx, dy = x1 - x, y1 - y
     x, y = x - p.patch_x, y - p.patch_y
     square, half = dx * dx + dy * dy, x * dx + y * dy

@@ -1,4 +1,4 @@
-"""Pucks that drift over the moment at which late orders arrive: as where orders are late by next to nothing, and as where
+"""Pucks that drift over the moment at which late orders arrive: as where these are late by next to nothing, and as where
 they are not late at all, which never drift."""
 
 from __future__ import annotations

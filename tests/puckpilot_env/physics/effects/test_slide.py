@@ -127,3 +127,14 @@ def test_a_turned_table_turns_its_effects() -> None:
         slide(turned, p, 3.0, 1.0)
         assert (2.0 - turned.x, 1.0 - turned.y) == pytest.approx((puck.x, puck.y), abs=1e-12)
         assert (-turned.vx, -turned.vy, turned.spin) == pytest.approx((puck.vx, puck.vy, puck.spin), abs=1e-12)
+
+
+def test_a_puck_whose_friction_turns_it_aside_still_starts() -> None:
+    """On a slope steeper than friction, against the reference from a hair's breadth of speed."""
+    values = {"tilt_x": 0.15, "tilt_y": 0.12, "friction_anisotropy": 0.28, "friction_turning": 0.28}
+    puck = new_puck(1.0, 0.5, 0.0, 0.0)
+    slide(puck, record(**values), 0.0, 1.0)
+    law = shifted(Law(tilt_x=0.15, tilt_y=0.12, friction=0.12, friction_ratio=16 / 9), 20.0)
+    end = run(law, (21.0, 20.5, 1e-6, 1e-6, 0.0), duration=1.0, clock=0.0, dt=1e-5).end_puck
+    assert math.hypot(end[0] - 21.0, end[1] - 20.5) > 0.01
+    assert math.hypot(puck.x + 20.0 - end[0], puck.y + 20.0 - end[1]) < 1e-5
