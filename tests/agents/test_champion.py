@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import csv
 
+import numpy as np
 import pytest
 
+from agents.mean_policy import mean_policy
 from agents.policy import SHIPPED, load_policy
 from agents.preset import find_preset
 from baselines.match import play
@@ -15,7 +17,8 @@ from puckpilot_env.game.rules import ENDING_NAMES
 @pytest.mark.parametrize(
     ("file", "words"),
     [
-        ("champion", "--preset finish_veteran --start out/finish_goalie"),
+        ("champion.finish_goalie", "--preset finish_goalie --start out/champion"),
+        ("champion.finish_veteran", "--preset finish_veteran --start out/finish_goalie"),
         (
             "champion.match-randomized-v0",
             "--preset randomized --variant match-randomized-v0 --start out/finish_goalie",
@@ -42,6 +45,22 @@ def test_it_says_what_made_it_and_its_curve_ends_there(file: str, words: str) ->
         curve = list(csv.DictReader(lines))
     assert int(curve[-1]["steps"]) == steps
     assert float(curve[-1]["seconds"]) / 3600.0 == pytest.approx(policy.about["hours"], abs=0.01)
+
+
+def test_the_first_is_the_mean_that_it_says() -> None:
+    champion = load_policy(SHIPPED / "champion.npz")
+    parts = [(load_policy(SHIPPED / f"{name}.npz"), share) for name, share in champion.about["mean_of"].items()]
+    for k, weights in enumerate(champion.network.weights):
+        by_hand = sum(share * part.network.weights[k].astype(float) for part, share in parts)
+        np.testing.assert_allclose(weights, by_hand, atol=1e-6)
+
+
+def test_policies_that_are_not_alike_have_no_mean() -> None:
+    policy, other = (load_policy(SHIPPED / f"champion{name}.npz") for name in ("", ".match-randomized-v0"))
+    with pytest.raises(ValueError, match="differ in layers, columns or scaling"):
+        mean_policy([policy, other], [0.5, 0.5], {})
+    with pytest.raises(ValueError, match=r"add up to 0\.9; expected 2 that add up to 1"):
+        mean_policy([policy, policy], [0.5, 0.4], {})
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,5 @@
-"""Pucks that drift over the moment at which late orders arrive: as where these are late by next to nothing, and as where
-they are not late at all, which never drift."""
+"""Pucks that drift over the moment at which late orders arrive: as where these are late by next to nothing, and as
+where they are not late at all, which never drift."""
 
 from __future__ import annotations
 
