@@ -16,6 +16,17 @@ SINKING = 5e-4  # s; a puck that forces press on a post may sink in for so long,
 
 
 @kernel
+def _slowest_at_post(puck, p, ax, ay):
+    """How fast [m/s] a puck has to close in on the nearest post for a contact: one that accelerates towards it by `a`
+    comes to that within SINKING."""
+    if min(puck.x, p.length - puck.x) > 2.0 * p.puck_radius:
+        return bounce.SLIDING
+    post_x, post_y = bounce.nearest_post(puck.x, puck.y, p.length, p.width, p.goal_width)
+    dx, dy = puck.x - post_x, puck.y - post_y
+    return max(-SINKING * (ax * dx + ay * dy) / size(dx, dy), bounce.SLIDING)
+
+
+@kernel
 def _lift_off_post(puck, p):
     """Take a puck out of the post that it has sunk into."""
     post_x, post_y = bounce.nearest_post(puck.x, puck.y, p.length, p.width, p.goal_width)
@@ -38,8 +49,8 @@ def ride(puck, p, mallets, clock, t, end, film):
     cx = curve.through(puck.x, puck.vx, ax, x, vx, bx, h)
     cy = curve.through(puck.y, puck.vy, ay, y, vy, by, h)
     bend_x, bend_y = curve.most_bend(cx), curve.most_bend(cy)
-    slowest_at_post = max(SINKING * size(ax, ay), bounce.SLIDING) * h
-    share, kind = first_boundary(cx, cy, x, y, bend_x, bend_y, p, bounce.SLIDING * h, slowest_at_post)
+    slowest, slowest_at_post = bounce.SLIDING * h, _slowest_at_post(puck, p, ax, ay) * h
+    share, kind = first_boundary(cx, cy, x, y, bend_x, bend_y, p, slowest, slowest_at_post)
     until = end if h == end - t else t + h
     if kind != bounce.NOTHING:
         until = min(t + share * h, until)
