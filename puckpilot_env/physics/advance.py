@@ -34,8 +34,9 @@ PUCK = np.dtype(
 # Columns of an event log: time in the interval [s], kind (see bounce), the puck's place, and its velocity before, after
 EVENT_COLUMNS = 8
 # More in an interval, and a puck is set to rest and mallets in its reach stall: events, and legs of a puck under forces
-FEW_EVENTS, EVENTS_A_SECOND = 100, 1500.0
-FEW_LEGS, LEGS_A_SECOND = 100, 1000.0
+FEW_EVENTS, EVENTS_A_SECOND = 40, 600.0
+FEW_LEGS, LEGS_A_SECOND = 30, 500.0
+LONGER, BRIEF = 8.0, 2e-3  # a leg under forces is at most so many times, or so many seconds longer than, the one before
 
 
 @kernel
@@ -131,11 +132,12 @@ def advance(puck, p, mallets, clock, start, end, log, film):
     t = start
     events, legs = 0, 0
     most_events, most_legs = FEW_EVENTS + EVENTS_A_SECOND * (end - start), FEW_LEGS + LEGS_A_SECOND * (end - start)
-    forced = compose.is_forced(p)
+    forced, longest = compose.is_forced(p), math.inf
     while t < end:
         if forced:
             legs += 1
-            kind, until = ride(puck, p, mallets, clock, t, end, film)
+            kind, until = ride(puck, p, mallets, clock, t, min(end, t + longest), film)
+            longest = LONGER * (until - t) + BRIEF
         else:
             kind, until, ux, uy, v = _look_ahead(puck, p, mallets, t, end)
             if film.shape[0] > 0:

@@ -37,8 +37,23 @@ def rate(c, s):
 
 
 @inlined_kernel
+def bends(c):
+    """The four control points of d^2 place/ds^2, in whose hull it lies from s = 0 to 1."""
+    first = 2.0 * c[2]
+    return first, first + 2.0 * c[3], first + 4.0 * c[3] + 4.0 * c[4], first + 6.0 * c[3] + 12.0 * c[4] + 20.0 * c[5]
+
+
+@inlined_kernel
 def most_bend(c):
-    """A bound on abs(d^2 place/ds^2) from s = 0 to 1: that of its four control points (it lies in their hull)."""
-    first, last = 2.0 * c[2], 2.0 * c[2] + 6.0 * c[3] + 12.0 * c[4] + 20.0 * c[5]
-    second, third = first + 2.0 * c[3], first + 4.0 * c[3] + 4.0 * c[4]
+    """A bound on abs(d^2 place/ds^2) from s = 0 to 1."""
+    first, second, third, last = bends(c)
     return max(max(abs(first), abs(last)), max(abs(second), abs(third)))
+
+
+@inlined_kernel
+def most_bend_along(cx, cy, nx, ny):
+    """A bound on n (d^2 place/ds^2) from s = 0 to 1, along the unit vector `n`."""
+    x, y = bends(cx), bends(cy)
+    first, last = nx * x[0] + ny * y[0], nx * x[3] + ny * y[3]
+    second, third = nx * x[1] + ny * y[1], nx * x[2] + ny * y[2]
+    return max(max(first, last), max(second, third))

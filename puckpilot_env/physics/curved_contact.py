@@ -16,6 +16,7 @@ from puckpilot_env.physics.contact import MOST_ADVANCES, SLOWEST, TOUCH, time_to
 from puckpilot_env.physics.mallet import acceleration_bound, axis_at, axis_velocity, next_switch, place_now, reach
 
 NEVER = 2.0  # a share of a leg's time beyond its end
+SUNK = 5e-7  # m; a puck that forces press on a post sinks in no deeper between two bounces
 
 
 @inlined_kernel
@@ -41,16 +42,24 @@ def crossing(c, side, line, bend, begin, end, slowest):
 
 
 @kernel
-def _post(cx, cy, post_x, post_y, radius, bend, begin, end, slowest):
-    """The same of touching a goal post."""
+def _post(cx, cy, post_x, post_y, radius, bend, begin, end, slowest, slowest_sunk):
+    """The same of touching a goal post; one that has SUNK in need only close faster than `slowest_sunk`."""
     s = begin
     for _ in range(MOST_ADVANCES):
         dx, dy = curve.place(cx, s) - post_x, curve.place(cy, s) - post_y
         apart = math.sqrt(dx * dx + dy * dy)
-        gap, rate = apart - radius, (dx * curve.rate(cx, s) + dy * curve.rate(cy, s)) / apart
-        if gap <= TOUCH and rate < -slowest:
+        vx, vy = curve.rate(cx, s), curve.rate(cy, s)
+        gap, rate = apart - radius, (dx * vx + dy * vy) / apart
+        least = slowest if gap > -SUNK else slowest_sunk
+        if gap <= TOUCH and rate < -least:
             return s
-        s += _ahead(gap, rate, bend, slowest)
+        turned = (math.sqrt(vx * vx + vy * vy) + bend) / (0.5 * radius)  # of the normal, at most, till the leg's end
+        towards = max(curve.most_bend_along(cx, cy, -dx / apart, -dy / apart), 0.0)
+        push = min(bend, towards + turned * bend)
+        ahead = _ahead(gap, rate, push, least)
+        if gap > -SUNK:
+            ahead = min(ahead, time_to_parabola(gap + SUNK + TOUCH, rate, push))
+        s += ahead
         if s >= end:
             return NEVER
     return s
@@ -70,7 +79,7 @@ def _at_end(cx, cy, x_line, side, p, bend_x, bend_y, end, slowest, slowest_at_po
     best, kind = end, bounce.NOTHING
     bend = math.sqrt(bend_x * bend_x + bend_y * bend_y)
     for post_y in (middle - half_goal, middle + half_goal):
-        met = _post(cx, cy, x_line, post_y, radius, bend, begin, best, slowest_at_post)
+        met = _post(cx, cy, x_line, post_y, radius, bend, begin, best, slowest_at_post, slowest)
         if met < best:
             best, kind = met, bounce.POST
     met = crossing(cx, side, x_line, bend_x, begin, best, 0.0)

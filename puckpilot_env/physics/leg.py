@@ -32,7 +32,7 @@ TRIES = 12  # of a leg, each shorter than the one before
 @kernel
 def stop(puck, p, t, free_x, free_y):
     """`(duration, dx, dy)` of the way of a slow puck to its stop, under constant friction f and force g; infinite where
-    it does not stop.
+    it does not stop. If g is the stronger it does for a moment, where it is right against its velocity.
 
     With v the speed and c the cosine between v and g, d(f v + g v c)/dt = g^2 - f^2; such sums of v^2, v^2 c, v^2 c^2
     give the way along g, and across it.
@@ -40,10 +40,13 @@ def stop(puck, p, t, free_x, free_y):
     gx, gy, f = push_and_friction(p, puck.turned, t, puck.x, puck.y, puck.vx, puck.vy, puck.spin)
     gx, gy = free_x * gx, free_y * gy
     v, g = size(puck.vx, puck.vy), size(gx, gy)
-    if g >= f * (1.0 - 1e-9):
-        return math.inf, 0.0, 0.0
     ux, uy = (gx / g, gy / g) if g > 0.0 else (puck.vx / v, puck.vy / v)
     along, across = puck.vx * ux + puck.vy * uy, puck.vy * ux - puck.vx * uy
+    if g >= f * (1.0 - 1e-9):
+        if along > 0.0 or abs(across) > ALIGNED * v:
+            return math.inf, 0.0, 0.0
+        duration = v / (f + g)
+        return duration, 0.5 * duration * puck.vx, 0.5 * duration * puck.vy
     room = (f - g) * (f + g)
     duration = (f * v + g * along) / room
     way = (f * v * along + 0.5 * g * (v * v + along * along)) / (2.0 * room)

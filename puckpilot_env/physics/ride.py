@@ -12,7 +12,7 @@ from puckpilot_env.physics.support import is_held, lean
 from puckpilot_env.physics.vector import size
 
 SLOW = 1e-2  # m/s; a faster puck is not asked whether something holds it
-SINKING = 5e-4  # s; a puck that forces press on a post may sink in for so long, by under 1e-6 m, between two bounces
+SINKING = 5e-4  # s; a puck that forces press on a post may sink in for so long, by at most SUNK, between two bounces
 
 
 @kernel
