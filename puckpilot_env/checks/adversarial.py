@@ -18,7 +18,7 @@ from puckpilot_env import batch
 from puckpilot_env.checks import adversaries, extremes, invariants
 from puckpilot_env.tables import Tables
 
-TABLES, STEPS = 16, 64  # of a batch
+TABLES, STEPS = 128, 128  # of a batch
 STEPS_OF_A_BATCH = TABLES * STEPS
 REPLANT = 16  # steps after which pucks are put in hard places again
 MOST_MEDIANS = 50.0  # that the slowest step may take
