@@ -83,7 +83,7 @@ def _draw_shares(axes: Axes, payoff: Payoff, order: list[int]) -> None:
     for row, i in enumerate(order):
         for column, j in enumerate(order):
             dark = abs(shares[row, column] - 0.5) > 0.35
-            text = counts_text(payoff, i, j) if i != j else ""
+            text = counts_text(payoff, i, j) if i != j else "\N{EN DASH}"
             axes.text(column, row, text, ha="center", va="center", fontsize=7, color="white" if dark else "black")
     axes.figure.colorbar(image, ax=axes, label="share of decisive games won by the row", shrink=0.8)
 
@@ -100,6 +100,7 @@ def _draw_ratings(axes: Axes, ratings: Ratings) -> None:
     axes.axvline(0.0, color="0.7", lw=1, zorder=0)
     axes.grid(axis="x", color="0.9")
     axes.set_axisbelow(True)
+    axes.locator_params(axis="x", nbins=5)
     axes.set_xlabel("rating, Elo points")
     axes.set_title("ratings with 95 % intervals")
 

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Parameter:
-    """One physical number. `low` and `high` bound what the simulator accepts; `default` is what a table has."""
+    """One physical number. `low` and `high` bound what the simulator accepts, of a `whole` one whole numbers alone;
+    `default` is what a table has."""
 
     name: str
     unit: str
@@ -21,6 +22,7 @@ class Parameter:
     high: float
     meaning: str
     source: str
+    whole: bool = False
 
     def within(self, value: float) -> float:
         """The nearest value that the simulator accepts."""

@@ -30,6 +30,7 @@ _UNITS_OF_A_GANTRY = ("m/s", "m/s^2", "m", "m")
 NOT_SIMULATED = {
     row.name: (name, e.not_simulated) for name, e in EFFECTS.items() if e.not_simulated for row in e.rows.values()
 }
+UNLISTED = {row.name: name for name, effect in EFFECTS.items() if not effect.listed for row in effect.rows.values()}
 EFFECT_ROWS = tuple(row for effect in EFFECTS.values() for row in effect.rows.values())
 
 TABLE: tuple[Parameter, ...] = (
@@ -126,9 +127,11 @@ def checked(name: str, value: object) -> float:
         raise ValueError(f"unknown parameter {in_short(name)}{hint}")
     row = BY_NAME[name]
     number = real_number(value)
-    if not row.low <= number <= row.high:
+    if not row.low <= number <= row.high or (row.whole and number != int(number)):
+        what = "a whole number" if row.whole else "a number"
+        unit = "" if row.unit == "1" else f" {row.unit}"
         raise ValueError(
-            f"parameter '{name}' is {in_short(value)}; expected a number in [{row.low:g}, {row.high:g}] {row.unit}"
+            f"parameter '{name}' is {in_short(value)}; expected {what} in [{row.low:g}, {row.high:g}]{unit}"
         )
     return number
 

@@ -81,7 +81,15 @@ def as_rows(draws: tuple[Draw, ...]) -> np.ndarray:
     rows = np.zeros((len(draws), 4))
     for row, draw in zip(rows, draws, strict=True):
         if draw.distribution not in DISTRIBUTIONS:
-            raise ValueError(f"unknown distribution '{draw.distribution}'; known: {', '.join(DISTRIBUTIONS)}")
+            known = ", ".join(DISTRIBUTIONS)
+            raise ValueError(
+                f"the draw of '{draw.parameter}' has the unknown distribution '{draw.distribution}'; known: {known}"
+            )
+        if draw.parameter in parameters.UNLISTED:
+            law = parameters.UNLISTED[draw.parameter]
+            raise ValueError(
+                f"'{draw.parameter}' cannot be drawn: it is one of a table of numbers of {law}; give an effects file"
+            )
         low, high = parameters.checked(draw.parameter, draw.low), parameters.checked(draw.parameter, draw.high)
         parameters.refuse_not_simulated({draw.parameter: low} | ({draw.parameter: high} if high != low else {}))
         if low > high:

@@ -30,7 +30,9 @@ def read_toml(
         raise ValueError(f"{words}; expected a file such as {expected}") from None
     except tomllib.TOMLDecodeError as error:
         raise ValueError(f"{path}: not a TOML file ({error}); expected lines like {example}") from None
-    except ValueError as error:  # of TOML and of text among them
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{path}: byte {error.start} is not UTF-8; save the file as UTF-8 text") from None
+    except ValueError as error:
         raise ValueError(f"{path}: {' '.join(str(error).split())}") from None
 
 

@@ -6,6 +6,7 @@ import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 
+from puckpilot_env.draws_file import FORMAT as DRAWS_FORMAT
 from puckpilot_env.effects_file import FORMAT as EFFECTS_FORMAT
 from puckpilot_env.parameters import TABLE, checked
 from sim2real.recording import Recording
@@ -42,6 +43,11 @@ def read_baseline(path: Path) -> dict[str, float]:
         raise ValueError(f"{words}; expected a TOML file of lines like 'friction = 0.1'") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise ValueError(f"{path}: not a TOML file ({error}); expected lines like 'friction = 0.1'") from error
+    if found.get("format") == DRAWS_FORMAT:
+        raise ValueError(
+            f"{path} holds ranges to draw from, not one table's numbers: give --baseline a file of its [parameters] "
+            f"alone; to play with it, puckpilot match A B --draws {path}"
+        )
     if found.get("format") == EFFECTS_FORMAT:
         unknown = [name for name in found if name not in ("format", "parameters", "effects")]
         if unknown:

@@ -19,7 +19,8 @@ class RecordingError(ValueError):
     """A recording that cannot be read or written. Its text is one line: file, line number where known, and reason."""
 
     def __init__(self, file: Path | str, reason: str, line: int | None = None):
-        place = str(file) if line is None else f"{file}:{line}"
+        shown = Path(file).resolve() if Path(file).parent == Path() else file  # "." says little
+        place = f"{shown}" if line is None else f"{shown}:{line}"
         super().__init__(" ".join(f"{place}: {reason}".split()))
         self.file, self.line, self.reason = Path(file), line, reason
 

@@ -10,7 +10,7 @@ import json
 import sys
 from typing import TYPE_CHECKING
 
-from baselines.commands.options import add_options, parse_values, print_table, progress_bar
+from baselines.commands.options import add_options, console_for, parse_values, print_table, progress_bar
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,7 +22,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
     parser.add_argument("first", metavar="A", help="a script, or a policy by name, .npz file or run's folder")
     parser.add_argument("second", metavar="B", help="its opponent, named likewise")
-    parser.add_argument("--games", type=int, default=100, metavar="N", help="games in all (default 100)")
+    parser.add_argument(
+        "--games",
+        type=int,
+        default=100,
+        metavar="N",
+        help="games in all (default 100); of an odd number one start is played once",
+    )
     parser.add_argument("--video", metavar="FILE", help="film the first game, up to 60 s of it, as a .gif or .mp4")
     add_options(parser)
 
@@ -87,17 +93,14 @@ def _as_dict(args: argparse.Namespace, result: MatchResult, roles: Sequence[dict
 
 
 def _print_drill(args: argparse.Namespace, result: MatchResult, roles: Sequence[dict[str, object]]) -> None:
-    from rich.console import Console
-
     from baselines.role_table import role_table
 
     table = role_table(f"{result.games} episodes of {args.variant}, seed {args.seed}, and how they ended", roles)
-    Console(width=max(Console(width=10_000).measure(table).maximum, 80), highlight=False).print(table)
+    console_for(table).print(table)
 
 
 def _print(args: argparse.Namespace, result: MatchResult) -> None:
     from rich import box
-    from rich.console import Console
     from rich.table import Table
 
     title = f"{result.games} games of {args.variant}, seed {args.seed}"
@@ -108,7 +111,7 @@ def _print(args: argparse.Namespace, result: MatchResult) -> None:
     for k, name in enumerate(result.players):
         row = (result.wins[k], result.draws, result.wins[1 - k], result.goals[k])
         table.add_row(name, *(str(number) for number in row), f"{result.fouls_per_game[k]:.1f}")
-    console = Console(highlight=False)
+    console = console_for(table)
     console.print(table)
     console.print(_in_words(result), soft_wrap=True)
 
@@ -123,5 +126,6 @@ def _in_words(result: MatchResult) -> str:
     verdict = "better than" if rate.low > 0.5 else "worse than" if rate.high < 0.5 else "not told apart from"
     return (
         f"{result.players[0]} won {result.wins[0]} of {decisive} decisive games, {100.0 * rate.value:.1f} % "
-        f"(95 % interval {low:.1f} to {high:.1f} %): {verdict} {result.players[1]}."
+        f"(95 % interval {low:.1f} to {high:.1f} %, which counts the two games of a start as one where they come out "
+        f"alike): {verdict} {result.players[1]}."
     )

@@ -5,10 +5,15 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
 from baselines.match import Progress
 from puckpilot_env import draws_file
-from puckpilot_env.effects_file import described
+from puckpilot_env.effects_file import described, effect_values
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.table import Table
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -41,10 +46,19 @@ def print_table(args: argparse.Namespace) -> None:
     given = parse_values(args.set)
     for line in described(args.effects, apart_from=given) if args.effects else ():
         print(line)
-    for line in draws_file.described(args.draws, apart_from=given) if args.draws else ():
+    said = {**effect_values(args.effects), **given}
+    for line in draws_file.described(args.draws, apart_from=said) if args.draws else ():
         print(line)
     if given:
         print(f"set: {', '.join(f'{name} {value:.4g}' for name, value in given.items())}")
+
+
+def console_for(*tables: Table) -> Console:
+    """A console of at least 80 columns on which none of the tables is cut."""
+    from rich.console import Console
+
+    widest = max(Console(width=10_000).measure(table).maximum for table in tables)
+    return Console(width=max(widest, 80), highlight=False)
 
 
 @contextmanager

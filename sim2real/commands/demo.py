@@ -29,9 +29,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Show all three; 0. Raises ValueError, in one line, for unknown players."""
-    from rich.console import Console
-
     from baselines import find_player
+    from baselines.commands.options import console_for
     from baselines.match import MOST_GAMES
     from baselines.role_table import role_table
     from sim2real.compare import compare_recording, print_summary
@@ -50,22 +49,24 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print(json.dumps({"meetings": meetings, "film": str(film), "compare": comparison}, indent=1))
         return 0
-    console = Console(highlight=False, soft_wrap=True)
-    console.print(_table(players, meetings))
+    matches = _table(players, meetings)
+    drills = [
+        role_table(f"{row['id'].removeprefix('puckpilot/')}, how the episodes ended", row["tested"])
+        for row in meetings
+        if "tested" in row
+    ]
+    console = console_for(matches, *drills)
+    console.print(matches)
     console.print(
         "Every start is played twice, with the seats exchanged. share: of the decisive games; 95 %: its interval,\n"
         "in which the two games of a start count as one where they come out alike. fouls: puck held for over 7 s.\n"
     )
-    for row in (row for row in meetings if "tested" in row):
-        console.print(role_table(f"{row['id'].removeprefix('puckpilot/')}, how the episodes ended", row["tested"]))
+    for drill in drills:
+        console.print(drill)
     console.print(
         "In a drill each player is tested in half of the episodes, in the first seat: a defence is done with a clear,\n"
         "an attack with a shot that would score, and it ends before the shot arrives.\n"
     )
-    if not args.players:
-        console.print(
-            "policy:champion never learned to read the raw frames of match-sensors-v0; it plays blindly there.\n"
-        )
     console.print(f"The beginning of the first {FILMED} is filmed: {film}\n")
     console.print("A recording of a table with physics that the simulator leaves out, beside the simulator")
     console.print("(puckpilot compare --help explains the words):")

@@ -56,7 +56,8 @@ def test_ranges_are_enforced(name):
         with pytest.raises(ValueError) as refusal:
             parameters.checked(name, value)
         told = str(refusal.value)
-        assert told.startswith(f"parameter '{name}' is {value!r}; expected a number in [") and "\n" not in told
+        what = "a whole number" if row.whole else "a number"
+        assert told.startswith(f"parameter '{name}' is {value!r}; expected {what} in [") and "\n" not in told
 
 
 @pytest.mark.parametrize("value", ["much", None, [1.0, 2.0], {}])
@@ -140,3 +141,9 @@ def test_by_name_and_never_by_position():
         assert records[2][row.name] == row.high, row.name
     assert records["drag"].tolist() == [0.5, 0.5, parameters.BY_NAME["drag"].high, 0.5]
     assert (records["friction"][[0, 1, 3]] == 0.25).all()
+
+
+@pytest.mark.parametrize("name", [name for name, row in ROWS.items() if row.whole])
+def test_what_a_law_is_a_function_of_is_a_whole_number(name):
+    with pytest.raises(ValueError, match=rf"^parameter '{name}' is 1.5; expected a whole number in \[\d, \d+\]$"):
+        parameters.checked(name, 1.5)

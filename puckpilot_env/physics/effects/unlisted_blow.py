@@ -43,10 +43,24 @@ EFFECT = Effect(
     law="share kept of a speed past the mallet + a smooth function of speed, angle, place or time",
     rows={
         "kind": Parameter(
-            "blow_kind", "1", 0.0, 0.0, 5.0, "what the change of a share is a function of; 0: no change", _SOURCE
+            "blow_kind",
+            "1",
+            0.0,
+            0.0,
+            5.0,
+            "what the change of a share is a function of; 0: no change",
+            _SOURCE,
+            whole=True,
         ),
         "share": Parameter(
-            "blow_share", "1", 1.0, 1.0, 3.0, "which share: 1 of the normal speed, 2 of that along, 3 both", _SOURCE
+            "blow_share",
+            "1",
+            1.0,
+            1.0,
+            3.0,
+            "which share: 1 of the normal speed, 2 of that along, 3 both",
+            _SOURCE,
+            whole=True,
         ),
         **{
             f"c{k:02}": Parameter(f"blow_{k:02}", "SI", 0.0, -MOST, MOST, f"number {k} of its table", _RANGE)

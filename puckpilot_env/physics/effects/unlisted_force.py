@@ -68,7 +68,7 @@ EFFECT = Effect(
     law="a = a smooth function of place, speed, heading or time",
     rows={
         "kind": Parameter(
-            "unlisted_kind", "1", 0.0, 0.0, 12.0, "what the force is a function of; 0: no force", _SOURCE
+            "unlisted_kind", "1", 0.0, 0.0, 12.0, "what the force is a function of; 0: no force", _SOURCE, whole=True
         ),
         **{
             f"c{k:02}": Parameter(f"unlisted_{k:02}", "SI", 0.0, -MOST, MOST, f"number {k} of its table", _RANGE)
