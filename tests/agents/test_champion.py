@@ -19,14 +19,15 @@ from puckpilot_env.game.rules import ENDING_NAMES
     [
         ("champion.finish_goalie", "--preset finish_goalie --start out/champion"),
         ("champion.finish_veteran", "--preset finish_veteran --start out/finish_goalie"),
+        ("champion", "--preset finish_both --start out/mean.npz"),
         (
             "champion.match-randomized-v0",
-            "--preset randomized --variant match-randomized-v0 --start out/finish_goalie",
+            "--preset randomized_finish --variant match-randomized-v0 --start out/randomized",
         ),
         ("champion.attack-v0", "--preset attack_finish --variant attack-v0 --start out/attack"),
         (
             "champion.attack-randomized-v0",
-            "--preset attack_finish --variant attack-randomized-v0 --start out/attack_finish",
+            "--preset attack_randomized_finish --variant attack-randomized-v0 --start out/attack_randomized",
         ),
         ("champion.defence-v0", "--preset defence --variant defence-v0"),
         (
@@ -47,11 +48,11 @@ def test_it_says_what_made_it_and_its_curve_ends_there(file: str, words: str) ->
     assert float(curve[-1]["seconds"]) / 3600.0 == pytest.approx(policy.about["hours"], abs=0.01)
 
 
-def test_the_first_is_the_mean_that_it_says() -> None:
-    champion = load_policy(SHIPPED / "champion.npz")
-    parts = [(load_policy(SHIPPED / f"{name}.npz"), share) for name, share in champion.about["mean_of"].items()]
-    for k, weights in enumerate(champion.network.weights):
-        by_hand = sum(share * part.network.weights[k].astype(float) for part, share in parts)
+def test_a_mean_is_that_of_each_weight() -> None:
+    parts = [load_policy(SHIPPED / f"champion.finish_{name}.npz") for name in ("goalie", "veteran")]
+    mean = mean_policy(parts, [0.55, 0.45], {})
+    for k, weights in enumerate(mean.network.weights):
+        by_hand = 0.55 * parts[0].network.weights[k].astype(float) + 0.45 * parts[1].network.weights[k].astype(float)
         np.testing.assert_allclose(weights, by_hand, atol=1e-6)
 
 
