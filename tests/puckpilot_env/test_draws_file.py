@@ -90,6 +90,7 @@ def test_a_file_is_told_in_lines(tmp_path: Path) -> None:
             "draws.tilt_x is 0.02; expected numbers",
         ),
         ("draws.tilt_x]\nlow = -0.01", "draws.backlash_gap]\nlow = 0", "no table can be given backlash: "),
+        ("draws.tilt_x", "draws.unlisted_00", "'unlisted_00' cannot be drawn: it is one of a table of numbers of"),
         ("length = 2.362", "backlash_gap = 0.001", "no table can be given backlash: "),
         ("length = 2.362", "length = 5", "parameter 'length' is 5; expected a number in [1, 4] m"),
         ("high = 0.02", "high = ", "line"),
