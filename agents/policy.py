@@ -19,6 +19,8 @@ from agents.network import SQUASHES, Network
 from agents.run_folder import RunFolder
 from agents.scaling import Reading, Scaling
 from baselines.player import Player, Seat
+from puckpilot_env import small_file
+from puckpilot_env.inputs import in_short
 from puckpilot_env.whole_file import write_whole
 
 FORMAT = "puckpilot-policy-1"
@@ -26,6 +28,7 @@ SHIPPED = Path(__file__).parent / "policies"  # NAME.npz there is a policy; see 
 PREFIX = "policy:"  # may stand before a policy's name; a script's name without it is the script
 OUTPUTS = 4  # of target x, y and voltages x, y, before they are squashed
 MOST_BYTES = 1 << 28  # of all arrays; a network of eight layers of 2048 is half of it
+REAL = (np.float32, np.float64)
 SCALINGS = ("centre", "span", "flip", "low", "high")
 
 
@@ -58,8 +61,9 @@ def load_policy(path: Path) -> Policy:
     if path.suffix == ".onnx":
         raise ValueError(f"{path} is for other programs; here the .npz of `puckpilot train` or `export` plays")
     try:
+        small_file.check_regular(path, MOST_BYTES)
         arrays = _arrays(path)
-        head = json.loads(str(arrays["head"]))
+        head = small_file.parse_json(str(arrays["head"]))
     except FileNotFoundError:
         raise ValueError(f"no policy at {path}") from None
     except Exception as error:  # a broken file breaks its readers in many ways: zlib's, zipfile's, numpy's, json's
@@ -84,9 +88,14 @@ def _arrays(path: Path) -> dict[str, NDArray[Any]]:
 
 def _built(arrays: dict[str, NDArray[Any]], head: dict[str, Any]) -> Policy:
     layers = sum(name.startswith("weights_") for name in arrays)
+    for name, array in arrays.items():
+        if name != "head" and getattr(array, "dtype", None) not in REAL:
+            raise ValueError(f"{name} is no array of real numbers")
     network = Network(*([arrays[f"{part}_{n}"] for n in range(layers)] for part in ("weights", "biases")))
     scaling = Scaling(*(arrays[name].astype(np.float32) for name in SCALINGS))
-    columns = tuple(str(name) for name in head["columns"])
+    columns = tuple(head["columns"]) if isinstance(head["columns"], list) else ()
+    if not columns or not all(isinstance(name, str) for name in columns):
+        raise ValueError(f"columns is {in_short(head['columns'])}; expected a list of names")
     wide = {"centre": len(columns), "span": len(columns), "flip": len(columns), "low": OUTPUTS, "high": OUTPUTS}
     for name, size in wide.items():
         numbers = getattr(scaling, name)

@@ -3,23 +3,27 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
 from agents.rewards import Rewards
+from puckpilot_env import small_file
+from puckpilot_env.inputs import in_short, real_number
 from puckpilot_env.variants import find_variant
 
 FOLDER = Path(__file__).parent / "presets"
 FLIPS = ("rows", "augment", "none")
 CRITICS = ("score", "state")  # what only the critic sees: how strong the opponent is, or the table's true state as well
 COUNTS = ("tables", "steps", "round", "cap", "most")
+MOST = {"tables": 1 << 16, "hidden": 1 << 12, "num_mini_batches": 1 << 12, "from_steps": 10**12}  # else MOST_OF_ALL
+MOST_OF_ALL = 10_000
+MOST_LAYERS = 8
 # The least and the greatest that a number may be; every other one must be finite.
 RANGES = {
     "gate": (0.0, 1.0), "gamma": (0.0, 1.0), "lam": (0.0, 1.0), "clip_param": (0.0, math.inf),
-    "learning_rate": (0.0, math.inf), "entropy_coef": (0.0, math.inf),
+    "learning_rate": (0.0, 1.0), "entropy_coef": (0.0, math.inf),
 }  # fmt: skip
 CHANGEABLE = ("learning_rate", "gamma", "lam", "clip_param", "entropy_coef")
 
@@ -85,16 +89,18 @@ def find_preset(name: str) -> Preset:
     """A shipped preset by name, or one of the user's by path. ValueError, in one line, for one that cannot be read."""
     path = FOLDER / f"{name}.toml" if name in preset_names() else Path(name)
     try:
-        text = path.read_text(encoding="utf-8")
+        text = small_file.read_text(path)
     except OSError:
         raise ValueError(f"no preset '{name}'; known: {', '.join(preset_names())}, or a path to a .toml file") from None
+    except ValueError as error:
+        raise ValueError(f"preset {error}") from None
     return read_preset(text, str(name))
 
 
 def read_preset(text: str, name: str) -> Preset:
     """The preset of a TOML text. ValueError, in one line, for a text that is not one."""
     try:
-        raw = tomllib.loads(text)
+        raw = small_file.parse_toml(text)
         network, league = raw.pop("network"), raw.pop("league")
         lists = {"hidden": network.pop("hidden"), "earlier": league.pop("earlier")}
         wrong = [f"{what} is {sizes!r}; expected a list" for what, sizes in lists.items() if type(sizes) is not list]
@@ -142,9 +148,9 @@ def _check_numbers(preset: Preset, name: str) -> None:
         named = {**{key: each.ppo[key] for key in CHANGEABLE if key in each.ppo}, **vars(each.rewards)}
         for what, number in {**named, "gate": each.gate}.items():
             low, high = RANGES.get(what, (-math.inf, math.inf))
-            if type(number) not in (int, float) or not (low <= number <= high and math.isfinite(number)):
+            if not (low <= real_number(number) <= high and math.isfinite(real_number(number))):
                 expected = f"a number from {low:g} to {high:g}" if what in RANGES else "a finite number"
-                raise ValueError(f"preset {name}: {what} is {number!r}; expected {expected}")
+                raise ValueError(f"preset {name}: {what} is {in_short(number)}; expected {expected}")
 
 
 def _change(entry: dict[str, Any]) -> Change:
@@ -169,5 +175,11 @@ def _check_counts(preset: Preset, name: str) -> None:
         named += [(f"[[beside]] {one.variant}", size) for size in (one.tables, *one.anchors.values(), *one.earlier)]
     named += [("[[later]] from_steps", change.from_steps) for change in preset.later]
     for what, count in named:
-        if type(count) is not int or count < 1:
-            raise ValueError(f"preset {name}: {what} is {count!r}; expected a whole number from 1 on")
+        most = MOST.get(what.split()[-1], MOST_OF_ALL)
+        if type(count) is not int or not 1 <= count <= most:
+            raise ValueError(f"preset {name}: {what} is {in_short(count)}; expected a whole number from 1 to {most:,}")
+    if not 1 <= len(preset.hidden) <= MOST_LAYERS:
+        raise ValueError(f"preset {name}: hidden has {len(preset.hidden)} layers; expected 1 to {MOST_LAYERS}")
+    samples, parts = preset.tables * preset.steps, preset.ppo.get("num_mini_batches", 1)
+    if parts > samples:
+        raise ValueError(f"preset {name}: num_mini_batches is {parts}; expected at most tables x steps = {samples:,}")

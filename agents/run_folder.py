@@ -17,6 +17,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from puckpilot_env import small_file
 from puckpilot_env.whole_file import write_text_whole, write_whole
 
 FORMAT = "puckpilot-run-1"
@@ -40,7 +41,7 @@ class RunFolder:
     def settings(self) -> dict[str, Any]:
         """What `begin` was given. ValueError, in one line, where there is no run."""
         try:
-            settings = json.loads(self.run.read_text(encoding="utf-8"))
+            settings = small_file.parse_json(small_file.read_text(self.run))
         except OSError:
             raise ValueError(f"no run in {self.path}: {self.run.name} is not there") from None
         except ValueError:

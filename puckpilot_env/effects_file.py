@@ -18,6 +18,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
+from puckpilot_env import small_file
 from puckpilot_env.inputs import in_short
 from puckpilot_env.parameters import BY_NAME, EFFECT_ROWS, checked, refuse_not_simulated
 from puckpilot_env.physics.effects import EFFECTS
@@ -68,7 +69,7 @@ def described(path: str | PathLike[str], apart_from: Iterable[str] = ()) -> list
     others = {name for name in values if BY_NAME[name] not in EFFECT_ROWS}.difference(apart_from)
     plain = [f"{name} {value:.4g}" for name, value in values.items() if name in others]
     lines += [f"in place of the defaults: {', '.join(plain)}"] if plain else []
-    text = Path(path).read_text(encoding="utf-8").splitlines()
+    text = small_file.read_text(Path(path)).splitlines()
     lines += [f"not switched on:{line.removeprefix(NOT_SWITCHED)}" for line in text if line.startswith(NOT_SWITCHED)]
     return lines or ["no effect is on"]
 

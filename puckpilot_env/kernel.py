@@ -81,10 +81,26 @@ def cache_folder_of(package: str) -> Path:
 _FLAGS: Any = {"nogil": True, "error_model": "numpy", "_nrt": False}
 
 
+def _mend_damaged(cache: Any) -> None:
+    """Let a numba cache whose files are cut short or empty, as a full disk leaves them, begin anew."""
+    load = cache.load_overload
+
+    def load_overload(signature: Any, context: Any) -> Any:
+        try:
+            return load(signature, context)
+        except Exception:  # a cut pickle breaks in many ways
+            cache.flush()
+            return None
+
+    cache.load_overload = load_overload
+
+
 def _compiled(function: Callable[..., Any], **flags: Any) -> Callable[..., Any]:
     before, _config.CACHE_DIR = _config.CACHE_DIR, str(cache_folder_of(function.__module__.partition(".")[0]))
     try:
-        return numba.njit(cache=True, **{**_FLAGS, **flags})(function)
+        made = numba.njit(cache=True, **{**_FLAGS, **flags})(function)
+        _mend_damaged(made._cache)
+        return made
     finally:
         _config.CACHE_DIR = before
 

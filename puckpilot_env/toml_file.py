@@ -9,6 +9,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, TypeVar
 
+from puckpilot_env import small_file
 from puckpilot_env.inputs import in_short
 
 Content = TypeVar("Content")
@@ -24,14 +25,14 @@ def read_toml(
     """
     path = Path(path)
     try:
-        return read(tomllib.loads(path.read_text(encoding="utf-8")))
+        text = small_file.read_text(path)
     except OSError as error:
         words = f"cannot read {what} from '{path}': {error.strerror or error}"
         raise ValueError(f"{words}; expected a file such as {expected}") from None
+    try:
+        return read(small_file.parse_toml(text))
     except tomllib.TOMLDecodeError as error:
         raise ValueError(f"{path}: not a TOML file ({error}); expected lines like {example}") from None
-    except UnicodeDecodeError as error:
-        raise ValueError(f"{path}: byte {error.start} is not UTF-8; save the file as UTF-8 text") from None
     except ValueError as error:
         raise ValueError(f"{path}: {' '.join(str(error).split())}") from None
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
+from puckpilot_env import small_file
 from puckpilot_env.draws_file import FORMAT as DRAWS_FORMAT
 from puckpilot_env.effects_file import FORMAT as EFFECTS_FORMAT
 from puckpilot_env.parameters import TABLE, checked
+from puckpilot_env.toml_file import refuse_unknown, section
 from sim2real.recording import Recording
 
 FROM_META = {
@@ -37,29 +39,29 @@ def read_baseline(path: Path) -> dict[str, float]:
     """Parameters by name from a TOML file of lines like `friction = 0.1`, or of a diagnosis's effects.toml that holds
     no effects. ValueError, in one line, if it is neither."""
     try:
-        found = tomllib.loads(path.read_text(encoding="utf-8"))
+        text = small_file.read_text(path)
     except OSError as error:
         words = f"cannot read the baseline '{path}': {error.strerror or error}"
         raise ValueError(f"{words}; expected a TOML file of lines like 'friction = 0.1'") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise ValueError(f"{path}: not a TOML file ({error}); expected lines like 'friction = 0.1'") from error
-    if found.get("format") == DRAWS_FORMAT:
-        raise ValueError(
-            f"{path} holds ranges to draw from, not one table's numbers: give --baseline a file of its [parameters] "
-            f"alone; to play with it, puckpilot match A B --draws {path}"
-        )
-    if found.get("format") == EFFECTS_FORMAT:
-        unknown = [name for name in found if name not in ("format", "parameters", "effects")]
-        if unknown:
-            raise ValueError(f"{path}: unknown entry '{unknown[0]}'; expected [parameters] alone")
-        if found.get("effects"):
-            names = ", ".join(found["effects"])
-            raise ValueError(
-                f"{path} holds effects ({names}), which diagnose looks for by itself: give --baseline a file of its "
-                f"[parameters] alone; to play with it, puckpilot match A B --effects {path}"
-            )
-        found = found.get("parameters", {})
     try:
-        return {name: checked(name, value) for name, value in found.items()}
+        found = small_file.parse_toml(text)
+    except ValueError as error:
+        raise ValueError(f"{path}: not a TOML file ({error}); expected lines like 'friction = 0.1'") from error
+    try:
+        return {name: checked(name, value) for name, value in _numbers(path, found).items()}
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from error
+
+
+def _numbers(path: Path, found: Mapping[str, Any]) -> Mapping[str, Any]:
+    """What a file holds by parameter. ValueError for one that holds more, with what to do."""
+    alone = "give --baseline a file of its [parameters] alone; to play with it, puckpilot match A B"
+    if found.get("format") == DRAWS_FORMAT:
+        raise ValueError(f"holds ranges to draw from, not one table's numbers: {alone} --draws {path}")
+    if found.get("format") != EFFECTS_FORMAT:
+        return found
+    refuse_unknown(found, ("format", "parameters", "effects"), "entry")
+    if section(found, "effects"):
+        names = ", ".join(section(found, "effects"))
+        raise ValueError(f"holds effects ({names}), which diagnose looks for by itself: {alone} --effects {path}")
+    return section(found, "parameters")

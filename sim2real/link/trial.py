@@ -9,8 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from sim2real.link.messages import Fault, State
 from sim2real.link.pings import OVERDUE, PERIOD
 from sim2real.link.session import Session
+from sim2real.link.words import name
 
 GREETING = 3.0  # s that a board may take to answer hello: some are reset by the opening of their port
 MOST_ROUND_TRIP = 10e-3  # s, the median: a tenth of a decision
@@ -60,6 +62,8 @@ def trial(session: Session, pings: int, now: Callable[[], float] = time.perf_cou
         "damaged_there": (last.damaged - at_first.damaged) % 2**16 if last and at_first else None,
         "lost_there": (last.lost - at_first.lost) % 2**16 if last and at_first else None,
         "longest_tick_us": last.longest if last else None,
+        "state": name(State, last.state) if last else None,
+        "fault": name(Fault, last.fault) if last else None,
         "resets": session.resets - resets,
         "echoes": session.echoes,
     }
@@ -78,6 +82,10 @@ def bad_news(found: dict[str, Any]) -> list[str]:
         (bool(found["refused"]), f"damaged frames from the board {found['refused']}: check cable and baud rate"),
         (bool(found["damaged_there"]), f"{found['damaged_there']} damaged frames at the board: check cable and ground"),
         (bool(found["lost_there"]), f"the board lost {found['lost_there']} bytes: it is too busy to read"),
+        (
+            found["state"] == name(State, State.FAULT),
+            f"the board is in FAULT ({found['fault']}) and moves nothing: mend the cause, then reset it",
+        ),
         (found["telemetry_hz"] is None, "no telemetry came: the board may be stuck"),
         (found["missing"] > 0, f"{found['missing']} telemetry messages did not come: this computer may be too busy"),
         (found["resets"] > 0, f"the board was reset {found['resets']} times: check its supply"),

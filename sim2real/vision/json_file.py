@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-import json
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from puckpilot_env import small_file
+
+MOST_BYTES = 1 << 26  # a calibration of a table holds every point's error
 
 
 def read_object(path: Path, what: str) -> dict[str, Any]:
@@ -20,10 +23,12 @@ def read_object(path: Path, what: str) -> dict[str, Any]:
         return dict(pairs)
 
     try:
-        found = json.loads(path.read_text(encoding="utf-8-sig"), object_pairs_hook=once)
+        text = small_file.read_text(path, MOST_BYTES)
     except OSError as error:
         raise ValueError(f"cannot read {path}: {error.strerror or error}; expected {what}") from None
-    except (ValueError, RecursionError) as error:
+    try:
+        found = small_file.parse_json(text, object_pairs_hook=once)
+    except ValueError as error:
         raise ValueError(f"{path}: not JSON ({error}); expected {what}") from None
     if not isinstance(found, dict):
         raise ValueError(f"{path}: holds no JSON object; expected {what}")

@@ -168,6 +168,7 @@ BAD: dict[str, Callable[[dict[str, Any]], Any]] = {
     "too many outputs": lambda c: c.update(weights_1=np.ones((5, 8), np.float32), biases_1=np.ones(5, np.float32)),
     "weights that are a number": lambda c: c.update(weights_0=np.float32(1.0)),
     "weights that are words": lambda c: c.update(weights_0=np.array([["a"] * 21] * 8)),
+    "weights that are complex": lambda c: c.update(weights_0=c["weights_0"].astype(np.complex64)),
     "weights not finite": lambda c: c["weights_0"].fill(np.nan),
     "biases of a wrong length": lambda c: c.update(biases_0=np.ones(3, np.float32)),
     "no centre": lambda c: c.pop("centre"),
@@ -180,6 +181,7 @@ BAD: dict[str, Callable[[dict[str, Any]], Any]] = {
 HEADS: dict[str, dict[str, Any]] = {
     "no columns": {"columns": None},
     "columns a number": {"columns": 3},
+    "columns a text": {"columns": "puck_x"},
     "columns too few": {"columns": ["puck_x"]},
     "about a number": {"about": 3},
 }
@@ -199,6 +201,10 @@ def test_heads_that_do_not_fit_are_refused(saved: Path, wrong: str) -> None:
     head = {**json.loads(str(arrays.pop("head"))), **HEADS[wrong]}
     np.savez(saved, head=np.array(json.dumps(head)), **arrays)
     assert "does not fit together" in refusal(saved)
+
+
+def test_a_device_is_refused() -> None:
+    assert "is no policy" in refusal(Path("/dev/zero"))
 
 
 def test_a_failed_save_leaves_the_file_as_it_was(saved: Path, monkeypatch: pytest.MonkeyPatch) -> None:

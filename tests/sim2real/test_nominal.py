@@ -30,6 +30,12 @@ def test_a_baseline_is_lines_of_numbers_or_a_diagnosis_s_file_without_effects(tm
         ),
         ("friction", "not a TOML file"),
         ("frictoin = 0.1", "did you mean 'friction'"),
+        ("friction = true", "parameter 'friction' is True; expected a number"),
+        ("friction = 1" + "0" * 400, r"parameter 'friction' is 1000.*; expected a number in \[0, 5\] m/s\^2"),
+        ('format = "puckpilot-effects/1"\nparameters = 3', "parameters is 3; expected numbers by name"),
+        ('format = "puckpilot-effects/1"\neffects = 3', "effects is 3; expected numbers by name"),
+        ('format = "puckpilot-draws/1"', r"holds ranges to draw from.*\[parameters\] alone.*--draws"),
+        ("a = " + "[" * 100_000, "nest too deep"),
     ],
 )
 def test_what_is_no_baseline_is_refused_with_what_to_do(tmp_path, text, told):

@@ -11,7 +11,7 @@ from functools import partial
 from pathlib import Path
 
 import pytest
-from fake_board import ARMED, PING, FakeBoard, Terminal
+from fake_board import ARMED, FAULT, PING, FakeBoard, Terminal
 from reference_wire import SCHEMA, frame
 
 import puckpilot
@@ -59,6 +59,13 @@ def test_a_noisy_line_is_bad_news(terminal, capsys):
     found = json.loads(capsys.readouterr().out)
     assert sum(found["refused"].values()) > 5
     assert any("damaged frames from the board" in line for line in found["bad"])
+
+
+def test_a_board_that_was_stopped_is_bad_news(terminal, capsys):
+    terminal.board.state = FAULT
+    assert puckpilot.main(["link", "test", str(terminal.path), "--pings", "5"]) == 1
+    told = capsys.readouterr().out
+    assert "bad: the board is in FAULT (" in told and "mend the cause, then reset it" in told
 
 
 def test_pings_without_an_answer_are_bad_news(terminal, capsys):
@@ -220,6 +227,7 @@ def test_a_clock_that_no_crystal_drives_is_bad_news():
     good = {
         "answered": 5, "lost": 0, "round_trip_ms": {"median": 1.0}, "refused": {}, "damaged_there": 0, "lost_there": 0,
         "telemetry_hz": 500.0, "missing": 0, "resets": 0, "echoes": 0, "clock_jumps": 0,
+        "state": "IDLE", "fault": "NONE",
     }  # fmt: skip
     assert bad_news({**good, **clock}) == ["the board's clock goes wrong by -250 ppm: does it run from its crystal?"]
     assert bad_news({**good, **clock, "drift_error_ppm": 250.0}) == []
