@@ -98,7 +98,7 @@ def _mend_damaged(cache: Any) -> None:
 def _compiled(function: Callable[..., Any], **flags: Any) -> Callable[..., Any]:
     before, _config.CACHE_DIR = _config.CACHE_DIR, str(cache_folder_of(function.__module__.partition(".")[0]))
     try:
-        made = numba.njit(cache=True, **{**_FLAGS, **flags})(function)
+        made: Any = numba.njit(cache=True, **{**_FLAGS, **flags})(function)
         _mend_damaged(made._cache)
         return made
     finally:

@@ -129,7 +129,10 @@ def test_what_is_given_is_not_drawn():
     "draw, told",
     [
         (Draw("frictoin", "uniform", 0.1, 0.2, ""), r"unknown parameter 'frictoin'; did you mean 'friction'\?"),
-        (Draw("friction", "normal", 0.1, 0.2, ""), "unknown distribution 'normal'; known: uniform, log-uniform"),
+        (
+            Draw("friction", "normal", 0.1, 0.2, ""),
+            "the draw of 'friction' has the unknown distribution 'normal'; known: ",
+        ),
         (Draw("friction", "uniform", -0.1, 0.2, ""), r"parameter 'friction' is -0.1; expected a number in \[0, 5\]"),
         (Draw("friction", "uniform", 0.2, 0.1, ""), "the draw of 'friction' is from 0.2 to 0.1; expected low <= high"),
         (Draw("drag", "log-uniform", 0.0, 0.1, ""), "the draw of 'drag' is log-uniform from 0; expected low > 0"),
