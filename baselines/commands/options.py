@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from baselines.match import Progress
 from puckpilot_env import draws_file
-from puckpilot_env.effects_file import described, effect_values
+from puckpilot_env.effects_file import described
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -46,8 +46,7 @@ def print_table(args: argparse.Namespace) -> None:
     given = parse_values(args.set)
     for line in described(args.effects, apart_from=given) if args.effects else ():
         print(line)
-    said = {**effect_values(args.effects), **given}
-    for line in draws_file.described(args.draws, apart_from=said) if args.draws else ():
+    for line in draws_file.described(args.draws, apart_from=given) if args.draws else ():
         print(line)
     if given:
         print(f"set: {', '.join(f'{name} {value:.4g}' for name, value in given.items())}")
