@@ -15,7 +15,7 @@ from agents.checkpoint import load_checkpoint, restore_tables, save_checkpoint, 
 from agents.league import Member
 from agents.policy import Policy, load_policy
 from agents.run_folder import RunFolder
-from agents.widen import FIRST, widened
+from agents.widen import FIRST, grown, widened
 
 if TYPE_CHECKING:
     from agents.training import Training
@@ -67,8 +67,9 @@ def learn_on(training: Training, start: Path) -> None:
 def _use_networks(training: Training, start: Path, learner: dict[str, Any]) -> None:
     known, alg = _alike(training, RunFolder(start).policy).columns, training.runner.alg
     for part, network in (("actor_state_dict", alg.actor), ("critic_state_dict", alg.critic)):
-        inputs = network.state_dict()[FIRST].shape[1]
-        learner[part] = widened(learner[part], known, training.columns, inputs)
+        fresh = network.state_dict()
+        widest = widened(learner[part], known, training.columns, fresh[FIRST].shape[1])
+        learner[part] = _grown(start, widest, fresh)
     alg.load(learner, {"actor": True, "critic": True}, True)
 
 
@@ -92,11 +93,15 @@ def _use_policy(training: Training, path: Path) -> None:
         raise ValueError(f"{path} has {len(given) // 2} layers; the preset's network has {len(names) // 2}")
     known = {name: torch.from_numpy(array) for name, array in zip(names, given, strict=True)}
     known = widened(known, policy.columns, training.columns, weights[FIRST].shape[1])
-    for name, tensor in known.items():
-        rows = weights[name][: len(tensor)] if name in names[-2:] else weights[name]
-        if rows.shape != tensor.shape:
-            raise ValueError(f"{path} has a layer of {tuple(tensor.shape)}; the preset's has {tuple(rows.shape)}")
-        rows.copy_(tensor)
+    for name, tensor in _grown(path, known, weights).items():
+        weights[name].copy_(tensor)
+
+
+def _grown(start: Path, weights: Mapping[str, torch.Tensor], fresh: Mapping[str, torch.Tensor]) -> Any:
+    try:
+        return grown(weights, fresh)
+    except ValueError as error:
+        raise ValueError(f"{start} {error}") from None
 
 
 def _read(checkpoint: Path, use: Callable[[Mapping[str, Any]], None]) -> None:

@@ -1,4 +1,4 @@
-"""A network's weights for other observations: what it never saw does not move it at first, what is gone no more."""
+"""A network's weights for other observations, or with wider layers: what is new does not move it at first."""
 
 from __future__ import annotations
 
@@ -28,3 +28,23 @@ def widened(
             new[:, wanted.index(name)] = old[:, column]
     new[:, len(wanted) : len(wanted) + more] = old[:, len(known) :]
     return {**weights, FIRST: new}
+
+
+def grown(weights: Mapping[str, Tensor], fresh: Mapping[str, Tensor]) -> dict[str, Tensor]:
+    """`weights`, of layers that are at most as wide, in the shapes of a new network's weights `fresh`.
+
+    Units that are new read as they do in `fresh`, and nothing of the old network reads them, so that its outputs stay
+    (Chen and others, "Net2Net", ICLR 2016, whose new units are copies instead). ValueError for a layer that is wider.
+    """
+    made = dict(weights)
+    for name, old in weights.items():
+        new = fresh[name].detach().clone()
+        if any(was > now for was, now in zip(old.shape, new.shape, strict=True)):
+            raise ValueError(f"has a layer of {tuple(old.shape)}; the preset's has {tuple(new.shape)}")
+        if old.ndim == 2:
+            new[: old.shape[0]] = 0.0
+            new[: old.shape[0], : old.shape[1]] = old
+        else:
+            new[: old.shape[0]] = old
+        made[name] = new
+    return made

@@ -12,7 +12,7 @@ from tiny import TINY, training
 
 from agents.policy import PolicyPlayer, load_policy
 from agents.preset import Preset, read_preset
-from agents.widen import FIRST, widened
+from agents.widen import FIRST, grown, widened
 from baselines.player import Seat
 from puckpilot_env.tables import Tables
 
@@ -31,6 +31,17 @@ def test_inputs_go_by_their_names_and_new_ones_move_nothing() -> None:
     with pytest.raises(ValueError, match="has 1 inputs beside its columns; expected 0 at most"):
         widened(old, ["a", "b"], ["a", "b"], 2)
     assert new["mlp.0.bias"] is old["mlp.0.bias"] and old[FIRST].shape == (2, 3)
+
+
+def test_new_units_move_nothing_and_learn() -> None:
+    """A network of one hidden unit, by hand: 2 relu(x + 1) + 3; the two that are new read x, and nobody reads them."""
+    old = {"a": torch.tensor([[1.0]]), "b": torch.tensor([1.0]), "c": torch.tensor([[2.0]]), "d": torch.tensor([3.0])}
+    fresh = {"a": torch.full((3, 1), 7.0), "b": torch.full((3,), 7.0), "c": torch.full((2, 3), 7.0), "d": torch.ones(2)}
+    new = grown(old, fresh)
+    assert new["a"].tolist() == [[1.0], [7.0], [7.0]] and new["b"].tolist() == [1.0, 7.0, 7.0]
+    assert new["c"].tolist() == [[2.0, 0.0, 0.0], [7.0, 7.0, 7.0]] and new["d"].tolist() == [3.0, 1.0]
+    with pytest.raises(ValueError, match=r"has a layer of \(3, 1\); the preset's has \(1, 1\)"):
+        grown(fresh, old)
 
 
 @pytest.fixture(scope="module")
@@ -74,10 +85,18 @@ def test_a_policy_alone_is_enough_to_begin_with(first: Path, tmp_path: Path) -> 
     scale = begun.runner.alg.actor.output_std.detach()
     assert float(scale.min()) > 0.25 and float(scale.max()) < 0.35
     begun.round()
-    with pytest.raises(ValueError, match=r"has a layer of \(16, 28\); the preset's has \(24, 28\)$"):
-        training(tmp_path / "wide", variant=MORE, start=first / "policy.npz", preset=named("hidden = [24]"))
+    with pytest.raises(ValueError, match=r"policy.npz has a layer of \(16, 28\); the preset's has \(12, 28\)$"):
+        training(tmp_path / "thin", variant=MORE, start=first / "policy.npz", preset=named("hidden = [12]"))
     with pytest.raises(ValueError, match=r"has 2 layers; the preset's network has 3$"):
         training(tmp_path / "deep", variant=MORE, start=first / "policy.npz", preset=named("hidden = [16, 16]"))
+
+
+def test_a_wider_network_begins_with_what_a_narrower_one_plays(first: Path, tmp_path: Path) -> None:
+    for number, start in enumerate((first, first / "policy.npz")):
+        begun = training(tmp_path / f"{number}", variant=SEEN, start=start, preset=named("hidden = [24]"))
+        assert_acts_alike(first / "policy.npz", tmp_path / f"{number}" / "selves" / "self-0.npz", SEEN)
+        assert begun.policy().network.sizes[1] == 24
+        begun.round()
 
 
 def test_a_policy_that_reads_in_other_units_is_refused(first: Path, tmp_path: Path) -> None:
