@@ -19,7 +19,7 @@ from puckpilot_env.game.rules import ENDING_NAMES
     [
         ("champion.finish_goalie", "--preset finish_goalie --start out/champion"),
         ("champion.finish_veteran", "--preset finish_veteran --start out/finish_goalie"),
-        ("champion", "--preset finish_both --start out/mean.npz"),
+        ("champion", "--preset finish_still --start out/finish_still"),
         (
             "champion.match-randomized-v0",
             "--preset randomized_finish --variant match-randomized-v0 --start out/randomized",
