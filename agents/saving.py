@@ -5,23 +5,40 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import numpy as np
 import torch
 
 from agents import ranks
 from agents.checkpoint import load_checkpoint, restore_tables, save_checkpoint, tables_as_tensors
-from agents.league import Member
+from agents.hall import Hall
+from agents.league import League, Member
 from agents.policy import Policy, load_policy
+from agents.preset import Preset
 from agents.run_folder import RunFolder
+from agents.runner import SelfPlayRunner
 from agents.widen import FIRST, grown, widened
 
-if TYPE_CHECKING:
-    from agents.training import Training
+
+class Kept(Protocol):
+    """What a training has that is kept, or that decides whether something kept fits (`training.Training`)."""
+
+    folder: RunFolder
+    preset: Preset
+    hall: Hall
+    columns: list[str]
+    runner: SelfPlayRunner
+    league: League
+    rng: np.random.Generator
+    rows: list[dict[str, Any]]
+
+    def policy(self) -> Policy:
+        """The learner's policy."""
+        ...
 
 
-def save(training: Training) -> None:
+def save(training: Kept) -> None:
     """Write the policy, the curve and the checkpoint: one process does, and all must call it."""
     processes = ranks.gathered(_own(training))
     if ranks.rank() > 0:
@@ -44,18 +61,18 @@ def save(training: Training) -> None:
     )
 
 
-def _own(training: Training) -> dict[str, Any]:
+def _own(training: Kept) -> dict[str, Any]:
     """What no other process has."""
     tables = [tables_as_tensors(part.tables) for part in training.hall.parts]
     return {"torch_random": torch.get_rng_state(), "tables": tables}
 
 
-def take_up(training: Training) -> None:
+def take_up(training: Kept) -> None:
     """Go on where the run's checkpoint left it. ValueError for one that does not fit."""
     _read(training.folder.checkpoint, lambda kept: _take_up(training, kept))
 
 
-def learn_on(training: Training, start: Path) -> None:
+def learn_on(training: Kept, start: Path) -> None:
     """Begin with the networks of the run in the folder `start`, or with a policy's file, which has no critic; nothing
     else of it is taken. ValueError for one that does not fit."""
     if start.is_dir():
@@ -64,7 +81,7 @@ def learn_on(training: Training, start: Path) -> None:
         _use_policy(training, start)
 
 
-def _use_networks(training: Training, start: Path, learner: dict[str, Any]) -> None:
+def _use_networks(training: Kept, start: Path, learner: dict[str, Any]) -> None:
     known, alg = _alike(training, RunFolder(start).policy).columns, training.runner.alg
     for part, network in (("actor_state_dict", alg.actor), ("critic_state_dict", alg.critic)):
         fresh = network.state_dict()
@@ -73,7 +90,7 @@ def _use_networks(training: Training, start: Path, learner: dict[str, Any]) -> N
     alg.load(learner, {"actor": True, "critic": True}, True)
 
 
-def _alike(training: Training, path: Path) -> Policy:
+def _alike(training: Kept, path: Path) -> Policy:
     """The policy of a file; ValueError if it reads or acts in other units than the one that is trained."""
     policy = load_policy(path)
     if not policy.scaling.reads_alike(policy.columns, training.hall.reading.scaling, training.columns):
@@ -81,7 +98,7 @@ def _alike(training: Training, path: Path) -> Policy:
     return policy
 
 
-def _use_policy(training: Training, path: Path) -> None:
+def _use_policy(training: Kept, path: Path) -> None:
     """How boldly a policy explored is not in its file: the rows of the last layer for that stay as they are."""
     policy, actor = _alike(training, path), training.runner.alg.actor
     weights = dict(actor.state_dict())
@@ -113,7 +130,7 @@ def _read(checkpoint: Path, use: Callable[[Mapping[str, Any]], None]) -> None:
         raise ValueError(f"the checkpoint {checkpoint} does not fit this run ({words})") from None
 
 
-def _take_up(training: Training, kept: Mapping[str, Any]) -> None:
+def _take_up(training: Kept, kept: Mapping[str, Any]) -> None:
     training.runner.alg.load(kept["learner"], None, True)
     training.rng.bit_generator.state = json.loads(kept["random"])
     processes = [kept, *kept.get("others", [])]

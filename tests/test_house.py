@@ -110,6 +110,46 @@ def _inside_any(names: list[str], root: str) -> bool:
     return any(_inside(name, (root,)) for name in names)
 
 
+def _whole_imports() -> dict[str, set[str]]:
+    """For each module of the product, those that it imports when it is loaded, or would for its types alone."""
+    paths = [path for folder in PACKAGES for path in _modules(folder) if path.name != "__init__.py"]
+    names = {".".join(path.relative_to(ROOT).with_suffix("").parts): path for path in paths}
+    return {
+        name: {one for one in _imports(path, _outside_functions(path)) if one in names} for name, path in names.items()
+    }
+
+
+def _outside_functions(path: Path) -> Iterator[ast.AST]:
+    waiting: list[ast.AST] = [ast.parse(path.read_text(encoding="utf-8"))]
+    while waiting:
+        node = waiting.pop()
+        yield node
+        waiting += [one for one in ast.iter_child_nodes(node) if not isinstance(one, ast.FunctionDef | ast.Lambda)]
+
+
+def _circle(imports: dict[str, set[str]]) -> list[str]:
+    """Modules that import each other, in a circle; none where there is none."""
+    left = dict(imports)
+    while free := [name for name, needed in left.items() if not needed & (left.keys() - {name})]:
+        for name in free:
+            del left[name]
+    if not left:
+        return []
+    way = [next(iter(left))]
+    while len(set(way)) == len(way):
+        way.append(sorted(left[way[-1]] & left.keys() - {way[-1]})[0])
+    return way[way.index(way[-1]) :]
+
+
+def test_no_modules_import_each_other_in_a_circle() -> None:
+    """Nor for their types alone, under TYPE_CHECKING."""
+    assert _circle({"a": {"b"}, "b": {"c"}, "c": {"b"}, "d": set()}) == ["b", "c", "b"]
+    assert _circle({"a": {"b"}, "b": {"c"}, "c": set()}) == []
+    imports = _whole_imports()
+    assert "sim2real.diagnose.problem" in imports["sim2real.diagnose.engine.choose"]
+    assert _circle(imports) == []
+
+
 def test_the_readers_of_imports_see_what_they_should(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys.modules[__name__], "ROOT", tmp_path)
     path = tmp_path / "house" / "room.py"

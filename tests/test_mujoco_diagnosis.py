@@ -21,6 +21,7 @@ def test_what_is_there_is_named_and_measured(tmp_path: Path, name: str) -> None:
     found = diagnose([read_recording(tmp_path / "table")], [], {}, lambda stage, share: None)
     assert {one.mechanism for one in found.findings} == set(truth)
     for one in found.findings:
+        assert one.before is not None and one.after is not None
         assert one.after < 0.5 * one.before or one.regime == "glide"
         for label, value in truth[one.mechanism].items():
             assert one.parameters[label].value == pytest.approx(value, rel=WITHIN)

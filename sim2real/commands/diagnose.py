@@ -20,7 +20,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("recordings", nargs="+", type=Path, metavar="RECORDING", help="folder of a recording")
     parser.add_argument(
         "--holdout", nargs="+", type=Path, default=[], metavar="RECORDING",
-        help="recordings of the same table that serve the proof alone; else whole launches are kept apart",
+        help="recordings of the same table that serve the proof alone, and change nothing else; without them about "
+        "every sixth launch does",
     )  # fmt: skip
     parser.add_argument("--baseline", type=Path, metavar="FILE", help="TOML file of the simulator's parameters")
     parser.add_argument("--out", type=Path, default=Path("out/diagnosis"), metavar="DIR", help="(out/diagnosis)")

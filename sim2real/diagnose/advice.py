@@ -8,8 +8,8 @@ import numpy as np
 
 from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.engine import gram
-from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.engine.explain import Explained
+from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.engine.splitting import information, most_telling
 from sim2real.diagnose.finding import Finding
 from sim2real.diagnose.problem import Problem

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from typing import Any, TypeVar
 
 import numpy as np
@@ -97,14 +97,6 @@ def join(parts: Sequence[C]) -> C:
     """The contacts of several recordings, whose clusters are numbered through already."""
     names = [one.name for one in fields(parts[0])]
     return type(parts[0])(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
-
-
-def known_apart(contacts: C, clusters: np.ndarray) -> C:
-    """The same contacts, but what is not known of the glides' law, which all of them share, is one thing for those of
-    `clusters` and another for the others: so neither tells the other's residuals anything."""
-    apart = np.isin(contacts.cluster, clusters)[:, None, None, None]
-    drift = [np.where(here, contacts.drift, 0.0) for here in (~apart, apart)]
-    return replace(contacts, drift=np.concatenate(drift, axis=3))
 
 
 def shared_variance(before: Side, after: Side) -> float:

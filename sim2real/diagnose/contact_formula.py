@@ -8,8 +8,8 @@ import numpy as np
 
 from sim2real.diagnose.contact_laws import acted_on
 from sim2real.diagnose.contact_problem import ContactProblem
-from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.engine.explain import Explained
+from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.forms import Axis, Direction, form, profiles
 from sim2real.diagnose.formula import Formula, Rest, find_formula
 

@@ -5,18 +5,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from puckpilot_env.physics.effects.unlisted_bounce import OF_BOTH, OF_NORMAL, OF_TANGENT
+from sim2real.diagnose.contact_data import Contacts
+from sim2real.diagnose.contact_problem import ContactProblem
 from sim2real.diagnose.engine import gram
-from sim2real.diagnose.engine.choose import Law
+from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.problem import Columns
-
-if TYPE_CHECKING:
-    from sim2real.diagnose.contact_data import Contacts
-    from sim2real.diagnose.contact_problem import ContactProblem
 
 SLOWEST = 0.1  # m/s of a component; the share kept of a slower one is noise
 UNIT = 0.1  # of a restitution, what a coefficient of 1 stands for

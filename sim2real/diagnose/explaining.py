@@ -1,16 +1,17 @@
-"""One regime: what it lacks by those launches that are fitted, what stands of it on the others, and in words."""
+"""One regime: what it lacks, what stands of it where each launch is predicted by the others, and in words."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from sim2real.diagnose.account import account
 from sim2real.diagnose.agreement import Part, check_agreement
-from sim2real.diagnose.engine.explain import Explained, bare, explain
-from sim2real.diagnose.engine.proving import Proved, prove
+from sim2real.diagnose.effect_size import LEAST, effect_size
+from sim2real.diagnose.engine.explain import Explained, bare, explain, without
+from sim2real.diagnose.engine.selection import Selected, select
 from sim2real.diagnose.finding import Account
 from sim2real.diagnose.illustrate import illustrated
 from sim2real.diagnose.problem import Problem
@@ -28,38 +29,69 @@ MORE_OF = {
 }
 
 
-def explain_regime(
-    problem: Problem,
-    law: Mapping[str, float],
-    proof: np.ndarray,
-    tables: Sequence[Part],
-    clear: bool = True,
-    proved: bool = True,
-) -> tuple[Explained | None, Account, bool]:
-    """What stands of a problem (None where there is too little data), its account, and whether a law by name, or none,
-    explains what was fitted. What the regime rests on: `clear` to those who fit, and `proved` by untouched launches; if
-    it is not, nothing is told that leaves much unexplained."""
+@dataclass(frozen=True)
+class Identified:
+    """What a regime lacks. `final`: what was found of it, None where there is too little data; `without`: the same less
+    each law, by its name; `clear`: whether a law by name, or none, explains what was fitted."""
+
+    problem: Problem | None
+    account: Account
+    final: Explained | None = None
+    without: Mapping[str, Explained] = field(default_factory=dict)
+    clear: bool = True
+
+    @property
+    def laws(self) -> tuple[str, ...]:
+        """The law of each finding, by its name."""
+        assert self.final is not None
+        known = {law.mechanism if law.family else law.name: law.name for law in self.final.model.laws}
+        return tuple(known[one.mechanism] for one in self.account.findings)
+
+
+def identify_regime(
+    problem: Problem, law: Mapping[str, float], tables: Sequence[Part], clear: bool = True, stands: bool = True
+) -> Identified:
+    """What a regime lacks. What it rests on: `clear` to those who fit, and whether it `stands` where launches are
+    predicted by others; if it does not, nothing is named that leaves much unexplained."""
     live = np.flatnonzero(problem.freedom > 0)
-    use, apart = np.setdiff1d(live, proof), np.intersect1d(live, proof)
-    if len(use) + len(apart) < FEWEST_LAUNCHES or not len(apart) or problem.freedom[use].sum() < FEWEST_RESIDUALS:
-        return None, too_little(problem.regime), True
+    if len(live) < FEWEST_LAUNCHES or problem.freedom[live].sum() < FEWEST_RESIDUALS:
+        return Identified(problem, too_little(problem.regime))
     shipped = {name: law[name] for name in problem.base}
     check_agreement(problem, shipped, tables)
     if isinstance(problem, WallProblem):
-        problem, found = explain_bounces(problem, shipped, use, clear)
+        problem, found = explain_bounces(problem, shipped, live, clear)
     else:
-        found = explain(problem, shipped, use, clear)
-    stands = prove(problem, found, apart, proved)
-    told = account(problem, stands, shipped, use, apart)
-    if not proved and (told.unexplained or told.lost):
-        stands = Proved(bare(stands.found), {})
-        told = replace(account(problem, stands, shipped, use, apart), undetermined=TOO_ROUGH, lost=False)
+        found = explain(problem, shipped, live, clear)
+    chosen = _that_matter(problem, select(problem, found, stands))
+    told = account(problem, chosen, shipped)
+    if not stands and (told.unexplained or told.lost):
+        chosen = Selected(bare(chosen.found), {})
+        told = replace(account(problem, chosen, shipped), undetermined=TOO_ROUGH, lost=False)
     elif (told.lost or told.unexplained) and not told.next_recording:
         told = replace(told, next_recording=f"record more {MORE_OF[problem.regime]}")
     if isinstance(problem, WallProblem) and problem.scatter.any():
         told = replace(told, doubt="; ".join(filter(None, (told.doubt, _scattering(problem)))))
     known = found.unlisted is None and not found.lost
-    return stands.found, illustrated(problem, stands.found, told, use), known
+    shown = illustrated(problem, chosen.found, told, chosen.found.clusters)
+    said = Identified(problem, shown, chosen.found, chosen.without, known)
+    sizes = [effect_size(problem, chosen.found, chosen.without[name]) for name in said.laws]
+    findings = tuple(replace(one, size_m=size) for one, size in zip(shown.findings, sizes, strict=True))
+    return replace(said, account=replace(shown, findings=findings))
+
+
+def _that_matter(problem: Problem, chosen: Selected) -> Selected:
+    """The laws without those of which nobody would notice anything, the smallest first."""
+    while chosen.found.model.laws:
+        sizes = {
+            one.name: effect_size(problem, chosen.found, chosen.without[one.name]) for one in chosen.found.model.laws
+        }
+        name, size = min(sizes.items(), key=lambda one: one[1])
+        if size >= LEAST[problem.regime]:
+            break
+        found = chosen.without[name]
+        rest = {one.name: without(problem, found, one) for one in found.model.laws}
+        chosen = replace(chosen, found=found, without=rest, small={**chosen.small, name: size})
+    return chosen
 
 
 def too_little(regime: str) -> Account:

@@ -32,6 +32,8 @@ def as_dict(diagnosis: Diagnosis) -> dict[str, Any]:
         "heldout": None if proof is None else asdict(proof),
         "next_recording": diagnosis.next_recording,
     }
+    if diagnosis.proof_remarks:
+        words["heldout_notes"] = diagnosis.proof_remarks
     if diagnosis.reason:
         words["reason"] = diagnosis.reason
     if diagnosis.remarks:
@@ -49,6 +51,7 @@ def _finding(one: Finding) -> dict[str, Any]:
         "formula": one.formula,
         "parameters": {name: _estimate(value) for name, value in one.parameters.items()},
         "p_value": one.p_value,
+        **({} if one.size_m is None else {"size_m": one.size_m}),
         "heldout": {
             "before": one.before,
             "after": one.after,
@@ -75,6 +78,7 @@ def _regime(one: Account) -> dict[str, Any]:
         "reason": one.undetermined or None,
         "heldout": None if one.proof is None else asdict(one.proof),
         "doubt": one.doubt or None,
+        "minor": one.minor or None,
         "next_recording": one.next_recording or None,
     }
     return _known(words)

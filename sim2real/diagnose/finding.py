@@ -131,7 +131,7 @@ class Finding:
 
     `values`: the simulator's parameters that switch it on, by their names in `puckpilot_env.parameters`; `ranges`:
     those fitted, with intervals. `twins`: the same residuals before and after in controls where nothing is to
-    be found, by the control's name (`engine.twins`).
+    be found, by the control's name (`engine.twins`). `size_m`: by how much it moves things (`effect_size`).
     """
 
     regime: str
@@ -141,14 +141,15 @@ class Finding:
     formula: str
     parameters: Mapping[str, Estimate]
     p_value: float
-    before: float  # rms of held-out residuals in units of the sensor's noise
-    after: float
+    before: float | None = None  # rms of held-out residuals in units of the sensor's noise; None where there are none
+    after: float | None = None
     where: Mapping[str, Any] = field(default_factory=dict)
     values: Mapping[str, float] = field(default_factory=dict)
     ranges: Mapping[str, Estimate] = field(default_factory=dict)
     rivals: tuple[Rival, ...] = ()
     curve: Curve | None = None
     twins: Mapping[str, Twin] = field(default_factory=dict)
+    size_m: float | None = None
 
 
 @dataclass(frozen=True)
@@ -156,21 +157,25 @@ class Account:
     """What one regime of the recording says. `undetermined` gives the reason why it cannot tell, "" if it can.
 
     `baseline`: the refitted parameters of the baseline law; `shipped`: whether the simulator's own numbers do as well.
-    `better`: whether these foretell untouched launches better than the simulator's own. `doubt`: what the data hint at
-    without telling it surely, "" where nothing. `lost`: whether no law explains it.
+    `selection`: residuals of launches, each predicted by laws fitted to others; `proof`: of data
+    that nothing else here depends on. `better`: whether the refitted numbers predict launches better than the
+    simulator's own. `doubt`: what the data hint at without telling it surely, "" where nothing; `minor`: what is there
+    and too small to matter. `lost`: whether no law explains it.
     """
 
     regime: str
     findings: tuple[Finding, ...]
     baseline: Mapping[str, Estimate]
     shipped: bool
-    proof: Proof | None
+    selection: Proof | None
     undetermined: str = ""
     next_recording: str = ""
     parting: Parting | None = None
     doubt: str = ""
     lost: bool = False
     better: bool = False
+    minor: str = ""
+    proof: Proof | None = None
 
     @property
     def verdict(self) -> str:
@@ -183,14 +188,15 @@ class Account:
 
     @property
     def times_noise(self) -> float | None:
-        """What the final law leaves of untouched pieces, over what noise alone would; None where nothing was tried."""
-        one = self.proof
+        """What laws leave of launches not fitted to, over what noise alone would; None where nothing was tried.
+        Every choice and every word on how well laws fit rests on it, and none on the proof."""
+        one = self.selection
         return None if one is None or not one.floor_m or not one.pieces else one.after_m / one.floor_m
 
     @property
     def unexplained(self) -> str:
-        """How much more than noise is left of untouched pieces by what is told, in words; "" where hardly any is."""
+        """How much more than noise the laws leave of launches, in words; "" where hardly any is."""
         times = self.times_noise
-        if self.undetermined or self.proof is None or times is None or times < MUCH:
+        if self.undetermined or self.selection is None or times is None or times < MUCH:
             return ""
-        return f"{1e3 * self.proof.after_m:.2g} mm of untouched pieces stay unexplained, {times:.2g} times the noise"
+        return f"{1e3 * self.selection.after_m:.2g} mm stay unexplained, {times:.2g} times the noise"

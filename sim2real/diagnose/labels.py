@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from puckpilot_env.physics.effects import EFFECTS
-from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.engine.fit import Fit
+from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.finding import Estimate
 
 Numbers = Mapping[str, Estimate]

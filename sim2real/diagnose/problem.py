@@ -9,8 +9,8 @@ from typing import Protocol
 import numpy as np
 
 from puckpilot_env.parameters import make_records
-from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.engine.gram import Grams
+from sim2real.diagnose.engine.law import Law
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,21 @@ class Columns:
     families: Sequence[Law]
 
 
-class Problem(Protocol):
+class Fittable(Protocol):
+    """What fits need of a regime's data; see `Problem`."""
+
+    clusters: int
+    freedom: np.ndarray
+    units: Units
+
+    def residuals(self, values: Mapping[str, float], free: Sequence[str], clusters: np.ndarray) -> Residuals:
+        """Residuals of the pieces in `clusters` (indices) under the law whose parameters are `values`, by the names of
+        `puckpilot_env.parameters`; the Jacobian is by the parameters `free`. Names missing in `values` are at default.
+        """
+        ...
+
+
+class Problem(Fittable, Protocol):
     """A regime's data.
 
     `clusters`: how many launches there are, by which intervals and proofs are resampled; `freedom` (clusters,): how
@@ -68,17 +82,8 @@ class Problem(Protocol):
     regime: str
     base: tuple[str, ...]
     plain: tuple[str, ...]
-    clusters: int
-    freedom: np.ndarray
-    units: Units
     noise_m: float
     place_error_m: float
-
-    def residuals(self, values: Mapping[str, float], free: Sequence[str], clusters: np.ndarray) -> Residuals:
-        """Residuals of the pieces in `clusters` (indices) under the law whose parameters are `values`, by the names of
-        `puckpilot_env.parameters`; the Jacobian is by the parameters `free`. Names missing in `values` are at default.
-        """
-        ...
 
     def columns(self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None) -> Columns:
         """The columns of all clusters at a law: the base's, those of other parameters `free`, the listed effects' and

@@ -87,7 +87,7 @@ def summary(diagnosis: Diagnosis, written: Sequence[Path], asked: Asked = PLAIN)
     lines += [_held_out(each) for each in diagnosis.accounts if each.findings or not diagnosis.findings]
     lines.append(f"  next: {diagnosis.next_recording}")
     lines += [_baseline(each) for each in diagnosis.accounts if each.baseline]
-    lines += [f"  note: {remark}" for remark in diagnosis.remarks]
+    lines += [f"  note: {remark}" for remark in (*diagnosis.proof_remarks, *diagnosis.remarks)]
     lines = [line for line in lines if line]
     if len(lines) >= MOST_LINES:
         more = counted(len(lines) - MOST_LINES + 2, "line", "lines")
@@ -104,7 +104,7 @@ def _numbers(one: Finding) -> str:
 
 
 def _held_out(each: Account) -> str:
-    """How far untouched launches of a regime are missed; "" where none was kept."""
+    """How far held-out launches of a regime are missed; "" where there are none."""
     if each.proof is None or not each.proof.pieces:
         return ""
     before, after, floor = (1e3 * size for size in (each.proof.before_m, each.proof.after_m, each.proof.floor_m))

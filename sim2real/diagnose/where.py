@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from puckpilot_env.physics.effects import EFFECTS
-from sim2real.diagnose.engine.choose import Law
+from sim2real.diagnose.engine.law import Law
 
 
 def whereabouts(law: Law, values: Mapping[str, float]) -> dict[str, Any]:

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.gram import Grams
-
-if TYPE_CHECKING:
-    from sim2real.diagnose.problem import Units
+from sim2real.diagnose.engine.law import Law
+from sim2real.diagnose.problem import Units
 
 FOLDS = 10  # parts of the launches, each foretold by what the others say
 LEAST_FIT = 30.0  # drop of the loss (and 2 more a parameter, and for each e-fold of places) that is no chance
@@ -28,42 +26,6 @@ MOST = 0.5  # of what is beyond noise, that laws which other launches prove expl
 AMBIGUOUS = 9.0  # held-out losses nearer than this do not tell two laws apart
 LOOSE = 0.1  # ridge of a nonlinear law's coefficients, of which 1 is the law as it is looked for
 SPREADS = (0.03, 0.3, 3.0)  # tried for the coefficients of a family
-
-
-def no_parameters(theta: np.ndarray) -> Mapping[str, float]:
-    """The simulator's parameters for a family that it has no place for."""
-    return {}
-
-
-@dataclass(frozen=True)
-class Law:
-    """Columns of a problem's residuals that stand or fall together.
-
-    `name`: a mechanism, or a family of smooth forces; `family` is what it depends on, "" for a mechanism. `start`:
-    parameters of a nonlinear law at which its columns were taken. `switch`: the simulator's parameters by name for
-    coefficients of a family; none where the simulator has no place for it. `mechanism`: what a finding calls a family.
-    `straight`: whether columns taken without a family hold with it too, however large it is. `each_launch`: whether
-    every launch has numbers of its own, which no other launch foretells; `searched`: how many places or sizes the
-    columns are the best of; `among`: what families are called that differ in a size alone, and of which the best is
-    taken.
-    """
-
-    name: str
-    columns: tuple[str, ...]
-    family: str = ""
-    start: dict[str, float] = field(default_factory=dict)
-    switch: Callable[[np.ndarray], Mapping[str, float]] = no_parameters
-    straight: bool = False
-    mechanism: str = "unlisted"
-    each_launch: bool = False
-    searched: int = 1
-    among: str = ""
-
-    @property
-    def rows(self) -> tuple[str, ...]:
-        """The parameters that a nonlinear fit of a mechanism frees: where it had to be looked for, such as a place,
-        all of its effect's, else those whose columns it has."""
-        return EFFECTS[self.name].row_names if self.start else self.columns
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,9 @@ import numpy as np
 
 from puckpilot_env.parameters import BY_NAME
 from sim2real.diagnose.engine import gram
-from sim2real.diagnose.engine.choose import Chooser, Gain, Law, Model
+from sim2real.diagnose.engine.choose import Chooser, Gain, Model
 from sim2real.diagnose.engine.fit import Fit, fit, given
+from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.engine.noise import dispersion
 from sim2real.diagnose.engine.settle import as_shipped, calm_clusters, far_off, refit, standing, undisturbed
 from sim2real.diagnose.engine.smooth import Smooth, fit_smooth

@@ -11,7 +11,7 @@ from puckpilot_env.parameters import BY_NAME
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.finding import Estimate
 from sim2real.diagnose.interval import reach_of_launches
-from sim2real.diagnose.problem import Problem, Residuals
+from sim2real.diagnose.problem import Fittable, Residuals
 
 ROUNDS = 40  # at most; a fit ends when it has CONVERGED
 CONVERGED = 1e-3  # drop of the sum of squares, in units of what a residual has left, at which a fit ends
@@ -59,7 +59,7 @@ def given(values: Mapping[str, float]) -> Fit:
 
 
 def fit(
-    problem: Problem, values: Mapping[str, float], free: Sequence[str], clusters: np.ndarray, rounds: int = ROUNDS
+    problem: Fittable, values: Mapping[str, float], free: Sequence[str], clusters: np.ndarray, rounds: int = ROUNDS
 ) -> Fit:
     """Fit the parameters `free` to the residuals of `clusters`, starting from `values`; the others stay."""
     free = tuple(free)
@@ -100,7 +100,7 @@ def fit(
     return Fit(now, free, spread, loss, int(grams.count.sum()), len(clusters), bound)
 
 
-def soft_loss(problem: Problem, found: Residuals) -> tuple[float, np.ndarray]:
+def soft_loss(problem: Fittable, found: Residuals) -> tuple[float, np.ndarray]:
     """Sum of squares, and the weight (n,) of each residual; where single units may be wrong altogether, their squares
     grow softly (`gram.soft`), and they weigh less."""
     if found.unit is None:

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sim2real.diagnose.engine import gram
-from sim2real.diagnose.engine.choose import Law, Model
+from sim2real.diagnose.engine.choose import Model
 from sim2real.diagnose.engine.gram import Grams
-
-if TYPE_CHECKING:
-    from sim2real.diagnose.problem import Units
+from sim2real.diagnose.engine.law import Law
+from sim2real.diagnose.problem import Units
 
 SLIGHT = 1e-6  # ridge, so that columns of which nothing is known stay 0
 

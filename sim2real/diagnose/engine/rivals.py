@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from scipy.stats import chi2
 
-from sim2real.diagnose.engine.choose import AMBIGUOUS, Chooser, Gain, Law, Model
+from sim2real.diagnose.engine.choose import AMBIGUOUS, Chooser, Gain, Model
+from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.finding import Rival
 from sim2real.diagnose.problem import Columns
 
 
 def chance(chooser: Chooser, model: Model, law: Law, screen: Columns) -> float:
-    """Chance that noise alone gains as much, for as many laws as were tried."""
+    """Nominal chance that noise alone gains as much: that of a chi-square, times the number of laws tried. The best law
+    is no drawn one, so that it is no calibrated p-value; whether a law is named does not rest on it."""
     gained = chooser.fitted(model.minus(law)) - chooser.fitted(model)
     tried = sum(one.searched for one in (*screen.listed, *screen.families))
     return float(min(max(tried * chi2.sf(gained, len(law.columns)), 1e-300), 1.0))

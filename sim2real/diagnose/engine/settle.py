@@ -9,8 +9,9 @@ from scipy.stats import chi2
 
 from puckpilot_env.parameters import BY_NAME
 from sim2real.diagnose.engine import gram
-from sim2real.diagnose.engine.choose import Law, Model
+from sim2real.diagnose.engine.choose import Model
 from sim2real.diagnose.engine.fit import Fit, fit, soft_loss
+from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.finding import TO_THE_NOISE
 from sim2real.diagnose.problem import Columns, Problem
 

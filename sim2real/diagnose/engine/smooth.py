@@ -9,8 +9,9 @@ import numpy as np
 
 from puckpilot_env.parameters import BY_NAME
 from sim2real.diagnose.engine import gram
-from sim2real.diagnose.engine.choose import SPREADS, Chooser, Law, Model
+from sim2real.diagnose.engine.choose import SPREADS, Chooser, Model
 from sim2real.diagnose.engine.fit import Fit
+from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.problem import Columns, Problem
 
 ROUNDS = 8  # of Gauss-Newton, at most

@@ -9,8 +9,9 @@ from dataclasses import replace
 import numpy as np
 
 from sim2real.diagnose.engine import gram
-from sim2real.diagnose.engine.choose import Chooser, Law, Model
+from sim2real.diagnose.engine.choose import Chooser, Model
 from sim2real.diagnose.engine.gram import Grams
+from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.engine.noise import dispersion
 from sim2real.diagnose.finding import Twin
 from sim2real.diagnose.problem import Units

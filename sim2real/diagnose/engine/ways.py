@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sim2real.diagnose.engine.choose import LEAST_FORETOLD, LEAST_SHARE, SPREADS, Chooser, Gain, Law, Model
+from sim2real.diagnose.engine.choose import LEAST_FORETOLD, LEAST_SHARE, SPREADS, Chooser, Gain, Model
 from sim2real.diagnose.engine.fit import Fit
+from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.engine.settle import far_off, nearly_all, refit, standing
 from sim2real.diagnose.engine.smooth import Smooth, fit_smooth
 from sim2real.diagnose.problem import Columns, Problem

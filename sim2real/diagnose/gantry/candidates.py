@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,9 +16,7 @@ from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.choose import LEAST_FIT
 from sim2real.diagnose.engine.fit import Fit, fit
-
-if TYPE_CHECKING:
-    from sim2real.diagnose.gantry.problem import GantryProblem
+from sim2real.diagnose.gantry.paths import PLAIN, GantryPaths
 
 # where fits of an effect start; of several, the best looking by their derivatives are followed up
 STARTS: dict[str, tuple[dict[str, float], ...]] = {
@@ -31,7 +28,6 @@ STARTS: dict[str, tuple[dict[str, float], ...]] = {
     "clock_drift": tuple({"encoder_clock": ppm} for ppm in (-1000.0, -300.0, 300.0, 1000.0)),
 }
 RIVALS = {"belt_compliance": "backlash", "backlash": "belt_compliance"}  # either gives between motor and mallet
-PLAIN = ("a2", "a3", "b2", "b3")  # the baseline's numbers but those GUESSED
 FOLLOWED, ROUNDS = 2, 15  # starts of an effect that are fitted, and steps of each fit
 ONCE = 1  # round: no step, only the spread of all that is free
 SAMPLES = 3000  # for the fits of each effect; the chosen law is fitted anew to all
@@ -70,13 +66,13 @@ class Candidate:
         return " beside ".join((f"+ {self.name}", *self.beside))
 
 
-def candidates(problem: GantryProblem, values: Mapping[str, float]) -> list[Candidate]:
+def candidates(problem: GantryPaths, values: Mapping[str, float]) -> list[Candidate]:
     """The effects that stand at a fit, started at `values`; none where the best leave much of what the baseline does.
 
     A law whose fit ends at a bound of its range, or whose size is not surely there, stands for something else.
     """
     thin = problem.thinned(SAMPLES)
-    freedom = float(thin.freedom[thin.seen].sum())
+    freedom = float(thin.freedom.sum())
     now = base = _staged(thin, [values], ())
     chain: tuple[str, ...] = ()
     found = []
@@ -99,18 +95,18 @@ def candidates(problem: GantryProblem, values: Mapping[str, float]) -> list[Cand
     return [] if left > MUCH_LEFT and left - 1.0 > (1.0 - SHARE) * (before - 1.0) else found
 
 
-def stands(problem: GantryProblem, without: Fit, law: Fit, name: str) -> bool:
+def stands(problem: GantryPaths, without: Fit, law: Fit, name: str) -> bool:
     """Whether an effect's fit `law` is inside its range, surely not at none, and better than chance would make it."""
     rows = EFFECTS[name].row_names
     if set(law.bound) & set(rows):
         return False
     sizes = [abs(law.values[row] - BY_NAME[row].default) > SURE * _std(law, row) for row in rows]
-    spare = 4.0 * len(problem.seen_windows) if name == "belt_compliance" else 0.0  # its ringing starts free
-    noise = max(law.loss / float(problem.freedom[problem.seen].sum()), 1.0)
+    spare = 4.0 * problem.windows if name == "belt_compliance" else 0.0  # its ringing starts free
+    noise = max(law.loss / float(problem.freedom.sum()), 1.0)
     return any(sizes) and (without.loss - law.loss) / noise > LEAST_FIT + 2.0 * len(rows) + spare
 
 
-def best_fit(problem: GantryProblem, without: Staged, name: str) -> Staged:
+def best_fit(problem: GantryPaths, without: Staged, name: str) -> Staged:
     """The best fit of an effect on top of others, all of whose parameters stay free."""
     rows = (*(row for row in without.plain.free if row not in problem.base), *EFFECTS[name].row_names)
     starts = [{**without.plain.values, **start} for start in STARTS[name]]
@@ -119,16 +115,16 @@ def best_fit(problem: GantryProblem, without: Staged, name: str) -> Staged:
     return _staged(problem, starts[:FOLLOWED], rows)
 
 
-def _staged(problem: GantryProblem, starts: Sequence[Mapping[str, float]], rows: tuple[str, ...]) -> Staged:
+def _staged(problem: GantryPaths, starts: Sequence[Mapping[str, float]], rows: tuple[str, ...]) -> Staged:
     """The best of the plain fits from `starts`, and from there the fit of everything."""
-    plain = [fit(problem, start, (*PLAIN, *rows), problem.seen, ROUNDS) for start in starts]
+    plain = [fit(problem, start, (*PLAIN, *rows), problem.everything, ROUNDS) for start in starts]
     best = min(plain, key=lambda one: one.loss)
     if "command_delay" in rows:
         best = _delay_in_steps(problem, best)
-    return Staged(best, fit(problem, best.values, (*problem.base, *rows), problem.seen, ROUNDS))
+    return Staged(best, fit(problem, best.values, (*problem.base, *rows), problem.everything, ROUNDS))
 
 
-def _delay_in_steps(problem: GantryProblem, law: Fit) -> Fit:
+def _delay_in_steps(problem: GantryPaths, law: Fit) -> Fit:
     """The fit with a delay looked for about the one found: where motors heed a plan at ticks, it acts in steps."""
     tick = max(run.orders.tick for run in problem.runs)
     free = tuple(row for row in law.free if row != "command_delay")
@@ -137,7 +133,7 @@ def _delay_in_steps(problem: GantryProblem, law: Fit) -> Fit:
     if not tick:
         return law
     best = min(starts, key=lambda start: promise(problem, start, free))
-    return fit(problem, fit(problem, best, free, problem.seen, ROUNDS).values, law.free, problem.seen, ONCE)
+    return fit(problem, fit(problem, best, free, problem.everything, ROUNDS).values, law.free, problem.everything, ONCE)
 
 
 def _std(law: Fit, row: str) -> float:
@@ -145,20 +141,20 @@ def _std(law: Fit, row: str) -> float:
     return float(np.sqrt(law.covariance[k, k]))
 
 
-def _mean_square(problem: GantryProblem, law: Fit) -> float:
+def _mean_square(problem: GantryPaths, law: Fit) -> float:
     """Mean square residual of what may be seen, in units of the noise."""
-    left = problem.residuals(law.values, (), problem.seen).r
-    return float(left @ left) / float(problem.freedom[problem.seen].sum())
+    left = problem.residuals(law.values, (), problem.everything).r
+    return float(left @ left) / float(problem.freedom.sum())
 
 
-def _all(problem: GantryProblem, law: Fit) -> np.ndarray:
+def _all(problem: GantryPaths, law: Fit) -> np.ndarray:
     return problem.residuals(law.values, (), np.arange(problem.clusters)).r
 
 
-def promise(problem: GantryProblem, start: Mapping[str, float], free: Sequence[str]) -> float:
+def promise(problem: GantryPaths, start: Mapping[str, float], free: Sequence[str]) -> float:
     """What a law would leave if it were as its derivatives at `start` say."""
-    found = problem.residuals(start, free, problem.seen)
+    found = problem.residuals(start, free, problem.everything)
     sums = gram.make_grams(free, found.r, found.jacobian, found.cluster, problem.clusters)
     columns = np.arange(len(free))
-    theta = gram.solve(sums, columns, problem.seen)
-    return float(gram.losses(sums, columns, theta, problem.seen).sum())
+    theta = gram.solve(sums, columns, problem.everything)
+    return float(gram.losses(sums, columns, theta, problem.everything).sum())

@@ -9,18 +9,15 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from puckpilot_env.kernel import array_kernel
-from sim2real.diagnose.engine.choose import Law
+from sim2real.diagnose.engine.law import Law
+from sim2real.diagnose.gantry.paths import GantryPaths
 from sim2real.diagnose.gantry.response import sampled_response
 from sim2real.diagnose.gantry.run import Run
-from sim2real.diagnose.piecewise import hats, spread_hats
-
-if TYPE_CHECKING:
-    from sim2real.diagnose.gantry.problem import GantryProblem
+from sim2real.diagnose.piecewise import hats, spread_knots
 
 KNOTS, TIME_KNOTS = 8, 5  # of smooth laws by place, speed or volts, and by time
 HARMONICS = 3  # of the heading
@@ -66,13 +63,13 @@ class Signals:
         return np.ones(len(self.t))
 
 
-def families(problem: GantryProblem, p: np.void) -> tuple[list[Law], np.ndarray]:
+def families(problem: GantryPaths, p: np.void) -> tuple[list[Law], np.ndarray]:
     """The families, and their columns of the residuals (rows, k) at the law `p`."""
-    volts, laws = _volts(problem.runs)
+    volts, laws = _volts(problem.runs, problem.shaped_by)
     return laws, -answers(problem, p, volts)
 
 
-def answers(problem: GantryProblem, p: np.void, volts: np.ndarray) -> np.ndarray:
+def answers(problem: GantryPaths, p: np.void, volts: np.ndarray) -> np.ndarray:
     """What extra volts (n, 2, k) on the axes through all runs add to the path: (rows, k), in units of the noise."""
     blocks, first = [], 0
     for run in problem.runs:
@@ -88,20 +85,22 @@ def answers(problem: GantryProblem, p: np.void, volts: np.ndarray) -> np.ndarray
 
 def volts_of(runs: Sequence[Run], law: Law) -> np.ndarray:
     """Volts (n, 2, k) of the columns of one family."""
-    volts, laws = _volts(runs)
+    volts, laws = _volts(runs, runs)
     first = sum(len(one.columns) for one in laws[: [one.name for one in laws].index(law.name)])
     return volts[:, :, first : first + len(law.columns)]
 
 
-def _volts(runs: Sequence[Run]) -> tuple[np.ndarray, list[Law]]:
-    """Through all runs the volts (n, 2, k) of every column, of rms 1 V; and the laws that they make up."""
+def _volts(runs: Sequence[Run], shaped_by: Sequence[Run]) -> tuple[np.ndarray, list[Law]]:
+    """Through all runs the volts (n, 2, k) of every column, of rms 1 V in the runs `shaped_by`; and the laws that they
+    make up."""
     columns, laws = [], []
     both = [signals(runs, axis) for axis in range(2)]
-    shapes, given = [_shapes(one) for one in both], [_baseline(one) for one in both]
+    usual = both if runs is shaped_by else [signals(shaped_by, axis) for axis in range(2)]
+    makers = [_Shapes(one) for one in usual]
     for name, depends in DEPENDS.items():
         made = []
         for axis, letter in enumerate("xy"):
-            own = _independent(shapes[axis][name], given[axis])
+            own = makers[axis].independent(name, both[axis])
             placed = np.zeros((len(own), 2, own.shape[1]))
             placed[:, axis] = own
             columns.append(placed)
@@ -110,22 +109,49 @@ def _volts(runs: Sequence[Run]) -> tuple[np.ndarray, list[Law]]:
     return np.concatenate(columns, axis=2), laws
 
 
-def _shapes(s: Signals) -> dict[str, np.ndarray]:
-    """By name of a family, volts (n, k) on an axis through all runs."""
-    speeds, volts = spread_hats(s.pace, KNOTS), np.hstack([spread_hats(s.order, KNOTS), spread_hats(s.load, KNOTS)])
-    turns = np.column_stack([f(k * np.radians(s.angle)) for k in range(1, HARMONICS + 1) for f in (np.cos, np.sin)])
-    times, places = hats(s.t, np.linspace(s.t.min(), s.t.max(), TIME_KNOTS)), spread_hats(s.place, KNOTS)
-    v, u = s.v[:, None], s.u[:, None]
-    return {
-        "force by place": places,
-        "loss by place": places * v,
-        "loss by speed": np.column_stack([speeds * v, np.tanh(s.v / GRIP)]),
-        "pull by volts": volts * u,
-        "loss by time": times * v,
-        "pull by time": times * u,
-        "loss by heading": turns * v,
-        "pull by history": s.memories,
-    }
+class _Shapes:
+    """The families on an axis, with knots and sizes by what it did in the signals `usual`."""
+
+    def __init__(self, usual: Signals) -> None:
+        self._usual = usual
+        self._knots = {name: spread_knots(getattr(usual, name), KNOTS) for name in ("pace", "order", "load", "place")}
+        self._times = np.linspace(usual.t.min(), usual.t.max(), TIME_KNOTS)
+
+    def of(self, name: str, s: Signals) -> np.ndarray:
+        """Volts (n, k) of a family through all runs."""
+        v, u = s.v[:, None], s.u[:, None]
+        match name:
+            case "force by place":
+                return self._hats(s, "place")
+            case "loss by place":
+                return self._hats(s, "place") * v
+            case "loss by speed":
+                return np.column_stack([self._hats(s, "pace") * v, np.tanh(s.v / GRIP)])
+            case "pull by volts":
+                return np.hstack([self._hats(s, "order"), self._hats(s, "load")]) * u
+            case "loss by time":
+                return hats(s.t, self._times) * v
+            case "pull by time":
+                return hats(s.t, self._times) * u
+            case "loss by heading":
+                turns = [f(k * np.radians(s.angle)) for k in range(1, HARMONICS + 1) for f in (np.cos, np.sin)]
+                return np.column_stack(turns) * v
+            case _:
+                return s.memories
+
+    def _hats(self, s: Signals, coordinate: str) -> np.ndarray:
+        return hats(getattr(s, coordinate), self._knots[coordinate])
+
+    def independent(self, name: str, s: Signals) -> np.ndarray:
+        """Combinations (n, k) of a family's columns that are not the baseline's own, of rms 1 V in what is usual."""
+        given, family = _baseline(self._usual), self.of(name, self._usual)
+        sizes, widths = (np.maximum(np.sqrt(np.mean(one**2, axis=0)), 1e-12) for one in (given, family))
+        shares = np.linalg.lstsq(given / sizes, family / widths, rcond=None)[0]
+        alone = family / widths - given / sizes @ shares
+        squares, directions = np.linalg.eigh(alone.T @ alone)
+        kept = directions[:, squares > INDEPENDENT**2 * squares[-1]]
+        unit = np.maximum(np.sqrt(np.mean((alone @ kept) ** 2, axis=0)), 1e-12)
+        return (self.of(name, s) / widths - _baseline(s) / sizes @ shares) @ kept / unit
 
 
 def baseline_volts(runs: Sequence[Run], axis: int) -> np.ndarray:
@@ -158,13 +184,3 @@ def _faded(t, q, memory):
         keep = math.exp(-(t[i] - t[i - 1]) / memory)
         held[i] = keep * held[i - 1] + (1.0 - keep) * q[i]
     return held
-
-
-def _independent(family: np.ndarray, baseline: np.ndarray) -> np.ndarray:
-    """Combinations (n, k) of a family's columns, of rms 1 V, that are not the baseline's own."""
-    given = baseline / np.maximum(np.sqrt(np.mean(baseline**2, axis=0)), 1e-12)
-    family = family / np.maximum(np.sqrt(np.mean(family**2, axis=0)), 1e-12)
-    alone = family - given @ np.linalg.lstsq(given, family, rcond=None)[0]
-    squares, directions = np.linalg.eigh(alone.T @ alone)
-    kept = alone @ directions[:, squares > INDEPENDENT**2 * squares[-1]]
-    return kept / np.maximum(np.sqrt(np.mean(kept**2, axis=0)), 1e-12)

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sim2real.diagnose.binned import binned, half_band, over
-from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.engine.explain import Explained
+from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.finding import Curve
 from sim2real.diagnose.forms import Axis, Direction, Form, form, harmonic, profiles
 from sim2real.diagnose.formula import Formula, Rest, find_formula

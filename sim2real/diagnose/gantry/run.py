@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
 from sim2real.diagnose.gantry.encoder import encoder_noise
 from sim2real.diagnose.gantry.orders import Orders, from_commands, from_drive
 from sim2real.diagnose.gantry.response import axis_residuals
-from sim2real.diagnose.gantry.windows import FEWEST, WINDOW, Windows, cut_windows
+from sim2real.diagnose.gantry.windows import FEWEST, HOLE, WINDOW, Windows, cut_windows
 from sim2real.recording import Recording
 
 FEWEST_WINDOWS = 12  # of WINDOW
@@ -41,10 +42,9 @@ class Run:
         """The same with motors that heed a change at whole ticks [s] of their control loop."""
         return replace(self, orders=replace(self.orders, tick=tick))
 
-    def first_windows(self, count: int, clusters: np.ndarray) -> Run:
-        """The first `count` windows of these clusters alone, each a cluster."""
-        some = np.flatnonzero(np.isin(self.windows.cluster, clusters))[:count]
-        begin, end = self.windows.begin[some], self.windows.end[some]
+    def first_windows(self, count: int) -> Run:
+        """The first `count` windows alone, each a cluster."""
+        begin, end = self.windows.begin[:count], self.windows.end[:count]
         kept = {name: getattr(self, name)[: end[-1]] for name in ("t", "seen", "place", "speed", "noise")}
         return replace(self, windows=Windows(begin, end, np.arange(len(begin))), **kept)
 
@@ -133,9 +133,16 @@ def find_orders(recording: Recording, supply: float) -> Orders:
 
 
 def smoothed(t: np.ndarray, seen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Place [m] and speed [m/s], each (n, 2), of the path seen at `t`, averaged over SMOOTHED."""
-    half = max(1, round(0.5 * SMOOTHED / float(np.median(np.diff(t)))))
+    """Place [m] and speed [m/s], each (n, 2), of the path seen at `t`, averaged over SMOOTHED; not across holes."""
+    period = float(np.median(np.diff(t)))
+    edges = [0, *(np.flatnonzero(np.diff(t) > HOLE * period) + 1), len(t)]
+    parts = [_smoothed(t[a:b], seen[a:b], max(1, round(0.5 * SMOOTHED / period))) for a, b in pairwise(edges)]
+    place, speed = (np.concatenate(each) for each in zip(*parts, strict=True))
+    return place, speed
+
+
+def _smoothed(t: np.ndarray, seen: np.ndarray, half: int) -> tuple[np.ndarray, np.ndarray]:
     padded = np.pad(seen, ((half, half), (0, 0)), mode="edge")
     total = np.cumsum(np.vstack([np.zeros(2), padded]), axis=0)
     place = (total[2 * half + 1 :] - total[: -2 * half - 1]) / (2 * half + 1)
-    return place, np.gradient(place, t, axis=0)
+    return place, np.gradient(place, t, axis=0) if len(t) > 1 else np.zeros_like(place)

@@ -7,15 +7,12 @@ volts free at once so that none of them is mistaken for it.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sim2real.diagnose.engine.fit import fit
-from sim2real.diagnose.gantry.candidates import PLAIN, promise
-
-if TYPE_CHECKING:
-    from sim2real.diagnose.gantry.problem import GantryProblem
+from sim2real.diagnose.gantry.candidates import promise
+from sim2real.diagnose.gantry.paths import PLAIN, GantryPaths
 
 TICKS = (1e-4, 2e-4, 2.5e-4, 5e-4, 1e-3, 2e-3, 2.5e-3, 4e-3, 5e-3, 1e-2)  # s
 WORLDS = (  # what the volts may lack, and then what may give between motor and mallet, each from a few starts
@@ -30,15 +27,13 @@ LATE = (-1.0, -0.75, -0.5, -0.25, 0.0)  # ticks, by which a delay may be less th
 SHARE = 0.3  # of that log, which a tick must explain to be believed
 
 
-def find_tick(problem: GantryProblem) -> float:
-    """The period [s] of the control loop that explains best the switches of the first run that has any and may be
-    seen; 0: heeded at once."""
-    seen = [np.intersect1d(problem.seen, here) - here[0] for here in problem.clusters_of_runs]
-    some = zip(problem.runs, seen, strict=True)
-    run, clusters = next((one for one in some if one[0].orders.switch.any() and len(one[1])), (None, seen[0]))
+def find_tick(problem: GantryPaths) -> float:
+    """The period [s] of the control loop that explains best the switches of the first run that has any;
+    0: heeded at once."""
+    run = next((one for one in problem.runs if one.orders.switch.any()), None)
     if run is None:
         return 0.0
-    part = problem.of([run.first_windows(ENOUGH, clusters).thinned(SAMPLES)])
+    part = problem.of([run.first_windows(ENOUGH).thinned(SAMPLES)])
     for starts in WORLDS:
         law, left = min((_fitted(part, start, tuple(start)) for start in starts), key=lambda one: one[1])
         if left < EXPLAINED:
@@ -49,7 +44,7 @@ def find_tick(problem: GantryProblem) -> float:
     return 0.0
 
 
-def _best_tick(part: GantryProblem, law: Mapping[str, float], rows: tuple[str, ...]) -> tuple[float, float]:
+def _best_tick(part: GantryPaths, law: Mapping[str, float], rows: tuple[str, ...]) -> tuple[float, float]:
     """The tick that explains the windows best with the parameters `rows` free, and what it leaves, as `_fitted` says.
 
     A delay is no free parameter here: with ticks it acts in steps.
@@ -65,7 +60,7 @@ def _best_tick(part: GantryProblem, law: Mapping[str, float], rows: tuple[str, .
 
 
 def _fitted(
-    problem: GantryProblem, start: Mapping[str, float], rows: tuple[str, ...]
+    problem: GantryPaths, start: Mapping[str, float], rows: tuple[str, ...]
 ) -> tuple[Mapping[str, float], float]:
     """The law fitted from `start`, `rows` and the plain baseline free; and the mean log of windows' mean squares."""
     everywhere = np.arange(problem.clusters)

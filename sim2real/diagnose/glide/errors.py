@@ -12,16 +12,13 @@ from sim2real.diagnose.glide.place_error import modes
 
 
 class Errors:
-    """Of the glides of a table of `size` (2,) [m]. What the calibration errs by is one thing for the clusters `apart`
-    and another for the rest, so that neither tells the other's residuals anything; and another for each size that
+    """Of the glides of a table of `size` (2,) [m]. What the calibration errs by is one thing for each size that
     recordings state, since no two calibrations come to the same one."""
 
-    def __init__(self, data: GlideData, size: np.ndarray, apart: np.ndarray) -> None:
+    def __init__(self, data: GlideData, size: np.ndarray) -> None:
         self._data, self._size = data, size
         self._place_std = data.of_frame(np.array(data.place_std)[data.recording]) if data.glides else np.zeros(0)
         self._stated = sorted({std for std in data.place_std if std})
-        here = data.of_frame(np.isin(data.cluster, apart))
-        self._groups = [group for group in (here, ~here) if group.any()]
         self._whiten = {
             g: np.linalg.inv(np.linalg.cholesky(memory.covariance(data.t[a:b])))
             for g, (a, b) in enumerate(pairwise(data.first))
@@ -45,10 +42,4 @@ class Errors:
 
     def allowing(self, shared: np.ndarray, rows: np.ndarray) -> np.ndarray:
         """Rows (2n, k), white again with what is `shared` (2n, m): the modes, treated as the rows are."""
-        if not shared.shape[1]:
-            return rows
-        found = np.empty_like(rows)
-        for group in self._groups:
-            both = np.repeat(group, 2)
-            found[both] = allowing_for(shared[both], rows[both])
-        return found
+        return allowing_for(shared, rows) if shared.shape[1] else rows

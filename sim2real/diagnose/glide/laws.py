@@ -5,19 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.engine import gram
-from sim2real.diagnose.engine.choose import Law
+from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.glide.families import FAMILIES, SPIN, UNIT, WAVES, Motion
+from sim2real.diagnose.glide.glides import Glides
 from sim2real.diagnose.glide.switched import switched_on
 from sim2real.diagnose.problem import Columns, Residuals
-
-if TYPE_CHECKING:
-    from sim2real.diagnose.glide.problem import GlideProblem
 
 PATCH_RADII = (0.05, 0.1, 0.15, 0.2, 0.3)  # m, at which a patch is looked for
 PATCHES_KEPT = 2  # places that are offered, of either search; the law itself has one
@@ -39,9 +36,7 @@ def listed_laws() -> list[Law]:
     return found
 
 
-def glide_columns(
-    problem: GlideProblem, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None
-) -> Columns:
+def glide_columns(problem: Glides, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None) -> Columns:
     """Every column of a glide problem at one law; places of other friction are looked for in the clusters `use`."""
     path, by_start = problem.linearised(values)
     motion = problem.motion(path)

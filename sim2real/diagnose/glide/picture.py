@@ -10,8 +10,8 @@ import numpy as np
 from puckpilot_env.parameters import BY_NAME
 from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.binned import DRAWN, Binned, binned, half_band, over
-from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.engine.explain import Explained
+from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.finding import Curve, Parting
 from sim2real.diagnose.formula import Formula
 from sim2real.diagnose.glide.families import FAMILIES, Motion, force

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.engine.explain import Explained
+from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.forms import Axis, Direction, Form, Profile, form, harmonic, profiles
 from sim2real.diagnose.formula import Formula, Rest, find_formula
 from sim2real.diagnose.glide import swirls

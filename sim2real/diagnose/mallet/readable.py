@@ -7,8 +7,8 @@ import numpy as np
 from sim2real.diagnose.binned import binned, half_band, over, singles
 from sim2real.diagnose.contact_formula import CHANGES, contact_formula
 from sim2real.diagnose.contact_laws import SLOWEST, UNIT, acted_on, shape_of
-from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.engine.explain import Explained
+from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.finding import Curve
 from sim2real.diagnose.forms import Axis
 from sim2real.diagnose.formula import Formula

@@ -15,7 +15,7 @@ FAULTS = ("as recorded", "corrected")
 
 
 def proof_bars(proof: Proof, title: str, found: bool, names: tuple[str, str] = LAWS) -> str:
-    """Bars of the rms [mm] on untouched pieces, before and, if something was `found`, after, by these `names`; and what
+    """Bars of the rms [mm] on held-out pieces, before and, if something was `found`, after, by these `names`; and what
     noise alone leaves."""
     rows = [(names[0], proof.before_m, "#D55E00"), (names[1], proof.after_m, "#0072B2"),
             (NOISE, proof.floor_m, "#767676")]  # fmt: skip

@@ -13,6 +13,9 @@ from sim2real.diagnose.report.words import number, text
 SHOWN = 5  # rivals before the rest is folded away
 WORSE = ((0.0, "no worse"), (9.0, "a tie"), (30.0, "a little"), (100.0, "clearly"), (1000.0, "far"))
 HOPELESS = "hopelessly"
+NOMINAL = "Nominal chance that noise alone gains as much, times the number of laws tried"
+AFTER_CONTACT = " in 0.1 s after a contact"
+SIZED = {"glide": " at the ends of glides", "wall": AFTER_CONTACT, "corner": AFTER_CONTACT, "mallet": AFTER_CONTACT}
 SEEN = {"glide": "whole stretches of motion", "wall": "bounces", "corner": "bounces", "mallet": "blows"}
 UNDRAWN = (
     "The law with its 95 % band, and its formula, both less what the baseline's own numbers could do. Nothing recorded "
@@ -87,15 +90,19 @@ def _curve(one: Finding) -> str:
 
 
 def _proof(one: Finding) -> str:
-    fall = f"from {number(one.before)} without this law to {number(one.after)} with all that was found"
+    sizes = [number(size or 0.0) for size in (one.before, one.after)]
+    fall = f"from {sizes[0]} without this law to {sizes[1]} with all that was found"
     if one.regime == "sensing":
         what = "what this fault makes wrong, each miss in units of its own error, falls"
     else:
         what = f"residuals of the {text(one.regime)}, in units of what noise alone leaves, fall"
-    return words.paragraph(
-        f"On {piece_words(one.regime)} that no fit saw, {what} {fall}. Chance that noise alone gains as much: "
-        f"{text(chance(one.p_value))}."
+    shown = f"On {piece_words(one.regime)} that no fit or choice saw, {what} {fall}."
+    if one.before is None or one.after is None:
+        shown = "No held-out data show it."
+    size = (
+        "" if one.size_m is None else f"It moves things by {number(1e3 * one.size_m)} mm{SIZED.get(one.regime, '')}. "
     )
+    return words.paragraph(f"{size}{shown} {NOMINAL}: {text(chance(one.p_value))}.")
 
 
 def _rivals(rivals: tuple[Rival, ...]) -> str:

@@ -55,12 +55,13 @@ def _overview(diagnosis: Diagnosis, missing: dict[str, str]) -> str:
         body += words.paragraph(f"Nothing can be said: {text(diagnosis.reason)}.") + _list(diagnosis.notes)
     if diagnosis.accounts:
         head = ("regime", "missing", "refitted baseline", "with the law", "tried on")
-        caption = "What is left of untouched launches, in units of what noise alone leaves (1 is perfect)"
+        caption = "What is left of held-out launches, in units of what noise alone leaves (1 is perfect)"
         body += words.table(caption, head, rows, (2, 3, 4))
     if diagnosis.proof is not None:
         found = bool(diagnosis.findings)
         over = "Over the regimes in which something is named:" if found else "Over all regimes:"
         body += words.paragraph(over) + proof_bars(diagnosis.proof, "Held-out residuals", found)
+    body += _list(diagnosis.proof_remarks, "open")
     return words.section("overview", "How far simulator and recording are apart", body)
 
 
@@ -81,11 +82,10 @@ def _not_tested(why: str) -> str:
 
 
 def _sizes(each: Account) -> tuple[str, ...]:
-    after = each.times_noise
-    if after is None or each.proof is None:
+    if each.proof is None or not each.proof.floor_m or not each.proof.pieces:
         return NO_SIZES
-    before = number(each.proof.before_m / each.proof.floor_m)
-    return before, number(after) if each.findings else "–", str(each.proof.pieces)
+    before, after = (number(size / each.proof.floor_m) for size in (each.proof.before_m, each.proof.after_m))
+    return before, after if each.findings else "–", str(each.proof.pieces)
 
 
 def _next(diagnosis: Diagnosis) -> str:

@@ -34,12 +34,12 @@ def regime_section(one: Account, asked: Asked, missing: Mapping[str, str]) -> st
 
 def _proof(one: Account, proof: Proof) -> str:
     title, found = f"Held-out residuals, {one.regime}", bool(one.findings)
-    said = f"Rms residual on {pieces(one)} that no fit saw."
+    said = f"Rms residual on {pieces(one)} that no fit, choice or correction saw."
     if one.regime == "sensing":
         said = f"Rms of all that the faults make wrong, together and in metres, on {pieces(one)} that no fit saw; "
         said += "each finding tells of its own, in units of each miss's error."
     bars = proof_bars(proof, title, found, FAULTS if one.regime == "sensing" else LAWS)
-    return f"<h3>Proof on untouched data</h3>{words.paragraph(text(said))}{bars}{twins_table(one)}"
+    return f"<h3>Proof on held-out data</h3>{words.paragraph(text(said))}{bars}{twins_table(one)}"
 
 
 def _baseline(one: Account, asked: Asked) -> str:
@@ -70,7 +70,7 @@ def _says(one: Account, asked: Asked, missing: Mapping[str, str]) -> str:
 
 
 def _rest(one: Account, after: str) -> str:
-    """A sentence on what is left of untouched pieces, where that is more than noise."""
+    """A sentence on what is left of launches, where that is more than noise."""
     many = one.times_noise
     return f" {after}, {left_over(many)}." if many and many > TO_THE_NOISE else ""
 

@@ -20,14 +20,14 @@ READ = (
 
 
 def twins_table(one: Account) -> str:
-    """A regime's untouched launches beside their twins; "" where nothing was found, or no twins were drawn."""
+    """A regime's launches, each predicted by others, beside their twins; "" where there are no twins."""
     twins = next((each.twins for each in one.findings if each.twins), {})
-    if not twins or one.proof is None or not one.proof.floor_m:
+    if not twins or one.selection is None or not one.selection.floor_m:
         return ""
-    before, after = (number(size / one.proof.floor_m) for size in (one.proof.before_m, one.proof.after_m))
+    before, after = (number(size / one.selection.floor_m) for size in (one.selection.before_m, one.selection.after_m))
     rows = [["the recording", before, after, "yes"]]
     rows += [[NAMES[name], number(twin.before), number(twin.after), _named(twin)] for name, twin in twins.items()]
-    note = "The same laws in twins: what is left of untouched launches, in units of the noise"
+    note = "The same laws in twins: what is left of launches that they were not fitted to, in units of the noise"
     return words.table(note, HEAD, rows, (1, 2, 3)) + words.folded("How to read this", words.paragraph(READ))
 
 

@@ -1,4 +1,4 @@
-"""What the sensing lacks, by all its recordings; and the recordings freed of it, for those who explain the rest."""
+"""What the sensing lacks, by all its recordings; and recordings freed of it, for those who explain the rest."""
 
 from __future__ import annotations
 
@@ -7,89 +7,97 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sim2real.diagnose.apart import Launches
-from sim2real.diagnose.contacts import Geometry, geometry
+from sim2real.diagnose.contacts import geometry
 from sim2real.diagnose.encoders import read_encoders
 from sim2real.diagnose.finding import Account
 from sim2real.diagnose.pieces import Pieces, cut
 from sim2real.diagnose.proof import pooled
-from sim2real.diagnose.sensing.clock import meetings
+from sim2real.diagnose.sensing.clock import Fit, Meetings, meetings
+from sim2real.diagnose.sensing.clock import missed as missed_clock
 from sim2real.diagnose.sensing.clock_findings import ClockAccount, clock_account
 from sim2real.diagnose.sensing.correct import corrected
 from sim2real.diagnose.sensing.held import held_finding, repeats
+from sim2real.diagnose.sensing.held import missed as missed_held
+from sim2real.diagnose.sensing.measured import Measured, measured
 from sim2real.diagnose.sensing.scale import ScaleAccount, scale_account
+from sim2real.diagnose.sensing.scale import missed as missed_map
 from sim2real.diagnose.strikes import Strike, strikes
 from sim2real.recording import Recording
+
+Launch = Sequence[np.ndarray]  # for each recording, the number (frames,) of each row's launch
 
 
 @dataclass(frozen=True)
 class Sensed:
-    """The account of the sensing, and the recordings and their pieces as an exact camera would have given them."""
+    """The account of the sensing, and the recordings and their pieces as an exact camera would have given them: by a
+    map of the values `scale` (3,), and a `clock`, None where it is right."""
 
     account: Account
     recordings: tuple[Recording, ...]
     pieces: tuple[Pieces, ...]
+    scale: np.ndarray
+    clock: Fit | None
+
+    def undone(self, recording: Recording) -> Recording:
+        """Another recording by the same camera, as an exact one would have given it."""
+        mapped = corrected(recording, self.scale) if self.scale.any() else recording
+        return mapped if self.clock is None else corrected(mapped, np.zeros(3), self.clock.clock)
 
 
-def sense(recordings: Sequence[Recording], pieces: Sequence[Pieces], launches: Launches) -> Sensed:
-    """Explain the sensing of recordings of one table: the map first, then the clock, then the frames held.
-
-    The launches kept apart are corrected as the others are, and tell nothing but the proof; but of recordings that are
-    not held out all touches of the walls are asked for the map, for they are few: `_scale`.
-    """
+def sense(recordings: Sequence[Recording], pieces: Sequence[Pieces], launch: Launch) -> Sensed:
+    """Explain the sensing of recordings of one table: the map first, then the clock, then the frames held."""
     recordings, pieces = list(recordings), list(pieces)
-    found = _strikes(recordings, pieces, launches)
+    found = _strikes(recordings, pieces, launch)
     calibrated = any(one.nominal("camera", "place_std_m") for one in recordings)
-    scale = _scale(found, geometry(recordings[0]), launches, calibrated)
+    scale = scale_account([s for part in found for s in part], geometry(recordings[0]), calibrated)
     if scale.findings:
         recordings = [corrected(one, scale.values) for one in recordings]
         pieces = [cut(one) for one in recordings]
-        found = _strikes(recordings, pieces, launches)
-    clock = _clock(recordings, found, launches.apart)
-    counts = [repeats(*each) for each in zip(recordings, pieces, launches.of_row, strict=True)]
-    held, held_proof = held_finding(counts, launches.apart)
-    if clock.findings:
+        found = _strikes(recordings, pieces, launch)
+    clock = clock_account(_meetings(recordings, found))
+    held, held_selection = held_finding([repeats(*each) for each in zip(recordings, pieces, launch, strict=True)])
+    if clock.fit is not None:
         recordings = [corrected(one, np.zeros(3), clock.clock) for one in recordings]
         pieces = [cut(one) for one in recordings]
     findings = sorted((*clock.findings, *scale.findings, *((held,) if held else ())), key=lambda one: one.p_value)
-    proof = pooled([one for one in (clock.proof, scale.proof, held_proof) if one is not None])
-    account = Account(
-        "sensing", tuple(findings), {}, not findings, proof, scale.undetermined, _next(recordings, clock, scale)
-    )
-    return Sensed(account, tuple(recordings), tuple(pieces))
+    selection = pooled([one for one in (clock.selection, scale.selection, held_selection) if one is not None])
+    advice = _next(recordings, clock, scale)
+    account = Account("sensing", tuple(findings), {}, not findings, selection, scale.undetermined, advice)
+    return Sensed(account, tuple(recordings), tuple(pieces), scale.values, clock.fit)
 
 
-def _strikes(recordings: list[Recording], pieces: list[Pieces], launches: Launches) -> list[list[Strike]]:
-    """The strikes of each recording with the numbers of their launches; none that leads from one that is kept apart
-    into one that is not, or back."""
+def prove_sensing(sensed: Sensed, recordings: Sequence[Recording], launch: Launch) -> Account:
+    """The account with what its findings come to in `recordings` that were no part of it."""
+    g, pieces = geometry(recordings[0]), [cut(one) for one in recordings]
+    found = _strikes(recordings, pieces, launch)
+    tried = {"scale_error": measured(*missed_map([s for part in found for s in part], sensed.scale, g).T)}
+    recordings = [corrected(one, sensed.scale) for one in recordings] if sensed.scale.any() else list(recordings)
+    pieces = [cut(one) for one in recordings]
+    met = [one for one in _meetings(recordings, _strikes(recordings, pieces, launch)) if len(one.t)]
+    if sensed.clock is not None and met:
+        tried |= dict.fromkeys(("camera_delay", "clock_drift"), measured(*missed_clock(met, sensed.clock)))
+    tried["held_frames"] = missed_held([repeats(*each) for each in zip(recordings, pieces, launch, strict=True)])
+    named = {one.mechanism: tried.get(one.mechanism) for one in sensed.account.findings}
+    findings = tuple(_with(one, named[one.mechanism]) for one in sensed.account.findings)
+    known = {id(one): one.proof for one in named.values() if one is not None}
+    return replace(sensed.account, findings=findings, proof=pooled(list(known.values())))
+
+
+def _with(finding, sizes: Measured | None):
+    return finding if sizes is None else replace(finding, before=sizes.before, after=sizes.after)
+
+
+def _strikes(recordings: Sequence[Recording], pieces: Sequence[Pieces], launch: Launch) -> list[list[Strike]]:
+    """The strikes of each recording with the numbers of the launches that they end."""
     found = []
-    for one, part, of_row in zip(recordings, pieces, launches.of_row, strict=True):
-        some = strikes(one, part)
-        ends = of_row[np.array([s.hit.frames for s in some], int).reshape(-1, 2)]
-        whole = np.ptp(launches.is_apart(ends).astype(int), axis=1) == 0
-        found.append([replace(s, launch=int(end)) for s, end, use in zip(some, ends[:, 0], whole, strict=True) if use])
+    for one, part, of_row in zip(recordings, pieces, launch, strict=True):
+        found.append([replace(s, launch=int(of_row[s.hit.frames[0]])) for s in strikes(one, part)])
     return found
 
 
-def _scale(found: list[list[Strike]], g: Geometry, launches: Launches, calibrated: bool) -> ScaleAccount:
-    """The map by all recordings but those held out, proved on these or launch by launch; what is undone is, as far as
-    they tell it, by the launches alone that are not kept apart."""
-    every = [s for part in found for s in part]
-    seen = [s for s in every if s.launch not in launches.apart]
-    if launches.heldout:
-        return scale_account(seen, g, [s for s in every if s.launch in launches.apart], calibrated)
-    told = scale_account(every, g, calibrated=calibrated)
-    values = scale_account(seen, g, calibrated=calibrated).values if told.findings else told.values
-    return replace(told, values=np.where((values != 0.0) & (told.values != 0.0), values, told.values))
-
-
-def _clock(recordings: list[Recording], found: list[list[Strike]], apart: np.ndarray) -> ClockAccount:
-    tables = []
-    for one, part in zip(recordings, found, strict=True):
-        encoders = read_encoders(one)
-        if encoders is not None and part:
-            tables.append(meetings(part, encoders, geometry(one)))
-    return clock_account(tables, apart)
+def _meetings(recordings: Sequence[Recording], found: Sequence[list[Strike]]) -> list[Meetings]:
+    read = [(read_encoders(one) if part else None, one, part) for one, part in zip(recordings, found, strict=True)]
+    return [meetings(part, encoders, geometry(one)) for encoders, one, part in read if encoders is not None]
 
 
 def _next(recordings: list[Recording], clock: ClockAccount, scale: ScaleAccount) -> str:

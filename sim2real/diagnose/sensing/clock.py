@@ -7,7 +7,7 @@ error of the radii or of the camera's map differs from a delay in blows of slow 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -41,12 +41,6 @@ class Meetings:
     launch: np.ndarray
     encoders: Encoders
     touch: float  # m, the sum of the radii
-
-    def without(self, launches: np.ndarray) -> Meetings:
-        """The same without the blows of some launches."""
-        kept = ~np.isin(self.launch, launches)
-        rows = {name: getattr(self, name)[kept] for name in ("t", "place", "push", "covariance", "launch")}
-        return replace(self, **rows)
 
     def gaps(self, delay: np.ndarray, rate: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Gaps (..., n) [m] of puck and mallet, and directions (..., n, 2) from the mallet, for each clock."""
@@ -118,7 +112,8 @@ def search(tables: list[Meetings]) -> tuple[float, float]:
 class Fit:
     """A fitted clock. `residual`, `std` (n,) [m] of all blows, nan where the encoders say nothing; `launch` (n,);
     `met`: those that touched the mallet; `seen`: those of the launches that the fit saw; `spread`: how much wider than
-    their errors those that are both scatter; `freedom`: how many more they are than what was fitted."""
+    their errors those that are both scatter; `freedom`: how many more they are than what was fitted; `nuisances`: what
+    NUISANCE names, as fitted."""
 
     clock: Clock
     residual: np.ndarray
@@ -128,6 +123,7 @@ class Fit:
     seen: np.ndarray
     spread: float
     freedom: int
+    nuisances: np.ndarray
 
 
 def linearise(each: Meetings, delay: float, rate: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -179,4 +175,15 @@ def fit(tables: list[Meetings], start: tuple[float, float], free: tuple[bool, bo
     covariance[np.ix_(kept[: sum(free)], kept[: sum(free)])] = inverse[: sum(free), : sum(free)]
     covariance *= spread**2 * (TAIL + 3) / (TAIL + 1)
     clock = Clock(float(theta[0]), float(theta[1]), covariance)
-    return Fit(clock, residual, std, launch, met, seen, float(spread), freedom)
+    return Fit(clock, residual, std, launch, met, seen, float(spread), freedom, theta[2:])
+
+
+def missed(tables: list[Meetings], found: Fit) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Gaps [m] of other blows as they were recorded and under a fitted clock, their errors, and their launches, each
+    (n,): nan where no mallet was met."""
+    rows = [linearise(each, found.clock.delay, found.clock.rate) for each in tables]
+    gap, jacobian, variance = (np.concatenate(part) for part in zip(*rows, strict=True))
+    after = gap + jacobian[:, 2:] @ found.nuisances
+    before = np.concatenate([each.gaps(np.array(0.0), np.array(0.0))[0] for each in tables])
+    after = np.where(np.abs(after) < TOUCHED, after, np.nan)
+    return before, after, np.sqrt(variance), np.concatenate([each.launch for each in tables])

@@ -11,7 +11,7 @@ from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.finding import Estimate, Finding, Proof, Rival
 from sim2real.diagnose.interval import reach
 from sim2real.diagnose.sensing.clock import EXACT, TOUCHED, Clock, Fit, Meetings, fit, search
-from sim2real.diagnose.sensing.measured import SURE, Measured, measured
+from sim2real.diagnose.sensing.measured import SURE, measured
 
 MODELS = {"none": (False, False), "camera_delay": (True, False), "clock_drift": (False, True), "both": (True, True)}
 DRIFT = EFFECTS["clock_drift"]
@@ -25,48 +25,52 @@ WORST = 12.0  # standard deviations; a blow counts no more, however far off
 
 @dataclass(frozen=True)
 class ClockAccount:
-    """The clock that the blows show (EXACT where nothing is missing), its findings, and their proof.
+    """The fit of a clock that blows show (None where nothing is missing), its findings, and how far off launches are
+    that a fit did not see, `selection`.
 
     `told`: whether there were blows enough to see a delay of LATE_AT_LEAST or more of any size that matters.
     """
 
-    clock: Clock
+    fit: Fit | None
     findings: tuple[Finding, ...]
-    proof: Proof | None
+    selection: Proof | None
     told: bool
 
+    @property
+    def clock(self) -> Clock:
+        """EXACT where nothing is missing."""
+        return EXACT if self.fit is None else self.fit.clock
 
-def clock_account(tables: list[Meetings], apart: np.ndarray) -> ClockAccount:
-    """What the blows of all recordings (`tables`) say of the camera's clock; those of the launches `apart` prove it."""
-    nothing = ClockAccount(EXACT, (), None, False)
-    seen = [each for each in (one.without(apart) for one in tables) if len(each.t) >= 2]
-    if not seen:
+
+def clock_account(tables: list[Meetings]) -> ClockAccount:
+    """What the blows of all recordings (`tables`) say of the camera's clock."""
+    nothing = ClockAccount(None, (), None, False)
+    tables = [one for one in tables if len(one.t) >= 2]
+    if not tables:
         return nothing
-    start = search(seen)
-    fits = {name: fit(tables, start, free, apart) for name, free in MODELS.items()}
+    start = search(tables)
+    fits = {name: fit(tables, start, free) for name, free in MODELS.items()}
     if fits["both"] is None:
         fits["both"] = fits["camera_delay"]
     full = fits["both"]
     if full is None or full.freedom < 3:
         return nothing
     chance = {name: _chance(each, full, 2 - sum(MODELS[name])) for name, each in fits.items()}
-    span = max(float(np.ptp(each.t)) for each in seen)
+    span = max(float(np.ptp(each.t)) for each in tables)
     name = _choose(chance, full, span)
     told = float(np.sqrt(full.clock.covariance[0, 0])) < 10 * LATE_AT_LEAST
     if name == "none":
-        return ClockAccount(EXACT, (), None, told)
+        return ClockAccount(None, (), None, told)
     best = fits[name]
     assert best is not None
     before = np.concatenate([each.gaps(np.array(0.0), np.array(0.0))[0] for each in tables])
     before = np.where(full.met, before, np.nan)
-    foretold = measured(before, _foretold(tables, start, MODELS[name], full, apart), full.std, full.launch)
-    unseen = measured(before, np.where(full.seen, np.nan, best.residual), full.std, full.launch)
-    if foretold is None or foretold.proof.after_m > BETTER * foretold.proof.before_m:
-        return ClockAccount(EXACT, (), None, told)
-    sizes = unseen or foretold
+    left_out = measured(before, _left_out(tables, start, MODELS[name], full), full.std, full.launch)
+    if left_out is None or left_out.proof.after_m > BETTER * left_out.proof.before_m:
+        return ClockAccount(None, (), None, told)
     named = ("camera_delay", "clock_drift") if name == "both" else (name,)
-    findings = tuple(_finding(each, named, best, fits, chance, full, sizes) for each in named)
-    return ClockAccount(best.clock, findings, sizes.proof, True)
+    findings = tuple(_finding(each, named, best, fits, chance, full) for each in named)
+    return ClockAccount(best, findings, left_out.proof, True)
 
 
 def _choose(chance: dict[str, float], full: Fit, span: float) -> str:
@@ -95,19 +99,19 @@ def _squares(each: Fit, full: Fit) -> float:
     return float((np.clip(z, -WORST, WORST) ** 2).sum())
 
 
-def _foretold(tables, start, free: tuple[bool, bool], full: Fit, apart: np.ndarray) -> np.ndarray:
-    """Residuals (n,) [m] of the blows that the full fit saw, each by a fit that did not see its launch; else nan."""
-    launches, found = np.unique(full.launch[full.seen]), np.full(len(full.launch), np.nan)
+def _left_out(tables, start, free: tuple[bool, bool], full: Fit) -> np.ndarray:
+    """Residuals (n,) [m] of the blows, each by a fit that did not see its launch; nan where there is none."""
+    launches, found = np.unique(full.launch), np.full(len(full.launch), np.nan)
     for fold in range(FOLDS):
         skip = launches[fold::FOLDS]
-        each = fit(tables, start, free, np.concatenate([apart, skip]))
+        each = fit(tables, start, free, skip)
         if each is not None:
             here = np.isin(full.launch, skip)
             found[here] = each.residual[here]
     return found
 
 
-def _finding(name: str, named, best: Fit, fits, chance, full: Fit, sizes: Measured) -> Finding:
+def _finding(name: str, named, best: Fit, fits, chance, full: Fit) -> Finding:
     index = 0 if name == "camera_delay" else 1
     value = (best.clock.delay, best.clock.rate * 1e6)[index]
     error = float(np.sqrt(best.clock.covariance[index, index])) * (1.0, 1e6)[index]
@@ -128,8 +132,6 @@ def _finding(name: str, named, best: Fit, fits, chance, full: Fit, sizes: Measur
         formula=FORMULAS[name],
         parameters={label: estimate},
         p_value=max(without, 1e-300),
-        before=sizes.before,
-        after=sizes.after,
         where={"stream": "frames"} if index else {},
         values={"camera_latency": value} if index == 0 else {},
         ranges={"camera_latency": estimate} if index == 0 else {},

@@ -71,22 +71,16 @@ def _off(t: np.ndarray, p: np.ndarray, pieces: Pieces, row, before, after) -> tu
     return np.where(broken, np.nan, miss), std
 
 
-def held_finding(counts: list[Repeats], apart: np.ndarray) -> tuple[Finding | None, Proof | None]:
-    """The finding `held_frames`, by all launches but those kept `apart`; in these, how far frames are off their
-    neighbours' way with the repeats and without. None where repeats are rare, or do no harm there."""
-    held, launch, miss, std = (
-        np.concatenate([getattr(each, name) for each in counts]) for name in ("held", "launch", "miss", "std")
-    )
-    unseen = np.isin(launch, apart)
-    n, repeated = int((~unseen).sum()), int(held[~unseen].sum())
+def held_finding(counts: list[Repeats]) -> tuple[Finding | None, Proof | None]:
+    """The finding `held_frames`; and how far frames are off their neighbours' way with the repeats and without. None
+    where repeats are rare, or do no harm."""
+    held = np.concatenate([each.held for each in counts])
+    n, repeated = len(held), int(held.sum())
     chance = float(stats.binom.sf(repeated - 1, n, RARE)) if n else 1.0
-    if chance > SURE:
-        return None, None
-    interval = stats.binomtest(repeated, n).proportion_ci(0.95, "wilson")
-    proved = _with_and_without(held[unseen], miss[unseen], std[unseen], launch[unseen])
-    sizes = proved or _with_and_without(held, miss, std, launch)
+    sizes = missed(counts) if chance <= SURE else None
     if sizes is None or sizes.after >= sizes.before:
         return None, None
+    interval = stats.binomtest(repeated, n).proportion_ci(0.95, "wilson")
     share = Estimate(repeated / n, float(interval.low), float(interval.high), "1")
     finding = Finding(
         regime="sensing",
@@ -96,16 +90,17 @@ def held_finding(counts: list[Repeats], apart: np.ndarray) -> tuple[Finding | No
         formula=WORDS,
         parameters={"fraction": share},
         p_value=max(chance, 1e-300),
-        before=sizes.before,
-        after=sizes.after,
         values={"held_frames": share.value},
         ranges={"held_frames": share},
     )
-    return finding, None if proved is None else proved.proof
+    return finding, sizes.proof
 
 
-def _with_and_without(held: np.ndarray, miss: np.ndarray, std: np.ndarray, launch: np.ndarray) -> Measured | None:
-    """How far all frames (n,) are off, and the fresh ones alone; None where none is known."""
+def missed(counts: list[Repeats]) -> Measured | None:
+    """How far all frames are off, and the fresh ones alone; None where none is known."""
+    held, launch, miss, std = (
+        np.concatenate([getattr(each, name) for each in counts]) for name in ("held", "launch", "miss", "std")
+    )
     known = np.isfinite(miss)
     fresh = known & ~held
     if not fresh.any():

@@ -6,7 +6,7 @@ shear slants the short walls. From glides alone a stretch is a change of drag an
 
 from __future__ import annotations
 
-from collections.abc import Sequence, Set
+from collections.abc import Set
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,20 +36,19 @@ FOLDS = 20  # nearly one launch at a time: a wall has few touches
 
 @dataclass(frozen=True)
 class ScaleAccount:
-    """`values` (3,) of NAMES, 0 where nothing is missing; or why the lines cannot be believed, in `undetermined`."""
+    """`values` (3,) of NAMES, 0 where nothing is missing; or why the lines cannot be believed, in `undetermined`.
+    `selection`: how far off launches are that a fit did not see."""
 
     values: np.ndarray
     findings: tuple[Finding, ...]
-    proof: Proof | None
+    selection: Proof | None
     undetermined: str = ""
 
 
-def scale_account(
-    found: list[Strike], g: Geometry, unseen: Sequence[Strike] = (), calibrated: bool = False
-) -> ScaleAccount:
-    """What the strikes `found` at the walls say of the camera's map; those of `unseen` launches serve the proof, or,
-    where there are none, each launch that of the fits without it. Against a camera that was `calibrated` nothing is
-    told that does not explain nearly all: what looks like touches may be blows under the gantry."""
+def scale_account(found: list[Strike], g: Geometry, calibrated: bool = False) -> ScaleAccount:
+    """What the strikes `found` at the walls say of the camera's map, each launch tried on a fit without it. Against a
+    camera that was `calibrated` nothing is told that does not explain nearly all: what looks like touches may be blows
+    under the gantry."""
     values, covariance = fitted_map(found, g)
     std = np.sqrt(np.diag(covariance))
     wrong = wrong_size(values, std, g)
@@ -61,12 +60,10 @@ def scale_account(
         return ScaleAccount(np.zeros(3), (), None)
     told = (sure < TOLD) & (std < KNOWN)
     kept = np.where(told, values, 0.0)
-    apart = _distances(lines(list(unseen), g), kept, {s.launch for s in unseen}, g)
-    sizes = measured(*np.concatenate([apart, _foretold(found, g)]).T)
+    sizes = measured(*_left_out(found, g).T)
     share = 0.0 if sizes is None else explained(sizes.before, sizes.after)
     if sizes is None or share <= 0.0 or (share < STRETCHED and (calibrated or chance > BEYOND_DOUBT)):
         return ScaleAccount(np.zeros(3), (), None)
-    sizes = measured(*apart.T) or sizes
     half = NORMAL_REACH * std
     estimates = {
         name: Estimate(float(values[k]), float(values[k] - half[k]), float(values[k] + half[k]), "1")
@@ -82,8 +79,6 @@ def scale_account(
         formula=EFFECTS["scale_error"].law,
         parameters=estimates,
         p_value=max(chance, 1e-300),
-        before=sizes.before,
-        after=sizes.after,
         values={rows[name].name: one.value for name, one in estimates.items()},
         ranges={rows[name].name: one for name, one in estimates.items()},
     )
@@ -146,7 +141,12 @@ def _solve(walls: dict[str, Line], g: Geometry) -> tuple[np.ndarray, np.ndarray]
     return (inverse @ (jacobian.T @ (weight @ seen)))[:3], inverse[:3, :3]
 
 
-def _foretold(found: list[Strike], g: Geometry) -> np.ndarray:
+def missed(found: list[Strike], values: np.ndarray, g: Geometry) -> np.ndarray:
+    """`_distances` of other touches, under the map `values`."""
+    return _distances(lines(found, g), values, {s.launch for s in found}, g)
+
+
+def _left_out(found: list[Strike], g: Geometry) -> np.ndarray:
     """`_distances` of all touches, each by a map fitted without its launch."""
     launches = sorted({s.launch for s in found})
     whole, rows = lines(found, g), [np.zeros((0, 4))]

@@ -28,25 +28,25 @@ class Bounces(Contacts):
     since: np.ndarray
 
 
-def bounces(impacts: list[Impact], g: Geometry, apart: np.ndarray) -> Bounces:
-    """The clear bounces off walls and posts among `impacts`, in order of time. What is usual is asked of none in the
-    clusters `apart`."""
+def bounces(impacts: list[Impact], g: Geometry, known: Bounces | None = None) -> Bounces:
+    """The clear bounces off walls and posts among `impacts`, in order of time. What is usual is asked of the bounces
+    `known`, if there are any, and else of these themselves."""
     rows = {k: row for k, impact in enumerate(impacts) if (row := _row(impact, g)) is not None}
     every = contacts_of(Bounces, list(rows.values()), impacts, {})
-    usual = are_usual(every, np.isin(every.cluster, apart))
+    usual = are_usual(every, known if known is not None and len(known) else every)
     number = np.array(list(rows), int)[usual]
     return chained(kept(every, usual), number, np.array([impact.chain for impact in impacts], int))
 
 
-def are_usual(every: Bounces, apart: np.ndarray) -> np.ndarray:
+def are_usual(every: Bounces, known: Bounces) -> np.ndarray:
     """Which bounces (n,) are no hits at a wall of a restitution quite unusual for it: there something else was hit as
-    well. A wall that was hit a few times has a usual restitution of its own, told by those not kept `apart` (n,)."""
-    restitution = every.split(every.after)[:, 0] / every.closing
-    wall, usual = every.kind != bounce.POST, np.zeros(len(every))
+    well. A wall that was hit a few times among those `known` has a usual restitution of its own."""
+    restitution, told = (some.split(some.after)[:, 0] / some.closing for some in (every, known))
+    wall, known_wall, usual = every.kind != bounce.POST, known.kind != bounce.POST, np.zeros(len(every))
     for kind in np.unique(every.kind[wall]):
-        here = every.kind == kind
-        own = here & ~apart if (here & ~apart).sum() >= FEWEST else wall & ~apart
-        usual[here] = np.median(restitution[own]) if own.any() else np.median(restitution[wall])
+        own = known.kind == kind
+        own = own if own.sum() >= FEWEST else known_wall
+        usual[every.kind == kind] = np.median(told[own]) if own.any() else np.median(restitution[wall])
     return ~wall | (np.abs(restitution - usual) < UNUSUAL)
 
 

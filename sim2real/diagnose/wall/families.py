@@ -8,7 +8,7 @@ import numpy as np
 
 from puckpilot_env.physics.effects.unlisted_bounce import KNOTS, RIPPLES, WAVES
 from sim2real.diagnose.contact_laws import UNIT, shape_of
-from sim2real.diagnose.engine.choose import Law
+from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.piecewise import memory_hats, ripples, spread_hats
 from sim2real.diagnose.wall.data import KINDS, Bounces
 

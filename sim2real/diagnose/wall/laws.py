@@ -5,30 +5,28 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
 
 from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.contact_laws import contact_columns, shape_of
-from sim2real.diagnose.engine.choose import Law
+from sim2real.diagnose.contact_problem import ContactProblem
+from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.problem import Columns
+from sim2real.diagnose.wall.data import Bounces
 from sim2real.diagnose.wall.families import FAMILIES, ONE_WAVE
 from sim2real.diagnose.wall.switched import switched_on
-
-if TYPE_CHECKING:
-    from sim2real.diagnose.wall.problem import WallProblem
 
 FRICTIONS = (0.04, 0.07, 0.1, 0.15, 0.2, 0.3, 0.5)  # at which friction with spin is looked for
 ONE_ROW_EACH = ("wall_to_wall_restitution", "speed_dependent_restitution")
 
 
-def wall_columns(problem: WallProblem, values: Mapping[str, float], free: Sequence[str]) -> Columns:
+def wall_columns(problem: ContactProblem[Bounces], values: Mapping[str, float], free: Sequence[str]) -> Columns:
     """Every column of a wall problem at one law."""
     friction = ("wall_friction_spin", "wall_mu", FRICTIONS)
     columns = contact_columns(problem, values, free, _smooth_in_the_effect(), friction, FAMILIES)
     return replace(columns, families=[_switched(law, problem) for law in columns.families])
 
 
-def _switched(law: Law, problem: WallProblem) -> Law:
+def _switched(law: Law, problem: ContactProblem[Bounces]) -> Law:
     """The law with its switch, and with what it is one of where it is a single wave."""
     law = replace(law, switch=partial(switched_on, law.name, problem.data), straight=True)
     if shape_of(law) not in ONE_WAVE:

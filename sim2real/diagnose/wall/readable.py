@@ -7,8 +7,8 @@ import numpy as np
 from puckpilot_env.physics import bounce
 from sim2real.diagnose.contact_formula import contact_formula
 from sim2real.diagnose.contact_laws import acted_on
-from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.engine.explain import Explained
+from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.forms import Axis
 from sim2real.diagnose.formula import Formula
 from sim2real.diagnose.wall.data import KINDS

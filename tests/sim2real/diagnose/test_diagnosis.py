@@ -10,7 +10,7 @@ import pytest
 from puckpilot import main
 from puckpilot_env.effects_file import effect_values
 from sim2real.diagnose.diagnosis import diagnose
-from sim2real.diagnose.explaining import explain_regime
+from sim2real.diagnose.explaining import identify_regime
 from sim2real.diagnose.summary import summary
 from sim2real.recording import Stream, read_recording
 from tests.reality.camera import Camera
@@ -141,14 +141,15 @@ def test_labelled_practice(name):
 
 @pytest.mark.parametrize("proved, odd, told", [(True, 0.1, True), (False, 0.1, False), (False, 0.0, True)])
 def test_what_rests_on_a_rough_law_and_leaves_much_is_not_told(proved, odd, told):
-    """Nor are its numbers: what is left of untouched launches is then what the refitted baseline leaves. `odd`: a push
-    that is another one in every launch, which no law explains."""
+    """Nor are its numbers: the refitted baseline's are, and what that leaves. `odd`: a push that is another one
+    in every launch, which no law explains."""
     pushes = odd * np.random.default_rng(1).normal(size=LAUNCHES)
     problem = LinearProblem({"tilt_x": 0.06, "tilt_y": -0.08, "spin": pushes})
-    stands, found, _ = explain_regime(problem, SHIPPED, np.arange(LAUNCHES)[3::4], [], True, proved)
-    assert stands is not None and found.proof is not None and found.parting is not None
+    said = identify_regime(problem, SHIPPED, [], True, proved)
+    stands, found = said.final, said.account
+    assert stands is not None and found.selection is not None and found.parting is not None
     assert bool(found.findings) == told == (not found.undetermined) == bool(stands.model.laws)
-    assert (found.proof.after_m < 0.9 * found.proof.before_m) == told and not found.lost
+    assert (found.selection.after_m < 0.9 * found.selection.before_m) == told and not found.lost
     assert (found.parting.after.mean() < 0.9 * found.parting.before.mean()) == told
 
 

@@ -121,10 +121,10 @@ def test_every_regime_says_for_itself_what_it_has():
     found = as_dict(
         Diagnosis(
             (
-                Account("glide", (PLAIN,), {}, False, proof),
+                Account("glide", (PLAIN,), {}, False, proof, proof=proof),
                 Account("wall", (), numbers, False, None, undetermined="too few bounces", next_recording="more"),
-                Account("mallet", (), {}, True, proof, doubt="mallet_give would fit"),
-                Account("gantry", (), {}, False, proof),
+                Account("mallet", (), {}, True, proof, proof=proof, doubt="mallet_give would fit"),
+                Account("gantry", (), {}, False, proof, proof=proof),
             ),
             sights=(SEEN,),
         )

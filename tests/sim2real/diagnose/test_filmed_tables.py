@@ -54,7 +54,8 @@ def test_what_is_missing_is_named(tmp_path: Path, law: Law, mechanism: str, name
     assert [one.mechanism for one in found.findings] == [mechanism]
     estimate = found.findings[0].parameters[name]
     assert estimate.low < getattr(law, name) < estimate.high
-    assert found.findings[0].after < 1.3 < found.findings[0].before
+    (one, *_) = found.findings
+    assert one.before is not None and one.after is not None and one.after < 1.3 < one.before
 
 
 def test_what_untouched_recordings_err_by_tells_the_fit_nothing(tmp_path: Path) -> None:

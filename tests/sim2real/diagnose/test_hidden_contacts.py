@@ -10,19 +10,18 @@ from scipy.integrate import solve_ivp
 from synthetic import LENGTH, META, RADIUS, RATE
 
 from puckpilot_env.parameters import TABLE
-from sim2real.diagnose.apart import glides_of
 from sim2real.diagnose.contacts import geometry
 from sim2real.diagnose.engine.fit import fit
 from sim2real.diagnose.glide.problem import GlideProblem
 from sim2real.diagnose.impacts import Impact, find_impacts
 from sim2real.diagnose.pieces import cut
+from sim2real.diagnose.split import glides_of
 from sim2real.diagnose.wall.data import bounces
 from sim2real.diagnose.wall.problem import WallProblem
 from sim2real.nominal import parameters
 from sim2real.recording import Recording, Stream
 
 DEFAULTS = {row.name: row.default for row in TABLE}
-NOBODY = np.zeros(0, int)
 LAUNCHES, NOISE, RESTITUTION = 24, 2e-5, 0.7
 SHADE = (0.002, 0.07)  # s before and after a contact, in which nothing is seen
 
@@ -77,7 +76,7 @@ def test_bounces_in_the_shade_are_as_exact_as_they_say() -> None:
     t, place = (np.concatenate(one) for one in zip(*(shot(k, v) for k, v in enumerate(speeds)), strict=True))
     recording = recorded(t, place)
     impacts, glides = impacts_of(recording)
-    problem = WallProblem(bounces(impacts, geometry(recording), NOBODY), glides.clusters, DEFAULTS)
+    problem = WallProblem(bounces(impacts, geometry(recording)), glides.clusters, DEFAULTS)
     assert len(problem.data) > 0.7 * LAUNCHES
     left = problem.residuals({"wall_restitution": RESTITUTION}, (), np.arange(glides.clusters)).r
     assert 0.6 < np.sqrt(np.mean(left**2)) < 1.4

@@ -7,9 +7,9 @@ import pytest
 
 from sim2real.diagnose.account import account
 from sim2real.diagnose.diagnosis import Diagnosis, diagnose
-from sim2real.diagnose.engine.choose import Law as Tried
 from sim2real.diagnose.engine.explain import explain
-from sim2real.diagnose.engine.proving import prove
+from sim2real.diagnose.engine.law import Law as Tried
+from sim2real.diagnose.engine.selection import select
 from sim2real.diagnose.illustrate import illustrated
 from sim2real.diagnose.report.page import page
 from sim2real.recording import read_recording
@@ -114,7 +114,7 @@ def test_a_gantry_rough_by_place_gets_a_wave_in_volts(tmp_path):
     assert curve.formula is not None
     for drawn in (curve.y, curve.formula):  # less a constant, and more, that the baseline could do
         assert np.corrcoef(drawn, expected)[0, 1] > 0.98
-        assert np.ptp(drawn) == pytest.approx(np.ptp(expected), rel=0.15)
+        assert np.ptp(drawn) == pytest.approx(np.ptp(expected), rel=0.2)  # that takes a sixth off the formula
     assert "no measure of those of a moment" in page(found)
 
 
@@ -147,14 +147,14 @@ class _Nameless(LinearProblem):
 
 
 def test_launches_are_shown_under_the_law_that_was_found_smooth_part_and_all():
-    problem, launches = _Nameless({"tilt_x": 0.02, "tilt_y": -0.03}), np.arange(LAUNCHES)
-    use, apart = launches[launches % 4 > 0], launches[launches % 4 == 0]
+    problem, use = _Nameless({"tilt_x": 0.02, "tilt_y": -0.03}), np.arange(LAUNCHES)
     found = explain(problem, SHIPPED, use)
-    told = illustrated(problem, found, account(problem, prove(problem, found, apart), SHIPPED, use, apart), use)
+    said = account(problem, select(problem, found), SHIPPED)
+    told = illustrated(problem, found, said, use)
     assert [one.mechanism for one in told.findings] == ["unlisted"]
-    assert told.parting is not None and told.proof is not None
-    for shown, proved in ((told.parting.before, told.proof.before_m), (told.parting.after, told.proof.after_m)):
-        assert np.sqrt(np.mean(shown[apart] ** 2)) == pytest.approx(proved / problem.noise_m, rel=1e-6)
+    assert told.parting is not None and told.selection is not None
+    for shown, left in ((told.parting.before, told.selection.before_m), (told.parting.after, told.selection.after_m)):
+        assert np.sqrt(np.mean(shown**2)) == pytest.approx(left / problem.noise_m, rel=0.02)  # by fits to others
     assert told.parting.after.mean() < 1.1 < told.parting.before.mean()
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from numpy.typing import ArrayLike
 
-from sim2real.diagnose.engine.choose import Law
 from sim2real.diagnose.engine.fit import Fit
+from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.labels import labelled
 
 MANY = 100_000  # clusters: Student's quantile is the normal one

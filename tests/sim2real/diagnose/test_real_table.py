@@ -29,7 +29,6 @@ from sim2real.recording import Recording, read_recording
 
 UBC = Path(__file__).resolve().parents[4] / "shared" / "recordings" / "ubc"
 SHIPPED = {row.name: row.default for row in TABLE if row.name in GlideProblem.base}
-NOBODY = np.zeros(0, int)  # no launch is kept apart
 HALF = 83.3  # s, of a recording of 167 s
 
 
@@ -68,7 +67,7 @@ def bounces_of(name: str) -> tuple[Bounces, int]:
     """The bounces of a recording, told by the law of the glides, and its number of launches."""
     here = part(name)
     states = here.glides.states(given(glides_of_first_half().mended))
-    found = bounces(find_impacts(here.pieces, here.glides, states), geometry(here.recording), NOBODY)
+    found = bounces(find_impacts(here.pieces, here.glides, states), geometry(here.recording))
     return found, here.glides.clusters
 
 

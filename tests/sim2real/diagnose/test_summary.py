@@ -18,7 +18,9 @@ HELD = replace(LATE, mechanism="held_frames", p_value=1e-20)
 
 
 def _found(*findings: Finding) -> Diagnosis:
-    return Diagnosis((Account("glide", findings, {}, False, Proof(0.01, 0.001, 0.001, 1)),))
+    return Diagnosis(
+        (Account("glide", findings, {}, False, Proof(0.01, 0.001, 0.001, 1), proof=Proof(0.01, 0.001, 0.001, 1)),)
+    )
 
 
 @pytest.mark.parametrize(
@@ -50,8 +52,8 @@ def test_what_is_missing_is_listed_in_plain_words(findings, said):
 
 
 def test_agreement_is_to_the_noise_only_where_noise_alone_is_left():
-    wall = Account("wall", (), {}, True, Proof(0.004, 0.0021, 0.001, 3))
-    glide = replace(wall, regime="glide", proof=Proof(0.001, 0.001, 0.001, 3))
+    wall = Account("wall", (), {}, True, Proof(0.004, 0.0021, 0.001, 3), proof=Proof(0.004, 0.0021, 0.001, 3))
+    glide = replace(wall, regime="glide", selection=Proof(0.001, 0.001, 0.001, 3))
     assert sentence(Diagnosis((glide,))) == (
         "The simulator as shipped explains this recording to the noise of the sensors."
     )
@@ -91,19 +93,29 @@ def test_findings_and_what_to_do_next_come_before_the_baseline():
 
 
 def test_faults_of_the_sensors_are_held_out_as_recorded():
-    late = Diagnosis((Account("sensing", (LATE,), {}, False, Proof(0.02, 0.004, 0.001, 6)),))
+    late = Diagnosis(
+        (Account("sensing", (LATE,), {}, False, Proof(0.02, 0.004, 0.001, 6), proof=Proof(0.02, 0.004, 0.001, 6)),)
+    )
     assert any("held out, sensing: 20.00 mm as recorded, 4.00 mm with" in line for line in summary(late, []))
 
 
-LOST = Account("glide", (), {}, False, Proof(0.01, 0.01, 0.001, 2), undetermined="who knows", lost=True)
+LOST = Account(
+    "glide",
+    (),
+    {},
+    False,
+    Proof(0.01, 0.01, 0.001, 2),
+    proof=Proof(0.01, 0.01, 0.001, 2),
+    undetermined="who knows",
+    lost=True,
+)
 
 
 def test_what_is_missing_but_not_known_is_said_so():
     assert sentence(Diagnosis((LOST,))) == "Something is missing in the glide, but this recording cannot tell what."
     note = next(line for line in summary(Diagnosis((LOST,)), []) if "note" in line)
     assert (
-        note
-        == "  note: glide: undetermined, who knows; what is refitted misses untouched launches by 10 times the noise"
+        note == "  note: glide: undetermined, who knows; what is refitted misses unseen launches by 10 times the noise"
     )
 
 
@@ -118,13 +130,15 @@ def test_regimes_that_cannot_tell_are_named_beside_what_is_missing():
 
 
 def test_what_is_open_is_never_said_to_be_closed():
-    wide = Account("gantry", (TILT,), {}, False, Proof(0.1, 0.01, 0.001, 2))
+    wide = Account("gantry", (TILT,), {}, False, Proof(0.1, 0.01, 0.001, 2), proof=Proof(0.1, 0.01, 0.001, 2))
     assert Diagnosis((wide,)).next_recording.startswith("no single recording is known")
     for left in (
-        replace(wide, proof=Proof(0.1, 0.0015, 0.001, 2)),
-        replace(wide, proof=None, doubt="a tilt would fit"),
+        replace(wide, selection=Proof(0.1, 0.0015, 0.001, 2)),
+        replace(wide, selection=None, doubt="a tilt would fit"),
     ):
         assert Diagnosis((left,)).next_recording.startswith("no single recording is known")
-    assert Diagnosis((replace(wide, proof=Proof(0.1, 0.0012, 0.001, 2)),)).next_recording.startswith("nothing further")
+    assert Diagnosis((replace(wide, selection=Proof(0.1, 0.0012, 0.001, 2)),)).next_recording.startswith(
+        "nothing further"
+    )
     asking = Account("wall", (), {}, True, None, "few bounces", next_recording="record more bounces")
     assert Diagnosis((wide, asking)).next_recording == "record more bounces"

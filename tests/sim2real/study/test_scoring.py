@@ -12,8 +12,8 @@ import pytest
 from PIL import Image
 
 from puckpilot_env.physics.effects import EFFECTS
-from sim2real.diagnose.engine.choose import Law as Named
 from sim2real.diagnose.engine.fit import Fit
+from sim2real.diagnose.engine.law import Law as Named
 from sim2real.diagnose.labels import labelled
 from sim2real.study.confusion import confuse, draw
 from sim2real.study.figures import by_mechanism, figures, median, share

@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 
 from sim2real.diagnose.engine import gram
-from sim2real.diagnose.engine.choose import Law
+from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.problem import Columns, Residuals, Units
 
 LAUNCHES, PIECES, EACH = 20, 3, 20

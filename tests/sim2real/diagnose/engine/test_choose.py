@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from sim2real.diagnose.engine import gram
-from sim2real.diagnose.engine.choose import Chooser, Law, Model
+from sim2real.diagnose.engine.choose import Chooser, Model
+from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.engine.noise import dispersion
 from sim2real.diagnose.engine.rivals import chance, compare
 from sim2real.diagnose.problem import Columns, Units

@@ -7,7 +7,7 @@ import pytest
 from scipy.linalg import inv, sqrtm
 
 from sim2real.diagnose.engine import gram
-from sim2real.diagnose.engine.choose import Law
+from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.engine.noise import allowing_for, dispersion
 from sim2real.diagnose.problem import Units
 

@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sim2real.diagnose.apart import glides_of
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.fit import fit
 from sim2real.diagnose.engine.smooth import fit_smooth
 from sim2real.diagnose.glide.problem import GlideProblem
 from sim2real.diagnose.pieces import cut
+from sim2real.diagnose.split import glides_of
 from sim2real.nominal import parameters
 from sim2real.recording import read_recording
 from tests.reality.law import Law

@@ -7,8 +7,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from sim2real.diagnose.engine.choose import LEAST_FORETOLD, LEAST_SHARE, Gain, Law, Model
+from sim2real.diagnose.engine.choose import LEAST_FORETOLD, LEAST_SHARE, Gain, Model
 from sim2real.diagnose.engine.fit import Fit
+from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.engine.ways import Way, _remainder, simplest, stands_by_itself
 
 NOTHING = 1000.0 * LEAST_FORETOLD / LEAST_SHARE  # loss of the baseline: the share of it decides, not the least

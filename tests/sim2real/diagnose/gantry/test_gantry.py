@@ -13,11 +13,11 @@ from sim2real.diagnose.account import account
 from sim2real.diagnose.agreement import Part, check_agreement
 from sim2real.diagnose.engine.explain import explain
 from sim2real.diagnose.engine.fit import fit
-from sim2real.diagnose.engine.proving import prove
+from sim2real.diagnose.engine.selection import select
 from sim2real.diagnose.finding import Account
 from sim2real.diagnose.gantry import run as run_module
-from sim2real.diagnose.gantry.problem import GantryProblem, gantry_problem
-from sim2real.diagnose.gantry.run import Run, UnusableError
+from sim2real.diagnose.gantry.problem import gantry_problem
+from sim2real.diagnose.gantry.run import UnusableError
 from sim2real.diagnose.gantry.windows import FEWEST, WINDOW
 from sim2real.diagnose.sanity import UndeterminedError
 from sim2real.nominal import parameters
@@ -38,12 +38,9 @@ def recorded(folder: Path, law: Law, scenario: str = "gantry", seconds: float = 
 
 def diagnosed(recording: Recording) -> Account:
     values = parameters(recording)
-    problem = gantry_problem([recording], values)[0].proved_on(0, 4).ticked()
-    proof = problem.proof
-    use = np.setdiff1d(np.arange(problem.clusters), proof)
+    problem = gantry_problem([recording], values)[0].ticked()
     shipped = {name: values[name] for name in problem.base}
-    found = explain(problem, shipped, use)
-    return account(problem, prove(problem, found, proof), shipped, use, proof)
+    return account(problem, select(problem, explain(problem, shipped, problem.everything)), shipped)
 
 
 @pytest.mark.parametrize(
@@ -65,7 +62,8 @@ def test_one_effect_is_named_and_measured(tmp_path: Path, law: Law, name: str, p
     width = estimate.high - estimate.low
     assert abs(estimate.value - value) < 0.75 * width  # three standard deviations: once in 400 such tests by chance
     assert 0.0 < width < 0.1 * abs(value)
-    assert found.findings[0].after < 1.1 < found.findings[0].before
+    assert found.selection is not None
+    assert found.selection.after_m < 1.1 * found.selection.floor_m < found.selection.before_m
 
 
 def test_two_effects_are_both_named(tmp_path: Path) -> None:
@@ -109,18 +107,6 @@ def test_motors_that_heed_a_plan_at_the_next_tick_lack_nothing(
     recording = recorded(tmp_path, law)
     assert gantry_problem([recording], parameters(recording))[0].ticked().runs[0].orders.tick == tick
     assert [one.mechanism for one in diagnosed(recording).findings] == names
-    apart = gantry_problem([recording], parameters(recording))[0].proved_on(0, 2)
-    spoilt = [spoil(run, apart.proof) for run in apart.runs]
-    assert GantryProblem(spoilt, parameters(recording), apart.proof).ticked().runs[0].orders.tick == tick
-
-
-def spoil(run: Run, clusters: np.ndarray) -> Run:
-    """The run with a path in these clusters that no motor made."""
-    seen, windows = run.seen.copy(), run.windows
-    for begin, end in zip(windows.begin, windows.end, strict=True):
-        if windows.cluster[np.searchsorted(windows.begin, begin)] in clusters:
-            seen[begin:end] += np.random.default_rng(0).normal(0.0, 0.01, (end - begin, 2))
-    return replace(run, seen=seen)
 
 
 def test_a_long_log_keeps_windows_that_can_be_told(plain: Recording, monkeypatch: pytest.MonkeyPatch) -> None:

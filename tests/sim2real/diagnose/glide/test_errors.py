@@ -13,7 +13,6 @@ from sim2real.diagnose.glide.memory import Memory
 from sim2real.diagnose.glide.place_error import modes
 
 SIZE, NOISE, FRAMES, GLIDES = np.array([2.0, 1.0]), 2e-5, 30, 8
-NOBODY = np.zeros(0, int)
 STATED = 1.5e-4  # m
 
 
@@ -32,39 +31,24 @@ def test_noise_that_fades_is_white_after() -> None:
     data = glides(memory, 0.0)
     root = np.linalg.cholesky(memory.covariance(data.t[:FRAMES]))
     drawn = NOISE * np.einsum("ij,gjad->giad", root, np.random.default_rng(2).normal(size=(GLIDES, FRAMES, 2, 4000)))
-    white = Errors(data, SIZE, NOBODY).white(drawn.reshape(-1, 2, 4000)).reshape(-1, 4000)
+    white = Errors(data, SIZE).white(drawn.reshape(-1, 2, 4000)).reshape(-1, 4000)
     np.testing.assert_allclose(white @ white.T / 4000, np.eye(len(white)), atol=0.1)
 
 
 def test_what_the_calibration_errs_by_is_white_after() -> None:
     """Fields and noise of 6,000 recordings: each residual has unit variance, and no two hang together."""
     data = glides(Memory(), STATED)
-    errors = Errors(data, SIZE, np.arange(2))
+    errors = Errors(data, SIZE)
     rng = np.random.default_rng(3)
     shared = errors.white(errors.modes(data.place)).reshape(2 * len(data.t), -1)
-    drawn = np.zeros((len(shared), 6000))
-    for here in (np.repeat(data.cluster < 2, 2 * FRAMES), np.repeat(data.cluster >= 2, 2 * FRAMES)):
-        drawn[here] = shared[here] @ rng.normal(size=(shared.shape[1], 6000))
-    drawn += rng.normal(size=drawn.shape)
+    drawn = shared @ rng.normal(size=(shared.shape[1], 6000)) + rng.normal(size=(len(shared), 6000))
     white = errors.allowing(shared, drawn)
     np.testing.assert_allclose(white @ white.T / 6000, np.eye(len(white)), atol=0.09)
 
 
-def test_what_is_kept_apart_tells_the_rest_nothing() -> None:
-    data = glides(Memory(), STATED)
-    errors = Errors(data, SIZE, np.array([1, 4]))
-    shared = errors.white(errors.modes(data.place)).reshape(2 * len(data.t), -1)
-    rows = np.random.default_rng(4).normal(size=(len(shared), 1))
-    other = rows.copy()
-    apart = np.repeat(np.isin(data.cluster, (1, 4)), 2 * FRAMES)
-    other[apart] += 100.0
-    found, changed = errors.allowing(shared, rows), errors.allowing(shared, other)
-    assert np.array_equal(found[~apart], changed[~apart]) and not np.array_equal(found[apart], changed[apart])
-
-
 def test_a_calibration_that_states_no_error_has_none() -> None:
     data = glides(Memory(), 0.0)
-    errors = Errors(data, SIZE, NOBODY)
+    errors = Errors(data, SIZE)
     assert errors.modes(data.place).shape == (len(data.t), 2, 0)
     rows = np.ones((2 * len(data.t), 2))
     assert errors.allowing(np.zeros((len(rows), 0)), rows) is rows
@@ -73,7 +57,7 @@ def test_a_calibration_that_states_no_error_has_none() -> None:
 def test_of_two_recordings_each_has_what_it_states() -> None:
     first, second = glides(Memory(), 0.0), glides(Memory(), STATED)
     both = replace(first, recording=np.repeat([0, 1], GLIDES // 2), memories=(Memory(),) * 2, place_std=(0.0, STATED))
-    found = Errors(both, SIZE, NOBODY).modes(both.place)
+    found = Errors(both, SIZE).modes(both.place)
     half = GLIDES // 2 * FRAMES
     assert not found[:half].any()
     np.testing.assert_array_equal(found[half:], modes(second.place, SIZE, np.full(len(second.t), STATED))[half:])
@@ -83,9 +67,9 @@ def test_two_calibrations_err_apart() -> None:
     """Recordings that state two sizes were calibrated twice; of one size, they share its error."""
     first, half = glides(Memory(), STATED), GLIDES // 2 * FRAMES
     both = replace(first, recording=np.repeat([0, 1], GLIDES // 2), memories=(Memory(),) * 2)
-    shared = Errors(replace(both, place_std=(STATED, STATED)), SIZE, NOBODY).modes(both.place)
+    shared = Errors(replace(both, place_std=(STATED, STATED)), SIZE).modes(both.place)
     np.testing.assert_array_equal(shared, modes(first.place, SIZE, np.full(len(first.t), STATED)))
-    own = Errors(replace(both, place_std=(STATED, 1.1 * STATED)), SIZE, NOBODY).modes(both.place)
+    own = Errors(replace(both, place_std=(STATED, 1.1 * STATED)), SIZE).modes(both.place)
     covariance = np.einsum("nak,mbk->nmab", own, own)
     np.testing.assert_array_equal(covariance[:half, half:], 0.0)
     np.testing.assert_allclose(

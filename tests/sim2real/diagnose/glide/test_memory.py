@@ -10,9 +10,9 @@ import pytest
 from scipy.linalg import null_space
 from scipy.stats import multivariate_normal
 
-from sim2real.diagnose.apart import glides_of
 from sim2real.diagnose.glide.memory import FRAMES, SHARES, Memory, Stretch, remembered
 from sim2real.diagnose.pieces import cut
+from sim2real.diagnose.split import glides_of
 from sim2real.recording import read_recording
 from tests.reality.cases import FILM
 from tests.reality.law import Law

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from sim2real.diagnose.apart import glides_of
 from sim2real.diagnose.engine.fit import Fit, given
 from sim2real.diagnose.glide.problem import GlideProblem
 from sim2real.diagnose.pieces import cut
+from sim2real.diagnose.split import glides_of
 from sim2real.nominal import parameters
 from sim2real.recording import read_recording
 from tests.reality.cases import FILM

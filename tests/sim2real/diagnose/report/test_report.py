@@ -80,7 +80,7 @@ def _parting(n: int = 60) -> Parting:
 def _glide(findings=(), shipped=False, undetermined="", further="", parting=None) -> Account:
     baseline = {} if undetermined else {"friction": Estimate(0.12511, 0.12498, 0.12524, "m/s^2")}
     proof = None if undetermined else Proof(0.0032071, 0.00060132, 0.00060594, 10)
-    return Account("glide", findings, baseline, shipped, proof, undetermined, further, parting)
+    return Account("glide", findings, baseline, shipped, proof, undetermined, further, parting, proof=proof)
 
 
 DIAGNOSES = {
@@ -167,7 +167,7 @@ def test_the_sensor_is_told_by_recording():
 def test_what_was_not_recorded_is_not_tested():
     """No word of agreement on a regime of which the recording shows nothing."""
     blind = replace(SIGHT, frames=0)
-    gantry = Account("gantry", (), {}, True, Proof(0.004, 0.002, 0.001, 1))
+    gantry = Account("gantry", (), {}, True, Proof(0.004, 0.002, 0.001, 1), proof=Proof(0.004, 0.002, 0.001, 1))
     read = Reader(page(Diagnosis((Account("sensing", (), {}, True, None), gantry), sights=(blind,))))
     assert "Not tested: no camera frame shows a puck (frames.csv)." in read.text
     assert "to the noise" not in read.text and "Yet, 2 times what noise alone makes is left." in read.text
@@ -190,7 +190,7 @@ def test_numbers_stand_beside_those_that_they_replace():
 
 def test_faults_of_the_sensors_are_undone_and_not_refitted():
     late = replace(TILT, regime="sensing", mechanism="camera_delay", formula="t - delay_s", curve=None, rivals=())
-    faults = Account("sensing", (late,), {}, False, Proof(0.004, 0.002, 0.001, 3))
+    faults = Account("sensing", (late,), {}, False, Proof(0.004, 0.002, 0.001, 3), proof=Proof(0.004, 0.002, 0.001, 3))
     read = Reader(page(Diagnosis((faults,), sights=(SIGHT,))))
     section = read.text.split("Regime: sensing")[1]
     assert "The sensors err: camera_delay (the camera's frames are stamped late)." in section

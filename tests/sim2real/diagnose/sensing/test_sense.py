@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sim2real.diagnose.apart import keep_apart
 from sim2real.diagnose.pieces import cut
-from sim2real.diagnose.sensing.account import sense
+from sim2real.diagnose.sensing.account import prove_sensing, sense
 from sim2real.diagnose.sensing.clock import Clock
 from sim2real.diagnose.sensing.correct import corrected
+from sim2real.diagnose.split import launches_of
 from sim2real.recording import Recording, Stream, read_recording
 from tests.reality import Law
 from tests.reality.camera import Camera
@@ -24,7 +24,8 @@ def recorded(folder, law: Law, scenario: str, seed: int, seconds: float, camera:
 def said(recording: Recording):
     """The account of the sensing, and its numbers by label."""
     pieces = [cut(recording)]
-    told = sense([recording], pieces, keep_apart([recording], pieces, 0)).account
+    launch = launches_of([recording], pieces)
+    told = prove_sensing(sense([recording], pieces, launch), [recording], launch)
     return told, {label: one for finding in told.findings for label, one in finding.parameters.items()}
 
 
@@ -65,7 +66,7 @@ def test_without_a_mallet_the_clock_is_not_judged(tmp_path):
 
 
 def test_a_stretched_map_is_measured_and_a_wrong_size_refused(tmp_path):
-    clean = recorded(tmp_path, Law(), "launches", 5, 60.0)  # of which a quarter is kept apart
+    clean = recorded(tmp_path, Law(), "launches", 5, 60.0)
     assert clean.frames is not None
     x, y = clean.frames["puck_x"], clean.frames["puck_y"]
 
@@ -89,53 +90,38 @@ def test_held_frames_are_counted_and_missed_no_more_once_they_are_dropped(tmp_pa
     assert numbers["fraction"].low < 0.03 < numbers["fraction"].high
     (found,) = told.findings
     assert told.proof is not None and 2 <= told.proof.pieces < 10  # launches, not frames
+    assert found.before is not None and found.after is not None
     assert found.before > 1.2 * found.after and 0.9 < found.after < 1.1
     assert told.proof.floor_m == pytest.approx(0.0005 * np.sqrt(2 * 1.5), rel=0.15)  # of the mean of two neighbours
 
 
-def test_what_is_kept_apart_tells_nothing_and_proves_all(rally):
-    """In the launches kept apart nothing is wrong: undoing what is wrong in the others makes them worse."""
-    launches = keep_apart([rally], [cut(rally)], 0)
-    wrong = ~launches.is_apart(launches.of_row[0])
-    assert 0.15 < 1.0 - wrong.mean() < 0.35
-    spoilt = restamped(rally, lambda t: t + 0.006 * wrong)
-    told = sense([spoilt], [cut(spoilt)], launches).account
-    (found,) = told.findings
-    assert found.parameters["delay_s"].value == pytest.approx(0.006, abs=0.001)
-    assert told.proof is not None and told.proof.after_m > 1.5 * told.proof.before_m
+def sensed(recording: Recording):
+    pieces = [cut(recording)]
+    return sense([recording], pieces, launches_of([recording], pieces))
 
 
-def test_a_map_is_undone_by_the_launches_that_are_not_kept_apart(tmp_path):
-    """Those kept apart are stretched less; a recording held out is stretched as well, or not at all."""
+def test_a_map_that_is_wrong_in_one_recording_only_does_not_help_in_another(tmp_path):
     clean = recorded(tmp_path, Law(), "launches", 5, 60.0)
     assert clean.frames is not None
-    launches = keep_apart([clean], [cut(clean)], 0)
-    share = np.where(launches.is_apart(launches.of_row[0]), 0.009, 0.012)
-    spoilt = replace(clean, frames=Stream({**clean.frames.columns, "puck_y": clean.frames["puck_y"] * (1.0 + share)}))
-    sensed = sense([spoilt], [cut(spoilt)], launches)
-    assert [one.mechanism for one in sensed.account.findings] == ["scale_error"]
-    assert sensed.recordings[0].frames is not None
-    undone = np.nanmedian(spoilt.frames["puck_y"] / sensed.recordings[0].frames["puck_y"])  # type: ignore[union-attr] - these recordings hold frames
-    assert undone == pytest.approx(1.012, abs=0.0004)
-    for unseen, told in ((spoilt, True), (clean, False)):
-        every, pieces = [spoilt, unseen], [cut(spoilt), cut(unseen)]
-        account = sense(every, pieces, keep_apart(every, pieces, 1)).account
-        assert bool(account.findings) == told  # what is held out may speak against it
-        assert (account.proof is not None and account.proof.after_m < 0.3 * account.proof.before_m) == told
+    spoilt = replace(clean, frames=Stream({**clean.frames.columns, "puck_y": clean.frames["puck_y"] * 1.012}))
+    found = sensed(spoilt)
+    assert [one.mechanism for one in found.account.findings] == ["scale_error"]
+    undone = found.undone(spoilt)
+    assert undone.frames is not None
+    np.testing.assert_allclose(undone.frames["puck_y"], clean.frames["puck_y"], atol=0.0004)
+    for unseen, better in ((spoilt, True), (clean, False)):
+        proof = prove_sensing(found, [unseen], launches_of([unseen], [cut(unseen)])).proof
+        assert proof is not None and (proof.after_m < 0.3 * proof.before_m) == better
 
 
-def test_recordings_held_out_are_the_proof(rally):
+def test_recordings_held_out_prove_a_clock(rally):
     late = restamped(rally, lambda t: t + 0.02)
+    found = sensed(late)
     for unseen, better in ((late, True), (rally, False)):
-        every, pieces = [late, unseen], [cut(late), cut(unseen)]
-        launches = keep_apart(every, pieces, 1)
-        sensed = sense(every, pieces, launches)
-        proof = sensed.account.proof
+        of_row = launches_of([unseen], [cut(unseen)])
+        proof = prove_sensing(found, [unseen], of_row).proof
         assert proof is not None and (proof.after_m < 0.2 * proof.before_m) == better
-        assert proof.pieces <= len(launches.apart) == len(np.unique(launches.of_row[1]))
-        frames = sensed.recordings[1].frames
-        assert frames is not None and unseen.frames is not None
-        np.testing.assert_allclose(frames.t, unseen.frames.t - 0.02, atol=0.001)
+        assert proof.pieces <= len(np.unique(of_row[0]))
 
 
 def test_what_was_found_can_be_undone(rally):

@@ -9,7 +9,7 @@ from sim2real.diagnose.wall.problem import WallProblem
 
 def test_no_bounces_are_a_problem_without_residuals():
     g = Geometry(2.0, 1.0, 0.32, 0.03, 0.05)
-    problem = WallProblem(bounces([], g, np.arange(1)), 3, {"length": 2.0, "width": 1.0})
+    problem = WallProblem(bounces([], g), 3, {"length": 2.0, "width": 1.0})
     left = problem.residuals({}, problem.base, np.arange(3))
     assert left.r.shape == (0,) and left.jacobian.shape == (0, 1)
     np.testing.assert_array_equal(problem.freedom, np.zeros(3))

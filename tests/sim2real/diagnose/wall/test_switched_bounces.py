@@ -17,7 +17,7 @@ from puckpilot_env.physics.rebound import rebound
 from sim2real.diagnose.contact_laws import COMPONENTS
 from sim2real.diagnose.diagnosis import Diagnosis, diagnose
 from sim2real.diagnose.effects_toml import effects_toml
-from sim2real.diagnose.engine.choose import Law as Family
+from sim2real.diagnose.engine.law import Law as Family
 from sim2real.diagnose.files import write
 from sim2real.diagnose.finding import Account, Finding
 from sim2real.diagnose.wall.data import KINDS, Bounces

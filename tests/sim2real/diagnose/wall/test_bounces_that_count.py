@@ -1,4 +1,4 @@
-"""What bounces kept apart may and may not do to the others, and which bounces count."""
+"""Which bounces count, and what spin they carry on."""
 
 from __future__ import annotations
 
@@ -9,15 +9,13 @@ import pytest
 
 from puckpilot_env.parameters import TABLE
 from puckpilot_env.physics import bounce
-from sim2real.diagnose.contact_data import kept, known_apart
-from sim2real.diagnose.engine.fit import fit
+from sim2real.diagnose.contact_data import kept
 from sim2real.diagnose.engine.ways import tellable
 from sim2real.diagnose.wall.data import KINDS, Bounces, are_usual, chained
 from sim2real.diagnose.wall.problem import WallProblem
 
 COUNT, LAUNCHES, NOISE = 80, 20, 0.001
 DEFAULTS = {row.name: row.default for row in TABLE}
-APART = np.arange(15, LAUNCHES)
 
 
 def bounces_of(keep, kind: np.ndarray | None = None, wrong: int = 0) -> Bounces:
@@ -39,27 +37,6 @@ def bounces_of(keep, kind: np.ndarray | None = None, wrong: int = 0) -> Bounces:
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("apart", [True, False])
-def test_a_fit_does_not_feel_what_untouched_bounces_were(apart: bool) -> None:
-    """To the last digit; where all share one unknown number, it does."""
-    data = bounces_of(lambda x: np.full(COUNT, 0.8))
-    later = replace(data, after=np.where(np.isin(data.cluster, APART)[:, None], 0.9 * data.after, data.after))
-    use = np.setdiff1d(np.arange(LAUNCHES), APART)
-    fits = []
-    for one in (data, later):
-        problem = WallProblem(known_apart(one, APART) if apart else one, LAUNCHES, DEFAULTS)
-        fits.append(fit(problem, {"wall_restitution": 0.7}, ["wall_restitution"], use).values["wall_restitution"])
-        assert fits[-1] == pytest.approx(0.8, abs=0.05)
-    assert (fits[0] == fits[1]) is apart
-
-
-def test_what_is_not_known_apart_is_as_large_as_before() -> None:
-    data = bounces_of(lambda x: np.full(COUNT, 0.8))
-    both = known_apart(data, APART)
-    np.testing.assert_array_equal(both.drift.sum(axis=3, keepdims=True), data.drift)
-    assert not (both.drift[..., 0] * both.drift[..., 1]).any()
-
-
 def test_a_wall_unlike_the_others_is_kept_and_a_lone_odd_bounce_is_not() -> None:
     kind = np.full(COUNT, bounce.WALL_Y0)
     kind[:6] = KINDS["x0"]
@@ -68,18 +45,18 @@ def test_a_wall_unlike_the_others_is_kept_and_a_lone_odd_bounce_is_not() -> None
     after[:6, 1] = 0.45 * data.closing[:6]  # the wall x0
     after[20, 1] = 0.3 * data.closing[20]
     odd = replace(data, after=after)
-    assert list(np.flatnonzero(~are_usual(odd, np.zeros(COUNT, bool)))) == [20]
+    assert list(np.flatnonzero(~are_usual(odd, odd))) == [20]
 
 
-def test_what_is_usual_is_not_told_by_bounces_kept_apart() -> None:
-    """A third of them, all of which lose much more: they are left out themselves, and take no other along."""
-    data = bounces_of(lambda x: np.full(COUNT, 0.9))
-    apart = np.arange(COUNT) % 3 == 0
-    after = data.after.copy()
-    after[apart, 1] *= 0.3
-    usual = are_usual(replace(data, after=after), apart)
-    assert np.array_equal(usual, ~apart)
-    assert are_usual(replace(data, after=after), np.ones(COUNT, bool)).any()  # with none to ask, all are asked
+def test_what_is_usual_is_what_known_bounces_say() -> None:
+    """A third of them lose much more than those known: they are left out, and take no other along."""
+    known = bounces_of(lambda x: np.full(COUNT, 0.9))
+    odd = np.arange(COUNT) % 3 == 0
+    after = known.after.copy()
+    after[odd, 1] *= 0.3
+    other = replace(known, after=after)
+    assert np.array_equal(are_usual(other, known), ~odd)
+    assert not are_usual(replace(known, after=0.3 * known.after), known).any()
 
 
 def test_no_spin_is_carried_past_a_contact_that_is_left_out() -> None:

@@ -1,0 +1,41 @@
+"""How much a law matters in millimetres: by hand where glides end, and too little of it is not reported."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from sim2real.diagnose.effect_size import LEAST
+from sim2real.diagnose.explaining import identify_regime
+from sim2real.diagnose.glide.data import GlideData
+from sim2real.diagnose.glide.problem import GlideProblem
+from tests.sim2real.diagnose.engine.linear_problem import SHIPPED, LinearProblem
+
+TABLE = {"length": 2.0, "width": 1.0}
+
+
+def test_a_tilt_moves_the_end_of_a_glide_by_half_its_time_squared() -> None:
+    """Two glides without any friction, of 0.5 and 1 s: 0.5 a t^2 of each, and the root of the mean square of both."""
+    t = np.concatenate([np.linspace(0.0, 0.5, 40), np.linspace(2.0, 3.0, 80)])
+    place = np.stack([0.3 + 0.5 * np.where(t < 1.0, t, t - 2.0), np.full(len(t), 0.5)], axis=1)
+    data = GlideData(
+        t, place, np.full((len(t), 2), 1e-4), np.array([0, 40, 120]), np.arange(2), np.zeros(2, int), np.full(2, np.nan)
+    )
+    problem, law = GlideProblem(data, TABLE), {"friction": 0.0, "drag": 0.0}
+    moved = problem.ends_apart(law, {**law, "tilt_y": 0.02})
+    assert moved == pytest.approx(0.01 * np.sqrt((0.5**4 + 1.0) / 2.0), rel=1e-3)
+
+
+@pytest.mark.parametrize("size_mm, named", [(0.35, False), (0.8, True)])
+def test_a_law_that_is_sure_but_moves_nothing_is_told_and_not_reported(size_mm: float, named: bool) -> None:
+    """The noise is 1 mm, of which a tilt makes so much in each of 1,200 numbers: far beyond chance in any case."""
+    problem = LinearProblem({"tilt_x": size_mm / 50.0})
+    said = identify_regime(problem, SHIPPED, [])
+    assert [one.mechanism for one in said.account.findings] == (["table_tilt"] if named else [])
+    if named:
+        assert said.account.findings[0].size_m == pytest.approx(1e-3 * size_mm, rel=0.15)
+        assert said.account.minor == ""
+    else:
+        assert said.account.minor.startswith("table_tilt is there, but moves things by 0.3")
+        assert said.account.minor.endswith(f"less than {1e3 * LEAST['glide']:g} mm is not reported")
+        assert said.account.verdict in ("agrees", "parameters_only")
