@@ -17,6 +17,7 @@ from sim2real.nominal import parameters, stated_sizes
 from sim2real.recording import Recording
 
 CLOSED = "nothing further is needed to name what was recorded; record again to see whether it lasts"
+WORSE = 1.02  # times what held-out data leave without a law, beyond which they are said not to bear it out
 OPEN = "no single recording is known to settle what is open: more launches all over the table, slow and fast, tell more"
 
 
@@ -92,6 +93,12 @@ class Diagnosis:
             f"{1e3 * proof.before_m:.2g} mm without"
             for regime, proof in known
             if proof.after_m >= proof.before_m
+        ]
+        against += [
+            f"{one.mechanism}: held-out data do not bear it out, {one.after:.3g} times the noise is left with it and "
+            f"{one.before:.3g} times without"
+            for one in self.findings
+            if one.before is not None and one.after is not None and one.after > WORSE * one.before
         ]
         return [*against, *unproved]
 
