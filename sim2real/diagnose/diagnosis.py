@@ -92,7 +92,7 @@ class Diagnosis:
             f"{regime}: held-out data speak against what was found, {1e3 * proof.after_m:.2g} mm are left with it and "
             f"{1e3 * proof.before_m:.2g} mm without"
             for regime, proof in known
-            if proof.after_m >= proof.before_m
+            if proof.after_m > WORSE * proof.before_m
         ]
         against += [
             f"{one.mechanism}: held-out data do not bear it out, {one.after:.3g} times the noise is left with it and "
