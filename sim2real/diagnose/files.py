@@ -13,10 +13,11 @@ from sim2real.diagnose.asked import PLAIN, Asked
 from sim2real.diagnose.diagnosis import Diagnosis
 from sim2real.diagnose.draws_toml import draws_toml
 from sim2real.diagnose.effects_toml import effects_toml
-from sim2real.diagnose.finding import Account, Curve, Estimate, Finding
+from sim2real.diagnose.finding import Account, Curve, Estimate, Finding, Proof
 from sim2real.diagnose.untested import untested
 
 FORMAT = "puckpilot-diagnosis/1"
+NO_PIECES = Proof(0.0, 0.0, 0.0, 0)
 
 
 def as_dict(diagnosis: Diagnosis) -> dict[str, Any]:
@@ -29,7 +30,7 @@ def as_dict(diagnosis: Diagnosis) -> dict[str, Any]:
         "baseline": {"parameters": {name: _estimate(one) for name, one in baseline.items()}},
         "findings": [_finding(one) for one in diagnosis.findings],
         "regimes": _regimes(diagnosis),
-        "heldout": None if proof is None else asdict(proof),
+        "heldout": asdict(proof or NO_PIECES) if diagnosis.findings or proof else None,
         "next_recording": diagnosis.next_recording,
     }
     if diagnosis.proof_remarks:

@@ -11,10 +11,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from puckpilot_env.parameters import BY_NAME
 from sim2real.diagnose.engine import gram
 from sim2real.diagnose.engine.choose import MOST
 from sim2real.diagnose.engine.explain import Explained, bare, without
-from sim2real.diagnose.engine.fit import soft_loss
+from sim2real.diagnose.engine.fit import Fit, soft_loss
 from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.finding import MUCH
 from sim2real.diagnose.problem import Problem, Residuals
@@ -124,25 +125,27 @@ class CrossValidated:
         """Sums of squares (parts,) that laws leave, each part predicted by the other folds."""
         if found.unlisted is None:
             rows = self._problem.residuals(found.law.values, found.law.free, self.launches)
-            return self._summed(self._predicted(rows, found.law.bound, found.law.free), rows)
+            return self._summed(self._predicted(found.law, rows), rows)
         units = self._problem.units.of(self.launches)
         left = np.bincount(units, self._by_family(found, units), len(self._problem.units.cluster))
         if not self._by_unit:
             left = np.bincount(self._problem.units.cluster, left, self._problem.clusters)
         return left[self._parts]
 
-    def _predicted(self, rows: Residuals, bound: tuple[str, ...], free: tuple[str, ...]) -> np.ndarray:
-        """Residuals (n,), each after the step of the numbers, those at a `bound` aside, that the other folds take."""
-        moving = np.array([name not in bound for name in free], bool)
-        jacobian, left = rows.jacobian[:, moving], rows.r.copy()
-        if not moving.any():
-            return left
-        weight = soft_loss(self._problem, rows)[1]
-        fold = self._fold[rows.cluster]
-        for out in range(FOLDS):
-            inner = weight[fold != out, None] * jacobian[fold != out]
-            step = -gram.solve_normal(inner.T @ inner, inner.T @ (weight[fold != out] * rows.r[fold != out]))
-            left[fold == out] += jacobian[fold == out] @ step
+    def _predicted(self, law: Fit, rows: Residuals) -> np.ndarray:
+        """Residuals (n,), each after the step of the law's numbers, those at a bound aside, that the other folds take;
+        a step that leads uphill there, as over the edge of a patch, is none."""
+        moving = [name for name in law.free if name not in law.bound]
+        jacobian, left = rows.jacobian[:, [law.free.index(name) for name in moving]], rows.r.copy()
+        weight, fold = soft_loss(self._problem, rows)[1], self._fold[rows.cluster]
+        for out in range(FOLDS) if moving else ():
+            seen = fold != out
+            inner, rest = weight[seen, None] * jacobian[seen], weight[seen] * rows.r[seen]
+            step = -gram.solve_normal(inner.T @ inner, inner.T @ rest)
+            values = {name: BY_NAME[name].within(law.values[name] + by) for name, by in zip(moving, step, strict=True)}
+            stepped = self._problem.residuals({**law.values, **values}, (), self.launches).r
+            if np.sum((weight[seen] * stepped[seen]) ** 2) < np.sum(rest**2):
+                left[~seen] = stepped[~seen]
         return left
 
     def _by_family(self, found: Explained, units: np.ndarray) -> np.ndarray:
