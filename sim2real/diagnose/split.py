@@ -14,13 +14,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sim2real.diagnose.contacts import geometry, mallet_tracks
+from sim2real.diagnose.contacts import WALLS, geometry, mallet_tracks
 from sim2real.diagnose.glide.data import GlideData, glide_data
 from sim2real.diagnose.impacts import glide_before
 from sim2real.diagnose.pieces import Pieces, cut
 from sim2real.recording import Recording, Stream
 
 PROVES = 6  # about every so manieth launch proves
+KINDS = (
+    *WALLS,
+    "nothing near",
+    "robot",
+)  # of hits; of a table whose size is wrongly stated a wall is not where it should be
+ENOUGH = 4  # hits of a kind, which the launches that do not prove keep: fewer do not tell where a wall is
 LONGEST_BLOCK = 3.0  # s of the gantry's path, of which about every PROVES-th proves
 FEWEST_BLOCKS = 20  # where the path is short
 
@@ -79,7 +85,7 @@ def launches_of(recordings: Sequence[Recording], pieces: Sequence[Pieces]) -> tu
 
 
 def _launches(recordings: Sequence[Recording], pieces: Sequence[Pieces]) -> tuple[tuple[np.ndarray, ...], np.ndarray]:
-    """The number of each row's launch, for each recording, and how many hits each launch (launches, 2) has met."""
+    """The number of each row's launch, for each recording, and how many hits each launch (launches, KINDS) has met."""
     of_row, first, met = [], 0, []
     for recording, some in zip(recordings, pieces, strict=True):
         part = _launched(recording, some, 0.0)
@@ -93,25 +99,33 @@ def _launches(recordings: Sequence[Recording], pieces: Sequence[Pieces]) -> tupl
 
 
 def _met(pieces: Pieces, part: GlideData) -> np.ndarray:
-    """How many hits of walls and of the robot's mallet each launch (launches, 2) has between two glides."""
-    met = np.zeros((max(part.clusters, 1), 2), int)
+    """How many hits of each wall and of the robot's mallet each launch (launches, kinds) has between two glides."""
+    met = np.zeros((max(part.clusters, 1), len(KINDS)), int)
     begin, finish = part.t[part.first[:-1]], part.t[part.first[1:] - 1]
     for k, hit in enumerate(pieces.hits):
         before = glide_before(pieces, begin, finish, k)
-        if before is not None and (hit.kind == "wall" or hit.where == "robot"):
-            met[part.cluster[before + 1], int(hit.where == "robot")] += 1
+        if before is not None and hit.where in KINDS:
+            met[part.cluster[before + 1], KINDS.index(hit.where)] += 1
     return met
 
 
 def _every(step: int, met: np.ndarray) -> np.ndarray:
-    """Every `step`-th of the launches that `met` (launches, kinds) so many hits, or the last of fewer; where none of
-    them met a kind, one that did takes the place of one that is not missed."""
-    chosen = list(range(step - 1, len(met), step)) or list(range(len(met)))[1:][-1:]
-    for kind in range(met.shape[1]):
-        others = [k for k in np.flatnonzero(met[:, kind]) if k not in chosen]
-        if not chosen or not others or met[chosen, kind].any():
+    """One of each `step` launches that `met` (launches, KINDS) so many hits, or one of fewer: the last that leaves the
+    others ENOUGH of each kind, where there are so many. Where none of them met any wall, or the robot, one that did
+    takes the place of one that is not missed."""
+    ends = range(step, len(met) + 1, step) if len(met) >= step else [len(met)] * (len(met) > 1)
+    chosen, left = [], met.sum(axis=0)
+    for end in ends:
+        some = range(end - 1, max(end - step, 0) - 1, -1)
+        k = next((k for k in some if np.all((left - met[k] >= ENOUGH) | (met[k] == 0) | (left < ENOUGH))), end - 1)
+        chosen.append(k)
+        left = left - met[k]
+    both = np.stack([met[:, :-1].sum(axis=1), met[:, -1]], axis=1)
+    for kind in range(both.shape[1]):
+        others = [k for k in np.flatnonzero(both[:, kind]) if k not in chosen]
+        if not chosen or not others or both[chosen, kind].any():
             continue
-        spare = min(chosen, key=lambda k: _missed(met, [one for one in chosen if one != k], k))
+        spare = min(chosen, key=lambda k: _missed(both, [one for one in chosen if one != k], k))
         chosen[chosen.index(spare)] = int(others[len(others) // 2])
     return np.array(sorted(chosen), int)
 

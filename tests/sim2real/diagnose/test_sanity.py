@@ -15,17 +15,17 @@ from tests.reality.law import Law
 from tests.reality.record import make_recording
 
 CAMERA = Camera(noise=0.0006, rate=150.0)
-SECONDS = 30.0
+SECONDS, LONGER = 30.0, 45.0
 
 
-def _make(folder: Path, law: Law, scenario: str = "launches", seed: int = 5) -> Path:
-    make_recording(folder, law, scenario, seed, SECONDS, camera=CAMERA, dt=2e-5)
+def _make(folder: Path, law: Law, scenario: str = "launches", seed: int = 5, seconds: float = SECONDS) -> Path:
+    make_recording(folder, law, scenario, seed, seconds, camera=CAMERA, dt=2e-5)
     return folder
 
 
 @pytest.fixture(scope="module")
 def tilted(tmp_path_factory):
-    return _make(tmp_path_factory.mktemp("tables") / "tilted", Law(tilt_x=0.02))
+    return _make(tmp_path_factory.mktemp("tables") / "tilted", Law(tilt_x=0.02), seconds=LONGER)
 
 
 @pytest.fixture(scope="module")

@@ -11,27 +11,35 @@ from tests.reality.record import make_recording
 
 
 def test_every_fifth_launch_is_taken_where_all_meet_everything():
-    np.testing.assert_array_equal(_every(5, np.ones((14, 2), int)), [4, 9])
+    np.testing.assert_array_equal(_every(5, np.ones((14, 6), int)), [4, 9])
+
+
+def test_a_launch_that_alone_met_a_wall_is_left_to_the_fits():
+    """Number 4 has all touches of the second wall; of the third there are five, of which number 8 takes one."""
+    met = np.ones((10, 6), int)
+    met[:, 1], met[4, 1] = 0, 6
+    met[:, 2] = [0, 0, 0, 0, 1, 0, 0, 1, 1, 2]
+    np.testing.assert_array_equal(_every(5, met), [3, 8])
 
 
 @pytest.mark.parametrize("walls, robots", [([0, 1], [4]), ([5, 6, 8], [2, 9]), ([0, 3], [3, 5])])
 def test_some_of_those_taken_meet_walls_and_some_the_robot(walls, robots):
-    met = np.zeros((12, 2), int)
-    met[walls, 0], met[robots, 1] = 2, 1
+    met = np.zeros((12, 6), int)
+    met[walls, 0], met[robots, 5] = 2, 1
     taken = _every(4, met)
     assert len(taken) == 3 and len(np.unique(taken)) == 3
-    assert met[taken].any(axis=0).all()
+    assert met[taken][:, [0, 5]].any(axis=0).all()
 
 
 def test_a_kind_that_one_launch_alone_has_met_is_not_given_up_for_another():
-    met = np.zeros((9, 2), int)
-    met[3, 0], met[5, 1] = 3, 1  # launch 3 is taken, 5 is not; 7 met nothing
+    met = np.zeros((9, 6), int)
+    met[3, 0], met[8, 0], met[5, 5] = 3, 5, 1  # launch 3 is taken, 5 is not; 7 met nothing
     np.testing.assert_array_equal(_every(4, met), [3, 5])
 
 
 def test_of_few_launches_the_last_is_taken_and_of_one_none():
-    np.testing.assert_array_equal(_every(5, np.ones((3, 2), int)), [2])
-    assert len(_every(5, np.ones((1, 2), int))) == 0
+    np.testing.assert_array_equal(_every(5, np.ones((3, 6), int)), [2])
+    assert len(_every(5, np.ones((1, 6), int))) == 0
 
 
 def test_each_frame_is_in_one_part_and_a_path_goes_with_its_launches(tmp_path):
