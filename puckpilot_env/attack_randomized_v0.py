@@ -14,7 +14,7 @@ from dataclasses import replace
 from puckpilot_env import attack_v0
 from puckpilot_env.entry_points import entry_points
 from puckpilot_env.game.sensing import ESTIMATED
-from puckpilot_env.randomization import REALITY
+from puckpilot_env.options.randomization import REALITY
 from puckpilot_env.variants import NOMINAL
 
 VARIANT = replace(

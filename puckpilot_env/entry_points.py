@@ -17,7 +17,7 @@ def entry_points(
     """PettingZoo's `(env, parallel_env, raw_env)` of a variant; `parallel_env.TableEnv` describes their arguments."""
 
     def parallel_env(**options: Any) -> ParallelEnv:
-        from puckpilot_env.parallel_env import TableEnv
+        from puckpilot_env.adapters.parallel_env import TableEnv
 
         return TableEnv(variant, **options)
 

@@ -27,11 +27,8 @@ _KEEP_DAYS = 30
 
 def _simulator_sources() -> list[Path]:
     """Every file that defines kernels of the simulator and its players, or what they are compiled against."""
-    sources = [path for path in sorted(_ROOT.rglob("*.py")) if path.parent.name in ("physics", "effects", "game")]
-    sources += [
-        _ROOT / f"{name}.py"
-        for name in ("effect", "kernel", "parameters", "random_stream", "state", "team", "batch", "trace")
-    ]
+    sources = [path for folder in ("physics", "game", "batch") for path in sorted((_ROOT / folder).rglob("*.py"))]
+    sources += [_ROOT / f"{name}.py" for name in ("effect", "kernel", "parameters")]
     return sources + _package_sources("baselines")
 
 

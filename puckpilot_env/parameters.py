@@ -15,7 +15,7 @@ from itertools import product
 import numpy as np
 
 from puckpilot_env.effect import Parameter
-from puckpilot_env.inputs import in_short, real_number
+from puckpilot_env.options.inputs import in_short, real_number
 from puckpilot_env.physics.effects import EFFECTS
 
 _CHOICE = "not in the report; a documented choice (errata, last row)"

@@ -10,19 +10,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from puckpilot_env import batch, state
-from puckpilot_env.asked import asked_for
-from puckpilot_env.draw_checks import check_draws
-from puckpilot_env.draws_file import Draws
-from puckpilot_env.effects_file import Effects
-from puckpilot_env.game import mirror, observation, sensing
-from puckpilot_env.inputs import seed_number, table_index, truth, whole_number
+from puckpilot_env.batch import kernels
+from puckpilot_env.batch.one_thread import Inside, one_thread
+from puckpilot_env.batch.snapshot import Snapshot, refuse_foreign
+from puckpilot_env.batch.team import Team
+from puckpilot_env.game import mirror, observation, sensing, state
 from puckpilot_env.kernel import announce_compilation
-from puckpilot_env.one_thread import Inside, one_thread
+from puckpilot_env.options.asked_variant import asked_for
+from puckpilot_env.options.draw_checks import check_draws
+from puckpilot_env.options.draws_file import Draws
+from puckpilot_env.options.effects_file import Effects
+from puckpilot_env.options.inputs import seed_number, table_index, truth, whole_number
+from puckpilot_env.options.real_numbers import real_numbers
 from puckpilot_env.parameters import as_matrix, make_records
-from puckpilot_env.real_numbers import real_numbers
-from puckpilot_env.snapshot import Snapshot, refuse_foreign
-from puckpilot_env.team import Team
 from puckpilot_env.variants import Variant
 
 __all__ = ["ACTION_COLUMNS", "Snapshot", "Tables"]
@@ -118,7 +118,7 @@ class Tables:
     def _make_ready(self, with_team: bool) -> None:
         """Make what a copy cannot have from the original: a view of the parameters as a matrix, scratch, threads."""
         self._rows = as_matrix(self.params)
-        self._scratch = batch.scratch(1)
+        self._scratch = kernels.scratch(1)
         self._team = self._make_team() if with_team else None
 
     def __getstate__(self) -> dict[str, Any]:
@@ -137,10 +137,10 @@ class Tables:
         if seed is not None:
             key = np.uint64(seed_number(seed))
             self.states[:] = np.zeros((), state.TABLE)
-            batch.seed_range(self.states, key)
+            kernels.seed_range(self.states, key)
         self.terminated[:] = self.truncated[:] = False
         self.rewards[:] = 0.0
-        batch.reset_range(
+        kernels.reset_range(
             self.states, self.params, self.nominal, self._rows, self._drawn, self._rules, self._frames,
             self.observation_bounds, self.observations,
         )  # fmt: skip
@@ -155,12 +155,12 @@ class Tables:
         actions = np.ascontiguousarray(real_numbers(actions, "the array of actions"), np.float32)
         if actions.shape != (len(self.states), 2, 4):
             raise ValueError(f"actions have shape {actions.shape}; expected {(len(self.states), 2, 4)}")
-        bad = batch.first_outside(actions, self._taken)
+        bad = kernels.first_outside(actions, self._taken)
         if bad >= 0:
             raise ValueError(self._describe_bad_action(actions, bad))
         if self._team is None:
             log, films = self._scratch
-            batch.step_range(*self._arrays(actions), log, films[0], 0, len(self.states))
+            kernels.step_range(*self._arrays(actions), log, films[0], 0, len(self.states))
         else:
             self._actions[:] = actions
             self._team.run()
@@ -175,8 +175,8 @@ class Tables:
 
     def _make_team(self) -> Team:
         self._actions = np.zeros((len(self.states), 2, 4), np.float32)
-        ranges = batch.ranges(len(self.states), self.threads)
-        work = partial(batch.step_ranges, *self._arrays(self._actions), *batch.scratch(self.threads), ranges)
+        ranges = kernels.ranges(len(self.states), self.threads)
+        work = partial(kernels.step_ranges, *self._arrays(self._actions), *kernels.scratch(self.threads), ranges)
         return Team(self.threads, len(ranges), work)
 
     def _describe_bad_action(self, actions: NDArray[np.float32], flat: int) -> str:

@@ -16,8 +16,8 @@ import numpy as np
 
 from puckpilot_env.game import sensing
 from puckpilot_env.game.rules import RULES
-from puckpilot_env.inputs import in_short
-from puckpilot_env.randomization import Draw, as_rows
+from puckpilot_env.options.inputs import in_short
+from puckpilot_env.options.randomization import Draw, as_rows
 
 # What changed in place before anything was released.
 FOULS = "v0, before the first release: a puck held for 7 s is a foul and the opponent serves; it was faced off"

@@ -127,7 +127,7 @@ def _speed(batch: Any, actions: list[np.ndarray], seconds: float) -> float:
 
 
 def _dicts(variant: Any, seconds: float) -> dict[str, Any]:
-    from puckpilot_env.parallel_env import TableEnv
+    from puckpilot_env.adapters.parallel_env import TableEnv
 
     env = TableEnv(variant)
     env.reset(seed=1)

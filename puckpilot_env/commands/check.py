@@ -50,8 +50,8 @@ def _run_adversarial(ids: list[str], steps: int, seed: int, as_json: bool) -> in
     from rich.console import Console
     from rich.progress import Progress
 
-    from puckpilot_env.checks.adversarial import MOST_MEDIANS, Found
-    from puckpilot_env.checks.patience import play_many
+    from puckpilot_env.checks.adversarial.play import MOST_MEDIANS, Found
+    from puckpilot_env.checks.adversarial.worker import play_many
     from puckpilot_env.variants import all_variants, find_variant
 
     if steps < 1:

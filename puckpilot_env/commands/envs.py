@@ -20,7 +20,7 @@ def run(args: argparse.Namespace) -> int:
     elif args.id is not None:
         _print_page(args.id, args.json)
     elif args.json:
-        from puckpilot_env.describe import describe
+        from puckpilot_env.documentation.facts import describe
         from puckpilot_env.variants import all_variants
 
         print(json.dumps([describe(variant) for variant in all_variants().values()], indent=2))
@@ -30,7 +30,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _write_pages() -> None:
-    from puckpilot_env.page import write_pages
+    from puckpilot_env.documentation.page import write_pages
 
     files = write_pages()
     print(f"{len(files)} files written in {files[0].parent}")
@@ -40,8 +40,8 @@ def _print_page(name: str, as_json: bool) -> None:
     from rich.console import Console
     from rich.markdown import Markdown
 
-    from puckpilot_env.describe import describe
-    from puckpilot_env.page import write_page
+    from puckpilot_env.documentation.facts import describe
+    from puckpilot_env.documentation.page import write_page
     from puckpilot_env.variants import find_variant
 
     variant = find_variant(name)
@@ -56,7 +56,7 @@ def _print_list() -> None:
     from rich.markup import escape
     from rich.table import Table
 
-    from puckpilot_env.describe import describe
+    from puckpilot_env.documentation.facts import describe
     from puckpilot_env.variants import all_variants
 
     table = Table(title="Environments", title_justify="left", title_style="bold", show_lines=True)

@@ -14,7 +14,7 @@ import numpy as np
 from puckpilot_env.game import mirror, predict, sensing
 from puckpilot_env.game.start import MATCH
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics.mallet import motion_now
+from puckpilot_env.physics.gantry.mallet import motion_now
 
 HORIZONS = (0.2, 0.5)  # s ahead, of the expected puck places
 BEYOND = 0.05  # m; measured places may lie so far outside the table

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics import bounce, glide
+from puckpilot_env.physics.contacts import bounce
+from puckpilot_env.physics.sliding import glide
 from puckpilot_env.physics.vector import size
 
 MOST_BOUNCES = 12

@@ -8,7 +8,7 @@ from puckpilot_env.game import mirror, reward
 from puckpilot_env.game.predict import SCORES, projected_shot
 from puckpilot_env.game.start import ATTACK, DEFENCE, MATCH, face_off, serve
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics import bounce
+from puckpilot_env.physics.contacts import bounce
 from puckpilot_env.physics.vector import size
 
 # How an episode ended; the order is that of ENDING_NAMES.

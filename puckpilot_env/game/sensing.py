@@ -14,13 +14,12 @@ import math
 
 import numpy as np
 
-from puckpilot_env import random_stream
-from puckpilot_env.game import mirror
+from puckpilot_env.game import mirror, random_stream
+from puckpilot_env.game.state import ERROR_TERMS
 from puckpilot_env.kernel import inlined_kernel, kernel
 from puckpilot_env.physics import compose
-from puckpilot_env.physics.mallet import place_at, place_now
-from puckpilot_env.physics.places import places_at_both
-from puckpilot_env.state import ERROR_TERMS
+from puckpilot_env.physics.gantry.mallet import place_at, place_now
+from puckpilot_env.physics.gantry.places import places_at_both
 
 EXACT, ESTIMATED, HISTORY = range(3)  # kinds of sensing
 LAGS = (0, 1, 2, 5, 11)  # frames back from the newest, of a history

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 
-from puckpilot_env import random_stream
-from puckpilot_env.game import mirror
+from puckpilot_env.game import mirror, random_stream
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics import mallet
+from puckpilot_env.physics.gantry import mallet
 from puckpilot_env.physics.vector import size
 
 DEFENCE, ATTACK, MATCH = range(3)  # the games

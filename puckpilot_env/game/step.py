@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from puckpilot_env import random_stream
-from puckpilot_env.game import mirror, observation, reward, rules, sensing
+from puckpilot_env.game import mirror, observation, random_stream, reward, rules, sensing
 from puckpilot_env.game.start import begin_episode
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics import bounce, compose, drive
+from puckpilot_env.physics import compose
 from puckpilot_env.physics.advance import advance
-from puckpilot_env.physics.drift import drift
-from puckpilot_env.physics.mallet import halt, place_at, place_now, settle
-from puckpilot_env.physics.pictures import of_glide
-from puckpilot_env.physics.plan import plan_mallet, plan_orders
+from puckpilot_env.physics.contacts import bounce
+from puckpilot_env.physics.exposures import of_glide
+from puckpilot_env.physics.gantry import drive
+from puckpilot_env.physics.gantry.mallet import halt, place_at, place_now, settle
+from puckpilot_env.physics.gantry.plan import plan_mallet, plan_orders
+from puckpilot_env.physics.sliding.drift import drift
 
 MOST_CROSSINGS = (
     200  # of the middle line in one stretch; a puck that jitters there more often is set to rest, and the mallets stall

@@ -11,12 +11,14 @@ import math
 import numpy as np
 
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics import bounce, compose, contact, force, glide, slide
-from puckpilot_env.physics.hit import hit
-from puckpilot_env.physics.mallet import halt, place_now, reach
-from puckpilot_env.physics.pictures import of_glide
-from puckpilot_env.physics.rebound import rebound
-from puckpilot_env.physics.ride import ride
+from puckpilot_env.physics import compose
+from puckpilot_env.physics.contacts import bounce, contact
+from puckpilot_env.physics.contacts.hit import hit
+from puckpilot_env.physics.contacts.rebound import rebound
+from puckpilot_env.physics.exposures import of_glide
+from puckpilot_env.physics.gantry.mallet import halt, place_now, reach
+from puckpilot_env.physics.sliding import force, glide, slide
+from puckpilot_env.physics.sliding.ride import ride
 from puckpilot_env.physics.vector import size
 
 PUCK = np.dtype(

@@ -12,11 +12,11 @@ import pytest
 
 from baselines import Seat
 from puckpilot_env import Tables, find_variant, parameters
-from puckpilot_env.motion import puck_motion
+from puckpilot_env.batch.motion import puck_motion
+from puckpilot_env.batch.trace import trace
+from puckpilot_env.options.randomization import Draw
 from puckpilot_env.physics.effects import EFFECTS, MODULES
-from puckpilot_env.randomization import Draw
-from puckpilot_env.trace import trace
-from tests.reality.mechanisms import MECHANISMS
+from sim2real.study.independent_table.mechanisms import MECHANISMS
 
 TILT = {"table_tilt": {"tilt_x": 0.1, "tilt_y": -0.05}}
 SOME = {
@@ -160,6 +160,7 @@ def test_a_draw_on_an_effect_s_row_is_drawn_and_acts() -> None:
     np.testing.assert_allclose((after["vy"] - before["vy"])[free], 0.1 * tilt[free], atol=1e-12)
 
 
+@pytest.mark.slow
 def test_the_camera_sees_the_bent_path() -> None:
     """A frame shows where a copy of the table is at the frame's time."""
     clean: dict[str, float] = dict.fromkeys(

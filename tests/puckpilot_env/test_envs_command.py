@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from puckpilot_env import page
 from puckpilot_env.commands import envs
+from puckpilot_env.documentation import page
 from puckpilot_env.variants import all_variants
 
 

@@ -16,6 +16,8 @@ import pytest
 
 from puckpilot_env import kernel
 
+pytestmark = pytest.mark.slow
+
 REPOSITORY = Path(kernel.__file__).parents[1]
 
 
@@ -30,7 +32,7 @@ def compiled_in(*folders: str) -> list[Path]:
 
 
 COMPILED, ABOVE = compiled_in("puckpilot_env", "baselines"), compiled_in("agents", "sim2real")
-READ_BY_KERNELS = [Path("puckpilot_env") / f"{name}.py" for name in ("kernel", "parameters", "state")]
+READ_BY_KERNELS = [Path("puckpilot_env") / f"{name}.py" for name in ("kernel", "parameters", "game/state")]
 
 
 @pytest.fixture
@@ -57,7 +59,7 @@ def load(root: Path) -> Any:
 
 def test_the_kernels_were_found():
     names = {path.name for path in COMPILED}
-    assert {"glide.py", "advance.py", "reward.py", "step.py", "batch.py", "random_stream.py"} <= names
+    assert {"glide.py", "advance.py", "reward.py", "step.py", "kernels.py", "random_stream.py"} <= names
     assert any(path.parts[0] == "baselines" for path in COMPILED)
 
 
@@ -73,7 +75,7 @@ def test_an_edit_of_a_kernel_starts_a_fresh_folder(copied, path):
     assert cache_folder(copied) == before
 
 
-@pytest.mark.parametrize("path", [*ABOVE, Path("sim2real/vision/track/bright.py")], ids=str)
+@pytest.mark.parametrize("path", [*ABOVE, Path("sim2real/vision/track/blobs.py")], ids=str)
 def test_an_edit_above_the_players_starts_a_fresh_folder_for_its_package_alone(copied, path):
     package, other = path.parts[0], "agents" if path.parts[0] == "sim2real" else "sim2real"
     before = load(copied)
@@ -84,12 +86,14 @@ def test_an_edit_above_the_players_starts_a_fresh_folder_for_its_package_alone(c
     after = load(copied)
     assert after.cache_folder_of(package) != folders[package]
     assert all(after.cache_folder_of(name) == folders[name] for name in (other, "baselines"))
-    with (copied / "puckpilot_env" / "state.py").open("a") as file:
+    with (copied / "puckpilot_env" / "game" / "state.py").open("a") as file:
         file.write("# edited\n")
     assert load(copied).cache_folder_of(other) != folders[other]
 
 
-@pytest.mark.parametrize("name", ["render", "page", "parallel_env", "commands/bench", "checks/walk"])
+@pytest.mark.parametrize(
+    "name", ["rendering/drawing", "documentation/page", "adapters/parallel_env", "commands/bench", "checks/walk"]
+)
 def test_other_edits_keep_what_was_compiled(copied, name):
     before = cache_folder(copied)
     with (copied / "puckpilot_env" / f"{name}.py").open("a") as file:

@@ -105,6 +105,7 @@ def test_impossible_combinations(values, told):
     assert "\n" not in str(refusal.value)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "effects, told",
     [

@@ -23,8 +23,8 @@ from collections.abc import Mapping
 
 from puckpilot_env.effect import Effect, Parameter, falling
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics.curves import over_knots
 from puckpilot_env.physics.effects.unlisted_bounce import OF_NORMAL, OF_TANGENT
+from puckpilot_env.physics.interpolation import over_knots
 
 BY_SPEED, BY_ANGLE, BY_PLACE_ALONG, BY_PLACE_ACROSS, BY_TIME = range(1, 6)
 KNOTS = 4

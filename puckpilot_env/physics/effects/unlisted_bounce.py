@@ -21,8 +21,8 @@ from collections.abc import Mapping
 
 from puckpilot_env.effect import Effect, Parameter, falling
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics import bounce
-from puckpilot_env.physics.curves import cosines, over_knots
+from puckpilot_env.physics.contacts import bounce
+from puckpilot_env.physics.interpolation import cosines, over_knots
 
 BY_SPEED, BY_ANGLE, BY_TIME, BY_PLACE, BY_PLACE_ALIKE, BY_WAVE = range(1, 7)
 OF_NORMAL, OF_TANGENT, OF_BOTH = range(1, 4)

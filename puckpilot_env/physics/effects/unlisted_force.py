@@ -25,7 +25,7 @@ from collections.abc import Mapping
 
 from puckpilot_env.effect import Effect, Parameter, falling
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics.curves import cosines, next_even_knot, next_knot, over_even_knots, over_knots
+from puckpilot_env.physics.interpolation import cosines, next_even_knot, next_knot, over_even_knots, over_knots
 
 PUSH_BY_PLACE, BRAKE_BY_PLACE, PUSH_BY_X, PUSH_BY_Y, BRAKE_BY_X, BRAKE_BY_Y = range(1, 7)
 BRAKE_BY_SPEED, SIDE_BY_SPEED, BY_HEADING, PUSH_BY_TIME, BRAKE_BY_TIME, BRAKE_BY_WAVE = range(7, 13)

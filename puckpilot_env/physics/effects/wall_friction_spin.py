@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from puckpilot_env.effect import Effect, Parameter
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics.rub import rub
+from puckpilot_env.physics.contacts.rub import rub
 
 _SOURCE = "0.11 found on a real table; 1/2 is a full disc"
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from puckpilot_env.effect import Effect, Parameter
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics import bounce
+from puckpilot_env.physics.contacts import bounce
 
 _SOURCE = "a documented choice"
 

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from puckpilot_env import Tables, state
-from puckpilot_env.game import sensing
+from puckpilot_env import Tables
+from puckpilot_env.game import sensing, state
+from sim2real.study.independent_table import Law
+from sim2real.study.independent_table.recorder.camera import distort
 from tests.puckpilot_env.game.hand import FRICTIONLESS, LENGTH, NO_CAMERA_NOISE, WIDTH, put_puck, seen, staying
-from tests.reality import Law
-from tests.reality.camera import distort
 
 LAGS = (0, 1, 2, 5, 11)
 COUNT = 4000

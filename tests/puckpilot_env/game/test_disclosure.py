@@ -50,6 +50,7 @@ def ends(row: Parameter) -> list[float]:
     return [row.low, row.high, row.within(row.default + 0.003 * (row.high - row.low))]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("id_", IDS)
 def test_no_column_moves_with_a_parameter(id_: str) -> None:
     tables = in_play(id_)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from puckpilot_env import Tables
-from puckpilot_env.parallel_env import TableEnv
+from puckpilot_env.adapters.parallel_env import TableEnv
 from puckpilot_env.variants import find_variant
 from tests.puckpilot_env.game.hand import MALLET, PUCK, observe, put_puck, seen
 

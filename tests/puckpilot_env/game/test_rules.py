@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from baselines.match import play
+from baselines.matches.match import play
 from puckpilot_env import Tables, find_variant
+from puckpilot_env.adapters.infos import outcome_info
+from puckpilot_env.adapters.parallel_env import TableEnv
+from puckpilot_env.batch.motion import mallet_motion, puck_motion
 from puckpilot_env.game import rules
-from puckpilot_env.infos import outcome_info
-from puckpilot_env.motion import mallet_motion, puck_motion
-from puckpilot_env.parallel_env import TableEnv
 from tests.puckpilot_env.game.hand import FRICTIONLESS, STAYING_COST, put_mallet, put_puck, staying, touch
 
 DRILLS = ["defence-v0", "attack-v0"]

@@ -10,8 +10,8 @@ import pytest
 from scipy import stats
 
 from puckpilot_env import Tables, find_variant
-from puckpilot_env.parallel_env import TableEnv
-from puckpilot_env.randomization import Draw
+from puckpilot_env.adapters.parallel_env import TableEnv
+from puckpilot_env.options.randomization import Draw
 from tests.puckpilot_env.game.hand import FRICTIONLESS, LENGTH, NO_CAMERA_NOISE, PUCK, put_puck, seen, staying
 
 LAGS = (0, 1, 2, 5, 11)
@@ -50,6 +50,7 @@ def time_shown(tables: Tables, player: int, name: str) -> np.ndarray:
     return ((x if player == 0 else LENGTH - x) - 0.7) / SPEED
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("period", PERIODS)
 @pytest.mark.parametrize("camera", CAMERAS, ids=str)
 @pytest.mark.parametrize("variant, column", NEWEST, ids=["sensors", "randomized"])

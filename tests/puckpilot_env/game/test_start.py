@@ -9,7 +9,7 @@ import pytest
 from scipy import stats
 
 from puckpilot_env import Tables, all_variants
-from puckpilot_env.motion import mallet_motion, puck_motion
+from puckpilot_env.batch.motion import mallet_motion, puck_motion
 from tests.puckpilot_env.game.hand import GOAL, LENGTH, MALLET, PUCK, WIDTH, put_mallet, seen, staying
 
 COUNT = 20_000

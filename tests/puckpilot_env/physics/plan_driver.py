@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numba import njit
 
-from puckpilot_env.physics.mallet import axis_at
+from puckpilot_env.physics.gantry.mallet import axis_at
 from tests.puckpilot_env.physics.scenes import edged
 from tests.puckpilot_env.physics.table_driver import cut, place, plan_both, put_at_rest
 

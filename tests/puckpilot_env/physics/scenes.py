@@ -10,7 +10,7 @@ import math
 
 from numba import njit
 
-from puckpilot_env.physics.mallet import place_at
+from puckpilot_env.physics.gantry.mallet import place_at
 from tests.puckpilot_env.physics.table_driver import cut, place, plan_both, put_at_rest
 
 UNITS = 32  # numbers that make a scene

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numba import njit
 
-from puckpilot_env.physics import bounce
+from puckpilot_env.physics.contacts import bounce
 from tests.puckpilot_env.physics.scenes import UNITS, build
 from tests.puckpilot_env.physics.table_driver import (
     AFTER_X,

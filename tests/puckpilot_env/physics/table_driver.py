@@ -10,12 +10,12 @@ import math
 import numpy as np
 from numba import njit
 
+from puckpilot_env.game.state import TABLE
 from puckpilot_env.parameters import make_records
-from puckpilot_env.physics import bounce
 from puckpilot_env.physics.advance import EVENT_COLUMNS, advance
-from puckpilot_env.physics.mallet import place_at, set_constants, settle
-from puckpilot_env.physics.plan import plan_mallet
-from puckpilot_env.state import TABLE
+from puckpilot_env.physics.contacts import bounce
+from puckpilot_env.physics.gantry.mallet import place_at, set_constants, settle
+from puckpilot_env.physics.gantry.plan import plan_mallet
 
 # Columns of a sample: time, the puck, both mallets
 T, PX, PY, PVX, PVY, M0X, M0Y, M1X, M1Y = range(9)

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from puckpilot_env.physics import bounce
+from puckpilot_env.physics.contacts import bounce
+from sim2real.study.independent_table import Law, Trace, run
 from tests.puckpilot_env.physics.table_driver import (
     KIND,
     SAMPLE_COLUMNS,
@@ -24,7 +25,6 @@ from tests.puckpilot_env.physics.table_driver import (
     put_at_rest,
     record,
 )
-from tests.reality import Law, Trace, run
 
 LAW = Law()
 BETWEEN, AFTER_THREE = 1e-6, 1e-4  # m, the bars of the specification
@@ -128,6 +128,7 @@ def shots(seed: int, count: int, fastest: float) -> list[Start]:
     return starts
 
 
+@pytest.mark.slow
 def test_between_contacts_and_after_three(effort):
     starts = shots(6, 100 * effort, 10.0)
     worst, calm, left_out, seen = compare(starts, 1.0, 3, 2e-5)
@@ -162,6 +163,7 @@ def at_the_mouth(seed: int, count: int) -> list[Start]:
     return starts
 
 
+@pytest.mark.slow
 def test_goal_mouth(effort):
     """Grazes a post, enters, comes out again: as the reference has it."""
     starts = at_the_mouth(7, 150 * effort)

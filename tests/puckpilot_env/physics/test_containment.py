@@ -11,7 +11,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from puckpilot_env.physics.plan import plan_axis
+from puckpilot_env.physics.gantry.plan import plan_axis
 from tests.puckpilot_env.physics import sweeps
 from tests.puckpilot_env.physics.scenes import KINDS, UNITS
 from tests.puckpilot_env.physics.table_driver import SAMPLE_COLUMNS, new_log, new_table, play, put_at_rest, record
@@ -45,6 +45,7 @@ def check(verdicts: np.ndarray, units: np.ndarray) -> np.ndarray:
     return verdicts[scenes]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", TABLES)
 def test_hard_scenes_on_every_table(name, effort):
     units = sweeps.random_units(1, 10_000 * effort)
@@ -53,6 +54,7 @@ def test_hard_scenes_on_every_table(name, effort):
     assert np.isin(np.arange(KINDS), (units[:, 0] * KINDS).astype(int)).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("seconds", "scenes", "pieces"), [(1 / 120, 60_000, 20), (0.1, 40_000, 200), (1.0, 8000, 400)])
 def test_hard_scenes_of_every_length(seconds, scenes, pieces, effort):
     units = sweeps.random_units(2, scenes * effort)

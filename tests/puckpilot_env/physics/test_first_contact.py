@@ -8,16 +8,17 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pytest
 from numba import njit
 from scipy.integrate import solve_ivp
 
-from puckpilot_env.physics.contact import first_contact
+from puckpilot_env.physics.contacts.contact import first_contact
+from sim2real.study.independent_table.physics.gantry import advance_axis
+from sim2real.study.independent_table.physics.law import Law
+from sim2real.study.independent_table.physics.puck import advance_puck
 from tests.puckpilot_env.physics.scenes import build
 from tests.puckpilot_env.physics.sweeps import random_units
 from tests.puckpilot_env.physics.table_driver import areas, cut, new_table, place, plan_both, put_at_rest, record
-from tests.reality.gantry import advance_axis
-from tests.reality.law import Law
-from tests.reality.puck import advance_puck
 
 STEP = 2e-5  # s, of the scan
 CLEAR = 1e-5  # m; nearer than this they may overlap between two steps without the scan knowing
@@ -118,6 +119,7 @@ def check(answers: np.ndarray, least: int) -> None:
     assert np.isinf(told[~np.isfinite(scanned) & (nearest > CLEAR)]).all(), "a contact was reported that is none"
 
 
+@pytest.mark.slow
 def test_never_late_and_never_early(effort):
     p, scenes = record(), 1500 * effort
     answers = np.full((scenes, 2, 3), np.nan)

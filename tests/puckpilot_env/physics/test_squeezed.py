@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from puckpilot_env.physics.hit import hit
+from puckpilot_env.physics.contacts.hit import hit
 from tests.puckpilot_env.physics.table_driver import (
     SAMPLE_COLUMNS,
     areas,

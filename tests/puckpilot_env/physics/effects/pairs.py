@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from puckpilot_env.physics.effects import unlisted_blow, unlisted_bounce
 from puckpilot_env.physics.effects.unlisted_bounce import BY_SPEED, BY_TIME, OF_BOTH, OF_NORMAL
-from tests.reality import Law
+from sim2real.study.independent_table import Law
 
 Pair = tuple[dict[str, float], Law]
 

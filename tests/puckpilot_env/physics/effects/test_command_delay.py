@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from puckpilot_env import Tables
-from puckpilot_env.physics.mallet import place_now
+from puckpilot_env.physics.gantry.mallet import place_now
+from sim2real.study.independent_table import Law, run
 from tests.puckpilot_env.physics.table_driver import areas, plan_both, record
-from tests.reality import Law, run
 
 DELAY, STEPS = 0.055, 14
 LATE = {"command_delay": {"delay_s": DELAY}}

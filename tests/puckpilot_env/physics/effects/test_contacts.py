@@ -9,9 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from puckpilot_env.physics import bounce, contact
+from puckpilot_env.physics.contacts import bounce, contact
+from puckpilot_env.physics.contacts.rebound import rebound, strike
 from puckpilot_env.physics.effects import EFFECTS
-from puckpilot_env.physics.rebound import rebound, strike
+from sim2real.study.independent_table import Law, Trace, run
 from tests.puckpilot_env.physics.effects.pairs import CONTACTS
 from tests.puckpilot_env.physics.effects.test_slide import new_puck
 from tests.puckpilot_env.physics.table_driver import (
@@ -26,7 +27,6 @@ from tests.puckpilot_env.physics.table_driver import (
     put_at_rest,
     record,
 )
-from tests.reality import Law, Trace, run
 
 CLOSE = 1e-5  # m
 STARTS = 12
@@ -71,6 +71,7 @@ def comparable(trace: Trace, rows: int, give: float) -> int:
     return min(rows, before, int(np.isfinite(trace.puck[:, 0]).sum()))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CONTACTS)
 def test_through_three_contacts_it_is_the_reference_s(name: str) -> None:
     values, law = CONTACTS[name]

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from puckpilot_env import Tables
-from puckpilot_env.physics.drive import weaken
-from puckpilot_env.physics.mallet import motion_at, next_switch
+from puckpilot_env.physics.gantry.drive import weaken
+from puckpilot_env.physics.gantry.mallet import motion_at, next_switch
+from sim2real.study.independent_table import Law, run
 from tests.puckpilot_env.physics.table_driver import areas, new_table, plan_both, put_at_rest, record
-from tests.reality import Law, run
 
 WEAK = {"voltage_sag": 0.02, "motor_deadband": 0.4}
 REFERENCE = Law(voltage_sag=0.02, deadband=0.4)

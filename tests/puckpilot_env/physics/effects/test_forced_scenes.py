@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from puckpilot_env.physics import bounce
+from puckpilot_env.physics.contacts import bounce
 from tests.puckpilot_env.physics import sweeps
 from tests.puckpilot_env.physics.table_driver import (
     PVX,
@@ -22,6 +22,8 @@ from tests.puckpilot_env.physics.table_driver import (
     record,
 )
 from tests.puckpilot_env.physics.test_containment import DEEPEST_IN_MALLET, DEEPEST_OUTSIDE
+
+pytestmark = pytest.mark.slow
 
 FORCED = {
     "tilt": {"tilt_x": 0.2, "tilt_y": -0.2},

@@ -9,13 +9,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from puckpilot_env.physics import glide
 from puckpilot_env.physics.advance import PUCK
 from puckpilot_env.physics.effects import EFFECTS
-from puckpilot_env.physics.slide import slide
+from puckpilot_env.physics.sliding import glide
+from puckpilot_env.physics.sliding.slide import slide
+from sim2real.study.independent_table import Law, run
 from tests.puckpilot_env.physics.effects.pairs import GLIDE
 from tests.puckpilot_env.physics.table_driver import record
-from tests.reality import Law, run
 
 CLOSE = 1e-6  # m, after a second
 STARTS = 12
@@ -42,6 +42,7 @@ def shifted(law: Law, by: float) -> Law:
     return Law(**{**numbers, "patch_x": law.patch_x + by, "patch_y": law.patch_y + by})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", GLIDE)
 def test_a_second_of_sliding_is_the_reference_s(name: str) -> None:
     values, law = GLIDE[name]

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from puckpilot_env import Tables
+from puckpilot_env.physics.contacts.rebound import strike
 from puckpilot_env.physics.effects.unlisted_blow import BY_ANGLE, BY_PLACE_ACROSS, BY_PLACE_ALONG, BY_SPEED, BY_TIME
 from puckpilot_env.physics.effects.unlisted_bounce import OF_BOTH, OF_NORMAL, OF_TANGENT
-from puckpilot_env.physics.rebound import strike
 from tests.puckpilot_env.physics.effects.pairs import blow_table
 from tests.puckpilot_env.physics.effects.test_slide import new_puck
 from tests.puckpilot_env.physics.table_driver import record

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from puckpilot_env import Tables
-from puckpilot_env.physics import bounce
+from puckpilot_env.physics.contacts import bounce
+from puckpilot_env.physics.contacts.rebound import rebound
 from puckpilot_env.physics.effects.unlisted_bounce import (
     BY_ANGLE,
     BY_PLACE,
@@ -20,7 +21,6 @@ from puckpilot_env.physics.effects.unlisted_bounce import (
     OF_NORMAL,
     OF_TANGENT,
 )
-from puckpilot_env.physics.rebound import rebound
 from tests.puckpilot_env.physics.effects.pairs import bounce_table
 from tests.puckpilot_env.physics.effects.test_slide import new_puck
 from tests.puckpilot_env.physics.table_driver import record

@@ -9,10 +9,10 @@ import pytest
 
 from puckpilot_env.physics.effects import unlisted_force
 from puckpilot_env.physics.effects.unlisted_force import SPEED_KNOTS, TIME_KNOTS, acceleration
-from puckpilot_env.physics.slide import slide
+from puckpilot_env.physics.sliding.slide import slide
+from sim2real.study.independent_table import Law, run
 from tests.puckpilot_env.physics.effects.test_slide import FRICTION, draw_start, new_puck
 from tests.puckpilot_env.physics.table_driver import record
-from tests.reality import Law, run
 
 ROWS = [row.name for row in unlisted_force.EFFECT.rows.values()]
 
@@ -98,6 +98,7 @@ def worst(values: dict[str, float], law: Law) -> float:
     return max(apart)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", EXACT)
 def test_a_law_that_a_table_says_exactly(name: str) -> None:
     values, law = EXACT[name]

@@ -1,0 +1,1 @@
+"""PettingZoo and Gymnasium interfaces over `puckpilot_env.tables`."""

@@ -1,0 +1,1 @@
+"""The machinery behind `puckpilot_env.tables`: batched kernels, threads, snapshots, traces."""

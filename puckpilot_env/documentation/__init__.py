@@ -1,0 +1,1 @@
+"""The page of a variant: its facts, and how they are written."""

@@ -1,0 +1,1 @@
+"""What the puck meets - walls, posts, goal lines, mallets - and the impulse there."""

@@ -1,0 +1,1 @@
+"""The mallet's gantry: plans of switched voltages, and its motion in closed form."""

@@ -1,0 +1,1 @@
+"""The puck between two contacts: friction, drag and forces."""
