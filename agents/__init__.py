@@ -1,1 +1,10 @@
-"""Training players by self-play; the floor above `baselines`. Not built yet."""
+"""Players trained by self-play with rsl-rl's PPO. This package stands above `baselines` and alone imports torch.
+
+- `commands`: `puckpilot train`, `evaluate`, `exploit` and `export`.
+- `training`: presets, runs and their checkpoints, and PPO.
+- `env`: batches of tables as an environment for one learner.
+- `league`: the opponent pool, and which opponent plays at which tables.
+- `policy`: the trained policy as a file, and as a player that needs no torch.
+- `evaluation`: matchups with ratings, comparison of seeds, and deployability on a real gantry.
+- `policies` and `presets`: the shipped policy files and the training presets.
+"""

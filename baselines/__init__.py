@@ -1,7 +1,13 @@
 """Players by name. A file in `baselines/players/` is a scripted player, and its name is the player's name.
 
-Any other player is a policy, which the package above this one finds: `policy:champion`, an .npz file, a run's folder;
-`agents.policy.policy_file` says how one may be named.
+Any other player is a policy, which the package above this one finds: `policy:champion`, an .npz file or a run's folder;
+`agents.policy.policy.policy_file` says how one may be named.
+
+- `player`: what a player is and what it knows; `observation_decoder`: present positions and velocities out of an
+  observation.
+- `players`: the scripts, a file each; `planning`: how they aim, block and search.
+- `matches`: paired games, tournaments and drills; `ratings`: intervals and Elo ratings from their results.
+- `gymnasium_seat`: one seat as a Gymnasium environment; `commands`: `puckpilot match` and `tournament`.
 
 from baselines import make_player, player_names
 from baselines.player import Seat
@@ -20,18 +26,18 @@ from collections.abc import Callable
 from baselines import players
 from baselines.player import Player, Seat
 
-POLICIES = "agents.policy"  # finds them; it stands above this package, so it is loaded when a name is no script's
+POLICIES = "agents.policy.policy"  # of a package above this one, so loaded only when a name is no script's
 
 __all__ = ["Player", "Seat", "find_player", "full_name", "make_player", "player_names"]
 
 
 def player_names() -> list[str]:
-    """Names of all players, sorted: the files of `baselines/players/`."""
+    """Names of all scripted players, sorted: the files of `baselines/players/`."""
     return sorted(name for _, name, _ in pkgutil.iter_modules(players.__path__) if not name.startswith("_"))
 
 
 def find_player(name: str) -> Callable[[Seat], Player]:
-    """What makes the player of this name for a seat. Raises ValueError, in one line, for an unknown name."""
+    """A function that makes the player of this name for a seat. ValueError, in one line, for an unknown name."""
     if name not in player_names():
         return _policy_player(str(name))
     module = importlib.import_module(f"{players.__name__}.{name}")
@@ -43,9 +49,9 @@ def find_player(name: str) -> Callable[[Seat], Player]:
 
 
 def full_name(name: str) -> str:
-    """The one name of a player that may be named in several ways: a script's, or `policy:` and what finds the policy.
+    """The canonical name of a player that has several: a script's name, or a policy's with the prefix `policy:`.
 
-    Raises ValueError, in one line, for an unknown name.
+    ValueError, in one line, for an unknown name.
     """
     if name in player_names():
         return name
@@ -55,7 +61,7 @@ def full_name(name: str) -> str:
 
 
 def make_player(name: str, seat: Seat) -> Player:
-    """The player of this name, sitting at `seat`. Raises ValueError, in one line, for an unknown name."""
+    """The player of this name at `seat`. ValueError, in one line, for an unknown name."""
     return find_player(name)(seat)
 
 

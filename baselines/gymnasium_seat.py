@@ -1,4 +1,4 @@
-"""One seat against a named player: what `gymnasium.make` and `gymnasium.make_vec` call for every id.
+"""One seat against a named player: the entry points of `gymnasium.make` and `gymnasium.make_vec` for every id.
 
 import gymnasium, puckpilot_env
 env = gymnasium.make("puckpilot/match-v0", opponent="interceptor")
@@ -15,28 +15,28 @@ from numpy.typing import NDArray
 
 from baselines import find_player
 from baselines.player import Player, Seat
-from puckpilot_env.draws_file import Draws
-from puckpilot_env.effects_file import Effects
-from puckpilot_env.inputs import in_short, whole_number
-from puckpilot_env.parallel_env import fresh_seed
-from puckpilot_env.seats import Opponent
-from puckpilot_env.single_env import SingleEnv
+from puckpilot_env.adapters.parallel_env import fresh_seed
+from puckpilot_env.adapters.seats import Opponent
+from puckpilot_env.adapters.single_env import SingleEnv
+from puckpilot_env.adapters.vector_env import TablesVectorEnv
+from puckpilot_env.options.draws_file import Draws
+from puckpilot_env.options.effects_file import Effects
+from puckpilot_env.options.inputs import in_short, whole_number
 from puckpilot_env.tables import MOST_TABLES, Tables
 from puckpilot_env.variants import Variant
-from puckpilot_env.vector_env import TablesVectorEnv
 
-AnyOpponent = str | Callable[[Seat], Player] | Opponent  # a name, what makes a player for a seat, or one ready to play
+AnyOpponent = str | Callable[[Seat], Player] | Opponent  # a name, a function from a seat to a player, or a player
 
 
 class SeededPlayer:
-    """A player that is made anew for every seed, so that the same seed brings the same game."""
+    """An opponent that makes a new player for every seed, so that the same seed gives the same game."""
 
     def __init__(self, make: Callable[[Seat], Player], seat: Seat) -> None:
         self._make, self._seat = make, seat
         self._player = make(seat)
 
     def seed(self, seed: int) -> None:
-        """Begin with fresh randomness."""
+        """Make a new player whose randomness has this seed."""
         self._player = self._make(replace(self._seat, seed=int(seed)))
 
     def reset(self, mask: NDArray[np.bool_]) -> None:
@@ -62,8 +62,8 @@ def make_seat(
 ) -> SingleEnv:
     """A Gymnasium environment of one seat (0 or 1); `opponent` plays the other.
 
-    `period` [s], `max_cycles`, `parameters`, `effects` and `draws` are those of `Tables`. Raises ValueError, in one
-    line, for anything that cannot be.
+    `period` [s], `max_cycles`, `parameters`, `effects` and `draws` are those of `Tables`. ValueError, in one line, for
+    an invalid argument.
     """
     seed = fresh_seed()
     tables = Tables(
@@ -95,9 +95,9 @@ def make_seats(
     effects: Effects | None = None,
     draws: Draws | None = None,
 ) -> TablesVectorEnv:
-    """A Gymnasium vector environment of `num_envs` seats, one a table; `seat` may also be "alternate".
+    """A Gymnasium vector environment of `num_envs` tables with one seat each; `seat` may also be "alternate".
 
-    The rest is as in `make_seat` and `TablesVectorEnv`.
+    `threads` and `copy` are those of `TablesVectorEnv`; the rest is as in `make_seat`.
     """
     seed = fresh_seed()
     num_envs = whole_number(num_envs, "num_envs", 1, MOST_TABLES)
@@ -111,7 +111,7 @@ def make_seats(
 
 
 def find_opponent(opponent: AnyOpponent, tables: Tables, seed: int) -> Opponent:
-    """Who is meant, ready to play at these tables. ValueError, in one line, for an unknown name."""
+    """The opponent, ready to play at these tables. ValueError, in one line, for an unknown name."""
     if isinstance(opponent, str):
         opponent = find_player(opponent)
     elif not isinstance(opponent, type) and hasattr(opponent, "act"):

@@ -1,9 +1,9 @@
 """How good a player is, and whether it could play on a real gantry.
 
-It meets every script in paired games of match-v0, match-randomized-v0 and the drills. Matches give its rating among the
-scripts; drills, where the two seats have different jobs, give how the episodes ended in which it was tested: half of
-the games, as player_0. Then what it asks of the gantry is measured, how long it thinks, and how its win rate falls when
-the table is seen late or noisily.
+It plays paired games against every script, in match-v0, match-randomized-v0 and the drills. Matches give its rating
+among the scripts. In drills the two seats have different jobs, so they give how the episodes ended in which it was
+tested: half of the games, as player_0. Then come its load on the gantry, the time of a decision, and its win rate when
+the table is seen with a delay or with noise.
 
 Several policies, such as those of one recipe and five seeds, are compared with the scripts alone: their shares of
 decisive games (in drills, of clears and shots on goal) and the interquartile mean over them, with a bootstrap interval.
@@ -40,8 +40,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """0: evaluated. Raises ValueError, in one line, for what cannot be played."""
-    from agents.deployability import measure_deployability, measure_robustness
-    from agents.meetings import games_among, games_of, meeting_row, play_all, rate
+    from agents.evaluation.deployability import measure_deployability, measure_robustness
+    from agents.evaluation.matchups import matchup_row, matchups_among, matchups_of, play_matchups, rate_matchups
     from baselines import full_name, player_names
     from baselines.commands.options import progress_bar
 
@@ -53,11 +53,14 @@ def run(args: argparse.Namespace) -> int:
         return _over_seeds(args)
     name, hampered = full_name(args.policies[0]), full_name(args.hampered)
     opponents = list(dict.fromkeys(full_name(player) for player in args.against or player_names()))
-    asked = (name, opponents, _variants(args.variants), args.games, args.seed)
-    own = games_of(*asked)
+    matchup_args = (name, opponents, _variants(args.variants), args.games, args.seed)
+    own = matchups_of(*matchup_args)
     with progress_bar("meetings") as progress:
-        played = play_all([*own, *games_among(*asked)], progress, workers=args.workers, cluster=args.cluster)
-    rows, rated = [meeting_row(game, played[game]) for game in own], rate(name, played, args.seed)
+        played = play_matchups(
+            [*own, *matchups_among(*matchup_args)], progress, workers=args.workers, cluster=args.cluster
+        )
+    rows = [matchup_row(matchup, played[matchup]) for matchup in own]
+    rated = rate_matchups(name, played, args.seed)
     deployability = measure_deployability(name, hampered, max(args.games // 5, 2), args.seed)
     robustness = measure_robustness(name, hampered, args.games, args.seed)
     if args.json:
@@ -65,17 +68,18 @@ def run(args: argparse.Namespace) -> int:
         found = {"player": name, "meetings": rows, "ratings": ratings, "deployability": deployability.as_dict()}
         print(json.dumps({**found, "robustness": robustness.as_dict()}, indent=1))
         return 0
-    from agents.commands.evaluate_tables import print_deployability, print_meetings, print_ratings
+    from agents.commands.evaluate_tables import print_deployability, print_matchups, print_ratings
 
-    print_meetings(name, rows)
+    print_matchups(name, rows)
     print_ratings(name, args.games, rated)
     print_deployability(deployability, robustness)
     return 0
 
 
 def _over_seeds(args: argparse.Namespace) -> int:
-    from agents.meetings import games_of, meeting_row, play_all
-    from agents.over_seeds import rows_over_seeds
+    """Evaluate several policies and compare them."""
+    from agents.evaluation.matchups import matchup_row, matchups_of, play_matchups
+    from agents.evaluation.over_seeds import rows_over_seeds
     from baselines import full_name, player_names
     from baselines.commands.options import progress_bar
 
@@ -83,14 +87,14 @@ def _over_seeds(args: argparse.Namespace) -> int:
     if len(names) < len(args.policies):
         raise ValueError(f"the same policy is given twice among {', '.join(args.policies)}; expected each once")
     opponents = list(dict.fromkeys(full_name(player) for player in args.against or player_names()))
-    own = {name: games_of(name, opponents, _variants(args.variants), args.games, args.seed) for name in names}
+    own = {name: matchups_of(name, opponents, _variants(args.variants), args.games, args.seed) for name in names}
     with progress_bar("meetings") as progress:
-        every = [game for games in own.values() for game in games]
-        played = play_all(every, progress, workers=args.workers, cluster=args.cluster)
-    met = {name: [meeting_row(game, played[game]) for game in games] for name, games in own.items()}
-    rows = rows_over_seeds(met, args.seed)
+        every = [matchup for matchups in own.values() for matchup in matchups]
+        played = play_matchups(every, progress, workers=args.workers, cluster=args.cluster)
+    of_each = {name: [matchup_row(one, played[one]) for one in matchups] for name, matchups in own.items()}
+    rows = rows_over_seeds(of_each, args.seed)
     if args.json:
-        print(json.dumps({"players": names, "meetings": met, "over_seeds": rows}, indent=1))
+        print(json.dumps({"players": names, "meetings": of_each, "over_seeds": rows}, indent=1))
         return 0
     from agents.commands.evaluate_tables import print_over_seeds
 
@@ -99,7 +103,7 @@ def _over_seeds(args: argparse.Namespace) -> int:
 
 
 def _variants(names: list[str]) -> list[str]:
-    """Ids of the variants that are named, each once; `drills` names several."""
+    """Ids of the named variants, each once; `drills` stands for several."""
     from puckpilot_env.variants import find_variant
 
     each = [one for name in names for one in (DRILLS if name == "drills" else (name,))]

@@ -1,4 +1,4 @@
-"""What `puckpilot evaluate` found, for the eye."""
+"""The results of `puckpilot evaluate` as tables for the terminal."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from agents.deployability import Deployability, Robustness
-from agents.meetings import Rated
-from baselines.intervals import Estimate
-from baselines.payoff_table import payoff_table, rating_table
-from baselines.role_table import role_table
+from agents.evaluation.deployability import Deployability, Robustness
+from agents.evaluation.matchups import VariantRatings
+from baselines.matches.payoff_table import payoff_table, rating_table
+from baselines.matches.role_table import role_table
+from baselines.ratings.intervals import IntervalEstimate
 
 TEXTS = {
     "wall_margin_m": ("nearest to an edge of its half, 1st percentile", "{:.3f} m"),
@@ -27,8 +27,8 @@ TEXTS = {
 LONGEST = 24  # characters of a player's name in a payoff matrix, where it stands twice
 
 
-def print_meetings(name: str, rows: Sequence[dict[str, Any]]) -> None:
-    """Matches, then each drill."""
+def print_matchups(name: str, rows: Sequence[dict[str, Any]]) -> None:
+    """Print a table of all matches, then one of each drill. `rows` are those of `matchup_row`."""
     matches = [row for row in rows if row["role"] is None]
     if matches:
         headings = ("won", "drawn", "lost", "goals", "fouls a game", "share", "95 %")
@@ -48,7 +48,7 @@ def print_meetings(name: str, rows: Sequence[dict[str, Any]]) -> None:
 
 
 def print_over_seeds(names: Sequence[str], games: int, rows: Sequence[dict[str, Any]]) -> None:
-    """What several runs reach, one beside the other, and their interquartile mean."""
+    """Print several players' shares side by side with their interquartile mean; `rows` are of `rows_over_seeds`."""
     for number, name in enumerate(names, start=1):
         print(f"{number}: {name}")
     few = "; of fewer than four the IQM is the mean" if len(names) < 4 else ""
@@ -60,8 +60,8 @@ def print_over_seeds(names: Sequence[str], games: int, rows: Sequence[dict[str, 
     _show(table)
 
 
-def print_ratings(name: str, games: int, rated: Sequence[Rated]) -> None:
-    """The payoff matrix and the ratings of each match variant."""
+def print_ratings(name: str, games: int, rated: Sequence[VariantRatings]) -> None:
+    """Print the payoff matrix and the ratings of each match variant."""
     for one in rated:
         payoff, ratings = one.payoff, one.ratings
         names = tuple(player if len(player) <= LONGEST else f"…{player[1 - LONGEST :]}" for player in payoff.players)
@@ -74,7 +74,7 @@ def print_ratings(name: str, games: int, rated: Sequence[Rated]) -> None:
 
 
 def print_deployability(deployability: Deployability, robustness: Robustness) -> None:
-    """What it asks of a gantry, and how it plays where it sees late or noisily."""
+    """Print the load on the gantry, and the win rates with delayed and noisy observations."""
     console = Console(width=100, highlight=False)
     console.print("On the gantry (match-v0):")
     for field, value in deployability.as_dict().items():
@@ -106,7 +106,7 @@ def _share(rate: dict[str, Any]) -> tuple[str, str]:
 
 
 def _show(table: Table) -> None:
-    needed = Console(width=10_000).measure(table).maximum  # a count that is cut would say something else
+    needed = Console(width=10_000).measure(table).maximum  # a truncated count would be a wrong one
     Console(width=max(needed, 100), highlight=False).print(table)
 
 
@@ -114,7 +114,7 @@ def _short(variant: str) -> str:
     return variant.removeprefix("puckpilot/")
 
 
-def _in_words(rate: Estimate) -> str:
+def _in_words(rate: IntervalEstimate) -> str:
     if rate.value is None:
         return "no decisive game"
     return f"{100 * rate.value:5.1f} % ({100 * rate.low:.1f} to {100 * rate.high:.1f} %)"

@@ -20,7 +20,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """0: written. Raises ValueError, in one line, for what cannot be read or written."""
-    from agents.policy import find_policy
+    from agents.policy.policy import find_policy
 
     if args.out.suffix not in ENDINGS:
         raise ValueError(f"--out is {args.out}; expected a file that ends in {' or '.join(ENDINGS)}")
@@ -28,7 +28,7 @@ def run(args: argparse.Namespace) -> int:
     if args.out.suffix == ".npz":
         policy.save(args.out)
     else:
-        from agents.onnx_file import write_onnx
+        from agents.policy.onnx_file import write_onnx
 
         write_onnx(policy, args.out)
     sizes = " x ".join(str(size) for size in policy.network.sizes)

@@ -1,7 +1,7 @@
-"""Train a player by self-play: PPO against itself, its earlier selves and scripts.
+"""Train a player by self-play: PPO against itself, earlier snapshots of itself, and scripts.
 
 A run lives in a folder and saves itself after every round, about every half a minute: stop it with Ctrl-C, or kill it,
-and --resume goes on as if nothing had happened. The newest player is always DIR/policy.npz; let it play with `puckpilot
+and --resume continues exactly from there. The newest player is always DIR/policy.npz; let it play with `puckpilot
 match policy:DIR/policy.npz interceptor`. `tensorboard --logdir DIR` draws its curves.
 """
 
@@ -15,8 +15,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 if TYPE_CHECKING:
-    from agents.run_folder import RunFolder
-    from agents.training import Settings, Training
+    from agents.training.run import Training
+    from agents.training.run_folder import RunFolder
+    from agents.training.settings import Settings
 
 FOREVER = 1e18
 PRESETS = Path(__file__).parents[1] / "presets"
@@ -51,20 +52,24 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--threads", type=int, metavar="K", help="threads to learn on (default 1)")
     parser.add_argument("--device", metavar="NAME", help="where the networks are: cpu, cuda (default cpu)")
     parser.add_argument(
-        "--effects", metavar="FILE", help="physics beyond the baseline, as `diagnose` writes it (no flip then)"
+        "--effects",
+        metavar="FILE",
+        help="physics beyond the baseline, as `diagnose` writes it (turns the use of mirror symmetry off)",
     )
     parser.add_argument(
-        "--draws", metavar="FILE", help="what differs from game to game, as `diagnose` writes it (no flip then)"
+        "--draws",
+        metavar="FILE",
+        help="what differs from game to game, as `diagnose` writes it (turns the use of mirror symmetry off)",
     )
 
 
 def run(args: argparse.Namespace) -> int:
-    """0: trained as long as was asked. Raises ValueError, in one line, for what cannot be trained."""
-    need_torch()
-    from agents import ranks
-    from agents.commands.given import kept_settings, new_settings
-    from agents.commands.live import pace
-    from agents.run_folder import RunFolder
+    """Train. 0: done. ValueError, in one line, for what cannot be trained."""
+    require_torch()
+    from agents.commands.progress_display import pace
+    from agents.commands.train_settings import new_settings, saved_settings
+    from agents.training import distributed
+    from agents.training.run_folder import RunFolder
 
     for name in ("steps", "minutes"):
         if not getattr(args, name) > 0:
@@ -72,33 +77,33 @@ def run(args: argparse.Namespace) -> int:
     if args.threads is not None and args.threads < 1:
         raise ValueError(f"--threads is {args.threads}; expected a whole number from 1 on")
     folder = RunFolder(args.out)
-    first = ranks.rank() == 0  # of several processes one writes
-    settings = kept_settings(args, folder) if args.resume else new_settings(args)  # before a folder is made
-    with folder.locked() if first else nullcontext():
-        if first and not args.resume:
+    is_first = distributed.rank() == 0  # of several processes one writes
+    settings = saved_settings(args, folder) if args.resume else new_settings(args)  # before a folder is made
+    with folder.locked() if is_first else nullcontext():
+        if is_first and not args.resume:
             folder.begin(settings.as_dict())
-        training = run_training(folder, settings, steps=args.steps, minutes=args.minutes, quiet=not first)
-    fresh = training.rows[training.taken_up :]
-    if first:
+        training = run_training(folder, settings, steps=args.steps, minutes=args.minutes, quiet=not is_first)
+    fresh = training.rows[training.resumed_rounds :]
+    if is_first:
         print(f"the rounds' medians: {pace(fresh)}" if fresh else "nothing was left to do")
         print(f"{training.steps:,} steps; the player is {folder.policy}")
     return 0
 
 
 class _Show(argparse.Action):
-    """Prints a preset and ends."""
+    """Prints a preset and exits."""
 
     def __call__(
         self, parser: argparse.ArgumentParser, namespace: object, name: Any, option: object = None
     ) -> NoReturn:
-        from agents.preset import find_preset
+        from agents.training.preset import find_preset
 
         print(find_preset(name).text, end="")
         raise SystemExit(0)
 
 
-def need_torch() -> None:
-    """ValueError, in one line, where what training needs is not installed."""
+def require_torch() -> None:
+    """ValueError, in one line, where the packages that training needs are not installed."""
     missing = [name for name in ("torch", "rsl_rl", "tensordict") if importlib.util.find_spec(name) is None]
     if missing:
         raise ValueError(f"training needs {', '.join(missing)}; install it with: pip install 'puckpilot[train]'")
@@ -107,26 +112,29 @@ def need_torch() -> None:
 def run_training(
     folder: RunFolder, settings: Settings, *, steps: float, minutes: float = FOREVER, quiet: bool = False
 ) -> Training:
-    """Train in a folder that is this process's alone, going on from its checkpoint if there is one."""
+    """Train until `steps` or `minutes`, from the folder's checkpoint if there is one; the caller holds its lock.
+
+    ValueError, in one line, where training diverges.
+    """
     from torch.utils.tensorboard import SummaryWriter
 
-    from agents import ranks
-    from agents.commands.live import Board
-    from agents.runner import DivergedError
-    from agents.training import Training, train
+    from agents.commands.progress_display import ProgressDisplay
+    from agents.training import distributed
+    from agents.training.run import Training, train
+    from agents.training.runner import DivergedError
 
     training = Training(folder, settings)
-    with Board(quiet) as board:
-        curves = None if ranks.rank() else SummaryWriter(str(folder.path))
+    with ProgressDisplay(quiet) as display:
+        curves = None if distributed.rank() else SummaryWriter(str(folder.path))
 
-        def tell(row: dict[str, Any]) -> None:
+        def report(row: dict[str, Any]) -> None:
             if curves:
                 for name, value in row.items():
                     curves.add_scalar(name, value, row["steps"])
-            board.tell(row)
+            display.show(row)
 
         try:
-            train(training, steps=steps, seconds=60.0 * minutes, tell=tell)
+            train(training, steps=steps, seconds=60.0 * minutes, report=report)
         except DivergedError as error:
             kept = f"{folder.checkpoint} is as it was" if training.rows else "nothing of it is kept"
             raise ValueError(f"the losses are no numbers any more ({error}); {kept}") from None

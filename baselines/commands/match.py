@@ -1,6 +1,6 @@
 """Two players against each other. Every start is played twice, with the seats exchanged, so that none is favoured.
 
-In a drill each is tested in half of the episodes, as player_0, and what is told of it is how those ended.
+In a drill each is tested in half of the episodes, as player_0; its result is how those ended.
 """
 
 from __future__ import annotations
@@ -10,12 +10,12 @@ import json
 import sys
 from typing import TYPE_CHECKING
 
-from baselines.commands.options import add_options, console_for, parse_values, print_table, progress_bar
+from baselines.commands.options import add_options, console_for, parse_values, print_physics, progress_bar
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from baselines.match import MatchResult
+    from baselines.matches.match import MatchResult
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -34,9 +34,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """0: played. Raises ValueError, in one line, for what cannot be played."""
+    """Play and print. 0: played. ValueError, in one line, for what cannot be played."""
     from baselines import find_player
-    from baselines.role import roles_of
+    from baselines.matches.role import roles_of
     from puckpilot_env.variants import find_variant
 
     for name in (args.first, args.second):
@@ -48,7 +48,7 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print(json.dumps(_as_dict(args, result, roles), indent=2))
     else:
-        print_table(args)
+        print_physics(args)
         _print_drill(args, result, roles) if roles else _print(args, result)
     if filmed:
         print(filmed, file=sys.stderr if args.json else sys.stdout)
@@ -56,10 +56,10 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _play(args: argparse.Namespace) -> tuple[MatchResult, str]:
-    """The result, and what to say about the film."""
-    from baselines.filming import FirstGame
-    from baselines.match import play
-    from puckpilot_env.video import VideoWriter
+    """The result, and a line about the film; "" without one."""
+    from baselines.matches.filming import FirstGame
+    from baselines.matches.match import play
+    from puckpilot_env.rendering.video import VideoWriter
 
     def played(watch: FirstGame | None) -> MatchResult:
         with progress_bar(f"{args.first} against {args.second}") as progress:
@@ -77,8 +77,8 @@ def _play(args: argparse.Namespace) -> tuple[MatchResult, str]:
 
 
 def _as_dict(args: argparse.Namespace, result: MatchResult, roles: Sequence[dict[str, object]]) -> dict[str, object]:
-    from puckpilot_env.draws_file import read_draws
-    from puckpilot_env.effects_file import effect_values
+    from puckpilot_env.options.draws_file import read_draws
+    from puckpilot_env.options.effects_file import effect_values
 
     return {
         "variant": args.variant,
@@ -93,7 +93,7 @@ def _as_dict(args: argparse.Namespace, result: MatchResult, roles: Sequence[dict
 
 
 def _print_drill(args: argparse.Namespace, result: MatchResult, roles: Sequence[dict[str, object]]) -> None:
-    from baselines.role_table import role_table
+    from baselines.matches.role_table import role_table
 
     table = role_table(f"{result.games} episodes of {args.variant}, seed {args.seed}, and how they ended", roles)
     console_for(table).print(table)
@@ -117,7 +117,7 @@ def _print(args: argparse.Namespace, result: MatchResult) -> None:
 
 
 def _in_words(result: MatchResult) -> str:
-    from baselines.intervals import paired_win_rate
+    from baselines.ratings.intervals import paired_win_rate
 
     rate, decisive = paired_win_rate(result.padded_results), sum(result.wins)
     if rate.value is None:

@@ -1,4 +1,4 @@
-"""Options that the commands share."""
+"""Options and displays that the commands share."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from baselines.match import Progress
-from puckpilot_env import draws_file
-from puckpilot_env.effects_file import described
+from baselines.matches.match import Progress
+from puckpilot_env.options import draws_file
+from puckpilot_env.options.effects_file import described
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Declare what every command that plays games takes."""
+    """Declare the options of every command that plays games."""
     parser.add_argument("--variant", default="match-v0", metavar="ID", help="what is played (default match-v0)")
     parser.add_argument("--seed", type=int, default=0, help="seed of all games (default 0)")
     parser.add_argument("--threads", type=int, default=1, metavar="K", help="threads to play on (default 1)")
@@ -30,7 +30,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def parse_values(settings: Iterable[str]) -> dict[str, float]:
-    """Parameters by name from "name=value" words. ValueError, in one line, for one that is not."""
+    """Parameters by name from texts "name=value". ValueError, in one line, for any other text."""
     values = {}
     for setting in settings:
         name, _, text = setting.partition("=")
@@ -41,8 +41,8 @@ def parse_values(settings: Iterable[str]) -> dict[str, float]:
     return values
 
 
-def print_table(args: argparse.Namespace) -> None:
-    """Say what --effects, --draws and --set make of the table; nothing where none is given."""
+def print_physics(args: argparse.Namespace) -> None:
+    """Print the physics set by --effects, --draws and --set; nothing where none is given."""
     given = parse_values(args.set)
     for line in described(args.effects, apart_from=given) if args.effects else ():
         print(line)
@@ -53,7 +53,7 @@ def print_table(args: argparse.Namespace) -> None:
 
 
 def console_for(*tables: Table) -> Console:
-    """A console of at least 80 columns on which none of the tables is cut."""
+    """A console of at least 80 columns that is wide enough for all `tables`."""
     from rich.console import Console
 
     widest = max(Console(width=10_000).measure(table).maximum for table in tables)
@@ -62,7 +62,7 @@ def console_for(*tables: Table) -> Console:
 
 @contextmanager
 def progress_bar(what: str) -> Iterator[Progress]:
-    """A bar on stderr, if that is a terminal; it goes away at the end. What it gives takes games done and in all."""
+    """A progress bar on stderr, labelled `what`, if that is a terminal; yields the function that updates it."""
     from rich.console import Console
     from rich.markup import escape
     from rich.progress import Progress as Bar

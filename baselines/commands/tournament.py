@@ -10,10 +10,10 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from baselines.commands.options import add_options, parse_values, print_table, progress_bar
+from baselines.commands.options import add_options, parse_values, print_physics, progress_bar
 
 if TYPE_CHECKING:
-    from baselines.tournament import Tournament
+    from baselines.matches.tournament import Tournament
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -27,10 +27,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """0: played. Raises ValueError, in one line, for what cannot be played."""
+    """Play, write and print. 0: played. ValueError, in one line, for what cannot be played."""
     from baselines import player_names
-    from baselines.tournament import play_tournament
-    from baselines.tournament_files import write_tournament
+    from baselines.matches.tournament import play_tournament
+    from baselines.matches.tournament_files import write_tournament
 
     folder = Path(args.out)
     if folder.exists() and not folder.is_dir():
@@ -44,7 +44,7 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print(json.dumps(tournament.as_dict(), indent=2))
         return 0
-    print_table(args)
+    print_physics(args)
     _print(tournament, written)
     return 0
 
@@ -52,8 +52,8 @@ def run(args: argparse.Namespace) -> int:
 def _print(tournament: Tournament, written: list[Path]) -> None:
     from rich.console import Console
 
-    from baselines.payoff_table import payoff_table, rating_table
-    from baselines.role_table import CONCEDED, share_table
+    from baselines.matches.payoff_table import payoff_table, rating_table
+    from baselines.matches.role_table import CONCEDED, share_table
 
     print(f"{tournament.variant}, {tournament.games} games of every two players, seed {tournament.seed}\n")
     if tournament.payoff is None or tournament.ratings is None:
@@ -62,6 +62,6 @@ def _print(tournament: Tournament, written: list[Path]) -> None:
     else:
         tables = [payoff_table(tournament.payoff), rating_table(tournament.ratings)]
     for table in tables:
-        needed = Console(width=10_000).measure(table).maximum  # a count that is cut would say something else
+        needed = Console(width=10_000).measure(table).maximum  # a truncated count would be a wrong one
         Console(width=max(needed, len(str(table.title)))).print(table)
     print("wrote " + ", ".join(str(path) for path in written))

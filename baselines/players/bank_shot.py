@@ -1,12 +1,12 @@
-"""Strikes like the interceptor, but over the side walls."""
+"""Strikes like the interceptor, but off the side walls."""
 
 from __future__ import annotations
 
-from baselines.aim import OVER_LEFT, OVER_RIGHT
-from baselines.attack import Attacker
+from baselines.planning.aim import BANK_LEFT, BANK_RIGHT
+from baselines.planning.attack import Attacker
 
 
 class BankShot(Attacker):
-    """Aims at the middle of the goal over whichever wall it can use sooner."""
+    """Aims at the middle of the goal off the wall that allows the earlier strike."""
 
-    ways = ((OVER_RIGHT, 0.0), (OVER_LEFT, 0.0))
+    shots = ((BANK_RIGHT, 0.0), (BANK_LEFT, 0.0))

@@ -1,25 +1,25 @@
-"""Stays in front of its goal and follows the puck from post to post; it never looks at the side walls."""
+"""Stays in front of its goal and follows the puck from post to post; it ignores the side walls."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
+from baselines.observation_decoder import DecodedState
 from baselines.player import Player
-from baselines.sight import Seen
 
-VOLTS = 4.0  # V; it keeps calm
-SLOWEST_SHOT = 0.3  # m/s towards the goal; a slower puck is followed by its place alone
+VOLTS = 4.0  # V, far below the limit, for smooth motion
+SLOWEST_SHOT = 0.3  # m/s towards the goal; for a slower puck its position alone counts
 
 
 class Goalie(Player):
     """Waits two mallet radii in front of the goal line, where a straight shot would cross."""
 
-    def decide(self, seen: Seen) -> NDArray[np.float64]:
+    def decide(self, state: DecodedState) -> NDArray[np.float64]:
         """See `Player.decide`."""
         p = self.seat.parameters
         x = 2.0 * p["mallet_radius"]
-        puck_x, puck_y, puck_vx, puck_vy = seen.puck.T
+        puck_x, puck_y, puck_vx, puck_vy = state.puck.T
         coming = puck_vx < -SLOWEST_SHOT
         ahead = np.where(coming, (puck_x - x) / np.where(coming, -puck_vx, 1.0), 0.0)
         straight = puck_y + puck_vy * ahead

@@ -1,12 +1,12 @@
-"""Predicts the puck, walls included, meets it in time and strikes straight at the opponent's goal."""
+"""Predicts the puck, walls included, intercepts it and strikes straight at the opponent's goal."""
 
 from __future__ import annotations
 
-from baselines.aim import DIRECT
-from baselines.attack import Attacker
+from baselines.planning.aim import DIRECT
+from baselines.planning.attack import Attacker
 
 
 class Interceptor(Attacker):
     """Aims at the middle of the goal."""
 
-    ways = ((DIRECT, 0.0),)
+    shots = ((DIRECT, 0.0),)

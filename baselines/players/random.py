@@ -1,12 +1,12 @@
-"""Draws every action evenly from the action space."""
+"""Draws every action uniformly from the action space."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
+from baselines.observation_decoder import DecodedState
 from baselines.player import Player, Seat
-from baselines.sight import Seen
 
 
 class Random(Player):
@@ -16,7 +16,7 @@ class Random(Player):
         super().__init__(seat)
         self._draws = np.random.default_rng(seat.seed)
 
-    def decide(self, seen: Seen) -> NDArray[np.float64]:
+    def decide(self, state: DecodedState) -> NDArray[np.float64]:
         """See `Player.decide`."""
         low, high = self.seat.action_bounds
-        return self._draws.uniform(low, high, (len(seen.puck), 4))
+        return self._draws.uniform(low, high, (len(state.puck), 4))

@@ -1,17 +1,17 @@
-"""Stays where it is: what any player has to beat."""
+"""Stays where it is: the weakest player, which every other has to beat."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
+from baselines.observation_decoder import DecodedState
 from baselines.player import Player
-from baselines.sight import Seen
 
 
 class Still(Player):
-    """Asks for its own place with the least voltage."""
+    """Its target is always its own position, with the lowest voltage."""
 
-    def decide(self, seen: Seen) -> NDArray[np.float64]:
+    def decide(self, state: DecodedState) -> NDArray[np.float64]:
         """See `Player.decide`."""
-        return self.action(seen.mallet[:, 0], seen.mallet[:, 1], volts=0.0)
+        return self.action(state.mallet[:, 0], state.mallet[:, 1], volts=0.0)

@@ -1,4 +1,4 @@
-"""`puckpilot match` and `puckpilot tournament`, as they are called."""
+"""`puckpilot match` and `puckpilot tournament`: their output, files and errors."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ import pytest
 from PIL import Image
 
 from baselines.commands import match, tournament
-from baselines.intervals import paired_win_rate
-from baselines.match import play
+from baselines.matches.match import play
+from baselines.ratings.intervals import paired_win_rate
 from puckpilot_env.game import rules
 
 DRILL = ["--variant", "defence-v0"]
@@ -25,7 +25,8 @@ def call(module, *words: str) -> int:
     return module.run(parser.parse_args(words))
 
 
-def test_match_as_json_says_what_was_played(capsys) -> None:
+@pytest.mark.slow
+def test_match_json_agrees_with_the_games(capsys) -> None:
     words = ["follower", "still", "--games", "9", "--seed", "4", "--json", "--variant", "match-v0"]
     assert call(match, *words) == 0
     text = capsys.readouterr().out
@@ -47,18 +48,18 @@ def test_match_as_json_says_what_was_played(capsys) -> None:
     assert json.loads(capsys.readouterr().out)["goals"] != found["goals"]
 
 
-def test_a_drill_tells_each_player_by_its_own_episodes(capsys) -> None:
+def test_a_drill_reports_each_player_s_own_episodes(capsys) -> None:
     words = ["random", "still", "--games", "9", "--seed", "4", *DRILL]
     assert call(match, *words, "--json") == 0
     found = json.loads(capsys.readouterr().out)
     assert list(found)[-2:] == ["games", "tested"]  # and no won or lost, which would add up two seats
     result = play("defence-v0", "random", "still", 9, 4)
-    for told, codes, name in zip(
+    for tested, codes, name in zip(
         found["tested"], (result.endings[:5], result.endings[5:]), ("random", "still"), strict=True
     ):
-        assert (told["tested"], told["episodes"], told["job"]) == (name, len(codes), "clear")
+        assert (tested["tested"], tested["episodes"], tested["job"]) == (name, len(codes), "clear")
         for ending in (rules.CLEAR, rules.LOST, rules.STEP_LIMIT):
-            assert told["endings"][rules.ENDING_NAMES[ending]]["count"] == (codes == ending).sum()
+            assert tested["endings"][rules.ENDING_NAMES[ending]]["count"] == (codes == ending).sum()
     assert call(match, *words) == 0
     rows = [line.split() for line in capsys.readouterr().out.splitlines()]
     assert [row[:3] for row in rows if row[1:2] in (["random"], ["still"])] == [
@@ -66,7 +67,7 @@ def test_a_drill_tells_each_player_by_its_own_episodes(capsys) -> None:
     ]  # fmt: skip
 
 
-def test_match_in_words(capsys) -> None:
+def test_match_text_agrees_with_the_games(capsys) -> None:
     assert call(match, "follower", "still", "--games", "6", "--threads", "2", "--variant", "match-v0") == 0
     words = capsys.readouterr().out
     result = play("match-v0", "follower", "still", 6, 0)
@@ -80,7 +81,7 @@ def test_match_in_words(capsys) -> None:
 @pytest.mark.parametrize(
     "module, words", [(match, ["still", "random"]), (tournament, ["still", "random", "--out", "o"])]
 )
-def test_what_a_file_switches_on_is_said(module, words, tmp_path: Path, capsys, monkeypatch) -> None:
+def test_effects_and_draws_of_files_are_printed(module, words, tmp_path: Path, capsys, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
     file = tmp_path / "effects.toml"
     file.write_text(
@@ -90,26 +91,27 @@ def test_what_a_file_switches_on_is_said(module, words, tmp_path: Path, capsys, 
     drawn.write_text('format = "puckpilot-draws/1"\n[draws.friction]\nlow = 0.1\nhigh = 0.2\n')
     both = ["--effects", str(file), "--draws", str(drawn)]
     call(module, *words, "--games", "2", *both, *DRILL)
-    told = capsys.readouterr().out
-    assert "effect on: table_tilt (tilt_x 0.02)" in told and "not switched on: clock_drift" in told
-    assert "drawn for every episode: friction 0.1 to 0.2" in told
+    output = capsys.readouterr().out
+    assert "effect on: table_tilt (tilt_x 0.02)" in output and "not switched on: clock_drift" in output
+    assert "drawn for every episode: friction 0.1 to 0.2" in output
     call(module, *words, "--games", "2", *both, "--json", *DRILL)
     json.loads(capsys.readouterr().out)
 
 
-def test_a_match_without_a_decision_claims_nothing(capsys) -> None:
+def test_a_match_without_decisive_games_claims_nothing(capsys) -> None:
     assert call(match, "still", "still", "--games", "2", "--variant", "match-v0") == 0
     assert "No game of 2 was decisive" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ending", ["gif", "mp4"])
 def test_match_films_its_first_game(tmp_path: Path, capsys, ending: str) -> None:
     path = tmp_path / f"game.{ending}"
     call(match, "veteran", "random", "--games", "6", "--seed", "2", "--json", "--video", str(path), *DRILL)
-    told = capsys.readouterr()
-    assert json.loads(told.out)["games"] == 6
+    output = capsys.readouterr()
+    assert json.loads(output.out)["games"] == 6
     steps = play("defence-v0", "veteran", "random", 6, 2).lengths[0]
-    assert f"wrote {path}: {0.1 * steps:.1f} s of the first game" in told.err
+    assert f"wrote {path}: {0.1 * steps:.1f} s of the first game" in output.err
     if ending == "gif":
         with Image.open(path) as film:
             lengths = []
@@ -120,7 +122,8 @@ def test_match_films_its_first_game(tmp_path: Path, capsys, ending: str) -> None
     assert path.stat().st_size > 2000 and list(tmp_path.iterdir()) == [path]
 
 
-def test_tournament_writes_everything(tmp_path: Path, capsys) -> None:
+@pytest.mark.slow
+def test_tournament_writes_its_files(tmp_path: Path, capsys) -> None:
     words = ["still", "goalie", "interceptor", "--games", "10", "--seed", "3"]
     assert call(tournament, *words, "--out", str(tmp_path / "a" / "b"), "--json") == 0
     printed = json.loads(capsys.readouterr().out)
@@ -146,16 +149,16 @@ def test_tournament_writes_everything(tmp_path: Path, capsys) -> None:
     before = {path.name: path.read_bytes() for path in folder.iterdir()}
     call(tournament, *words, "--out", str(folder))
     assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
-    told = capsys.readouterr().out
-    assert all(str(folder / name) in told for name in before)
-    cells = next(line for line in told.splitlines() if line.split()[:1] == ["interceptor"])
+    output = capsys.readouterr().out
+    assert all(str(folder / name) in output for name in before)
+    cells = next(line for line in output.splitlines() if line.split()[:1] == ["interceptor"])
     assert (
         cells.replace(" ", "")
         == "interceptor" + "".join(f"{wins[2, j]}/{draws[2, j]}/{wins[j, 2]}" for j in (0, 1)) + "-"
     )
 
 
-def test_a_tournament_of_a_drill_tells_the_tested_in_rows(tmp_path: Path, capsys) -> None:
+def test_a_tournament_of_a_drill_has_tested_players_in_rows(tmp_path: Path, capsys) -> None:
     words = ["still", "goalie", "interceptor", "--games", "10", "--seed", "3", "--out", str(tmp_path), *DRILL]
     assert call(tournament, *words, "--json") == 0
     printed = json.loads(capsys.readouterr().out)
@@ -175,24 +178,24 @@ def test_a_tournament_of_a_drill_tells_the_tested_in_rows(tmp_path: Path, capsys
     with Image.open(tmp_path / "payoff.png") as picture:
         assert picture.width > 500
     call(tournament, *words)
-    told = capsys.readouterr().out.splitlines()
-    cells = next(line.split() for line in told if line.split()[:1] == ["interceptor"])
+    output = capsys.readouterr().out.splitlines()
+    cells = next(line.split() for line in output if line.split()[:1] == ["interceptor"])
     each = [f"{100 * shares['interceptor', other]:.1f} %" for other in ("still", "goalie")]
     assert " ".join(cells) == " ".join(["interceptor", *each, "-"])
 
 
-def test_all_players_take_part_and_no_count_is_cut(tmp_path: Path, capsys, monkeypatch) -> None:
+def test_all_players_take_part_and_no_count_is_truncated(tmp_path: Path, capsys, monkeypatch) -> None:
     from baselines import player_names
 
     monkeypatch.setenv("COLUMNS", "60")
     call(tournament, "--games", "2", "--out", str(tmp_path), *DRILL)
-    told = capsys.readouterr().out
-    assert "…" not in told
-    assert any(line.split() == player_names() for line in told.splitlines())
+    output = capsys.readouterr().out
+    assert "…" not in output
+    assert any(line.split() == player_names() for line in output.splitlines())
 
 
 @pytest.mark.parametrize(
-    ("module", "words", "told"),
+    ("module", "words", "message"),
     [
         (match, ["goaly", "still"], "unknown player 'goaly'; did you mean 'goalie'"),
         (match, ["still", "stil"], "unknown player 'stil'; did you mean 'still'"),
@@ -212,16 +215,16 @@ def test_all_players_take_part_and_no_count_is_cut(tmp_path: Path, capsys, monke
         (tournament, ["still", "goalie", "--variant", "x"], "unknown variant 'x'"),
     ],
 )
-def test_mistakes_are_named_in_one_line_and_leave_no_file(module, words, told, tmp_path, monkeypatch) -> None:
+def test_invalid_arguments_are_refused_in_one_line_without_files(module, words, message, tmp_path, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(ValueError, match=told) as caught:
+    with pytest.raises(ValueError, match=message) as caught:
         call(module, *words)
     assert "\n" not in str(caught.value)
     assert not list(tmp_path.iterdir())
 
 
-def test_a_folder_that_cannot_be_is_told_before_playing(tmp_path: Path, monkeypatch) -> None:
+def test_an_invalid_folder_is_refused_before_playing(tmp_path: Path, monkeypatch) -> None:
     (tmp_path / "file").write_text("")
-    monkeypatch.setattr("baselines.tournament.play", lambda *_, **__: pytest.fail("played"))
+    monkeypatch.setattr("baselines.matches.tournament.play", lambda *_, **__: pytest.fail("played"))
     with pytest.raises(ValueError, match="it is a file; give a folder"):
         call(tournament, "still", "goalie", "--out", str(tmp_path / "file"))

@@ -1,4 +1,4 @@
-"""Scripted players: found by being there, inside the bounds everywhere, repeatable, and each as good as it claims."""
+"""Scripted players: found by their files, inside the action bounds, deterministic, and as strong as they claim."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 import baselines.players
 from baselines import Seat, make_player, player_names
-from baselines.match import play
+from baselines.matches.match import play
 from puckpilot_env.tables import Tables
 from puckpilot_env.variants import all_variants
 
@@ -34,6 +34,7 @@ def _play_along(name: str, tables: Tables, steps: int) -> NDArray[np.float32]:
     return played
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("variant", list(all_variants()))
 @pytest.mark.parametrize("name", player_names())
 def test_actions_stay_inside_the_bounds_on_every_variant(name: str, variant: str) -> None:
@@ -51,8 +52,9 @@ def test_the_same_seed_gives_the_same_actions(name: str) -> None:
     np.testing.assert_array_equal(first, second)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [n for n in player_names() if n != "random"])
-def test_a_table_is_played_the_same_alone_and_among_others(name: str) -> None:
+def test_actions_at_a_table_do_not_depend_on_other_tables(name: str) -> None:
     tables = Tables(MATCH, 4, seed=6)
     observation = tables.observations[:, 1].copy()
     together = make_player(name, Seat.from_tables(tables)).act(observation)
@@ -60,14 +62,14 @@ def test_a_table_is_played_the_same_alone_and_among_others(name: str) -> None:
     np.testing.assert_array_equal(together[2:3], alone)
 
 
-def test_names_are_sorted_and_a_dropped_file_is_a_player(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_names_are_sorted_and_a_new_file_is_a_player(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     names = player_names()
     assert names == sorted(names)
     assert {"still", "random", "goalie", "follower", "interceptor", "bank_shot", "veteran"} <= set(names)
     (tmp_path / "newcomer.py").write_text(
         "from baselines.player import Player\n\n\n"
         "class Newcomer(Player):\n"
-        "    def decide(self, seen):\n"
+        "    def decide(self, state):\n"
         "        return self.action(0.3, 0.4)\n"
     )
     monkeypatch.setattr(baselines.players, "__path__", [*baselines.players.__path__, str(tmp_path)])
@@ -77,7 +79,7 @@ def test_names_are_sorted_and_a_dropped_file_is_a_player(tmp_path: Path, monkeyp
     np.testing.assert_allclose(action, [[0.3, 0.4, 10.0, 10.0]] * 2, rtol=1e-6)
 
 
-def test_an_unknown_name_is_an_error_of_one_line_with_a_suggestion() -> None:
+def test_an_unknown_name_is_refused_in_one_line_with_a_suggestion() -> None:
     seat = Seat.from_tables(Tables(MATCH, 1))
     with pytest.raises(ValueError, match="did you mean 'goalie'") as raised:
         make_player("golie", seat)

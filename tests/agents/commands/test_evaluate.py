@@ -1,4 +1,4 @@
-"""`puckpilot evaluate` as it is called: what it finds, and what it refuses in one line."""
+"""`puckpilot evaluate`: its results, and what it refuses in one line."""
 
 from __future__ import annotations
 
@@ -7,14 +7,15 @@ from pathlib import Path
 
 import pytest
 
-from baselines.match import play
+from baselines.matches.match import play
 from puckpilot import main
 from puckpilot_env.game.rules import ENDING_NAMES
 
 PLAYERS = ("follower", "still", "random")
 
 
-def test_it_says_what_the_games_say(capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.slow
+def test_json_agrees_with_the_games(capsys: pytest.CaptureFixture[str]) -> None:
     words = ["evaluate", "goalie", "--games", "6", "--seed", "3", "--json", "--hampered", "still"]
     assert main([*words, "--against", "still", "random", "--variants", "defence-v0"]) == 0
     found = json.loads(capsys.readouterr().out)
@@ -37,13 +38,14 @@ def test_it_says_what_the_games_say(capsys: pytest.CaptureFixture[str]) -> None:
     assert [at["at"] for at in found["robustness"]["delay_s"]] == [0.0, 0.02, 0.04, 0.06]
 
 
+@pytest.mark.slow
 def test_tables_show_jobs_in_drills_and_ratings_in_matches(capsys: pytest.CaptureFixture[str]) -> None:
     words = ["evaluate", "follower", "--games", "4", "--hampered", "still", "--against", "still", "random", "random"]
     assert main([*words, "--variants", "attack-v0", "match-v0", "drills"]) == 0
-    told = capsys.readouterr().out.splitlines()
-    rows = [line.split() for line in told]
-    titles = [line for line in told if "how the episodes ended in which follower was tested" in line]
-    assert [title.split(",")[0] for title in titles] == ["attack-v0", "defence-v0"]  # each once, in the order asked for
+    printed = capsys.readouterr().out.splitlines()
+    rows = [line.split() for line in printed]
+    titles = [line for line in printed if "how the episodes ended in which follower was tested" in line]
+    assert [title.split(",")[0] for title in titles] == ["attack-v0", "defence-v0"]  # each once, in the given order
     drills = [row for row in rows if row[:1] == ["follower"] and row[2:3] == ["2"]]
     played = [(drill, other) for drill in ("attack-v0", "defence-v0") for other in ("still", "random")]
     for row, (drill, other) in zip(drills, played, strict=True):
@@ -54,11 +56,12 @@ def test_tables_show_jobs_in_drills_and_ratings_in_matches(capsys: pytest.Captur
     game = play("match-v0", "follower", "still", 4, 0)
     match = next(row for row in rows if row[:2] == ["match-v0", "still"])
     assert match[6] == "{:.1f}:{:.1f}".format(*(fouls / 4 for fouls in game.fouls))
-    assert "match-v0, rated by 4 games of follower with each and 4 of every two of the others:" in told
+    assert "match-v0, rated by 4 games of follower with each and 4 of every two of the others:" in printed
     ranked = [row[0] for row in rows[[row[:1] for row in rows].index(["player"]) :] if row and row[0] in PLAYERS]
     assert ranked[0] == "follower" and sorted(ranked) == sorted(PLAYERS)
 
 
+@pytest.mark.slow
 def test_several_policies_stand_side_by_side(capsys: pytest.CaptureFixture[str]) -> None:
     words = ["evaluate", "follower", "goalie", "--games", "4", "--against", "still", "--variants", "match-v0", "drills"]
     assert main([*words, "--json"]) == 0
@@ -70,8 +73,10 @@ def test_several_policies_stand_side_by_side(capsys: pytest.CaptureFixture[str])
     alone = play("match-v0", "follower", "still", 4, 0)
     assert found["over_seeds"][0]["shares"][0] == alone.wins[0] / max(sum(alone.wins), 1)
     assert main(words) == 0
-    told = capsys.readouterr().out
-    assert "1: follower\n2: goalie\n" in told and "of fewer than four the IQM is the mean" in " ".join(told.split())
+    printed = capsys.readouterr().out
+    assert "1: follower\n2: goalie\n" in printed and "of fewer than four the IQM is the mean" in " ".join(
+        printed.split()
+    )
 
 
 @pytest.mark.parametrize(
@@ -93,7 +98,7 @@ def test_several_policies_stand_side_by_side(capsys: pytest.CaptureFixture[str])
     ],
     ids=" ".join,
 )
-def test_what_cannot_be_played_is_one_line(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+def test_invalid_evaluations_are_refused_in_one_line(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     try:
         code = main(["evaluate", *words])
     except SystemExit as stop:  # argparse's
@@ -102,7 +107,7 @@ def test_what_cannot_be_played_is_one_line(words: list[str], capsys: pytest.Capt
     assert code == 2 and said.err.startswith("puckpilot evaluate: ") and said.err.count("\n") == 1
 
 
-def test_a_file_that_is_no_policy_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_file_that_is_no_policy_is_refused_in_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "a.npz").write_bytes(b"no policy")
     assert main(["evaluate", str(tmp_path / "a.npz")]) == 2
     assert "is no policy, or is cut short" in capsys.readouterr().err

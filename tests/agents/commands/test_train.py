@@ -1,4 +1,4 @@
-"""`puckpilot train` as it is called: what it leaves in its folder, and what it refuses in one line."""
+"""`puckpilot train`: what it writes to its folder, and what it refuses in one line."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from agents.checkpoint import load_checkpoint, save_checkpoint
-from agents.preset import find_preset, read_preset
+from agents.training.checkpoint import load_checkpoint, save_checkpoint
+from agents.training.preset import find_preset, read_preset
 from puckpilot import main
 
 TINY = """
@@ -43,7 +43,7 @@ def preset(tmp_path: Path) -> Path:
     return path
 
 
-def test_a_run_trains_so_many_steps_and_goes_on(
+def test_a_run_trains_the_given_steps_and_resumes(
     preset: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     words = ["train", "--out", str(tmp_path / "run")]
@@ -102,7 +102,7 @@ def test_a_run_without_its_checkpoint_keeps_its_player(
     assert {path.name: path.read_bytes() for path in (tmp_path / "run").glob("[cp]*")} == before
 
 
-def test_a_run_of_two_processes_is_not_taken_up_by_one(
+def test_a_run_of_two_processes_is_not_resumed_by_one(
     preset: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out = ["--out", str(tmp_path / "run")]
@@ -114,7 +114,7 @@ def test_a_run_of_two_processes_is_not_taken_up_by_one(
     assert "2 processes side by side; these are 1: torchrun --nproc-per-node 2" in said
 
 
-def test_a_run_that_has_come_far_enough_says_so(
+def test_a_run_that_needs_no_more_steps_says_so(
     preset: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     words = ["train", "--out", str(tmp_path / "run"), "--steps", "1"]
@@ -124,7 +124,7 @@ def test_a_run_that_has_come_far_enough_says_so(
     assert "nothing was left to do" in capsys.readouterr().out
 
 
-def test_a_full_disk_is_told_with_the_file_that_it_had_no_room_for(
+def test_a_full_disk_error_names_the_file(
     preset: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def full(path: Path, data: bytes) -> int:
@@ -144,7 +144,7 @@ def test_a_preset_is_shown_and_can_be_trained_with(tmp_path: Path, capsys: pytes
 
 EFFECTS = 'format = "puckpilot-effects/1"\n[effects.table_tilt]\ntilt_x = {}\n'
 DRAWS = 'format = "puckpilot-draws/1"\n[draws.tilt_y]\nlow = -0.01\nhigh = {}\nsource = "{}"\n'
-# option: what the run has, what contradicts it, what says the same in other words, and how the run's is told
+# option: the run's value, a contradiction, the same value in other words, and how a message names the run's value
 CONTRADICTIONS = {
     "variant": ("defence-v0", "match-v0", "puckpilot/defence-v0", "puckpilot/defence-v0"),
     "preset": ("tiny.toml", "fast", "same.toml", "one of its own, in run.json"),
@@ -174,11 +174,11 @@ def test_resuming_refuses_an_option_that_the_run_contradicts(
     option: str, run: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     before = {path: path.read_bytes() for path in run.rglob("*") if path.is_file() and path.name != ".lock"}
-    _, other, same, told = CONTRADICTIONS[option]
+    _, other, same, named = CONTRADICTIONS[option]
     words = ["--resume", "--out", "run", "--steps", str(2 * EACH)]
     assert refused(capsys, *words, f"--{option}", other) == (
         f"puckpilot train: --resume goes on with the run in run as it is, but --{option} is {other} where the run has "
-        f"{told}; leave it out, or begin a new run in another folder\n"
+        f"{named}; leave it out, or begin a new run in another folder\n"
     )
     assert before == {path: path.read_bytes() for path in run.rglob("*") if path.is_file() and path.name != ".lock"}
     assert main(["train", *words, f"--{option}", same]) == 0
@@ -189,15 +189,15 @@ def test_resuming_names_all_that_is_contradicted_and_nothing_that_was_not_given(
     run: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     words = ["--resume", "--out", "run", "--steps", str(2 * EACH)]
-    told = refused(capsys, *words, "--seed", "8", "--threads", "2", "--variant", "defence-v0")
-    assert "but --seed is 8 where the run has 7, --threads is 2 where the run has 1; leave them out" in told
+    said = refused(capsys, *words, "--seed", "8", "--threads", "2", "--variant", "defence-v0")
+    assert "but --seed is 8 where the run has 7, --threads is 2 where the run has 1; leave them out" in said
     assert "no preset 'nobody'" in refused(capsys, *words, "--preset", "nobody")
     assert "unknown variant 'chess-v0'" in refused(capsys, *words, "--variant", "chess-v0")
     assert "--start is for a new one" in refused(capsys, *words, "--start", "run")
     assert main(["train", *words]) == 0
 
 
-def test_a_run_of_a_shipped_preset_is_told_by_its_name_and_no_effects_as_none(
+def test_messages_name_a_shipped_preset_and_say_none_for_no_effects(
     run: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     kept = json.loads((run / "run.json").read_text())
@@ -205,9 +205,9 @@ def test_a_run_of_a_shipped_preset_is_told_by_its_name_and_no_effects_as_none(
         json.dumps({**kept, "preset": find_preset("fast").text, "effects": None, "draws": None})
     )
     words = ["--resume", "--out", "run", "--preset", "paper", "--effects", "tilt.toml", "--draws", "drawn.toml"]
-    told = refused(capsys, *words)
-    assert "--preset is paper where the run has fast, --effects is tilt.toml where the run has none, " in told
-    assert "--draws is drawn.toml where the run has none;" in told
+    said = refused(capsys, *words)
+    assert "--preset is paper where the run has fast, --effects is tilt.toml where the run has none, " in said
+    assert "--draws is drawn.toml where the run has none;" in said
 
 
 OPTIONS = {
@@ -227,7 +227,7 @@ OPTIONS = {
 
 
 @pytest.mark.parametrize("wrong", OPTIONS)
-def test_options_that_cannot_be_are_refused(
+def test_invalid_options_are_refused(
     wrong: str, preset: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out = ["--out", str(tmp_path / "run")]
@@ -277,7 +277,7 @@ CHANGES = {
 
 
 @pytest.mark.parametrize("wrong", CHANGES)
-def test_presets_that_cannot_be_are_refused(
+def test_invalid_presets_are_refused(
     wrong: str, preset: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     before, after = CHANGES[wrong]
