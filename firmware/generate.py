@@ -7,16 +7,20 @@ from pathlib import Path
 
 from firmware import FOLDER, PROTOCOL
 from firmware.definition import TYPES, UNCHECKED, Enum, Field, Message, Protocol, read_protocol
-from puckpilot_env.whole_file import write_text_whole
+from puckpilot_env.files.whole_file import write_text_whole
 
-PYTHON = FOLDER.parent / "sim2real" / "link" / "messages.py"
+PYTHON = FOLDER.parent / "sim2real" / "link" / "wire" / "messages.py"
 WRITTEN = "Written by `python -m firmware.generate` from firmware/protocol.toml; do not edit."
 
 
 def files(protocol: Protocol) -> dict[Path, str]:
     """Every generated file's text by its path."""
     core = FOLDER / "core"
-    return {core / "messages.h": header(protocol), core / "messages.c": tables(protocol), PYTHON: python(protocol)}
+    return {
+        core / "include" / "messages.h": header(protocol),
+        core / "messages.c": tables(protocol),
+        PYTHON: python(protocol),
+    }
 
 
 def header(protocol: Protocol) -> str:

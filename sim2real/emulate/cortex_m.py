@@ -1,4 +1,4 @@
-"""A Cortex-M3 in Unicorn: runs code, and enters and leaves exceptions as the processor does (ARMv7-M manual, B1.5)."""
+"""A Cortex-M3 in Unicorn, with entry to and return from exceptions (ARMv7-M manual, B1.5)."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from unicorn import arm_const as arm
 from unicorn.unicorn_py3.unicorn import Uc, UcError, uclib
 
 from sim2real.emulate.elf import Elf
-from sim2real.emulate.nvic import HARD_FAULT, Nvic
+from sim2real.emulate.peripherals.nvic import HARD_FAULT, Nvic
 
 FLASH, FLASH_SIZE = 0x08000000, 0x10000
 RAM, RAM_SIZE = 0x20000000, 0x5000
@@ -27,8 +27,8 @@ _LR, _PC, _PSR, _SP, _MASK = 5, 6, 7, 8, 9  # places in `_Registers`
 
 
 class _Registers:
-    """R0 to R3, R12, LR, PC, xPSR, SP and PRIMASK, read and written at once: Unicorn's calls for Python take 10 times
-    as long."""
+    """R0 to R3, R12, LR, PC, xPSR, SP and PRIMASK, read and written in one call: single calls through Unicorn's Python
+    binding take 10 times as long."""
 
     IDS = (
         arm.UC_ARM_REG_R0, arm.UC_ARM_REG_R1, arm.UC_ARM_REG_R2, arm.UC_ARM_REG_R3, arm.UC_ARM_REG_R12,
@@ -53,8 +53,11 @@ class _Registers:
 
 
 class CortexM:
-    """The processor. `read` and `write` are its way to the peripherals, in the form of Unicorn's callbacks:
-    `(uc, offset, size, base)` and `(uc, offset, size, value, base)`."""
+    """The processor.
+
+    elf: the program; nvic: the interrupt controller; read, write: accesses to peripherals, in the form of Unicorn's
+    callbacks `(uc, offset, size, base)` and `(uc, offset, size, value, base)`.
+    """
 
     def __init__(
         self,
@@ -64,7 +67,7 @@ class CortexM:
         write: Callable[[Uc, int, int, int, int], None],
     ) -> None:
         self.nvic = nvic
-        self.faults: list[tuple[int, str]] = []  # where and why the program was wrong
+        self.faults: list[tuple[int, str]] = []  # address and reason of each fault
         self.asleep = self.locked = False
         self._running = self._event = False
         self._why = ""
@@ -82,11 +85,11 @@ class CortexM:
                 self._watch(segment.address, segment.data)
         self._registers = _Registers(uc._uch)
         self._frame = ctypes.create_string_buffer(_FRAME.size)
-        self._state = self._registers.read()  # of a processor that does not run
+        self._state = self._registers.read()  # registers while the processor does not run
 
     def _watch(self, address: int, code: bytes) -> None:
-        """Look after each `cpsie i` whether an interrupt waits for it; make `wfe`, which Unicorn cannot do, a `nop` at
-        which one is told."""
+        """Hook the instructions that Unicorn does not handle: check for a pending interrupt after each `cpsie i`,
+        replace each `wfe` by a hooked `nop`, and note the addresses of `wfi`."""
         for at in range(0, len(code) - 1, 2):
             word = code[at : at + 2]
             if word == _CPSIE:
@@ -113,14 +116,14 @@ class CortexM:
         uc.emu_stop()
 
     def at(self, address: int, what: Callable[[], None]) -> None:
-        """Have `what` called whenever the program comes to `address`; again, if it calls `stop`."""
+        """Call `what` whenever the program reaches `address`; if it calls `stop`, it is called again on resumption."""
         self._hook(address, lambda *_: what())
 
     def _hook(self, address: int, what: Callable[..., None]) -> None:
         self.uc.hook_add(unicorn.UC_HOOK_CODE, what, begin=address, end=address)
 
     def reset(self) -> None:
-        """Begin at the reset vector; memory stays as it is."""
+        """Restart at the reset vector; memory keeps its contents."""
         stack, start, *others = struct.unpack("<59I", self.uc.mem_read(FLASH, 4 * 59))
         self._vectors = [0, 0, *(vector & ~1 for vector in others)]
         self._state = [0, 0, 0, 0, 0, 0xFFFFFFFF, start & ~1, _THUMB, stack, 0]
@@ -128,18 +131,19 @@ class CortexM:
         self.asleep = self.locked = self._event = False
 
     def stop(self) -> None:
-        """Make `run` come back before the next instruction; inside a peripheral's read, which is then repeated."""
+        """Make `run` return before the next instruction. During a peripheral's read, the read is repeated on
+        resumption."""
         if self._running:
             self._why = self._why or "stop"
             self.uc.emu_stop()
 
     def fail(self, error: Exception) -> None:
-        """Make `run` raise this."""
+        """Make `run` raise this error."""
         self._error = error
         self.uc.emu_stop()
 
     def deliverable(self) -> int | None:
-        """The exception that is to be entered now, or None."""
+        """The number of the exception that has to be entered now; None if there is none."""
         number = self.nvic.next() if self.nvic.pending else None
         if number is None or self.locked or (number > HARD_FAULT and self._masked):
             return None
@@ -147,7 +151,7 @@ class CortexM:
 
     @property
     def woken(self) -> bool:
-        """Whether an exception that is pending ends its sleep, though it may be masked."""
+        """Whether a pending exception, masked or not, wakes the processor."""
         return bool(self.nvic.pending) and not self.locked and self._why != "event" and self.nvic.next() is not None
 
     @property
@@ -156,12 +160,12 @@ class CortexM:
 
     @property
     def program_counter(self) -> int:
-        """Where it stands."""
+        """The address of the next instruction."""
         return self._state[_PC]
 
     def run(self, most: int) -> str:
-        """Run on until it sleeps ("sleep", "event"), was stopped ("stop"), has done `most` instructions ("slice"; 0 is
-        no limit), returned from an exception, or did something wrong."""
+        """Run, and return why it ended: "sleep" (WFI), "event" (WFE), "stop", "slice" (after `most` instructions; 0 is
+        no limit), "return" (from an exception), or "fault: ..."."""
         self._why, self._running = "", True
         self._registers.write(self._state)
         try:
@@ -186,7 +190,7 @@ class CortexM:
         return self._why
 
     def enter(self, number: int) -> None:
-        """Take an exception: save the frame on the stack, and go to its vector."""
+        """Enter an exception: push the frame on the stack and continue at its vector."""
         values = self._state
         odd = values[_SP] >> 2 & 1
         stack = values[_SP] - 32 - 4 * odd
@@ -198,7 +202,7 @@ class CortexM:
         values[_LR] = _RETURN_TO_HANDLER if self.nvic.active else _RETURN_TO_THREAD
         values[_PSR] = values[_PSR] & 0xF8000000 | _THUMB | number
         self.nvic.enter(number)
-        self._event = not self.asleep  # else it would only make the loop around WFE turn once more
+        self._event = not self.asleep  # otherwise the loop around WFE would only run once more
         self.asleep = False
 
     def _leave(self) -> None:

@@ -1,4 +1,4 @@
-"""Reads what an emulator needs of a 32-bit little-endian ELF file: what to load where, and the addresses of names."""
+"""Read segments and symbols of a 32-bit little-endian ELF file."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _LOAD, _EXECUTABLE, _SYMBOL_TABLE, _ARM = 1, 1, 2, 40
 
 @dataclass(frozen=True)
 class Segment:
-    """Bytes that stand at a physical address, as they lie in flash."""
+    """A loadable segment: its bytes and their physical address in flash."""
 
     address: int
     data: bytes
@@ -30,14 +30,14 @@ class Elf:
     symbols: dict[str, int]
 
     def address(self, name: str) -> int:
-        """Address of a symbol. KeyError, with a remedy, if there is none."""
+        """The address of a symbol. Raises KeyError, with a remedy, if there is none."""
         if name not in self.symbols:
             raise KeyError(f"the ELF has no symbol '{name}'; expected one that is not stripped")
         return self.symbols[name]
 
 
 def read_elf(path: Path) -> Elf:
-    """The program in `path`. ValueError, in one line, for what is no ELF file of an ARM."""
+    """Read a program. Raises ValueError, in one line, if the file is no ELF file for ARM."""
     raw = path.read_bytes()
     if len(raw) < _HEADER.size or raw[:6] != b"\x7fELF\x01\x01":
         raise ValueError(f"{path.name}: expected a 32-bit little-endian ELF file")

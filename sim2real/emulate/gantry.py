@@ -1,8 +1,8 @@
-"""The gantry as the microcontroller feels it: duties of two motors in, angles of two shafts out (report E.1).
+"""The gantry on the emulated board: it turns the duties of two motors into the angles of two shafts (report E.1).
 
 With `Vx = V1 - V2`, `Vy = -V1 - V2`, each axis obeys `C5 p''' + C6 p'' + C7 p' = (R/2) V`; under constant volts its
-modes have a closed form (`puckpilot_env.physics.mallet`), so that nothing depends on how often one looks. Shafts stand
-at `T1 = (x - y)/R`, `T2 = (-x - y)/R`.
+modes have a closed form (`puckpilot_env.physics.gantry.mallet`), so the result does not depend on the sampling.
+The shafts' angles are `T1 = (x - y)/R`, `T2 = (-x - y)/R`.
 """
 
 from __future__ import annotations
@@ -11,14 +11,18 @@ import math
 from collections.abc import Mapping
 
 from puckpilot_env.parameters import make_records
-from puckpilot_env.physics.mallet import axis_constants
+from puckpilot_env.physics.gantry.mallet import axis_constants
 from sim2real.emulate.machine import Machine
 
 US = 1e-6
 
 
-class Axis:
-    """One axis in modes: its place is `rest + slow + fast` [m], of the time when its volts last changed."""
+class GantryAxis:
+    """One axis in modal coordinates: its place is `rest + slow + fast` [m] at the time of the last change of voltage.
+
+    c5, c6, c7: coefficients of the equation [V s^3, V s^2, V s]; pulley_radius: [m]; place: at rest [m]. Raises
+    ValueError for a gantry that is not overdamped.
+    """
 
     def __init__(self, c5: float, c6: float, c7: float, pulley_radius: float, place: float) -> None:
         constants = axis_constants(c5, c6, c7, pulley_radius)
@@ -28,7 +32,7 @@ class Axis:
         self.rest, self.slow, self.fast, self.volts = place, 0.0, 0.0, 0.0
 
     def after(self, seconds: float) -> tuple[float, float, float]:
-        """Its modes after `seconds` of its volts."""
+        """The modes rest, slow and fast [m] after so many seconds at the present voltage."""
         slow_end, fast_end = -self.slow_gain * self.volts, self.fast_gain * self.volts
         return (
             self.rest + self.rest_gain * self.volts * seconds,
@@ -37,16 +41,17 @@ class Axis:
         )
 
     def velocity_after(self, seconds: float) -> float:
-        """Its velocity [m/s] after `seconds` of its volts."""
+        """The velocity [m/s] after so many seconds at the present voltage."""
         _, slow, fast = self.after(seconds)
         return -self.slow_rate * slow - self.fast_rate * fast
 
 
 class Gantry:
-    """The gantry of `parameters` (those of `puckpilot_env.parameters`, by name) on the plugs of a machine.
+    """A gantry that is connected to a machine's motors and encoders.
 
-    place: where the mallet stands at rest [m]. zero: angles of the encoders' magnets on their shafts [rad]. The volts
-    of a motor are its duty times `max_voltage`: the ripple of the PWM is averaged.
+    parameters: by the names of `puckpilot_env.parameters`, default values otherwise; place: of the mallet at rest [m];
+    zero: angles of the encoders' magnets on their shafts [rad]. The voltage of a motor is its duty times `max_voltage`;
+    the ripple of the PWM is averaged.
     """
 
     def __init__(
@@ -60,7 +65,7 @@ class Gantry:
         self._supply, self._radius = float(p["max_voltage"]), float(p["pulley_radius"])
         self._zero = zero
         self.axes = tuple(
-            Axis(
+            GantryAxis(
                 float(p["a1"] + sign * p["b1"]),
                 float(p["a2"] + sign * p["b2"]),
                 float(p["a3"] + sign * p["b3"]),
@@ -77,7 +82,7 @@ class Gantry:
             encoder.angle = lambda now, number=number: self.angles(now)[number]
 
     def _drive(self, now: float, *duties: float) -> None:
-        """Motors get these duties from `now` [us] on."""
+        """Apply duties to the motors from `now` [us] on."""
         self._settle(now)
         first, second = (duty * self._supply for duty in duties)
         for axis, volts in zip(self.axes, (first - second, -first - second), strict=True):
@@ -90,22 +95,22 @@ class Gantry:
         self.since = now * US
 
     def place(self, now: float) -> tuple[float, float]:
-        """Where the mallet is [m] at `now` [us], not before the volts last changed."""
+        """The mallet's place [m] at `now` [us], a time not before the last change of voltage."""
         x, y = (sum(axis.after(now * US - self.since)) for axis in self.axes)
         return x, y
 
     def velocity(self, now: float) -> tuple[float, float]:
-        """How fast it goes [m/s] at `now` [us]."""
+        """The mallet's velocity [m/s] at `now` [us]."""
         x, y = (axis.velocity_after(now * US - self.since) for axis in self.axes)
         return x, y
 
     def angles(self, now: float) -> tuple[float, float]:
-        """Of the shafts, as their encoders see them [rad]."""
+        """The shafts' angles [rad] at `now` [us], as their encoders measure them."""
         x, y = self.place(now)
         return (x - y) / self._radius + self._zero[0], (-x - y) / self._radius + self._zero[1]
 
     def block(self, now: float) -> None:
-        """Something holds the mallet fast where it is, from `now` [us] on."""
+        """Block the mallet at its place from `now` [us] on."""
         self._settle(now)
         self._blocked = True
         for axis in self.axes:

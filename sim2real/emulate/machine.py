@@ -1,9 +1,9 @@
 """The whole microcontroller in virtual time, bit-reproducible: `Machine(ELF)`.
 
-The processor computes in no time, but for frames over SPI (and `step_us`); it is interrupted where it waits: in sleep
-(WFI, WFE), while it looks at a status again and again, and where it lets interrupts through. `timed=True` gives every
-instruction its time and interrupts it between any two blocks, many times slower; `fuzz=SEED` does so, and now and then
-lets a block last until the next event.
+By default instructions take no time, except for SPI frames (and `step_us`), and interrupts come where the processor
+waits: in sleep (WFI, WFE), while it polls a status register, and where it unmasks interrupts. `timed=True` gives every
+instruction its time and lets interrupts come between any two blocks, which is many times slower; `fuzz=SEED` in
+addition stretches random blocks until the next event.
 """
 
 from __future__ import annotations
@@ -11,24 +11,24 @@ from __future__ import annotations
 import random
 from pathlib import Path
 
-from sim2real.emulate.as5147 import As5147
-from sim2real.emulate.blocks import Blocks
+from sim2real.emulate.block_timing import BlockTiming
 from sim2real.emulate.cortex_m import RAM, RAM_SIZE, CortexM
 from sim2real.emulate.elf import read_elf
-from sim2real.emulate.gpio import Port
-from sim2real.emulate.motors import Motors
-from sim2real.emulate.nvic import NMI, Nvic
-from sim2real.emulate.rcc import Flash, Rcc
-from sim2real.emulate.registers import NotModelledError, Peripheral
-from sim2real.emulate.spi import Spi
-from sim2real.emulate.systick import SysTick
+from sim2real.emulate.peripherals.as5147 import As5147
+from sim2real.emulate.peripherals.gpio import GpioPort
+from sim2real.emulate.peripherals.motors import Motors
+from sim2real.emulate.peripherals.nvic import NMI, Nvic
+from sim2real.emulate.peripherals.rcc import Flash, Rcc
+from sim2real.emulate.peripherals.registers import NotModelledError, Peripheral
+from sim2real.emulate.peripherals.spi import Spi
+from sim2real.emulate.peripherals.systick import SysTick
+from sim2real.emulate.peripherals.timers import Counter, PwmTimer
+from sim2real.emulate.peripherals.usart import Dma, Usart
+from sim2real.emulate.peripherals.watchdog import Watchdog
 from sim2real.emulate.timeline import PER_US, Timeline
-from sim2real.emulate.timers import Counter, PwmTimer
-from sim2real.emulate.usart import Dma, Usart
-from sim2real.emulate.watchdog import Watchdog
 
-_SLICE = 200_000  # instructions after which a program that does not sleep is given time
-_SLICE_TICKS = 3000 * PER_US  # that they take
+_SLICE = 200_000  # instructions after which time passes in a program that does not sleep
+_SLICE_TICKS = 3000 * PER_US  # ticks that then pass
 _GATES = (  # register of RCC, bit, peripheral
     ("AHBENR", 0, "dma"), ("APB2ENR", 2, "port_a"), ("APB2ENR", 3, "port_b"), ("APB2ENR", 11, "pwm_timer"),
     ("APB2ENR", 12, "spi"), ("APB2ENR", 14, "usart"), ("APB1ENR", 0, "counter"),
@@ -38,9 +38,10 @@ _GATES = (  # register of RCC, bit, peripheral
 class Machine:
     """An STM32F103C8 with two encoders and two motor drivers, from power-on.
 
-    seed: what memory holds at power-on. crystal: whether the 8 MHz crystal starts. step_us: what each call of
-    `robot_step` takes beyond what is modelled. may_hang: a program that never sleeps is given time too, which costs a
-    quarter of the speed; without it, `run` hangs with the program. Times are of the microcontroller's own clock [us].
+    elf: the program; seed: of the random memory contents at power-on; crystal: whether the 8 MHz crystal starts; timed,
+    fuzz: see above; step_us: additional time that each call of `robot_step` takes [us]; may_hang: let time pass in a
+    program that never sleeps, which costs a quarter of the speed; without it `run` hangs with such a program. All times
+    are of the microcontroller's clock [us].
     """
 
     def __init__(
@@ -59,16 +60,16 @@ class Machine:
         self.nvic = Nvic()
         self.cpu = CortexM(program, self.nvic, self._read, self._write)
         self.encoders = (As5147(), As5147())
-        self.resets: list[tuple[float, str]] = []  # when and why
+        self.resets: list[tuple[float, str]] = []  # time [us] and cause of each
         self._build(crystal)
         self._bitten = False
         self._slice = _SLICE if may_hang else 0
-        self.blocks: Blocks | None = None
+        self.blocks: BlockTiming | None = None
         if timed or fuzz is not None:
-            self.blocks = Blocks(self.cpu, self.rcc, self.timeline, self._pass_until, fuzz)
+            self.blocks = BlockTiming(self.cpu, self.rcc, self.timeline, self._pass_until, fuzz)
         self.step_us = step_us
         self._stepping = self._stepped = False
-        self._over = 0  # tick at which the step that `step_us` stretches is over
+        self._over = 0  # tick at which a step that `step_us` lengthens ends
         if "robot_step" in program.symbols:
             self.cpu.at(program.symbols["robot_step"], self._step_begins)
         self.cpu.uc.mem_write(RAM, random.Random(seed).randbytes(RAM_SIZE))
@@ -79,9 +80,9 @@ class Machine:
         self.flash = Flash()
         self.rcc = Rcc(timeline, self._pass_until, self.flash)
         self.rcc.crystal = crystal
-        self.port_a = Port("A", 0x40010800, lambda: self.spi.select())
-        self.port_b = Port("B", 0x40010C00, lambda: self.motors.look())
-        self.pwm_timer = PwmTimer(lambda: self.motors.look())
+        self.port_a = GpioPort("A", 0x40010800, lambda: self.spi.select())
+        self.port_b = GpioPort("B", 0x40010C00, lambda: self.motors.update())
+        self.pwm_timer = PwmTimer(lambda: self.motors.update())
         self.motors = Motors(self.port_b, self.pwm_timer, lambda: self.now)
         self.counter = Counter(timeline, self.rcc)
         self.systick = SysTick(timeline, self.rcc, nvic)
@@ -102,7 +103,7 @@ class Machine:
             if name
         }
 
-    # --- from outside ---
+    # --- interface ---
 
     @property
     def now(self) -> float:
@@ -111,39 +112,40 @@ class Machine:
 
     @property
     def pwm(self) -> list[tuple[float, float, float]]:
-        """`(time [us], duty 0, duty 1)` at each change, duties from -1 to 1."""
+        """The log of the motors: `(time [us], duty 0, duty 1)` at each change, with duties from -1 to 1."""
         return self.motors.log
 
     def send(self, data: bytes) -> None:
-        """The host begins to send `data` now, or after what it still sends."""
+        """Send bytes from the host, now or after those that are still being sent."""
         self.usart.send(data)
 
     def received(self) -> bytes:
-        """What came over the line to the host since the last call."""
+        """The bytes that the host received since the last call."""
         self.dma.flush()
         data = bytes(self.dma.out)
         self.dma.out.clear()
         return data
 
     def reset(self, cause: str = "pin") -> None:
-        """Reset now, by "pin", "watchdog" or "power" (memory stays). The host's bytes on the line go on."""
+        """Reset now, by "pin", "watchdog" or "power" (memory keeps its contents). Bytes of the host on the line still
+        arrive."""
         self.dma.flush()
         self.resets.append((self.now, cause))
         self.timeline.clear()
         for one in self._peripherals:
             one.reset()
         self.rcc.reset(cause)
-        self.motors.look()
+        self.motors.update()
         self.cpu.reset()
         self._bitten = self._stepping = False
 
     def crystal_fails(self) -> None:
-        """The crystal stops now."""
+        """Let the crystal stop now."""
         if self.rcc.crystal_fails():
             self.nvic.pending.add(NMI)
 
     def run(self, until_us: float) -> None:
-        """Go on until this time. Where it is cut into calls makes no difference."""
+        """Run until a time [us]. The result does not depend on how a run is divided into calls."""
         until = round(until_us * PER_US)
         while self.timeline.now < until:
             if self._bitten:
@@ -157,17 +159,15 @@ class Machine:
                 self._compute()
 
     def instructions(self, until_us: float) -> list[int]:
-        """Run until this time and return how many instructions each round of the main loop took, from sleep to sleep.
-
-        For a machine that is `timed`; what interrupts took is not among them.
-        """
+        """Run until a time [us]. Returns the number of instructions of each round of the main loop, from sleep to
+        sleep, without those of interrupt handlers. Raises ValueError for a machine that is not `timed`."""
         if self.blocks is None:
             raise ValueError("this machine does not count instructions; expected Machine(..., timed=True)")
         self.blocks.rounds.clear()
         self.run(until_us)
         return list(self.blocks.rounds)
 
-    # --- inside ---
+    # --- implementation ---
 
     def _sleep(self, until: int) -> None:
         tick = self.timeline.next()
@@ -188,12 +188,12 @@ class Machine:
             if self.blocks is not None:
                 self.blocks.slept(self._stepped)
             self._stepped = False
-            if self.cpu.woken:  # by what was there before it slept: takes a moment all the same
+            if self.cpu.woken:  # by an interrupt that was pending before; it takes a cycle all the same
                 self._pass_until(self.timeline.now + self.rcc.cycle)
 
     def _pass_until(self, tick: int) -> bool:
-        """Let time pass while the processor is busy. Whether it got there: an interrupt or a reset may come first, and
-        then the processor comes to a stop, to be asked again."""
+        """Let time pass while the processor is busy. Returns whether it reached the tick: if an interrupt or a reset
+        comes first, the processor is stopped, and the call is repeated later."""
         timeline = self.timeline
         while True:
             if self._bitten or self.cpu.deliverable() is not None:
@@ -210,7 +210,7 @@ class Machine:
         self.cpu.asleep = False
 
     def _step_begins(self) -> None:
-        """`robot_step` is called: it takes `step_us`, in which interrupts come."""
+        """Handle a call of `robot_step`: it takes `step_us`, in which interrupts may come."""
         self._stepped = True
         if self.step_us and not self._stepping:
             self._over = self.timeline.now + round(self.step_us * PER_US)

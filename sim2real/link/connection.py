@@ -1,35 +1,38 @@
-"""A port that is opened again when it has vanished."""
+"""A connection that reopens its port after the port has vanished."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
 
-from sim2real.link.port import Line
+from sim2real.link.serial_port import SerialLine
 
-REOPEN = (0.1, 2.0)  # s from a lost port to the first try, and at most between two
+REOPEN = (0.1, 2.0)  # s from a lost port to the first try, and at most between tries
 READ_AT_ONCE = 1 << 16
 
 
 class Connection:
-    """What `connect` opens. Raises at first what `connect` raises; later, that only delays the next try.
+    """A connection through the line that `connect` opens.
 
-    now: the host's clock [s]; say: takes a line for a human.
+    now: the host's clock [s]; report: takes a line of text for the user. The constructor raises what `connect` raises;
+    later such errors only delay the next try.
     """
 
-    def __init__(self, connect: Callable[[], Line], now: Callable[[], float], say: Callable[[str], None]) -> None:
-        self.reopened = 0  # times
-        self._connect, self._now, self._say = connect, now, say
+    def __init__(
+        self, connect: Callable[[], SerialLine], now: Callable[[], float], report: Callable[[str], None]
+    ) -> None:
+        self.reopened = 0  # number of times
+        self._connect, self._now, self._report = connect, now, report
         self._wait, self._next = REOPEN[0], math.inf
-        self._line: Line | None = connect()
+        self._line: SerialLine | None = connect()
 
     @property
     def open(self) -> bool:
-        """Whether there is a port now."""
+        """Whether the port is open."""
         return self._line is not None
 
     def reopen(self) -> bool:
-        """Try, if it is due; True if there is a port again."""
+        """Try to reopen a lost port if a try is due. Returns True if that succeeded."""
         if self.open or self._now() < self._next:
             return False
         try:
@@ -39,11 +42,11 @@ class Connection:
             self._next = self._now() + self._wait
             return False
         self.reopened += 1
-        self._say("the port is back")
+        self._report("the port is back")
         return True
 
     def read(self) -> bytes:
-        """What has come; nothing from a port that is lost."""
+        """Read the received bytes; none from a lost port."""
         try:
             return self._line.read(READ_AT_ONCE) if self._line else b""
         except (OSError, ValueError) as error:
@@ -51,7 +54,7 @@ class Connection:
             return b""
 
     def send(self, data: bytes) -> None:
-        """Write; a port that is lost takes it and forgets it."""
+        """Write all bytes; a lost port discards them."""
         try:
             if self._line:
                 self._line.write(data)
@@ -59,13 +62,13 @@ class Connection:
             self._lost(error)
 
     def close(self) -> None:
-        """Let go of the port for good."""
+        """Close the port for good."""
         if self._line:
             self._line.close()
         self._line, self._next = None, math.inf
 
     def _lost(self, error: Exception) -> None:
         self.close()
-        self._say(f"{error}; waiting for it to come back")
+        self._report(f"{error}; waiting for it to come back")
         self._wait = REOPEN[0]
         self._next = self._now() + self._wait

@@ -1,30 +1,32 @@
-"""Pings at a steady rate: the host's sign of life, the round trip, and what both say of the board's clock."""
+"""Pings at a steady rate: they keep the host alive for the board, and measure the round trip and the board's clock."""
 
 from __future__ import annotations
 
 from collections import deque
 
-from sim2real.link.clock import Clock
-from sim2real.link.messages import Ping, Pong
+from sim2real.link.board_clock import BoardClock
+from sim2real.link.wire.messages import Ping, Pong
 
 PERIOD = 0.05  # s
-OVERDUE = 1.0  # s after which an answer is no longer waited for
+OVERDUE = 1.0  # s after which a ping counts as lost
 
 
 class Pings:
-    """What was asked and answered since the board started."""
+    """The pings since the board started, their answers, and the clock that these determine. now: the host's time
+    [s]."""
 
     def __init__(self, now: float) -> None:
-        self.clock = Clock()
+        self.clock = BoardClock()
         self.sent = self.answered = self.lost = 0
-        self.round_trips: deque[float] = deque(maxlen=1000)  # s, newest last: on the way, without the board's own time
+        self.round_trips: deque[float] = deque(maxlen=1000)  # s on the line, without the board's own time, newest last
         self.period = PERIOD  # s
-        self.answered_at = now  # when the newest answer came, or this began [s]
+        self.answered_at = now  # time of the newest answer, or of the beginning [s]
         self._due = now
-        self._open: dict[int, float] = {}  # when each that has no answer yet was sent, by its token
+        self._open: dict[int, float] = {}  # time of sending of each unanswered ping, by its token
 
     def due(self, now: float) -> Ping | None:
-        """A ping that must be sent now; the one after a late one is not early."""
+        """The ping that has to be sent at `now` [s]; None if none is due. After a late one the interval is not
+        shortened."""
         for token in [token for token, sent in self._open.items() if now - sent > OVERDUE]:
             del self._open[token]
             self.lost += 1
@@ -34,12 +36,12 @@ class Pings:
         self.sent += 1
         return Ping(self.sent % 2**32)
 
-    def went(self, ping: Ping, now: float) -> None:
-        """`ping` is about to be written."""
+    def mark_sent(self, ping: Ping, now: float) -> None:
+        """Record that `ping` is about to be written at `now` [s]."""
         self._open[ping.token] = now
 
     def take(self, pong: Pong, now: float) -> None:
-        """An answer, which came before `now`; one that nobody waits for is passed over."""
+        """Take an answer that was received at `now` [s]; an answer without an open ping is ignored."""
         sent = self._open.pop(pong.token, None)
         if sent is None:
             return

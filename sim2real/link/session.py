@@ -1,12 +1,12 @@
-"""A session with the board: greeting, sign of life, what it says, what it is told; and again after a lost port.
+"""A session with the board: greeting, keep-alive, its reports, orders to it, and recovery after a lost port.
 
-    session = Session(lambda: Port("/dev/ttyUSB0"))
+    session = Session(lambda: SerialPort("/dev/ttyUSB0"))
     while True:
         session.poll()
         for event in session.take_events(): ...
 
-`poll` does what is due and returns within milliseconds; call it at least every 10 ms. There are no threads, and no
-state but what the board says: after a lost port or a reset `state` is None until the board has told it anew.
+`poll` does what is due and returns within milliseconds; call it at least every 10 ms. There are no threads. The state
+is the one that the board reports: after a lost port or a reset `state` is None until new telemetry arrives.
 """
 
 from __future__ import annotations
@@ -17,31 +17,43 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import replace
 
-from sim2real.link import messages
-from sim2real.link.board_view import BoardView
-from sim2real.link.bodies import Message
-from sim2real.link.clock import Clock
+from sim2real.link.board_clock import BoardClock
 from sim2real.link.connection import Connection
-from sim2real.link.frames import Receiver, Tally, encode, seal
-from sim2real.link.messages import SCHEMA, VERSION, Config, Event, Hello, Notice, Pong, Refusal, State, Telemetry, Traj
+from sim2real.link.estop_repeater import EstopRepeater
 from sim2real.link.pings import PERIOD, Pings
-from sim2real.link.port import Line
-from sim2real.link.stopping import Stopping
+from sim2real.link.serial_port import SerialLine
+from sim2real.link.telemetry_status import TelemetryStatus
+from sim2real.link.wire import messages
+from sim2real.link.wire.bodies import Message
+from sim2real.link.wire.frames import FrameCounts, Receiver, encode, frame_crc
+from sim2real.link.wire.messages import (
+    SCHEMA,
+    VERSION,
+    Config,
+    Event,
+    Hello,
+    Notice,
+    Pong,
+    Refusal,
+    State,
+    Telemetry,
+    Traj,
+)
 
-HELLO_PERIOD = 0.2  # s between greetings that are not answered
-SILENCE = 1.0  # s without an answer to a ping after which the board is greeted anew
-KEPT = 5000  # messages that wait for somebody to take them: 10 s of telemetry
+HELLO_PERIOD = 0.2  # s between unanswered greetings
+SILENCE = 1.0  # s without an answer to a ping after which the board is greeted again
+KEPT = 5000  # messages kept until they are taken: 10 s of telemetry
 
 
 class Session:
-    """Talks through what `connect` opens, and opens it again when it has vanished.
+    """A session through the line that `connect` opens, and opens again after it has vanished.
 
-    `now` is the host's clock [s], which exchanges with the board's are stamped by. Raises what `connect` raises.
+    now: the host's clock [s], which stamps all messages. The constructor raises what `connect` raises.
     """
 
-    def __init__(self, connect: Callable[[], Line], now: Callable[[], float] = time.perf_counter) -> None:
-        self.resets = 0  # of the board, that were noticed
-        self.echoes = 0  # messages that only a host sends: the port sends back what it is sent
+    def __init__(self, connect: Callable[[], SerialLine], now: Callable[[], float] = time.perf_counter) -> None:
+        self.resets = 0  # number of noticed resets of the board
+        self.echoes = 0  # number of received messages that only a host sends: the port echoes
         self.board: Hello | None = None  # the newest greeting; kept when the port is lost
         self.pings = Pings(now())
         self._now = now
@@ -50,134 +62,136 @@ class Session:
         self._notes: deque[str] = deque(maxlen=KEPT)
         self._sequence = 0
         self._config: int | None = None  # CRC-32 of the configuration sent last
-        self._stopping = Stopping(self._notes.append)
+        self._estop_repeater = EstopRepeater(self._notes.append)
         self._connection = Connection(connect, now, self._notes.append)
         self._begin()
 
     def _begin(self) -> None:
-        """With a port that was just opened."""
-        self._receiver, self.view = Receiver(), BoardView()
-        self._disarm_owed = True  # who was here before may have left it armed
+        """Start on a port that was just opened."""
+        self._receiver, self.telemetry_status = Receiver(), TelemetryStatus()
+        self._disarm_owed = True  # a previous host may have left the board armed
         self._greet()
         self._connection.send(b"\0")  # ends a frame that was cut off
 
     def _greet(self) -> None:
-        """Begin to say hello until it is answered."""
+        """Start sending hello until it is answered."""
         self._greeted = False
         self._token = random.getrandbits(32)
         self._hello_at = self._now()
 
-    # What is known
+    # Status
 
     @property
     def port_is_open(self) -> bool:
-        """Whether there is a port."""
+        """Whether the port is open."""
         return self._connection.open
 
     @property
     def connected(self) -> bool:
-        """Whether a board of this protocol answers there."""
+        """Whether a board of this protocol answers."""
         return self._connection.open and self._greeted
 
     @property
     def reconnects(self) -> int:
-        """Times that the port was lost and came back."""
+        """The number of times that the port was lost and came back."""
         return self._connection.reopened
 
     @property
-    def clock(self) -> Clock:
-        """The board's clock."""
+    def clock(self) -> BoardClock:
+        """The estimate of the board's clock."""
         return self.pings.clock
 
     @property
-    def tally(self) -> Tally:
-        """Frames that came since the port was opened, by what became of them."""
-        return self._receiver.tally
+    def frame_counts(self) -> FrameCounts:
+        """The frames received since the port was opened, counted by outcome."""
+        return self._receiver.counts
 
     @property
     def telemetry(self) -> Telemetry | None:
-        """The newest since the port was opened; None before any, and without a port."""
-        return self.view.newest if self._connection.open else None
+        """The newest telemetry since the port was opened; None before the first, and without a port."""
+        return self.telemetry_status.newest if self._connection.open else None
 
     @property
     def state(self) -> int | None:
-        """The board's, of the enum State, as of the newest telemetry; None as there."""
+        """The board's state (enum State) in the newest telemetry; None without any."""
         return self.telemetry.state if self.telemetry else None
 
     @property
     def age(self) -> float | None:
-        """How old the newest telemetry is [s]; None as there."""
-        return self._now() - self.view.arrived if self.telemetry else None
+        """The age of the newest telemetry [s]; None without any."""
+        return self._now() - self.telemetry_status.arrived if self.telemetry else None
 
     def take_telemetry(self) -> list[Telemetry]:
-        """All that came since the last call, at most the newest 5000."""
+        """Take all telemetry since the last call, at most the newest 5000 messages."""
         return _drain(self._telemetry)
 
     def take_events(self) -> list[Event]:
-        """The same of events."""
+        """Take all events since the last call, at most the newest 5000."""
         return _drain(self._events)
 
     def take_notes(self) -> list[str]:
-        """What happened on this side since the last call, a line each, for a human."""
+        """Take the notes for the user since the last call, a line each: what happened on the host's side."""
         return _drain(self._notes)
 
-    # What to tell the board. ValueError where it is not connected, or a number is outside its limits.
+    # Orders to the board. They raise ValueError if it is not connected, or if a number is outside its limits.
 
     def config(self, config: Config) -> None:
-        """The table and how to control it. Pings come at a third of its `silence`, if that is more often."""
-        self._tell(config)
-        self._config = seal(config)
+        """Send the configuration. Pings are sent at a third of its `silence` if that is more often than usual."""
+        self._send_connected(config)
+        self._config = frame_crc(config)
         self.pings.period = min(PERIOD, config.silence / 3000)
 
     def home(self, x: float, y: float) -> None:
-        """The mallet stands there now, at rest [m]."""
-        self._tell(messages.Home(x, y))
+        """Tell the board that the mallet is at rest at x, y [m]."""
+        self._send_connected(messages.Home(x, y))
 
     def arm(self) -> None:
-        """Let the motors play, by the configuration sent last: a board that holds another refuses with OTHER_CONFIG.
+        """Enable the motors with the configuration sent last; a board that has another one refuses with OTHER_CONFIG.
 
-        ValueError before the first telemetry, and before a configuration, too.
+        Raises ValueError also before the first telemetry and before a configuration was sent.
         """
         if self.state is None:
-            raise ValueError("cannot arm: the board has not yet said how it stands; poll until telemetry comes")
+            raise ValueError("cannot arm: the board has not reported its state yet; poll until telemetry arrives")
         if self.connected and self._config is None:
             raise ValueError("cannot arm: no configuration was sent; send one first")
         self._disarm_owed = False
-        self._tell(messages.Arm(self._config or 0))
+        self._send_connected(messages.Arm(self._config or 0))
 
     def disarm(self) -> None:
-        """Motors off."""
-        self._tell(messages.Disarm())
+        """Switch the motors off."""
+        self._send_connected(messages.Disarm())
 
     def estop(self) -> None:
-        """Motors off now; sent even to a board that has not answered hello, and by `poll` again until telemetry shows
-        FAULT. ValueError without a port."""
+        """Emergency stop: switch the motors off now. It is sent even to a board that has not answered hello, and `poll`
+        repeats it until telemetry shows FAULT. Raises ValueError without a port."""
         if not self._connection.open:
             raise ValueError("cannot stop the board: its port is lost; it stops by itself when the host is silent")
-        self._stopping.begin(self._now())
+        self._estop_repeater.begin(self._now())
         self._send_estop()
 
     def clear(self) -> None:
-        """Leave the state FAULT. ValueError while an estop is not yet seen to be heard, too."""
-        if self._stopping.wanted:
+        """Leave the state FAULT. Raises ValueError also while an emergency stop is not confirmed."""
+        if self._estop_repeater.pending:
             raise ValueError("cannot clear: the board has not yet shown that it heard the estop; poll until FAULT")
-        self._tell(messages.Clear())
+        self._send_connected(messages.Clear())
 
     def traj(self, plan: Traj) -> int:
-        """Send a plan, once, under the next sequence number, which is returned; `plan`'s own does not matter."""
+        """Send a plan once, under the next sequence number, which is returned; the sequence number in `plan` is
+        ignored."""
         number = self._sequence % (2**32 - 1) + 1  # never 0, which means no trajectory
-        self._tell(replace(plan, sequence=number))
+        self._send_connected(replace(plan, sequence=number))
         self._sequence = number
         return number
 
     def close(self) -> None:
-        """Let go of the port; the board stops when it has heard nothing for long enough."""
+        """Close the port; the board stops by itself after a silence."""
         self._connection.close()
 
-    # What is due
+    # Polling
 
     def poll(self) -> None:
-        """Read, greet, ping, reopen. ValueError, after which the port is closed, for a board of another protocol."""
+        """Read and handle messages, and greet, ping and reopen the port as far as due. Raises ValueError, and closes
+        the port, for a board of another protocol."""
         if self._connection.reopen():
             self._begin()
         data = self._connection.read()
@@ -187,7 +201,7 @@ class Session:
         if not self._connection.open:
             return
         now = self._now()
-        if self._stopping.due(now):
+        if self._estop_repeater.due(now):
             self._send_estop()
         if self._greeted and now - self.pings.answered_at > SILENCE:
             self._notes.append("the board has fallen silent; greeting it again")
@@ -197,7 +211,7 @@ class Session:
             self._send(Hello(*VERSION, SCHEMA, self._token, 0))
         if (ping := self.pings.due(now)) is not None:
             frame = encode(ping)
-            self.pings.went(ping, self._now())
+            self.pings.mark_sent(ping, self._now())
             self._connection.send(frame)
 
     def _take(self, message: Message, came: float) -> None:
@@ -214,8 +228,8 @@ class Session:
 
     def _take_telemetry(self, telemetry: Telemetry, came: float) -> None:
         self._telemetry.append(telemetry)
-        self._stopping.take(telemetry.state)
-        if self.view.take(telemetry, came) and self._greeted:
+        self._estop_repeater.take(telemetry.state)
+        if self.telemetry_status.take(telemetry, came) and self._greeted:
             self._greet()
         if self._disarm_owed and self._greeted:
             self._disarm_owed = False
@@ -241,20 +255,21 @@ class Session:
         if self.board is not None and hello.boots != self.board.boots:
             self.resets += 1
             self._notes.append("the board was reset: it knows neither configuration nor place any more")
-            self.pings, self.view = Pings(self._now()), BoardView()
+            self.pings, self.telemetry_status = Pings(self._now()), TelemetryStatus()
         self.board, self._greeted = hello, True
         self.pings.answered_at = self._now()
         self._notes.append(f"connected to a board of protocol {hello.major}.{hello.minor}")
 
-    def _tell(self, message: Message) -> None:
-        """Send to a board that is known to understand."""
+    def _send_connected(self, message: Message) -> None:
+        """Send to a board that has answered hello. Raises ValueError if there is none, or for a number outside its
+        limits."""
         frame = encode(message)
         if not self.connected:
             raise ValueError(f"cannot send {type(message).__name__.lower()}: not connected; poll until `connected`")
         self._connection.send(frame)
 
     def _send_estop(self) -> None:
-        self._connection.send(b"\0")  # whatever was cut off on the line, this is not to be a part of it
+        self._connection.send(b"\0")  # ends a frame that was cut off on the line, so that this one is read alone
         self._send(messages.Estop())
 
     def _send(self, message: Message) -> None:
@@ -262,6 +277,7 @@ class Session:
 
 
 def _drain(waiting: deque) -> list:
+    """Take all elements out of a queue."""
     taken = list(waiting)
     waiting.clear()
     return taken

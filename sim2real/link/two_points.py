@@ -1,7 +1,7 @@
 """The gantry's pulley radius from two corners (report L.2, equations 37 to 41).
 
-With the mallet in a jig in the right-hand corner and then in the left-hand one, its place is known, and the encoders
-say how far their shafts turned on the way.
+A jig holds the mallet at known places, first in the right-hand corner and then in the left-hand one; the encoders
+measure how far their shafts turn on the way.
 """
 
 from __future__ import annotations
@@ -9,21 +9,21 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-TURN = 16384  # steps of an encoder
+TURN = 16384  # encoder steps per turn
 STEP = 2.0 * math.pi / TURN  # rad
 
 Pair = tuple[float, float]
 
 
-class Shafts:
-    """Both shafts' angles [rad] over turns, from the angles within a turn that telemetry brings."""
+class ShaftAngles:
+    """Unwraps the angles [rad] of both shafts from the angles within a turn that telemetry has."""
 
     def __init__(self) -> None:
         self.angles: Pair | None = None
         self._raw: tuple[int, int] | None = None
 
     def take(self, raw: tuple[int, int]) -> None:
-        """The next angles; between two that are taken a shaft turns by less than half a turn."""
+        """Take the next angles [encoder steps]; between two calls a shaft must turn by less than half a turn."""
         if self.angles is None or self._raw is None:
             self.angles = (raw[0] * STEP, raw[1] * STEP)
         else:
@@ -33,14 +33,17 @@ class Shafts:
 
 
 def _short(steps: int) -> int:
-    """A difference within a turn, the short way round."""
+    """A difference of steps in the range of half a turn to either side."""
     return (steps + TURN // 2) % TURN - TURN // 2
 
 
 @dataclass(frozen=True)
 class TwoPoints:
-    """What two corners say: `pulley_radius` [m], `sideways` [m]: how far along x the second is from the first, which
-    is 0 for a jig that was used alike in both, and `offset` [rad]: what is to be added to the shafts' angles."""
+    """The result of the two-point calibration.
+
+    pulley_radius: [m]; sideways: measured distance along x between the corners [m], 0 if the jig was placed alike in
+    both; offset: to be added to the shafts' angles [rad].
+    """
 
     pulley_radius: float
     sideways: float
@@ -48,8 +51,12 @@ class TwoPoints:
 
 
 def solve(right: Pair, left: Pair, corner: Pair, width: float) -> TwoPoints:
-    """From the shafts' angles [rad] in the right-hand corner, where the mallet is at `corner` [m], and in the left-hand
-    one of a table of this width [m]. ValueError, in one line, where the shafts turned the wrong way or not at all."""
+    """Compute the pulley radius (report L.2, equations 37 to 41).
+
+    right, left: angles of both shafts in the right-hand and the left-hand corner [rad]; corner: the mallet's place (x,
+    y) in the right-hand one [m]; width: of the table [m]. Raises ValueError, in one line, if the corners are no
+    distance apart, or if the shafts turned the wrong way or too little.
+    """
     turned = right[0] + right[1] - left[0] - left[1]
     apart = width - 2.0 * corner[1]
     if apart <= 0.0:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from sim2real.link.messages import State
-from tests.firmware.bench import PLAYS, TARGET, Bench
+from sim2real.link.wire.messages import State
+from tests.firmware.core.bench import PLAYS, TARGET, Bench
 
 
 @pytest.fixture

@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from sim2real.link.messages import Home, Ping, State, Telemetry, Traj
-from tests.firmware.host_core import make
-from tests.firmware.line import arm, config, frame, hello, read
+from sim2real.link.wire.messages import Home, Ping, State, Telemetry, Traj
+from tests.firmware.core.host_core import make
+from tests.firmware.core.line import arm, config, frame, hello, read
 
 START = (0.1, 0.2)
 PATIENCE = 20.0  # s for what takes a fraction of one

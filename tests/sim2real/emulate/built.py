@@ -25,9 +25,11 @@ def need_compiler() -> None:
     )
     if headers.returncode:
         pytest.skip("arm-none-eabi-gcc has no C headers (Debian: libnewlib-arm-none-eabi): nothing is rebuilt here")
-    told = subprocess.run(["arm-none-eabi-gcc", "-dumpfullversion"], capture_output=True, text=True, check=True)
-    if told.stdout.strip() != VERSION:
-        pytest.skip(f"arm-none-eabi-gcc is {told.stdout.strip()}; what is committed was built by Debian 12's {VERSION}")
+    version = subprocess.run(["arm-none-eabi-gcc", "-dumpfullversion"], capture_output=True, text=True, check=True)
+    if version.stdout.strip() != VERSION:
+        pytest.skip(
+            f"arm-none-eabi-gcc is {version.stdout.strip()}; what is committed was built by Debian 12's {VERSION}"
+        )
 
 
 def make(folder: Path, core: Path = FOLDER / "core", source: Path = FOLDER) -> str:

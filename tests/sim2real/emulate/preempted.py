@@ -16,10 +16,10 @@ import pytest
 from firmware import ELF
 from sim2real.emulate.elf import read_elf
 from sim2real.emulate.timeline import PER_US
-from sim2real.link.messages import Disarm, Event, Notice, Ping, Pong, State, Telemetry
-from tests.firmware.bench import FULL
-from tests.firmware.host_core import ZEROS, Core, Step
-from tests.firmware.line import arm, frame, read
+from sim2real.link.wire.messages import Disarm, Event, Notice, Ping, Pong, State, Telemetry
+from tests.firmware.core.bench import FULL
+from tests.firmware.core.host_core import ZEROS, Core, Step
+from tests.firmware.core.line import arm, frame, read
 from tests.sim2real.emulate.recorder import Recorder
 from tests.sim2real.emulate.robot import ALIVE, Robot
 
@@ -104,7 +104,7 @@ class Busy:
             turn = number % TURN
             messages: list[object] = [Ping(number)] * (number % EACH == 0)
             messages += [Disarm()] * (turn == TURN - 10) + [arm()] * (turn == TURN - 5)
-            messages += [arm()] * 2 * (turn % 10 == 5 and turn < TURN - 10)  # refused, and told so in one tick of two
+            messages += [arm()] * 2 * (turn % 10 == 5 and turn < TURN - 10)  # refused, and reported in one tick of two
             if turn == 0:
                 robot.sends((self.chance.uniform(0.2, 0.8), self.chance.uniform(0.2, 0.8)), 10.0)
             self._piece(*messages)
@@ -114,11 +114,11 @@ class Busy:
 
     def outcome(self) -> dict[str, object]:
         """What the host knows in the end, but for times."""
-        told = self.robot.telemetry
+        telemetry = self.robot.telemetry
         return {
             "events": [(one.code, one.detail) for one in self.robot.heard if isinstance(one, Event)],
             "answered": [one.token for one in self.robot.heard if isinstance(one, Pong)],
-            "state": told.state, "damaged": told.damaged, "lost": told.lost,
+            "state": telemetry.state, "damaged": telemetry.damaged, "lost": telemetry.lost,
             "followed": sorted({one.sequence for one in self.robot.heard if isinstance(one, Telemetry)}),
         }  # fmt: skip
 
@@ -126,7 +126,7 @@ class Busy:
         """AssertionError where board and emulator did anything but carry between line, encoders, motors and core."""
         self._check_carried()
         self._check_stamps()
-        self._check_told()
+        self._check_telemetry()
         core = Core(*self.recorder.start)
         for tick, step in zip(self.recorder.ticks, self.recorder.steps, strict=False):
             assert core.step(**vars(tick)) == step  # as without an interrupt
@@ -150,17 +150,17 @@ class Busy:
                 assert -1.0 <= late <= 2.0
             taken += len(tick.received)
 
-    def _check_told(self) -> None:
-        told = [one for one in self.robot.heard if isinstance(one, Telemetry)]
-        for before, after in itertools.pairwise(told):
+    def _check_telemetry(self) -> None:
+        telemetry = [one for one in self.robot.heard if isinstance(one, Telemetry)]
+        for before, after in itertools.pairwise(telemetry):
             assert abs(after.time - before.time - 2000) < 100
-        for one in told:
+        for one in telemetry:
             assert one.state == State.ARMED or one.pwm == (0, 0)
             assert max(abs(a - b) for a, b in zip(one.place, one.path, strict=True)) < 5e-3
         assert not self.robot.events(Notice.FAULTED)
         answered = [one.token for one in self.robot.heard if isinstance(one, Pong) and one.token != ALIVE.token]
         assert answered == self.pinged
-        last = told[-1]
+        last = telemetry[-1]
         assert (last.state, last.damaged, last.lost) == (State.ARMED, self.damaged % (1 << 16), 0)
 
 

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 import pytest
 
 from firmware import QEMU_ELF
-from tests.firmware.host_core import ZEROS, Step
+from tests.firmware.core.host_core import ZEROS, Step
 
 COMMAND = (
     "qemu-system-arm", "-machine", "netduino2", "-nodefaults", "-display", "none", "-no-reboot", "-serial", "stdio",
@@ -34,7 +34,7 @@ def in_qemu(cause: int = 0, boots: int = 1) -> Iterator[QemuCore]:
 
 
 class QemuCore:
-    """A robot, as `tests.firmware.host_core.Core` is one."""
+    """A robot, as `tests.firmware.core.host_core.Core` is one."""
 
     def __init__(self, process: subprocess.Popen[bytes], start: bytes) -> None:
         assert process.stdin is not None and process.stdout is not None

@@ -11,7 +11,7 @@ from unicorn.arm_const import UC_ARM_REG_R1, UC_ARM_REG_R2
 from firmware import ELF
 from sim2real.emulate.elf import read_elf
 from sim2real.emulate.machine import Machine
-from tests.firmware.host_core import SEND, ZEROS, Step
+from tests.firmware.core.host_core import SEND, ZEROS, Step
 
 INPUT = struct.Struct("<IHH2HIHxxIH")  # of struct robot_input, as the microcontroller's compiler lays it out
 OUTPUT = struct.Struct(f"<2h3H{SEND}s")  # of struct robot_output

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from firmware import ELF
-from puckpilot_env.physics.plan import switching_times
+from puckpilot_env.physics.gantry.plan import switching_times
 from sim2real.emulate.gantry import US, Gantry
 from sim2real.emulate.machine import Machine
-from sim2real.link.messages import Event, Home, Notice, Ping, State, Telemetry, Traj
-from tests.firmware.line import arm, config, frame, hello, read
+from sim2real.link.wire.messages import Event, Home, Notice, Ping, State, Telemetry, Traj
+from tests.firmware.core.line import arm, config, frame, hello, read
 
 START, TARGET = (0.1, 0.2), (0.5, 0.6)
 ALIVE = Ping(7)

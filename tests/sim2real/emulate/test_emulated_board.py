@@ -14,7 +14,7 @@ pytest.importorskip("unicorn", reason="unicorn is not installed: the program can
 
 from firmware import FOLDER
 from sim2real.emulate.machine import Machine
-from sim2real.emulate.registers import NotModelledError
+from sim2real.emulate.peripherals.registers import NotModelledError
 from sim2real.emulate.timeline import PER_US
 
 BOOTED = 3000  # us: by then the clocks run and the first ticks were made
@@ -29,7 +29,7 @@ def _machine(**options) -> Machine:
     return machine
 
 
-def _told(machine: Machine) -> dict[str, int]:
+def _report(machine: Machine) -> dict[str, int]:
     """What the core reports of itself."""
     machine.received()
     machine.send(b"r")
@@ -39,9 +39,9 @@ def _told(machine: Machine) -> dict[str, int]:
 
 def test_it_starts_at_72_mhz_from_the_crystal_and_steps_each_millisecond() -> None:
     machine = _machine()
-    before = _told(machine)
+    before = _report(machine)
     machine.run(machine.now + 50_000)
-    after = _told(machine)
+    after = _report(machine)
     assert machine.rcc.megahertz == 72
     assert after["steps"] - before["steps"] == 53
     assert after["now"] - before["now"] == 53_000
@@ -53,11 +53,11 @@ def test_without_a_crystal_it_runs_at_64_mhz_and_all_times_are_the_same() -> Non
     machine = Machine(PLAIN, crystal=False)
     machine.run(10_000)
     assert machine.rcc.megahertz == 64
-    before = _told(machine)
+    before = _report(machine)
     machine.send(TEXT)
     machine.run(machine.now + 20_000)
     assert machine.received() == TEXT
-    assert _told(machine)["now"] - before["now"] == 23_000
+    assert _report(machine)["now"] - before["now"] == 23_000
 
 
 def test_when_the_crystal_stops_the_motors_stop_at_once_and_it_starts_again_without() -> None:
@@ -70,7 +70,7 @@ def test_when_the_crystal_stops_the_motors_stop_at_once_and_it_starts_again_with
     machine.run(60_000)
     assert [cause for _, cause in machine.resets] == ["watchdog"]
     assert machine.rcc.megahertz == 64
-    assert _told(machine)["lost"] == 0
+    assert _report(machine)["lost"] == 0
 
 
 def test_what_is_sent_comes_back_in_the_time_that_a_megabaud_takes() -> None:
@@ -133,15 +133,15 @@ def test_motors_are_off_from_the_first_moment_on_and_do_what_the_core_says() -> 
 
 def test_a_reset_takes_the_motors_off_and_starts_anew() -> None:
     machine = _machine()
-    boots = _told(machine)["boots"]
+    boots = _report(machine)["boots"]
     machine.send(b"p")
     machine.run(10_000)
     machine.reset()
     assert machine.motors.duties == (0.0, 0.0)
     machine.run(20_000)
-    told = _told(machine)
-    assert told["cause"] == 0x04
-    assert told["boots"] == (boots * 1664525 + 1013904223) % 2**32
+    report = _report(machine)
+    assert report["cause"] == 0x04
+    assert report["boots"] == (boots * 1664525 + 1013904223) % 2**32
     assert machine.motors.duties == (0.0, 0.0)
 
 
@@ -152,7 +152,7 @@ def test_a_program_that_hangs_is_reset_by_the_watchdog() -> None:
     ((when, cause),) = machine.resets
     assert cause == "watchdog"
     assert when - BOOTED == pytest.approx(51 * 16 / 40e3 * 1e6, abs=1100)  # since the kick before
-    assert _told(machine)["cause"] == 0x24
+    assert _report(machine)["cause"] == 0x24
     assert machine.motors.duties == (0.0, 0.0)
 
 
@@ -179,16 +179,16 @@ def test_a_fault_takes_the_motors_off_at_once_and_the_watchdog_resets() -> None:
     assert [cause for _, cause in machine.resets] == ["watchdog"]
 
 
-def test_ticks_that_a_slow_step_misses_are_told_and_no_byte_is_lost() -> None:
+def test_ticks_that_a_slow_step_misses_are_reported_and_no_byte_is_lost() -> None:
     machine = _machine(step_us=1700.0)
     machine.send(TEXT * 20)
     machine.run(60_000)
     assert machine.received() == TEXT * 20
-    told = _told(machine)
-    assert told["missed"] + told["steps"] == pytest.approx(61, abs=2)
-    assert told["steps"] == pytest.approx(61 / 1.7, abs=2)
-    assert told["longest"] == 1700
-    assert told["lost"] == 0
+    report = _report(machine)
+    assert report["missed"] + report["steps"] == pytest.approx(61, abs=2)
+    assert report["steps"] == pytest.approx(61 / 1.7, abs=2)
+    assert report["longest"] == 1700
+    assert report["lost"] == 0
 
 
 def test_more_bytes_than_fit_are_counted() -> None:
@@ -197,9 +197,9 @@ def test_more_bytes_than_fit_are_counted() -> None:
     machine.run(40_000)
     machine.step_us = 0.0
     machine.run(60_000)
-    told = _told(machine)
-    assert told["lost"] > 0
-    assert told["lost"] + told["heard"] == 601
+    report = _report(machine)
+    assert report["lost"] > 0
+    assert report["lost"] + report["heard"] == 601
 
 
 def test_bytes_without_a_stop_bit_are_counted_and_dropped() -> None:
@@ -208,7 +208,7 @@ def test_bytes_without_a_stop_bit_are_counted_and_dropped() -> None:
     machine.send(TEXT)
     machine.run(10_000)
     assert machine.received() == TEXT[3:]
-    assert _told(machine)["lost"] == 3
+    assert _report(machine)["lost"] == 3
 
 
 def test_the_wrong_baud_rate_is_not_understood() -> None:
@@ -217,7 +217,7 @@ def test_the_wrong_baud_rate_is_not_understood() -> None:
     machine.send(TEXT)
     machine.run(10_000)
     machine.usart.values["BRR"] = 72
-    assert _told(machine)["lost"] == len(TEXT)
+    assert _report(machine)["lost"] == len(TEXT)
 
 
 def test_a_register_that_is_not_modelled_is_named() -> None:
@@ -236,7 +236,7 @@ def test_counting_instructions_needs_a_timed_machine_and_sees_the_work() -> None
     busy = machine.instructions(30_000)
     assert len(idle) == 10 and max(idle) - min(idle) < 20
     assert max(busy) - max(idle) == pytest.approx(40_000 * 2, rel=0.01)  # a loop of two instructions
-    assert _told(machine)["longest"] == pytest.approx((80_000 + idle[0]) * 1.5 / 72, rel=0.01)
+    assert _report(machine)["longest"] == pytest.approx((80_000 + idle[0]) * 1.5 / 72, rel=0.01)
 
 
 @pytest.mark.parametrize("fuzz", range(4))
@@ -247,8 +247,8 @@ def test_interrupts_between_any_two_blocks_change_nothing(fuzz: int) -> None:
     machine.send(sent)
     machine.run(30_000)
     assert machine.received() == sent
-    told = _told(machine)
-    assert told["lost"] == told["missed"] == 0  # nor is a tick slept through
+    report = _report(machine)
+    assert report["lost"] == report["missed"] == 0  # nor is a tick slept through
 
 
 def test_no_tick_is_slept_through_that_comes_just_as_it_falls_asleep() -> None:
@@ -261,7 +261,7 @@ def test_no_tick_is_slept_through_that_comes_just_as_it_falls_asleep() -> None:
         machine.run(tick / PER_US - 10 - early / 36)
         machine.send(b"B")
         machine.run(machine.now + 2000)
-    assert _told(machine)["missed"] == 0
+    assert _report(machine)["missed"] == 0
 
 
 def _bytes_of(seed: int, pieces: int, **options) -> tuple[bytes, list]:

@@ -13,12 +13,12 @@ from tests.sim2real.emulate.built import PLAIN, need_compiler
 
 pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
 
-from sim2real.emulate.as5147 import As5147
 from sim2real.emulate.elf import read_elf
 from sim2real.emulate.gantry import Gantry
 from sim2real.emulate.machine import Machine
-from sim2real.emulate.nvic import Nvic
-from sim2real.emulate.registers import NotModelledError
+from sim2real.emulate.peripherals.as5147 import As5147
+from sim2real.emulate.peripherals.nvic import Nvic
+from sim2real.emulate.peripherals.registers import NotModelledError
 from sim2real.emulate.timeline import Timeline
 
 ANGLE, NOTHING, ERRORS, HEALTH, BAD_PARITY, WRITE = 0xFFFF, 0xC000, 0x4001, 0xFFFC, 0x7FFF, 0x3FFF

@@ -9,8 +9,8 @@ import pytest
 
 pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
 
-from sim2real.link.messages import Clear, Fault, Hello, Notice, Ping, Pong, State, Telemetry
-from tests.firmware.line import frame, hello
+from sim2real.link.wire.messages import Clear, Fault, Hello, Notice, Ping, Pong, State, Telemetry
+from tests.firmware.core.line import frame, hello
 from tests.sim2real.emulate.preempted import play
 from tests.sim2real.emulate.robot import START, TARGET, Robot
 
@@ -20,10 +20,10 @@ def test_it_boots_answers_hello_and_tells_how_it_stands_500_times_a_second() -> 
     robot.run(100_000)
     (reply,) = [one for one in robot.run(5000, hello(token=99)) if isinstance(one, Hello)]
     assert reply.token == 99 and reply.boots != 0
-    told = [one for one in robot.run(1_000_000) if isinstance(one, Telemetry)]
-    assert len(told) == pytest.approx(500, abs=1)
-    assert {b.time - a.time for a, b in itertools.pairwise(told)} == {2000}
-    assert (told[-1].state, told[-1].damaged, told[-1].lost) == (State.UNHOMED, 0, 0)
+    telemetry = [one for one in robot.run(1_000_000) if isinstance(one, Telemetry)]
+    assert len(telemetry) == pytest.approx(500, abs=1)
+    assert {b.time - a.time for a, b in itertools.pairwise(telemetry)} == {2000}
+    assert (telemetry[-1].state, telemetry[-1].damaged, telemetry[-1].lost) == (State.UNHOMED, 0, 0)
 
 
 def test_encoders_are_read_as_they_stand() -> None:
@@ -58,6 +58,7 @@ def test_the_mallet_goes_where_the_plan_says() -> None:
     assert (robot.telemetry.state, robot.machine.motors.duties) == (State.ARMED, (0.0, 0.0))
 
 
+@pytest.mark.slow
 def test_interrupts_in_the_middle_of_anything_change_nothing() -> None:
     """The whole: `python -m tests.sim2real.emulate.preempted`."""
     busy = play(seed=5, pieces=120)
@@ -68,9 +69,9 @@ def test_interrupts_in_the_middle_of_anything_change_nothing() -> None:
 def test_it_plays_just_so_when_interrupts_come_between_any_two_blocks(fuzz: int) -> None:
     robot = Robot(fuzz=fuzz).armed().goes()
     robot.run(150_000)
-    told = robot.telemetry
-    assert (told.state, told.damaged, told.lost) == (State.ARMED, 0, 0)
-    assert told.place == pytest.approx(told.path, abs=1e-3)
+    telemetry = robot.telemetry
+    assert (telemetry.state, telemetry.damaged, telemetry.lost) == (State.ARMED, 0, 0)
+    assert telemetry.place == pytest.approx(telemetry.path, abs=1e-3)
 
 
 def test_a_silent_host_stops_it() -> None:
@@ -93,8 +94,8 @@ def test_an_encoder_that_fails_stops_it(which: int, fault: str, meant: Fault) ->
     robot.machine.encoders[which].fault = fault
     robot.machine.encoders[which].jump = 6000
     robot.run(60_000)
-    (told,) = robot.events(Notice.FAULTED)
-    assert told in ((meant, Fault.OFF_PATH) if fault == "frozen" else (meant,))
+    (fault_code,) = robot.events(Notice.FAULTED)
+    assert fault_code in ((meant, Fault.OFF_PATH) if fault == "frozen" else (meant,))
     assert robot.machine.motors.duties == (0.0, 0.0)
 
 

@@ -6,7 +6,7 @@ import pytest
 
 pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
 
-from sim2real.emulate.ticks import count_ticks
+from sim2real.emulate.tick_instructions import count_ticks
 
 MOST = 12_000  # instructions: at 1.5 cycles each a quarter of the millisecond
 

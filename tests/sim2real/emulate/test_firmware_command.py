@@ -20,8 +20,8 @@ def test_a_port_is_there_as_long_as_the_board_lives(tmp_path: Path, capsys: pyte
     port = tmp_path / "board"
     port.symlink_to("/dev/pts/of-a-board-that-was-killed")
     assert emulate("--port", str(port), "--place", "0.3", "0.4") == 0
-    told = capsys.readouterr().out
-    assert f"the board is at {port}" in told and "the mallet is at (0.300, 0.400) m" in told
+    output = capsys.readouterr().out
+    assert f"the board is at {port}" in output and "the mallet is at (0.300, 0.400) m" in output
     assert not port.is_symlink()
 
 
@@ -38,8 +38,8 @@ def test_what_is_there_stays_there(kind: str, tmp_path: Path, capsys: pytest.Cap
     }[kind]()
     before = sorted(tmp_path.iterdir())
     assert emulate("--port", str(port / "x" if kind == "no folder" else port)) == 2
-    told = capsys.readouterr()
-    assert str(port) in told.err and told.err.count("\n") == 1 and not told.out
+    output = capsys.readouterr()
+    assert str(port) in output.err and output.err.count("\n") == 1 and not output.out
     assert sorted(tmp_path.iterdir()) == before
     os.close(own)
     os.close(other)
@@ -48,5 +48,5 @@ def test_what_is_there_stays_there(kind: str, tmp_path: Path, capsys: pytest.Cap
 @pytest.mark.parametrize("place", [("-1", "0.2"), ("0.1", "nan"), ("5", "5")])
 def test_a_place_off_the_table_is_refused(place: tuple[str, str], capsys: pytest.CaptureFixture[str]) -> None:
     assert emulate("--place", *place) == 2
-    told = capsys.readouterr()
-    assert "expected a place on the table" in told.err and told.err.count("\n") == 1 and not told.out
+    output = capsys.readouterr()
+    assert "expected a place on the table" in output.err and output.err.count("\n") == 1 and not output.out

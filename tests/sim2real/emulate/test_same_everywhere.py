@@ -9,10 +9,10 @@ import pytest
 
 pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
 
-from sim2real.emulate.as5147 import FAULTS
-from sim2real.link.messages import Clear, Estop, Fault, Home, Notice, Ping, State, Telemetry
-from tests.firmware.host_core import Core
-from tests.firmware.line import arm, frame
+from sim2real.emulate.peripherals.as5147 import FAULTS
+from sim2real.link.wire.messages import Clear, Estop, Fault, Home, Notice, Ping, State, Telemetry
+from tests.firmware.core.host_core import Core
+from tests.firmware.core.line import arm, frame
 from tests.sim2real.emulate.qemu import in_qemu
 from tests.sim2real.emulate.recorder import Recorder
 from tests.sim2real.emulate.robot import Robot

@@ -12,20 +12,20 @@ import tty
 from collections.abc import Callable
 from pathlib import Path
 
-from reference_wire import SCHEMA, frame, opened
+from tests.sim2real.link.reference_wire import SCHEMA, frame, opened
 
 UNHOMED, IDLE, ARMED, FAULT = 1, 2, 3, 4
 HELLO, CONFIG, HOME, ARM, DISARM, ESTOP, CLEAR, TRAJ, PING = range(1, 10)
 
 
 class FakeBoard:
-    """Obeys as the protocol says, tick by tick, and keeps what it was told."""
+    """Obeys as the protocol says, tick by tick, and keeps what it was sent."""
 
     def __init__(self, boots: int = 7, version: tuple[int, int] = (1, 0), schema: int = SCHEMA) -> None:
         self.boots, self.version, self.schema = boots, version, schema
         self.state, self.sequence, self.damaged = UNHOMED, 0, 0
         self.heard: list[tuple[int, bytes]] = []  # id and body of each message
-        self.told: list[bytes] = []  # frames to send with the next tick
+        self.outbox: list[bytes] = []  # frames to send with the next tick
         self.mute: set[int] = set()  # ids that it does not answer
         self.telemetry_every = 2  # ticks
         self._kept = b""
@@ -43,8 +43,8 @@ class FakeBoard:
                 self._obey(*message, now_us if read_us is None else read_us)
         self._ticks += 1
         if self._ticks % self.telemetry_every == 0:
-            self.told.insert(0, self.telemetry(now_us))
-        said, self.told = b"".join(self.told), []
+            self.outbox.insert(0, self.telemetry(now_us))
+        said, self.outbox = b"".join(self.outbox), []
         return said
 
     def _obey(self, number: int, body: bytes, read_us: int) -> None:
@@ -52,10 +52,10 @@ class FakeBoard:
             return
         if number == HELLO:
             token = struct.unpack("<BBIII", body)[3]
-            self.told.append(frame(1, "BBIII", *self.version, self.schema, token, self.boots))
+            self.outbox.append(frame(1, "BBIII", *self.version, self.schema, token, self.boots))
         elif number == PING:
             now = read_us % 2**32
-            self.told.append(frame(10, "III", *struct.unpack("<I", body), now, now, schema=self.schema))
+            self.outbox.append(frame(10, "III", *struct.unpack("<I", body), now, now, schema=self.schema))
         elif number == TRAJ:
             self.sequence = struct.unpack("<I", body[:4])[0]
         self.state = {HOME: IDLE, ARM: ARMED, DISARM: IDLE, ESTOP: FAULT, CLEAR: UNHOMED}.get(number, self.state)

@@ -33,7 +33,7 @@ class Line:
         return float(self.start + Fraction(host_s) * Fraction(1.0 + self.drift) * 1_000_000)
 
     def exchanges(self, seconds: float, rate: float = 20.0, begin: float = 5000.0) -> Iterator[tuple]:
-        """Arguments of `Clock.add` at `rate` a second; host's clock begins at `begin` s."""
+        """Arguments of `BoardClock.add` at `rate` a second; host's clock begins at `begin` s."""
         rng = np.random.default_rng(self.seed)
         for k in range(round(seconds * rate)):
             sent = begin + k / rate

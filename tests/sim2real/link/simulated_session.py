@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from fake_board import Bench, FakeBoard
-
-from sim2real.link.messages import Config, Traj
 from sim2real.link.session import Session
+from sim2real.link.wire.messages import Config, Traj
+from tests.sim2real.link.fake_board import Bench, FakeBoard
 
 CONFIGURED = (
     (1e-3, 1e-3), (1e-2, 1e-2), (0.5, 0.5), 0.03, 24.0, 12.0, (0.0, 1.0), (0.0, 1.0), (1.0, 1.0), (1.0, 1.0),

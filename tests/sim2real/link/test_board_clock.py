@@ -8,16 +8,18 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from simulated_line import Line, error_us
 
-from sim2real.link.clock import Clock
+from sim2real.link.board_clock import BoardClock
+from tests.sim2real.link.simulated_line import Line, error_us
 
 SETTLED = 5.0  # s of pings after which the bar holds
 
 
-def followed(line: Line, seconds: float = 30.0, settled: float = SETTLED) -> tuple[Clock, list[float], list[float]]:
+def followed(
+    line: Line, seconds: float = 30.0, settled: float = SETTLED
+) -> tuple[BoardClock, list[float], list[float]]:
     """A clock at the end, its errors until the next ping [us], and its bounds there [us]."""
-    clock, errors, bounds, begin = Clock(), [], [], None
+    clock, errors, bounds, begin = BoardClock(), [], [], None
     for exchange in line.exchanges(seconds):
         begin = exchange[0] if begin is None else begin
         assert clock.add(*exchange)
@@ -29,6 +31,7 @@ def followed(line: Line, seconds: float = 30.0, settled: float = SETTLED) -> tup
     return clock, errors, bounds
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(8))
 def test_within_a_tenth_of_a_millisecond(seed):
     drift = (50e-6, -50e-6, 90e-6, 0.0)[seed % 4]
@@ -41,6 +44,7 @@ def test_within_a_tenth_of_a_millisecond(seed):
     assert max(bounds) < 600.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_jitter_of_one_direction_alone(seed):
     """Way back 20 times as ragged as the way there; a mean of round trips would be 2 ms off."""
@@ -52,6 +56,7 @@ def test_jitter_of_one_direction_alone(seed):
     assert all(abs(error) <= bound for error, bound in zip(errors, bounds, strict=True))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("there, back", [(0.0, 3e-3), (3e-3, 0.0)])
 def test_the_bound_holds_where_one_way_is_always_longer(there, back):
     """No exchange can tell: 1.5 ms of error, and the bound says so."""
@@ -62,6 +67,7 @@ def test_the_bound_holds_where_one_way_is_always_longer(there, back):
     assert np.median(bounds) < 2.2e3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("before", [0.3, 5.0, 12.0])
 def test_the_wrap_inside(before):
     start = (2**32 - round((5000.0 + before) * 1e6 * (1 + 50e-6))) % 2**32
@@ -79,7 +85,7 @@ def test_there_and_back_again():
 
 def test_a_long_pause_and_many_wraps():
     """Three hours without a word: two wraps, and the clock is right again with the first exchange."""
-    line, clock = Line(4), Clock()
+    line, clock = Line(4), BoardClock()
     for exchange in line.exchanges(5.0):
         clock.add(*exchange)
     for exchange in line.exchanges(1.0, begin=16_000.0):
@@ -89,7 +95,7 @@ def test_a_long_pause_and_many_wraps():
 
 
 def test_after_a_jump_of_the_boards_clock_the_new_time_holds():
-    old, new, clock = Line(5), Line(6, start=777), Clock()
+    old, new, clock = Line(5), Line(6, start=777), BoardClock()
     for exchange in old.exchanges(5.0):
         clock.add(*exchange)
     for exchange in new.exchanges(3.0, begin=5010.0 - 5.0):
@@ -99,7 +105,7 @@ def test_after_a_jump_of_the_boards_clock_the_new_time_holds():
 
 
 def test_the_first_exchange_is_bound_by_its_round_trip():
-    line, clock = Line(7), Clock()
+    line, clock = Line(7), BoardClock()
     exchange = next(line.exchanges(1.0))
     clock.add(*exchange)
     half = 0.5 * (exchange[3] - exchange[0] - 1e-6 * (exchange[2] - exchange[1]))
@@ -108,7 +114,7 @@ def test_the_first_exchange_is_bound_by_its_round_trip():
 
 
 def test_nothing_is_known_without_an_exchange():
-    clock = Clock()
+    clock = BoardClock()
     assert clock.error_s() == math.inf
     for ask in (clock.to_board, clock.to_host):
         with pytest.raises(ValueError, match="no ping was answered yet; poll until one is"):
@@ -117,7 +123,7 @@ def test_nothing_is_known_without_an_exchange():
 
 @pytest.mark.parametrize("exchange", [(1.0, 500, 400, 1.1), (1.0, 0, 300_000, 1.1), (1.1, 0, 10, 1.0)])
 def test_an_exchange_that_cannot_be_is_refused(exchange):
-    clock = Clock()
+    clock = BoardClock()
     assert not clock.add(*exchange) and len(clock) == 0
 
 
@@ -128,7 +134,7 @@ def test_an_exchange_that_cannot_be_is_refused(exchange):
 )
 def test_no_answers_at_all_upset_it(answers):
     """Stamps of a board gone mad: each exchange is taken or refused, and the newest taken stays inside its bound."""
-    clock, now = Clock(), 10.0
+    clock, now = BoardClock(), 10.0
     for wait, received, spent, trip in answers:
         sent, now = now + wait, now + wait + trip
         if clock.add(sent, received, (received + spent) % 2**32, now):

@@ -8,17 +8,15 @@ import subprocess
 import sys
 import time
 from functools import partial
-from pathlib import Path
 
 import pytest
-from fake_board import ARMED, FAULT, PING, FakeBoard, Terminal
-from reference_wire import SCHEMA, frame
 
 import puckpilot
-from sim2real.link.port import Port, PortError
-from sim2real.link.trial import bad_news
-
-ROOT = Path(puckpilot.__file__).parent
+from sim2real.link.link_quality import faults_found
+from sim2real.link.serial_port import PortError, SerialPort
+from tests.places import ROOT
+from tests.sim2real.link.fake_board import ARMED, FAULT, PING, FakeBoard, Terminal
+from tests.sim2real.link.reference_wire import SCHEMA, frame
 
 
 @pytest.fixture
@@ -48,9 +46,9 @@ def test_a_good_board(terminal, capsys):
 
 def test_its_words(terminal, capsys):
     assert puckpilot.main(["link", "test", str(terminal.path), "--pings", "10"]) == 0
-    told = capsys.readouterr().out
-    assert f"{terminal.path}: a board of protocol 1.0\n" in told and "pings: 10 answered, 0 lost\n" in told
-    assert "telemetry: 500 a second, 0 missing\n" in told and told.endswith("all is good\n")
+    output = capsys.readouterr().out
+    assert f"{terminal.path}: a board of protocol 1.0\n" in output and "pings: 10 answered, 0 lost\n" in output
+    assert "telemetry: 500 a second, 0 missing\n" in output and output.endswith("all is good\n")
 
 
 def test_a_noisy_line_is_bad_news(terminal, capsys):
@@ -64,15 +62,15 @@ def test_a_noisy_line_is_bad_news(terminal, capsys):
 def test_a_board_that_was_stopped_is_bad_news(terminal, capsys):
     terminal.board.state = FAULT
     assert puckpilot.main(["link", "test", str(terminal.path), "--pings", "5"]) == 1
-    told = capsys.readouterr().out
-    assert "bad: the board is in FAULT (" in told and "mend the cause, then reset it" in told
+    output = capsys.readouterr().out
+    assert "bad: the board is in FAULT (" in output and "mend the cause, then reset it" in output
 
 
 def test_pings_without_an_answer_are_bad_news(terminal, capsys):
     terminal.board.mute = {PING}
     assert puckpilot.main(["link", "test", str(terminal.path), "--pings", "5"]) == 1
-    told = capsys.readouterr().out
-    assert "pings: 0 answered" in told and "were never answered: check the cable" in told
+    output = capsys.readouterr().out
+    assert "pings: 0 answered" in output and "were never answered: check the cable" in output
 
 
 def test_a_reset_during_the_test_is_bad_news(terminal, capsys):
@@ -81,7 +79,7 @@ def test_a_reset_during_the_test_is_bad_news(terminal, capsys):
             terminal.todo.append(reset)
             return
         terminal.board.boots += 1
-        terminal.board.told.append(frame(12, "IBI", 0, 0, 0))
+        terminal.board.outbox.append(frame(12, "IBI", 0, 0, 0))
 
     terminal.todo.append(reset)
     assert puckpilot.main(["link", "test", str(terminal.path), "--pings", "20"]) == 1
@@ -92,8 +90,8 @@ def test_a_reset_during_the_test_is_bad_news(terminal, capsys):
 @pytest.mark.parametrize("action", ["test", "monitor"])
 def test_another_protocol_cannot_be_tested(action, board, tmp_path, capsys):
     with Terminal(board, tmp_path / "board") as terminal:
-        told = refused([action, str(terminal.path)], capsys)
-    assert told.startswith(
+        output = refused([action, str(terminal.path)], capsys)
+    assert output.startswith(
         f"the board speaks protocol {board.version[0]}.{board.version[1]}, schema {board.schema:08x};"
     )
 
@@ -110,20 +108,20 @@ def test_what_is_no_serial_port(tmp_path, capsys):
 
 
 def test_a_port_that_is_in_use(terminal, capsys):
-    port = Port(str(terminal.path))
-    told = refused(["monitor", str(terminal.path)], capsys)
-    assert told == f"port {terminal.path} is in use by another program; close that first"
+    port = SerialPort(str(terminal.path))
+    output = refused(["monitor", str(terminal.path)], capsys)
+    assert output == f"port {terminal.path} is in use by another program; close that first"
     port.close()
     assert puckpilot.main(["link", "monitor", str(terminal.path), "--seconds", "0.1"]) == 0
 
 
 def test_a_port_where_nobody_answers(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr("sim2real.link.trial.GREETING", 0.3)
+    monkeypatch.setattr("sim2real.link.link_quality.GREETING", 0.3)
     board = FakeBoard()
     board.mute, board.telemetry_every = {1, PING}, 1 << 30
     with Terminal(board, tmp_path / "board") as terminal:
-        told = refused(["test", str(terminal.path)], capsys)
-    assert told == "no answer to hello in 0.3 s (no frame came); is this the board's port, at its baud rate?"
+        output = refused(["test", str(terminal.path)], capsys)
+    assert output == "no answer to hello in 0.3 s (no frame came); is this the board's port, at its baud rate?"
 
 
 def test_a_port_that_vanishes_ends_a_test(terminal, capsys):
@@ -134,12 +132,12 @@ def test_a_port_that_vanishes_ends_a_test(terminal, capsys):
             terminal.unplug()
 
     terminal.todo.append(unplug)
-    told = refused(["test", str(terminal.path)], capsys)
-    assert told.startswith(f"the port vanished in the middle of the test (port {terminal.path} has vanished (")
+    output = refused(["test", str(terminal.path)], capsys)
+    assert output.startswith(f"the port vanished in the middle of the test (port {terminal.path} has vanished (")
 
 
 def test_a_vanished_port_tells_so_whatever_is_done_with_it(terminal):
-    port = Port(str(terminal.path))
+    port = SerialPort(str(terminal.path))
     terminal.todo.append(terminal.unplug)
     end = time.perf_counter() + 10.0
     with pytest.raises(PortError, match="has vanished"):
@@ -168,12 +166,12 @@ def test_the_monitor_outlives_a_vanished_port(terminal, capsys):
     terminal.todo.append(lambda: setattr(terminal.board, "boots", 8))
     terminal.todo.append(terminal.plug)
     assert puckpilot.main(["link", "monitor", str(terminal.path), "--seconds", "2.2"]) == 0
-    told = capsys.readouterr().out
+    output = capsys.readouterr().out
     places = [
-        told.index(words)
+        output.index(words)
         for words in ("connected to a board", "waiting for it to come back", "the port is back", "the board was reset")
     ]
-    assert places == sorted(places) and "UNHOMED  place unknown" in told[places[-1] :]
+    assert places == sorted(places) and "UNHOMED  place unknown" in output[places[-1] :]
 
 
 def test_the_monitor_as_json(terminal, capsys):
@@ -204,7 +202,7 @@ def test_ctrl_c_ends_the_monitor(terminal):
 
 
 @pytest.mark.parametrize(
-    "words, told",
+    "words, message",
     [
         (["monitor", "--seconds", "0"], "--seconds is 0; expected a number above 0, at most 1e6"),
         (["monitor", "--seconds", "nan"], "--seconds is nan; expected a number above 0, at most 1e6"),
@@ -212,13 +210,13 @@ def test_ctrl_c_ends_the_monitor(terminal):
         (["monitor", "--baud", "0"], "--baud is 0; expected a whole number above 0"),
     ],
 )
-def test_mistakes(words, told, capsys):
-    assert refused([words[0], "/dev/none", *words[1:]], capsys) == told
+def test_mistakes(words, message, capsys):
+    assert refused([words[0], "/dev/none", *words[1:]], capsys) == message
 
 
 def test_a_speed_beyond_any_port_s(terminal, capsys):
-    told = refused(["test", str(terminal.path), "--baud", "999999999999"], capsys)
-    assert "cannot be opened at 999999999999 baud" in told
+    output = refused(["test", str(terminal.path), "--baud", "999999999999"], capsys)
+    assert "cannot be opened at 999999999999 baud" in output
 
 
 def test_a_clock_that_no_crystal_drives_is_bad_news():
@@ -229,5 +227,7 @@ def test_a_clock_that_no_crystal_drives_is_bad_news():
         "telemetry_hz": 500.0, "missing": 0, "resets": 0, "echoes": 0, "clock_jumps": 0,
         "state": "IDLE", "fault": "NONE",
     }  # fmt: skip
-    assert bad_news({**good, **clock}) == ["the board's clock goes wrong by -250 ppm: does it run from its crystal?"]
-    assert bad_news({**good, **clock, "drift_error_ppm": 250.0}) == []
+    assert faults_found({**good, **clock}) == [
+        "the board's clock goes wrong by -250 ppm: does it run from its crystal?"
+    ]
+    assert faults_found({**good, **clock, "drift_error_ppm": 250.0}) == []

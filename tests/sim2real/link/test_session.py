@@ -5,12 +5,12 @@ from __future__ import annotations
 import struct
 
 import pytest
-from fake_board import DISARM, HELLO, PING, UNHOMED, Bench, FakeBoard
-from reference_wire import SCHEMA, frame
-from simulated_session import CONFIGURED, met, run
 
-from sim2real.link.messages import Config
 from sim2real.link.session import Session
+from sim2real.link.wire.messages import Config
+from tests.sim2real.link.fake_board import DISARM, HELLO, PING, UNHOMED, Bench, FakeBoard
+from tests.sim2real.link.reference_wire import SCHEMA, frame
+from tests.sim2real.link.simulated_session import CONFIGURED, met, run
 
 
 def test_it_says_hello_first_of_all_and_then_knows_the_board():
@@ -23,7 +23,7 @@ def test_it_says_hello_first_of_all_and_then_knows_the_board():
     assert session.state == UNHOMED and session.telemetry is not None and session.telemetry.place == (0.5, -0.25)
     assert session.take_notes() == ["connected to a board of protocol 1.0"] and session.take_notes() == []
     assert session.age == pytest.approx(0.0, abs=0.003)
-    assert bench.opened == 1 and session.tally.refused == 0
+    assert bench.opened == 1 and session.frame_counts.refused == 0
 
 
 def test_hello_is_said_again_until_it_is_answered():
@@ -38,18 +38,18 @@ def test_hello_is_said_again_until_it_is_answered():
 
 
 @pytest.mark.parametrize(
-    "board, told",
+    "board, message",
     [
         (FakeBoard(version=(2, 0)), f"the board speaks protocol 2.0, schema {SCHEMA:08x}; this host speaks 1.0"),
         (FakeBoard(schema=0xABC), "the board speaks protocol 1.0, schema 00000abc; this host speaks 1.0"),
     ],
 )
-def test_another_protocol_is_refused(board, told):
+def test_another_protocol_is_refused(board, message):
     bench = Bench(board)
     session = Session(bench.connect, bench.now)
     with pytest.raises(ValueError) as refusal:
         run(bench, session, 0.5)
-    assert str(refusal.value).startswith(told)
+    assert str(refusal.value).startswith(message)
     assert str(refusal.value).endswith("flash the firmware of this puckpilot")
     assert not session.port_is_open and not session.connected
     run(bench, session, 5.0)
@@ -92,12 +92,12 @@ def test_telemetry_is_kept_until_it_is_taken_and_what_is_missing_is_counted():
     run(bench, session, 1.0)
     times = [one.time for one in session.take_telemetry()]
     assert len(times) == pytest.approx(500, abs=1) and times == sorted(times)
-    assert session.take_telemetry() == [] and session.view.missing == 0
+    assert session.take_telemetry() == [] and session.telemetry_status.missing == 0
     board.telemetry_every = 8  # three of four are not sent
     run(bench, session, 1.0)
     board.telemetry_every = 2
     run(bench, session, 0.1)
-    assert session.view.missing == pytest.approx(375, abs=4)
+    assert session.telemetry_status.missing == pytest.approx(375, abs=4)
 
 
 def test_noise_on_the_line_is_counted_and_does_no_harm():
@@ -105,8 +105,8 @@ def test_noise_on_the_line_is_counted_and_does_no_harm():
     for k in range(200):
         bench.noise = bytes((k * 37 + j * 101) % 256 for j in range(k))
         run(bench, session, 0.004)
-    assert session.connected and session.tally.refused > 100 and session.resets == 0
-    assert session.view.missing < 200
+    assert session.connected and session.frame_counts.refused > 100 and session.resets == 0
+    assert session.telemetry_status.missing < 200
 
 
 def test_what_a_host_says_is_no_news_from_a_board():

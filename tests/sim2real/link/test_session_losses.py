@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import pytest
-from fake_board import ARM, ARMED, DISARM, FAULT, HELLO, IDLE, PING, TRAJ, UNHOMED, Bench, FakeBoard
-from reference_wire import frame
-from simulated_session import CONFIG_SENT, PLAN, met, run
 
-from sim2real.link.messages import Event
 from sim2real.link.session import Session
+from sim2real.link.wire.messages import Event
+from tests.sim2real.link.fake_board import ARM, ARMED, DISARM, FAULT, HELLO, IDLE, PING, TRAJ, UNHOMED, Bench, FakeBoard
+from tests.sim2real.link.reference_wire import frame
+from tests.sim2real.link.simulated_session import CONFIG_SENT, PLAN, met, run
 
 
 def test_a_lost_port_is_opened_again_and_nothing_is_sent_twice():
@@ -70,11 +70,11 @@ def test_a_quick_reconnection_disarms_too():
 
 
 def booted(board: FakeBoard) -> None:
-    board.told.append(frame(12, "IBI", 5, 0, 3))
+    board.outbox.append(frame(12, "IBI", 5, 0, 3))
 
 
 def forgot(board: FakeBoard) -> None:
-    board.told.append(frame(12, "IBI", 5, 3, 1 | 4 << 8))
+    board.outbox.append(frame(12, "IBI", 5, 3, 1 | 4 << 8))
 
 
 def nothing(board: FakeBoard) -> None:
@@ -123,7 +123,7 @@ def test_a_board_that_falls_silent_is_greeted_again():
     assert session.connected and session.resets == 0
 
 
-def test_a_port_that_cannot_be_opened_at_first_is_told_at_once():
+def test_a_port_that_cannot_be_opened_at_first_raises_at_once():
     bench = Bench(FakeBoard())
     bench.plugged = False
     with pytest.raises(OSError, match="nothing plugged in"):

@@ -6,7 +6,9 @@ import struct
 import zlib
 
 import pytest
-from fake_board import (
+
+from sim2real.link.wire.messages import Config, Traj
+from tests.sim2real.link.fake_board import (
     ARM,
     ARMED,
     CLEAR,
@@ -22,13 +24,11 @@ from fake_board import (
     UNHOMED,
     FakeBoard,
 )
-from reference_wire import SCHEMA
-from simulated_session import CONFIG_SENT, CONFIGURED, PLAN, met, run
-
-from sim2real.link.messages import Config, Traj
+from tests.sim2real.link.reference_wire import SCHEMA
+from tests.sim2real.link.simulated_session import CONFIG_SENT, CONFIGURED, PLAN, met, run
 
 
-def test_what_it_is_told_reaches_the_board():
+def test_orders_reach_the_board():
     bench, session, board = met()
     session.config(CONFIG_SENT)
     session.home(0.25, 0.5)
@@ -42,11 +42,11 @@ def test_what_it_is_told_reaches_the_board():
         tell()
         run(bench, session, 0.01)
         assert session.state == state
-    told = [(number, body) for number, body in board.heard if number not in (HELLO, PING)]
-    assert [number for number, _ in told] == [CONFIG, HOME, ARM, TRAJ, TRAJ, TRAJ, DISARM, ESTOP, CLEAR]
-    assert told[1][1] == struct.pack("<ff", 0.25, 0.5)
+    output = [(number, body) for number, body in board.heard if number not in (HELLO, PING)]
+    assert [number for number, _ in output] == [CONFIG, HOME, ARM, TRAJ, TRAJ, TRAJ, DISARM, ESTOP, CLEAR]
+    assert output[1][1] == struct.pack("<ff", 0.25, 0.5)
     plan = (1000, 50_000, 12.0, -6.5, 1, 2, 3, 4, 0.5, 0.25, -0.5, 0.125, 0.0, 2.0**-10)
-    assert [body for number, body in told if number == TRAJ] == [
+    assert [body for number, body in output if number == TRAJ] == [
         struct.pack("<III2f2I2I2f2f2f", number, *plan) for number in numbers
     ]
     assert numbers == [1, 2, 3] and board.damaged == 0
@@ -76,7 +76,7 @@ def test_arming_needs_to_know_how_the_board_stands():
     board.telemetry_every = 1 << 30
     bench, session, _ = met(board)
     assert session.connected and session.state is None and session.age is None
-    with pytest.raises(ValueError, match="cannot arm: the board has not yet said how it stands"):
+    with pytest.raises(ValueError, match="cannot arm: the board has not reported its state yet"):
         session.arm()
     run(bench, session, 0.01)
     assert board.count(ARM) == 0
@@ -109,12 +109,12 @@ def test_an_estop_is_repeated_until_it_is_seen_to_be_heard():
     assert session.take_notes() == ["no sign of a stop 0.5 s after an estop, which is repeated; cut the motors' supply"]
     board.mute = set()
     run(bench, session, 0.02)
-    told = board.count(ESTOP)
+    output = board.count(ESTOP)
     run(bench, session, 0.5)
-    assert session.state == FAULT and board.count(ESTOP) == told and session.take_notes() == []
+    assert session.state == FAULT and board.count(ESTOP) == output and session.take_notes() == []
     session.clear()
     run(bench, session, 0.05)
-    assert session.state == UNHOMED and board.count(ESTOP) == told
+    assert session.state == UNHOMED and board.count(ESTOP) == output
 
 
 def test_an_estop_that_is_heard_is_sent_once():

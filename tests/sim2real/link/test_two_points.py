@@ -7,13 +7,17 @@ import math
 import os
 import threading
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 import puckpilot
-from sim2real.link.two_points import Shafts, solve
+from sim2real.link.two_points import ShaftAngles, solve
+
+if TYPE_CHECKING:
+    from sim2real.emulate.gantry import Gantry
 
 WIDTH, CORNER = 1.0, (0.06, 0.055)
 
@@ -33,7 +37,7 @@ def test_the_radius_and_the_offsets_are_found(radius: float, one: float, other: 
     assert found.offset == pytest.approx((one, other), abs=1e-6) and found.sideways == pytest.approx(0.0, abs=1e-9)
 
 
-def test_a_jig_that_stands_otherwise_in_the_second_corner_is_told():
+def test_a_jig_that_stands_otherwise_in_the_second_corner_is_reported():
     right = angles(CORNER, 0.035, (0.0, 0.0))
     left = angles((CORNER[0] + 0.007, WIDTH - CORNER[1]), 0.035, (0.0, 0.0))
     assert solve(right, left, CORNER, WIDTH).sideways == pytest.approx(0.007)
@@ -48,68 +52,89 @@ def test_the_wrong_way_is_refused():
 
 
 def test_turns_are_counted_both_ways():
-    shafts, way = Shafts(), [0.0, 1.0, 2.5, 5.0, 7.9, 10.0, 7.5, 4.6, 2.0, -0.9, -3.7]
+    shafts, way = ShaftAngles(), [0.0, 1.0, 2.5, 5.0, 7.9, 10.0, 7.5, 4.6, 2.0, -0.9, -3.7]
     for angle in way:
         raw = round(angle / (2 * math.pi) * 16384) % 16384
         shafts.take((raw, (16384 - raw) % 16384))
     assert shafts.angles == pytest.approx((way[-1], -way[-1]), abs=1e-3)
 
 
+class Hand:
+    """Moves an emulated mallet from the right-hand corner to the left-hand one, in the robot's own time.
+
+    `presses` are the times [s] of Enter. The robot's clock is slower than ours where the machine is busy, so that a
+    press by our clock would come while the mallet is still on its way.
+    """
+
+    def __init__(self, gantry: Gantry) -> None:
+        self.ended = threading.Event()
+        self.presses: list[float] = []
+        self.stdin = -1  # descriptor that Enter is written to, once the command runs
+        self._gantry = gantry
+        self._began: float | None = None
+
+    def move(self, seconds: float) -> bool:
+        """Take the robot's clock [s]. Returns whether the robot goes on."""
+        if self.stdin < 0:
+            return not self.ended.is_set()
+        self._began = seconds if self._began is None else self._began
+        passed = seconds - self._began
+        while self.presses and passed >= self.presses[0]:
+            self.presses.pop(0)
+            os.write(self.stdin, b"\n")
+        self._gantry.axes[1].rest = CORNER[1] + min(max(passed - 3.0, 0.0), 1.0) * (WIDTH - 2.0 * CORNER[1])
+        return not self.ended.is_set()
+
+
 @pytest.fixture
 def robot(tmp_path: Path):
-    """An emulated robot whose mallet a hand moves from the right-hand corner to the left-hand one after a second."""
+    """The port of an emulated robot, and the hand that moves its mallet three seconds after the command begins."""
     pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
     from firmware import ELF
     from sim2real.emulate.gantry import Gantry
     from sim2real.emulate.machine import Machine
-    from sim2real.emulate.paced import serve, terminal
+    from sim2real.emulate.pseudo_terminal import serve, terminal
 
-    ended = threading.Event()
     machine = Machine(ELF)
-    gantry = Gantry(machine, place=CORNER, zero=(0.3, -4.0))
-
-    def hand(seconds: float) -> bool:
-        share = min(max(seconds - 2.0, 0.0), 1.0)
-        gantry.axes[1].rest = CORNER[1] + share * (WIDTH - 2.0 * CORNER[1])
-        return not ended.is_set()
-
+    hand = Hand(Gantry(machine, place=CORNER, zero=(0.3, -4.0)))
     with terminal(tmp_path / "board") as (descriptor, name):
-        thread = threading.Thread(target=serve, args=(machine, descriptor, hand))
+        thread = threading.Thread(target=serve, args=(machine, descriptor, hand.move))
         thread.start()
-        yield name
-        ended.set()
+        yield name, hand
+        hand.ended.set()
         thread.join()
 
 
-def call(robot: str, entered: list[float], monkeypatch: pytest.MonkeyPatch, *words: str) -> int:
-    """The command, with Enter pressed after so many seconds each."""
+def call(robot: tuple[str, Hand], presses: list[float], monkeypatch: pytest.MonkeyPatch, *words: str) -> int:
+    """The command, with Enter pressed at times [s] after its begin, by the robot's clock."""
+    port, hand = robot
     reads, writes = os.pipe()
-    for seconds in entered:
-        threading.Timer(seconds, os.write, (writes, b"\n")).start()
+    hand.presses, hand.stdin = presses, writes
     with os.fdopen(reads) as stdin:
         monkeypatch.setattr("sys.stdin", stdin)
-        code = puckpilot.main(["calibrate", "gantry", robot, *words])
+        code = puckpilot.main(["calibrate", "gantry", port, *words])
     os.close(writes)
     return code
 
 
+@pytest.mark.slow
 def test_the_command_finds_the_radius_of_an_emulated_gantry(
-    robot: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    robot: tuple[str, Hand], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):
     out = tmp_path / "gantry.toml"
     words = ["--jig", "0.0095", "0.0045", "--out", str(out), "--json"]
-    assert call(robot, [1.0, 9.0], monkeypatch, *words) == 0  # the hand is done after 3 s, or later on a busy machine
-    told = capsys.readouterr()
-    found = json.loads(told.out)
+    assert call(robot, [2.0, 5.0], monkeypatch, *words) == 0
+    output = capsys.readouterr()
+    found = json.loads(output.out)
     assert found["pulley_radius"] == pytest.approx(0.035306, abs=2e-6) and abs(found["sideways"]) < 1e-4
-    assert "right-hand corner" in told.err and "left-hand corner" in told.err
-    from sim2real.nominal import read_baseline
+    assert "right-hand corner" in output.err and "left-hand corner" in output.err
+    from sim2real.recording.table_parameters import read_baseline
 
     assert read_baseline(out)["pulley_radius"] == pytest.approx(0.035306, abs=2e-6)
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         (["--jig", "5", "5"], "--jig is 5 5; expected two distances"),
         (["--jig", "-0.1", "0"], "--jig is -0.1 0; expected two distances"),
@@ -117,18 +142,18 @@ def test_the_command_finds_the_radius_of_an_emulated_gantry(
         (["--out", "/tmp"], "--out is /tmp, a folder; expected a file"),
     ],
 )
-def test_what_cannot_be_is_told_before_anybody_moves_a_mallet(
-    words: list[str], told: str, capsys: pytest.CaptureFixture[str]
+def test_invalid_arguments_are_refused_before_the_mallet_is_moved(
+    words: list[str], message: str, capsys: pytest.CaptureFixture[str]
 ):
     assert puckpilot.main(["calibrate", "gantry", "/dev/none", *words]) == 2
     found = capsys.readouterr()
-    assert told in found.err and found.err.count("\n") == 1 and not found.out
+    assert message in found.err and found.err.count("\n") == 1 and not found.out
 
 
-def test_a_mallet_that_was_not_moved_is_told_in_one_line(
-    robot: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+def test_a_mallet_that_was_not_moved_is_reported_in_one_line(
+    robot: tuple[str, Hand], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):
-    assert call(robot, [0.6, 0.9], monkeypatch, "--out", str(tmp_path / "gantry.toml")) == 2
-    told = capsys.readouterr().err.splitlines()
-    assert told[-1].startswith("puckpilot calibrate gantry: both shafts together turned by 0.00 rad")
+    assert call(robot, [0.6, 2.0], monkeypatch, "--out", str(tmp_path / "gantry.toml")) == 2
+    output = capsys.readouterr().err.splitlines()
+    assert output[-1].startswith("puckpilot calibrate gantry: both shafts together turned by 0.00 rad")
     assert not (tmp_path / "gantry.toml").exists()

@@ -1,0 +1,59 @@
+"""GPIO ports of 16 pins, each floating, pulled, driven, or assigned to a peripheral."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import ClassVar
+
+from sim2real.emulate.peripherals.registers import Peripheral
+
+_PULLED = 8  # of a pin's four bits in CRL or CRH; outputs have one of the lower two set, alternate functions bit 3 too
+
+
+class GpioPort(Peripheral):
+    """GPIOA or GPIOB; `changed` is called after each write.
+
+    Masks with a bit for each pin: driven: outputs of ODR; alternate: outputs of a peripheral; high, low: level that ODR
+    gives by driving or pulling.
+    """
+
+    offsets = ("CRL", "CRH", "", "ODR", "BSRR", "BRR")
+    start: ClassVar[dict[str, int]] = {"CRL": 0x44444444, "CRH": 0x44444444}
+
+    def __init__(self, letter: str, base: int, changed: Callable[[], None]) -> None:
+        self.name, self.base, self._changed = f"GPIO{letter}", base, changed
+        super().__init__()
+
+    def reset(self) -> None:
+        """As after a reset: every pin floats."""
+        super().reset()
+        self._modes()
+        self._levels()
+
+    def set(self, register: str, value: int) -> None:
+        """See `Peripheral`."""
+        values = self.values
+        if register == "BSRR":
+            values["ODR"] = values["ODR"] & ~(value >> 16) | value & 0xFFFF
+        elif register == "BRR":
+            values["ODR"] &= ~value
+        else:
+            values[register] = value
+            self._modes()
+        self._levels()
+        self._changed()
+
+    def get(self, register: str) -> int:
+        """BSRR and BRR read as 0."""
+        return 0 if register in ("BSRR", "BRR") else self.values[register]
+
+    def _modes(self) -> None:
+        config = self.values["CRH"] << 32 | self.values["CRL"]
+        modes = [config >> 4 * pin & 15 for pin in range(16)]
+        self.driven = sum(1 << pin for pin, mode in enumerate(modes) if mode & 3 and not mode & 8)
+        self.alternate = sum(1 << pin for pin, mode in enumerate(modes) if mode & 3 and mode & 8)
+        self._pulled = sum(1 << pin for pin, mode in enumerate(modes) if mode == _PULLED)
+
+    def _levels(self) -> None:
+        held, levels = self.driven | self._pulled, self.values["ODR"]
+        self.high, self.low = held & levels, held & ~levels
