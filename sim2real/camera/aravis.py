@@ -1,7 +1,7 @@
-"""A GenICam camera (GigE Vision, USB3 Vision) by Aravis, the free library.
+"""A GenICam camera (GigE Vision, USB3 Vision) through the free library Aravis.
 
-It comes with the system: apt install gir1.2-aravis-0.8 python3-gi, and a Python that sees the system's packages. Tried
-with Aravis' own fake camera, `aravis:Fake_1`, not with one of glass and metal.
+The library is a system package: apt install gir1.2-aravis-0.8 python3-gi, with a Python that sees the system's
+packages. Tested with Aravis' own fake camera, `aravis:Fake_1`, not with a real one.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ from sim2real.camera.frame import CameraError, Frame
 from sim2real.camera.live import Live
 
 BUFFERS = 8
-PATIENCE = 100_000  # us that one wait for a picture lasts
+WAIT = 100_000  # us, longest wait for one picture
 NANO = 1e-9
 FAKE = "Fake_"
 
 
 class Aravis(Live):
-    """The camera `name`, as Aravis lists it; the first that is found if it is empty.
+    """The camera `name`, as Aravis lists it; the first one found if the name is empty.
 
-    exposure [s] is set, and the pixels to grey of 8 bits; all else, rate and gain among them, stays as the camera has
-    it. A camera stamps the beginning of the exposure (GenICam SFNC, ChunkTimestamp: at FrameStart); half of the
-    exposure is added.
+    It sets the exposure [s] and 8-bit grey pixels; everything else, such as rate and gain, stays as the camera has it.
+    A camera stamps the beginning of the exposure (GenICam SFNC, ChunkTimestamp: at FrameStart); half of the exposure is
+    added.
     """
 
     def __init__(self, name: str, exposure: float) -> None:
@@ -55,7 +55,7 @@ class Aravis(Live):
             raise CameraError(f"aravis:{self._name} cannot be opened ({reason}); arv-tool-0.8 lists cameras") from None
 
     def _grab(self) -> Frame | None:
-        buffer = self._stream.timeout_pop_buffer(PATIENCE)
+        buffer = self._stream.timeout_pop_buffer(WAIT)
         if buffer is None:
             return None
         now = time.perf_counter()
@@ -77,7 +77,7 @@ class Aravis(Live):
 
 
 def _libraries() -> tuple[Any, Any]:
-    """Aravis and GLib, whose errors it raises. CameraError where they are not installed."""
+    """Aravis and GLib, whose errors Aravis raises. Raises CameraError if they are not installed."""
     try:
         gi = importlib.import_module("gi")
         gi.require_version("Aravis", "0.8")

@@ -1,6 +1,6 @@
-"""A camera that OpenCV can open: a webcam, or whatever else the system knows as a video device.
+"""A camera that OpenCV can open: a webcam or any other video device of the system.
 
-Tried against a stand-in for cv2.VideoCapture alone: no camera was there when this was written.
+Tested only against a stand-in for cv2.VideoCapture, without a camera.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from sim2real.camera.live import Live
 
 
 class Device(Live):
-    """Video device `number`, its pictures turned grey.
+    """Video device `number`; its pictures are converted to grey.
 
-    OpenCV tells neither when a picture was exposed nor how many were lost. So `time` is when the picture arrived, late
-    by a delay that is not known (puckpilot diagnose finds it as camera_delay), and `sequence` counts arrivals.
+    OpenCV reports neither the time of exposure nor lost pictures. So `time` is the time of arrival, late by an unknown
+    delay (`puckpilot diagnose` estimates it as camera_delay), and `sequence` counts arrivals.
     """
 
     def __init__(self, number: int) -> None:
@@ -27,7 +27,7 @@ class Device(Live):
         self._count = 0
 
     def _open(self) -> None:
-        cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_ERROR)  # what it warns of is said below
+        cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_ERROR)  # its warnings are covered by the errors below
         self._capture = cv2.VideoCapture(self._number)
         if not self._capture.isOpened():
             raise CameraError(f"device:{self._number} cannot be opened; see that it is plugged in and not in use")

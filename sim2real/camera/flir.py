@@ -1,7 +1,7 @@
-"""A FLIR (Teledyne) camera by its maker's SDK, Spinnaker with PySpin.
+"""A FLIR (Teledyne) camera through its maker's SDK, Spinnaker with PySpin.
 
-Not tried with a camera, nor with the SDK, which is not free to pass on: written after its documentation, and run
-against a stand-in. Where Aravis finds the camera, `aravis:` does the same with what has been tried.
+Written after the documentation and tested only against a stand-in: neither a camera nor the SDK, which may not be
+redistributed, was available. If Aravis finds the camera, prefer `aravis:`, which was tested further.
 """
 
 from __future__ import annotations
@@ -16,16 +16,16 @@ import numpy as np
 from sim2real.camera.frame import CameraError, Frame
 from sim2real.camera.live import Live
 
-PATIENCE = 100  # ms that one wait for a picture lasts
+WAIT = 100  # ms, longest wait for one picture
 TIMED_OUT = -1011  # SPINNAKER_ERR_TIMEOUT
 NANO = 1e-9
 
 
 class Flir(Live):
-    """The camera with this serial number; the first that is found if it is empty.
+    """The camera with this serial number; the first one found if it is empty.
 
-    exposure [s] is set, and the pixels to grey of 8 bits; all else stays as the camera has it. The camera's stamp is
-    taken for the beginning of the exposure, half of which is added.
+    It sets the exposure [s] and 8-bit grey pixels; everything else stays as the camera has it. The camera's time stamp
+    is taken as the beginning of the exposure; half of the exposure is added.
     """
 
     def __init__(self, serial: str, exposure: float) -> None:
@@ -61,7 +61,7 @@ class Flir(Live):
 
     def _grab(self) -> Frame | None:
         try:
-            picture = self._camera.GetNextImage(PATIENCE)
+            picture = self._camera.GetNextImage(WAIT)
             now = time.perf_counter()
             try:
                 if picture.IsIncomplete():

@@ -1,4 +1,4 @@
-"""A folder of pictures, played back."""
+"""A folder of pictures as a played-back source."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from sim2real.camera.playback import Playback
 class Folder(Playback):
     """All pictures of a folder.
 
-    If every name ends in a number of its own, frame_0007.png, these are the frames' sequence numbers, and a gap is a
-    dropped frame; otherwise they are counted in the order of their names. Frame n was taken
-    at n / rate seconds (rate [Hz]).
+    If every file name ends in a different number, as frame_0007.png does, these are the frames' sequence numbers, and a
+    gap means dropped frames; otherwise the files are counted in the order of their names. Frame n gets the time
+    n / rate [s], with rate in Hz. Raises CameraError if there is no picture.
     """
 
     def __init__(self, path: Path, rate: float) -> None:

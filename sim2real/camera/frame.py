@@ -1,4 +1,4 @@
-"""A picture with its times, and what every source of them can do."""
+"""The interface of all cameras: a frame, and a source of frames."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ import numpy as np
 
 
 class CameraError(ValueError):
-    """A source that cannot be opened, or has failed. Its text is one line."""
+    """A source cannot be opened or has failed. The text is one line."""
 
 
 @dataclass(frozen=True)
 class Frame:
     """One picture.
 
-    image: grey, (rows, columns), uint8 where the source is sound (see `watch`); time: middle of the exposure by the
-    source's own clock [s]; host_time: when the host had it, by the host's clock (time.perf_counter) [s], or the same
-    as `time` where pictures are played back; sequence: the source's own count; dropped: frames between the one given
-    before and this one that the reader never saw, whether the source lost them or the reader was late.
+    image: grey levels (rows, columns), uint8 from a source that works (`frame_monitor.py` checks it); time: middle of
+    the exposure by the source's own clock [s]; host_time: of arrival by the host's clock (time.perf_counter) [s], or
+    `time` again in playback; sequence: the source's own count; dropped: number of frames since the last one that the
+    reader did not get, because the source lost them or the reader was late.
     """
 
     image: np.ndarray
@@ -31,7 +31,7 @@ class Frame:
 
 
 class Source(Protocol):
-    """Where frames come from. Opened by `with`.
+    """A source of frames, opened by `with`.
 
     >>> with open_source("aravis:") as source:
     ...     while not source.over:
@@ -40,19 +40,19 @@ class Source(Protocol):
 
     @property
     def over(self) -> bool:
-        """Whether no frame will follow: a played-back source is at its end."""
+        """Whether the source has ended: no frame will follow."""
         ...
 
     @property
     def total(self) -> int | None:
-        """How many frames there will have been, if that is known."""
+        """The total number of frames, None if unknown."""
         ...
 
     def newest(self, wait: float) -> Frame | None:
-        """The newest frame, if it was not given before; None if none comes for `wait` [s].
+        """The newest frame that was not returned before; None if none arrives within `wait` [s].
 
-        A live source forgets what was not asked for in time; one that is played back gives every frame in its turn,
-        as fast as asked. CameraError if the source has failed.
+        A live source discards frames that were not taken in time; a played-back source returns every frame in order.
+        Raises CameraError if the source has failed.
         """
         ...
 

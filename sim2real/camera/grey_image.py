@@ -1,4 +1,4 @@
-"""Grey pictures from files, whole or not at all."""
+"""Read grey pictures from files."""
 
 from __future__ import annotations
 
@@ -14,7 +14,8 @@ ENDINGS = (".png", ".bmp", ".tif", ".tiff", ".pgm", ".jpg", ".jpeg")
 
 
 def read_grey(path: Path) -> np.ndarray:
-    """The picture (rows, columns) uint8 of a file. CameraError if it is no whole picture, or not grey of 8 bits."""
+    """Read a picture uint8 (rows, columns). Raises CameraError, in one line, if the file is not a complete picture with
+    8-bit grey levels."""
     try:
         with Image.open(path) as image:
             if image.mode != "L":

@@ -1,4 +1,4 @@
-"""What live sources share: a thread that takes every picture from the camera and keeps the newest."""
+"""The base of live sources: a thread takes every picture from the camera and keeps the newest."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from sim2real.camera.frame import CameraError, Frame
 
 
 class Live(ABC):
-    """A camera that takes pictures whether they are asked for or not."""
+    """A source that runs at its own rate. A subclass opens the camera, grabs pictures, and closes it."""
 
     def __init__(self) -> None:
         self._came = threading.Condition()
@@ -24,27 +24,27 @@ class Live(ABC):
 
     @abstractmethod
     def _open(self) -> None:
-        """Open the camera and start it. CameraError if that cannot be."""
+        """Open the camera and start it. Raises CameraError if that fails."""
 
     @abstractmethod
     def _grab(self) -> Frame | None:
-        """Wait for the next picture, at most a fraction of a second; None if there was none, or it was damaged.
+        """Wait for the next picture, at most a fraction of a second; None if there was none or it was damaged.
 
-        Its sequence number tells of those that were lost before it. CameraError if the camera has failed.
+        Gaps in the sequence numbers count as dropped frames. Raises CameraError if the camera has failed.
         """
 
     @abstractmethod
     def _close(self) -> None:
-        """Let go of the camera, however far it was opened."""
+        """Release the camera, also if it was opened only in part."""
 
     @property
     def over(self) -> bool:
-        """See `Source.over`: never."""
+        """See `Source.over`; a live source never ends."""
         return False
 
     @property
     def total(self) -> None:
-        """See `Source.total`: nobody knows."""
+        """See `Source.total`; unknown."""
         return None
 
     def newest(self, wait: float) -> Frame | None:

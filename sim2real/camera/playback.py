@@ -1,4 +1,4 @@
-"""What sources that are played back share: frames in their turn, as fast as asked, and an end."""
+"""The base of played-back sources: every frame in order, as fast as asked, and an end."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from sim2real.camera.frame import CameraError, Frame
 
 
 class Playback:
-    """A source of frames that are there already. `frames`: in order, each with its own sequence number; `total`: how
-    many, if that is known."""
+    """A source of existing frames. frames: in order, each with a sequence number of its own; total: their number, None
+    if unknown."""
 
     def __init__(self, frames: Iterator[Frame], total: int | None = None) -> None:
         self._frames, self.total = frames, total
-        self._next = next(frames, None)  # so that what is wrong with the first shows at once
+        self._next = next(frames, None)  # so that an error in the first one is raised at once
         self._last: int | None = None
         self._failure: CameraError | None = None
 
@@ -35,7 +35,7 @@ class Playback:
             return None
         try:
             self._next = next(self._frames, None)
-        except CameraError as error:  # this frame is sound: the next call tells
+        except CameraError as error:  # this frame is valid; the next call raises the error
             self._failure = error
         dropped = 0 if self._last is None else frame.sequence - self._last - 1
         self._last = frame.sequence

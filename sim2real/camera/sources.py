@@ -1,4 +1,4 @@
-"""Sources of frames by a word, as users type it."""
+"""Open a source of frames by the name that a user types."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from sim2real.camera.frame import CameraError, Source
 
 RATE = 120.0  # Hz, of the real table's camera
 EXPOSURE = 100e-6  # s (report 2.2.1)
-TIMED = ("synthetic", "device", "aravis", "flir")  # what a name follows tells when its pictures were taken
-EXPOSED = ("synthetic", "aravis", "flir")  # what an exposure can be set for
+TIMED = ("synthetic", "device", "aravis", "flir")  # sources that time their pictures themselves
+EXPOSED = ("synthetic", "aravis", "flir")  # sources with a settable exposure
 KNOWN = "a folder of pictures, a video file, device:0, aravis:NAME, flir:SERIAL, synthetic or synthetic:RECORDING"
 
 
 def open_source(word: str, rate: float | None = None, exposure: float | None = None) -> Source:
-    """The source that `word` names, to be opened by `with`; KNOWN says which there are.
+    """The source that `word` names, one of KNOWN, to be opened by `with`.
 
-    rate [Hz]: of pictures in a folder and of rendered games, RATE if None, and of a video, for one that states another
-    than it was filmed with; exposure [s], EXPOSURE if None: of rendered pictures, and what aravis: and flir: set. Loads
-    only what the source needs. CameraError, or for a bad recording RecordingError, in one line.
+    rate: of the pictures in a folder and of rendered games [Hz], RATE if None, or of a video that states another rate
+    than it was filmed with; exposure: of rendered pictures, aravis: and flir: [s], EXPOSURE if None. Only the libraries
+    that the source needs are imported. Raises CameraError, or RecordingError for a bad recording, in one line.
     """
     if rate is not None and not 0.0 < rate < 1e5:
         raise CameraError(f"rate is {rate!r}; expected frames a second, say {RATE:g}")

@@ -1,4 +1,4 @@
-"""A video file, played back."""
+"""A video file as a played-back source."""
 
 from __future__ import annotations
 
@@ -11,14 +11,15 @@ import cv2
 from sim2real.camera.frame import CameraError, Frame
 from sim2real.camera.playback import Playback
 
-WHOLE = 0.99  # of the frames that a video states, which some containers do from its length
+WHOLE = 0.99  # least share of the stated frames; some containers derive their number from the duration
 
 
 class VideoFile(Playback):
-    """All frames of a video, as grey pictures, its first at 0 s.
+    """All frames of a video as grey pictures; the first is at 0 s.
 
-    They are timed by the rate that the video states, or by `rate` [Hz], if one is given: slow motion states the rate at
-    which it is shown. A lossy codec moves edges by parts of a pixel; a folder of .png files does not.
+    Their times follow from the rate that the video states, or from `rate` [Hz] if given: a slow-motion video states the
+    rate at which it is shown. A lossy codec shifts edges by fractions of a pixel; a folder of .png files does not.
+    Raises CameraError if the file is no readable video.
     """
 
     def __init__(self, path: Path, rate: float | None = None) -> None:

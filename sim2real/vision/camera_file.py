@@ -1,4 +1,4 @@
-"""camera.json: the camera's intrinsics, and what a calibration of the table must know beside them."""
+"""camera.json: the camera's intrinsics, and the sizes that a calibration of the table needs beside them."""
 
 from __future__ import annotations
 
@@ -9,24 +9,32 @@ from typing import Any
 
 import numpy as np
 
-from puckpilot_env.whole_file import write_text_whole
-from sim2real.vision.camera import Camera
+from puckpilot_env.files.whole_file import write_text_whole
+from sim2real.vision.camera import CameraModel
 from sim2real.vision.json_file import numbers, read_object
 from sim2real.vision.markers import dictionary_of
 
 DISTORTION = "distortion_k1_k2_p1_p2_k3"
-PIXELS, BENDS = (0.0, 1e6), (-1e3, 1e3)  # of K; of the distortion's coefficients, large only where rays are few
+# limits of K [pixels] and of the distortion's coefficients, which are large only where the field of view is narrow
+PIXELS, COEFFICIENTS = (0.0, 1e6), (-1e3, 1e3)
 SIZES = (16, 1e5)  # pixels
-SIDES, HEIGHTS, GOAL = (0.3, 5.0), (0.0, 0.03), 0.05  # m, of the table, of the puck's mark, of a goal at least
-FIELD = 3.0  # focal lengths: a picture's half diagonal is less, or K is no matrix of this camera
+SIDES, HEIGHTS, GOAL = (
+    (0.3, 5.0),
+    (0.0, 0.03),
+    0.05,
+)  # m: the table's sides, the puck mark's height, a goal's least width
+FIELD = 3.0  # focal lengths: the half diagonal of a picture is less, otherwise K is implausible
 
 
 @dataclass(frozen=True)
 class Setup:
-    """A camera over a table: its intrinsics, the dictionary of the markers round the table, the height of the puck's
-    mark above the surface, the table's length and width, and its goals' width if known [m]."""
+    """A camera over a table.
 
-    camera: Camera
+    camera: the intrinsics; dictionary: OpenCV's name of the markers' dictionary; puck_top: height of the puck's mark
+    above the surface [m]; length, width: of the playing surface [m]; goal_width: of the goals [m], None if unknown.
+    """
+
+    camera: CameraModel
     dictionary: str
     puck_top: float
     length: float
@@ -35,14 +43,14 @@ class Setup:
 
 
 def read_setup(path: Path) -> Setup:
-    """Read camera.json. ValueError, in one line, if something is missing or cannot be."""
+    """Read camera.json. Raises ValueError, in one line, if a value is missing or implausible."""
     found = read_object(path, "the camera's intrinsics as JSON, of puckpilot calibrate camera")
     return setup_of(path, found, found)
 
 
 def setup_of(path: Path, found: dict[str, Any], camera: dict[str, Any]) -> Setup:
-    """The setup of an object with what is filled in by hand, and of one that `camera_of` reads. ValueError, in one
-    line."""
+    """Parse a setup: the hand-filled values from the JSON object `found`, the intrinsics from `camera` (see
+    `camera_of`). `path` is named in errors. Raises ValueError, in one line, if a value is missing or implausible."""
     table = found.get("table")
     if not isinstance(table, dict):
         raise ValueError(f'{path}: "table" is {str(table)[:40]}; expected an object with length_m and width_m')
@@ -61,9 +69,10 @@ def setup_of(path: Path, found: dict[str, Any], camera: dict[str, Any]) -> Setup
     return Setup(camera_of(path, camera), dictionary, top, length, width, goal)
 
 
-def camera_of(path: Path, found: dict[str, Any]) -> Camera:
-    """The intrinsics of an object with K, the distortion and, if known, image_size_px. ValueError, in one line."""
-    k, bent = numbers(path, found, "K", (3, 3), PIXELS), numbers(path, found, DISTORTION, (5,), BENDS)
+def camera_of(path: Path, found: dict[str, Any]) -> CameraModel:
+    """Parse the intrinsics of a JSON object: K, the distortion and, if known, image_size_px. Raises ValueError, in one
+    line, if a value is missing or implausible."""
+    k, coefficients = numbers(path, found, "K", (3, 3), PIXELS), numbers(path, found, DISTORTION, (5,), COEFFICIENTS)
     plain = np.array([[k[0, 0], 0.0, k[0, 2]], [0.0, k[1, 1], k[1, 2]], [0.0, 0.0, 1.0]])
     middle = float(np.hypot(k[0, 2], k[1, 2]))
     if not np.array_equal(k, plain) or min(k[0, 0], k[1, 1]) * FIELD < middle:
@@ -72,25 +81,25 @@ def camera_of(path: Path, found: dict[str, Any]) -> Camera:
     if found.get("image_size_px") is not None:
         width, height = (int(one) for one in numbers(path, found, "image_size_px", (2,), SIZES))
         size = (width, height)
-    k1, k2, p1, p2, k3 = (float(one) for one in bent)
-    camera = Camera(float(k[0, 0]), float(k[1, 1]), float(k[0, 2]), float(k[1, 2]), (k1, k2, p1, p2, k3), size)
+    k1, k2, p1, p2, k3 = (float(one) for one in coefficients)
+    camera = CameraModel(float(k[0, 0]), float(k[1, 1]), float(k[0, 2]), float(k[1, 2]), (k1, k2, p1, p2, k3), size)
     if not _shows_its_middle(camera):
         raise ValueError(
-            f'{path}: "{DISTORTION}" is {bent.tolist()}, which folds the picture over well inside of it; expected a '
-            "lens, as calibrate camera found it"
+            f'{path}: "{DISTORTION}" is {coefficients.tolist()}, which folds the picture over well inside of it; '
+            "expected a lens, as calibrate camera found it"
         )
     return camera
 
 
-def _shows_its_middle(camera: Camera) -> bool:
-    """Whether every pixel half the way to the picture's corners looks somewhere."""
+def _shows_its_middle(camera: CameraModel) -> bool:
+    """Whether the distortion can be inverted at every pixel half the way to the picture's corners."""
     across, down = np.meshgrid(np.linspace(0.5, 1.5, 5) * camera.cx, np.linspace(0.5, 1.5, 5) * camera.cy)
     with np.errstate(over="ignore", invalid="ignore"):
         return bool(np.isfinite(camera.rays(np.stack([across.ravel(), down.ravel()], axis=1))).all())
 
 
-def camera_words(camera: Camera) -> dict[str, Any]:
-    """The intrinsics in the format's words, which `camera_of` reads."""
+def camera_fields(camera: CameraModel) -> dict[str, Any]:
+    """The intrinsics as a JSON object, which `camera_of` reads back."""
     return {
         "K": [[camera.fx, 0.0, camera.cx], [0.0, camera.fy, camera.cy], [0.0, 0.0, 1.0]],
         DISTORTION: list(camera.distortion),
@@ -98,13 +107,14 @@ def camera_words(camera: Camera) -> dict[str, Any]:
     }
 
 
-def write_camera(path: Path, camera: Camera, note: str) -> None:
-    """Write camera.json whole or not at all; what the table must tell is null, to be filled in."""
-    words = {
-        **camera_words(camera),
+def write_camera(path: Path, camera: CameraModel, note: str) -> None:
+    """Write camera.json atomically, with a `note` for a reader. The values that concern the table are null: the user
+    fills them in."""
+    fields = {
+        **camera_fields(camera),
         "aruco_dictionary": None,
         "puck_top_above_table_m": None,
         "table": {"length_m": None, "width_m": None, "goal_width_m": None},
         "note": note,
     }
-    write_text_whole(path, json.dumps(words, indent=1, allow_nan=False) + "\n")
+    write_text_whole(path, json.dumps(fields, indent=1, allow_nan=False) + "\n")

@@ -1,7 +1,7 @@
 """Corners of a marker from its edges: each edge is fitted as a blurred straight step, and neighbours are intersected.
 
-Detectors round the corners off and see them up to 0.9 px inside. Along an edge hundreds of pixels tell where it is, and
-away from the corners nothing is rounded. It is straight once the lens's distortion is taken out.
+Marker detectors find corners up to 0.9 px too far inside, because blur rounds them. Hundreds of pixels along an edge
+locate it, away from the rounded corners. An edge is straight in the picture once the lens distortion is removed.
 """
 
 from __future__ import annotations
@@ -10,43 +10,50 @@ import numpy as np
 from scipy.optimize import least_squares
 from scipy.special import ndtr
 
-from sim2real.vision.camera import Camera
+from sim2real.vision.camera import CameraModel
 
-INSIDE, OUTSIDE = 0.6, 0.5  # of a cell: how far from the edge pixels are used; beyond, bits and the margin's end begin
-ALONG = 0.85  # of half an edge: the ends are rounded
-BLUR = 1.0  # px, where the search begins
-CONTRAST = 8.0  # grey levels that an edge must have; the table's far end is dim
-MOST = 3.0  # px that an edge may be from where it was detected
-ROUNDS = 2  # of choosing pixels anew
-PIXELS = 12  # that an edge must have
-GREY = 8.0  # levels: larger errors, of glints and dirt, count less
+INSIDE, OUTSIDE = (
+    0.6,
+    0.5,
+)  # cells from the edge in which pixels are used; farther ones belong to bits or to the margin's end
+ALONG = 0.85  # share of each half edge that is used, since blur rounds the ends
+BLUR = 1.0  # px, initial guess
+CONTRAST = 8.0  # grey levels, least step of an edge; the table's far end is dim
+MOST = 3.0  # px, greatest distance of an edge from where it was detected
+ROUNDS = 2  # of choosing pixels and fitting
+PIXELS = 12  # least number on an edge
+GREY = 8.0  # grey levels, scale of the robust loss: larger residuals, of glints and dirt, count less
 
 
-def refine(image: np.ndarray, camera: Camera, corners: np.ndarray, cells: int) -> np.ndarray | None:
-    """Corners (4, 2) [pixels] of a marker of some cells a side, its black border included, near detected ones (4, 2),
-    in a smoothed image. None where an edge is not clearly seen."""
+def refine(image: np.ndarray, camera: CameraModel, corners: np.ndarray, cells: int) -> np.ndarray | None:
+    """Refine the detected corners (4, 2) [pixels] of a marker in a smoothed image (rows, columns).
+
+    cells: along a side of the marker, its black border included. Returns corners (4, 2) [pixels], or None if an edge is
+    not clear.
+    """
     for _ in range(ROUNDS):
-        straight = camera.straight(corners)
-        lines = [_line(image, camera, straight, k, cells) for k in range(4)]
+        undistorted = camera.undistort(corners)
+        lines = [_line(image, camera, undistorted, k, cells) for k in range(4)]
         found = [line for line in lines if line is not None]
         if len(found) < 4:
             return None
-        corners = camera.curved(np.array([_meeting(found[k - 1], found[k]) for k in range(4)]))
+        corners = camera.distort(np.array([_intersection(found[k - 1], found[k]) for k in range(4)]))
     return corners
 
 
 def _line(
-    image: np.ndarray, camera: Camera, corners: np.ndarray, k: int, cells: int
+    image: np.ndarray, camera: CameraModel, corners: np.ndarray, k: int, cells: int
 ) -> tuple[np.ndarray, np.ndarray] | None:
-    """A point and a direction, without distortion, of the edge from corner k to the next."""
+    """A point and a direction, in undistorted pixels, of the edge from corner k to the next; None if it is not
+    clear."""
     one, other = corners[k], corners[(k + 1) % 4]
     half = 0.5 * float(np.linalg.norm(other - one))
     middle, along = 0.5 * (one + other), 0.5 * (other - one) / half
     outward = np.array([along[1], -along[0]])
     outward = outward * np.sign((middle - corners.mean(axis=0)) @ outward)
     cell = 2.0 * float((middle - corners.mean(axis=0)) @ outward) / cells
-    columns, rows = _box(image, camera.curved(np.stack([one, other])), cell)
-    places = camera.straight(np.stack([columns, rows], axis=1).astype(float)) - middle
+    columns, rows = _box(image, camera.distort(np.stack([one, other])), cell)
+    places = camera.undistort(np.stack([columns, rows], axis=1).astype(float)) - middle
     position, depth = places @ along / half, places @ outward
     near = (np.abs(position) < ALONG) & (depth > -INSIDE * cell) & (depth < OUTSIDE * cell)
     if near.sum() < PIXELS:
@@ -59,7 +66,7 @@ def _line(
 
 
 def _box(image: np.ndarray, ends: np.ndarray, cell: float) -> tuple[np.ndarray, np.ndarray]:
-    """Columns and rows (n,) of the image round an edge with ends (2, 2)."""
+    """Columns and rows (n,) of the image round an edge with ends (2, 2); cell: of the marker [pixels]."""
     low = np.maximum(np.floor(ends.min(axis=0) - cell - 1.0), 0.0).astype(int)
     high = np.minimum(np.ceil(ends.max(axis=0) + cell + 1.0), np.array(image.shape[::-1]) - 1).astype(int)
     columns, rows = np.meshgrid(np.arange(low[0], high[0] + 1), np.arange(low[1], high[1] + 1))
@@ -67,8 +74,11 @@ def _box(image: np.ndarray, ends: np.ndarray, cell: float) -> tuple[np.ndarray, 
 
 
 def _step(position: np.ndarray, depth: np.ndarray, grey: np.ndarray) -> tuple[float, float] | None:
-    """Shift and turn [pixels] of the line on which a blurred step from dark to bright lies, in pixels (n,) at some
-    positions along it (-1 to 1) and depths across [pixels]. None if there is no such step near depth 0."""
+    """Fit a step from dark to bright, blurred by a normal distribution, to grey levels (n,).
+
+    position: of each pixel along the edge, -1 to 1; depth: across it [pixels]. Returns the edge's shift at the middle
+    and its further shift at the end [pixels]; None if there is no clear step near depth 0.
+    """
 
     def model(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         shift, turn, low, high, blur = x
@@ -93,7 +103,7 @@ def _step(position: np.ndarray, depth: np.ndarray, grey: np.ndarray) -> tuple[fl
     return (float(shift), float(turn)) if clear else None
 
 
-def _meeting(one: tuple[np.ndarray, np.ndarray], other: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
-    """Where two lines of a point and a direction meet."""
+def _intersection(one: tuple[np.ndarray, np.ndarray], other: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
+    """The intersection (2,) of two lines, each given by a point and a direction."""
     (p, d), (q, e) = one, other
     return p + np.linalg.solve(np.stack([d, -e], axis=1), q - p)[0] * d

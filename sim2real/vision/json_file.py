@@ -1,4 +1,4 @@
-"""JSON objects of the vision's files: read strictly, refused in one line."""
+"""Strict reading of the JSON files of calibrations, with errors of one line."""
 
 from __future__ import annotations
 
@@ -9,13 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from puckpilot_env import small_file
+from puckpilot_env.files import small_file
 
 MOST_BYTES = 1 << 26  # a calibration of a table holds every point's error
 
 
 def read_object(path: Path, what: str) -> dict[str, Any]:
-    """The object in a JSON file; `what` it should hold is said where it does not. ValueError, in one line."""
+    """Read a JSON object from a file. Raises ValueError, in one line with `what` was expected, if the file cannot be
+    read, is not a JSON object, or has a key twice."""
     twice: list[str] = []
 
     def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -40,7 +41,11 @@ def read_object(path: Path, what: str) -> dict[str, Any]:
 def numbers(
     path: Path, holder: dict[str, Any], key: str, shape: Sequence[int], within: tuple[float, float], unit: str = ""
 ) -> np.ndarray:
-    """The numbers of a shape under a key, all `within` two. ValueError, in one line, where they are not."""
+    """The numbers of a given shape under `key` of the object `holder`, as an array.
+
+    within: the least and the greatest that each may be; unit: for the error text. Raises ValueError, in one line, if
+    they are missing, of another shape, or out of range.
+    """
     low, high = within
     try:
         found = np.array(_plain(holder.get(key)), dtype=float)
@@ -57,7 +62,7 @@ def numbers(
 
 
 def _plain(found: Any) -> Any:
-    """What is made of lists and numbers alone. TypeError for a string or a truth value, which numpy would take."""
+    """Pass nested lists of numbers. Raises TypeError for strings and booleans, which numpy would convert."""
     if isinstance(found, list):
         return [_plain(one) for one in found]
     if isinstance(found, bool) or not isinstance(found, (int, float)):

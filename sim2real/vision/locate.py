@@ -1,4 +1,4 @@
-"""From pixels to the table: the ray of a pixel meets the surface at an object's height."""
+"""From pixels to the table: intersect the ray of a pixel with the surface at an object's height."""
 
 from __future__ import annotations
 
@@ -7,49 +7,59 @@ from dataclasses import dataclass
 import numpy as np
 
 from puckpilot_env.kernel import kernel
-from sim2real.vision.bend import Bend
-from sim2real.vision.camera import Camera
-from sim2real.vision.motion import moved, rotation
+from sim2real.vision.camera import CameraModel
+from sim2real.vision.coordinate_warp import CoordinateWarp
+from sim2real.vision.motion import apply_motion, rotation
 from sim2real.vision.surface import Surface
 
-CELL = 8  # px, of the report's grid
+CELL = 8  # px between the nodes of the lookup grid, as in the report
 
 
 @dataclass(frozen=True)
 class Locator:
-    """A camera at a known place (`motion` (6,), from the table's rigid frame to the camera's) over a known table."""
+    """A camera with a known pose over a known table.
 
-    camera: Camera
+    motion: (6,) rotation vector [rad] and shift [m] from the table's rigid frame to the camera's; surface and warp: of
+    the table.
+    """
+
+    camera: CameraModel
     motion: np.ndarray
     surface: Surface
-    bend: Bend
+    warp: CoordinateWarp
 
     def places(self, pixels: np.ndarray, height: float) -> np.ndarray:
-        """Where (n, 2) [m] on the table things are whose marks, at a height [m] above it, are seen at pixels (n, 2).
-        NaN where a pixel looks past the table's plane."""
-        return self.bend.measured(self._points(pixels, height)[:, :2])
+        """Places (n, 2) [m] on the table, in measured coordinates, of objects that are seen at pixels (n, 2).
+
+        height: of the visible mark above the surface [m]. NaN where a ray does not meet the surface.
+        """
+        return self.warp.measured(self._points(pixels, height)[:, :2])
 
     def pixels(self, places: np.ndarray, height: float) -> np.ndarray:
-        """The inverse of `places`."""
-        flat = self.bend.rigid(places)
+        """Pixels (n, 2) at which marks at a height [m] above places (n, 2) [m] are seen: the inverse of `places`."""
+        flat = self.warp.rigid(places)
         points = np.column_stack([flat, self.surface.height(flat) + height])
-        return self.camera.project(moved(self.motion, points)[0])[0]
+        return self.camera.project(apply_motion(self.motion, points)[0])[0]
 
     def distances(self, pixels: np.ndarray) -> np.ndarray:
-        """From the camera (n,) [m] to what is seen of the table's surface at pixels (n, 2); NaN past its plane."""
-        eye = -rotation(self.motion[:3]).T @ self.motion[3:]
-        return np.linalg.norm(self._points(pixels, 0.0) - eye, axis=1)
+        """Distances (n,) [m] from the camera to the table's surface along the rays of pixels (n, 2); NaN where a ray
+        does not meet it."""
+        origin = -rotation(self.motion[:3]).T @ self.motion[3:]
+        return np.linalg.norm(self._points(pixels, 0.0) - origin, axis=1)
 
     def _points(self, pixels: np.ndarray, height: float) -> np.ndarray:
-        """Points (n, 3) [m] of the rigid frame."""
+        """Points (n, 3) [m] of the rigid frame, at a height [m] above the surface, that are seen at pixels (n, 2)."""
         turn = rotation(self.motion[:3])
         rays = np.column_stack([self.camera.rays(pixels), np.ones(len(pixels))]) @ turn
         return self.surface.meet(-turn.T @ self.motion[3:], rays, height)
 
 
-class Grid:
-    """The fast path for one height [m] (report B.2.3): places are computed once for every eighth pixel of a picture of
-    some width and height, and bilinear between them, where the report takes the nearest cell's height."""
+class PlaceGrid:
+    """A lookup table of places for one height [m], the fast path (report B.2.3).
+
+    Places are computed once for every CELL-th pixel of a picture of `size` (width, height) and interpolated bilinearly,
+    where the report takes the height of the nearest cell.
+    """
 
     def __init__(self, locator: Locator, height: float, size: tuple[int, int]) -> None:
         wide, high = (-(-one // CELL) + 1 for one in size)
@@ -58,15 +68,16 @@ class Grid:
         self._places = locator.places(nodes, height).reshape(high, wide, 2)
 
     def places(self, pixels: np.ndarray) -> np.ndarray:
-        """Places (n, 2) [m] of pixels (n, 2); NaN out of the picture."""
+        """Places (n, 2) [m] of pixels (n, 2); NaN outside of the picture."""
         found = np.empty((len(pixels), 2))
-        _between(self._places, np.ascontiguousarray(pixels, float), found)
+        _interpolate(self._places, np.ascontiguousarray(pixels, float), found)
         return found
 
 
 @kernel
-def _between(nodes, pixels, found):
-    """Write into `found` (n, 2) what `nodes` (rows, columns, 2), CELL pixels apart, say at pixels (n, 2)."""
+def _interpolate(nodes, pixels, found):
+    """Interpolate `nodes` (rows, columns, 2), CELL pixels apart, at pixels (n, 2); write the result into `found` (n,
+    2)."""
     high, wide, _ = nodes.shape
     for i in range(pixels.shape[0]):
         u, v = pixels[i, 0] / CELL, pixels[i, 1] / CELL

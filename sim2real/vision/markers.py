@@ -1,22 +1,25 @@
-"""Markers in a photograph: found by OpenCV, their corners then taken from their edges."""
+"""ArUco markers in a photograph: OpenCV detects them, and their edges give the exact corners."""
 
 from __future__ import annotations
 
 import cv2
 import numpy as np
 
-from sim2real.vision.camera import Camera
+from sim2real.vision.camera import CameraModel
 from sim2real.vision.edges import refine
 from sim2real.vision.photograph import smoothed
 
-FEWEST = 3  # markers of a view
-FAINT = 2.0  # grey levels between ink and paper at the table's far end, as short as play exposes
+FEWEST = 3  # markers in a view at least
+FAINT = 2.0  # grey levels between ink and paper at the table's far end, at the short exposure of play
 BORDER = 2  # cells of a marker's black border, both sides together
 
 
-def find_markers(image: np.ndarray, camera: Camera, dictionary: str) -> dict[int, np.ndarray]:
-    """Corners (4, 2) [pixels] of the markers in a photograph (height, width) by their ids, clockwise from the marker's
-    own top left. ValueError, in one line, if fewer than three are clearly seen."""
+def find_markers(image: np.ndarray, camera: CameraModel, dictionary: str) -> dict[int, np.ndarray]:
+    """Find the markers of a dictionary in a photograph uint8 (rows, columns).
+
+    Returns, by the marker's id, corners (4, 2) [pixels], clockwise from the marker's own top left. Raises ValueError,
+    in one line, if fewer than three markers have clear edges.
+    """
     book = dictionary_of(dictionary)
     even = smoothed(image)
     coarse = np.rint(even).astype(np.uint8)
@@ -34,18 +37,18 @@ def find_markers(image: np.ndarray, camera: Camera, dictionary: str) -> dict[int
 
 
 def dictionary_of(name: str) -> cv2.aruco.Dictionary:
-    """OpenCV's dictionary of markers by its name, DICT_4X4_50 for example. ValueError if there is none."""
-    if name not in _names():
+    """OpenCV's dictionary of markers by its name, DICT_4X4_50 for example. Raises ValueError for an unknown name."""
+    if name not in _dictionary_names():
         raise ValueError(f"unknown dictionary of markers '{name}'; expected one of OpenCV's, DICT_4X4_50 for example")
     return cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, name))
 
 
-def _names() -> list[str]:
+def _dictionary_names() -> list[str]:
     return [name for name in dir(cv2.aruco) if name.startswith("DICT_")]
 
 
 def _detect(image: np.ndarray, book: cv2.aruco.Dictionary) -> dict[int, np.ndarray]:
-    """Rough corners (4, 2) by id; of an id that is seen twice, none, since nobody knows which is the table's."""
+    """Rough corners (4, 2) by id. An id that is seen twice is left out, because either could be the table's."""
     parameters = cv2.aruco.DetectorParameters()
     parameters.adaptiveThreshConstant = FAINT
     corners, ids, _ = cv2.aruco.ArucoDetector(book, parameters).detectMarkers(image)
@@ -55,8 +58,8 @@ def _detect(image: np.ndarray, book: cv2.aruco.Dictionary) -> dict[int, np.ndarr
 
 
 def _too_few(image: np.ndarray, dictionary: str, many: int) -> str:
-    """Why there are too few markers: perhaps they are of another dictionary."""
-    others = {name: len(_detect(image, dictionary_of(name))) for name in _names()}
+    """The error text for too few markers; it names another dictionary if more markers of that one are seen."""
+    others = {name: len(_detect(image, dictionary_of(name))) for name in _dictionary_names()}
     best = max(others, key=lambda name: others[name])
     said = f"{many} markers of {dictionary} are seen; expected {FEWEST} at least"
     if others[best] >= max(FEWEST, many + 1):

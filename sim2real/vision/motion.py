@@ -1,4 +1,4 @@
-"""Rigid motions: a rotation vector [rad] and a shift [m] in six numbers, with derivatives."""
+"""Rigid motions (SE(3)) as six numbers, a rotation vector [rad] and a shift [m], with derivatives."""
 
 from __future__ import annotations
 
@@ -6,22 +6,26 @@ import numpy as np
 
 
 def cross_matrix(vectors: np.ndarray) -> np.ndarray:
-    """Matrices (..., 3, 3) that multiply as the cross product with vectors (..., 3) does."""
+    """Skew-symmetric matrices (..., 3, 3) of vectors v (..., 3): their product with w is the cross product of v and
+    w."""
     x, y, z = np.moveaxis(vectors, -1, 0)
     o = np.zeros_like(x)
     return np.stack([o, -z, y, z, o, -x, -y, x, o], axis=-1).reshape(*vectors.shape[:-1], 3, 3)
 
 
 def rotation(vector: np.ndarray) -> np.ndarray:
-    """The matrix (3, 3) of a rotation vector (3,) (Rodrigues)."""
+    """The rotation matrix (3, 3) of a rotation vector (3,) [rad], by Rodrigues' formula."""
     a, b, _ = _series(float(np.linalg.norm(vector)))
     k = cross_matrix(vector)
     return np.eye(3) + a * k + b * k @ k
 
 
-def moved(motion: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Points (n, 3) after a motion (6,): rotated, then shifted; the derivatives (n, 3, 6) by the motion, and the
-    rotation (3, 3), which is the derivative by the points."""
+def apply_motion(motion: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Rotate, then shift points (n, 3) [m] by a motion (6,).
+
+    Returns the points (n, 3) [m], their derivatives (n, 3, 6) by the motion, and the rotation matrix (3, 3), which is
+    the derivative by the points.
+    """
     turn = rotation(motion[:3])
     _, b, c = _series(float(np.linalg.norm(motion[:3])))
     k = cross_matrix(motion[:3])
@@ -32,7 +36,7 @@ def moved(motion: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 
 def _series(angle: float) -> tuple[float, float, float]:
-    """sin(t)/t, (1 - cos(t))/t^2 and (t - sin(t))/t^3."""
+    """sin(t)/t, (1 - cos(t))/t^2 and (t - sin(t))/t^3 of an angle t [rad], by Taylor series where it is small."""
     if angle < 1e-3:
         return 1.0 - angle**2 / 6.0, 0.5 - angle**2 / 24.0, 1.0 / 6.0 - angle**2 / 120.0
     return (

@@ -1,4 +1,4 @@
-"""Photographs: of the camera's size, and even where they are raw mosaics."""
+"""Checks and smoothing of a photograph before markers are searched in it."""
 
 from __future__ import annotations
 
@@ -7,13 +7,14 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from sim2real.vision.camera import Camera
+from sim2real.vision.camera import CameraModel
 
-SHIFT = 0.1  # of the picture: how far a principal point lies from its middle at most
+SHIFT = 0.1  # of the picture's size: greatest distance of a principal point from the middle
 
 
-def check_size(name: Path | str, image: np.ndarray, camera: Camera) -> None:
-    """ValueError, in one line, if a photograph (height, width) cannot be of this camera."""
+def check_size(name: Path | str, image: np.ndarray, camera: CameraModel) -> None:
+    """Raise ValueError, in one line, if the size of a photograph (rows, columns) does not fit the camera's
+    calibration."""
     height, width = image.shape
     if camera.size is not None:
         if (width, height) != camera.size:
@@ -29,6 +30,9 @@ def check_size(name: Path | str, image: np.ndarray, camera: Camera) -> None:
 
 
 def smoothed(image: np.ndarray) -> np.ndarray:
-    """The picture (height, width) as floats, lightly blurred so that a colour sensor's raw mosaic, of which every
-    fourth pixel may be darker, is even: each of the four has the same weight everywhere, and edges stay in place."""
+    """The picture as float64 (rows, columns), lightly blurred with the kernel (1, 2, 1)/4 along each axis.
+
+    In the raw mosaic of a colour sensor the four kinds of pixels have other levels; here each of them has the same
+    weight everywhere, and edges stay in place.
+    """
     return cv2.sepFilter2D(image, cv2.CV_64F, np.array([0.25, 0.5, 0.25]), np.array([0.25, 0.5, 0.25]))

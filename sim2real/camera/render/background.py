@@ -1,4 +1,4 @@
-"""The picture of what stands still: floor, table, lines, walls, markers and glints, drawn once."""
+"""The static background: floor, table, lines, walls, markers and glints, drawn once."""
 
 from __future__ import annotations
 
@@ -9,23 +9,24 @@ from sim2real.camera.render.box import Box
 from sim2real.camera.render.coverage import cut
 from sim2real.camera.render.paint import Shape, paint
 from sim2real.camera.render.table import Glint, Marker, Table
-from sim2real.camera.render.view import View
+from sim2real.camera.render.view import CameraView
 
 LINE_WIDTH = 0.01  # m
 CIRCLE = 0.12  # m, radius of the circle on the middle line
 CELLS = 6  # along a marker's side, its black border among them
-STEP = 0.02  # m between corners of straight edges: so far apart, neither lens nor surface bend them visibly
+STEP = 0.02  # m, longest piece of a straight edge: in a shorter one the curvature by lens and surface is invisible
 SIDES = ((1, 0, 0), (0, 1, 0), (-1, 0, 1), (0, -1, 1))  # a wall's normal, x and y, and whether it is at the far end
 
 
 class Background:
-    """Grey levels of the empty table, without blur and noise, all float32 (rows, columns).
+    """The empty table without blur and noise.
 
-    light: the whole picture. Walls that the camera sees from outside hide what lies behind them: `hiding` is their
-    share of each pixel, and None where the camera stands over the table and there are none.
+    box: all pixels; light: grey levels float32 (rows, columns); hiding: share of each pixel, float32 (rows, columns),
+    that is covered by walls which the camera sees from outside and which hide what lies behind them, None if there are
+    none.
     """
 
-    def __init__(self, table: Table, view: View) -> None:
+    def __init__(self, table: Table, view: CameraView) -> None:
         self._table, self._view = table, view
         columns, rows = view.size
         self.box = Box(0, 0, rows, columns)
@@ -66,7 +67,7 @@ class Background:
             self._paint(top, table.levels.rail)
 
     def _outside(self, side: tuple[int, int, int], size: np.ndarray) -> bool:
-        """Whether the camera stands behind a wall."""
+        """Whether the camera stands outside of a wall."""
         x, y, far = side
         return bool((self._view.place[:2] - far * size) @ (x, y) < 0.0)
 
@@ -76,7 +77,7 @@ class Background:
         paint(self.hiding, self.box, Shape(self._view.project(top), 1.0))
 
     def _draw_marker(self, marker: Marker) -> None:
-        """White paper one cell wider than the marker, its black square, and the white cells in it."""
+        """Draw white paper one cell wider than the marker, its black square, and the white cells in it."""
         levels = self._table.levels
         dictionary = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50)
         cells = cv2.aruco.generateImageMarker(dictionary, marker.number, CELLS)
@@ -94,8 +95,8 @@ class Background:
         paint(self.light, self.box, Shape(self._view.project(corners), level))
 
 
-def glint_shape(glint: Glint, table: Table, view: View) -> Shape:
-    """A glint as it is seen. It mirrors the lamp, so that distance does not make it darker."""
+def glint_shape(glint: Glint, table: Table, view: CameraView) -> Shape:
+    """The shape of a glint in the picture. It mirrors the lamp, so its level does not fall with the distance."""
     middle = np.array([glint.x, glint.y])
     circle = table.surface.disc(glint.x, glint.y, 1.0)[:, :2] - middle
     rim = table.surface.on(middle + circle * (glint.half_x, glint.half_y), glint.above)
@@ -116,7 +117,7 @@ def _wall(side: tuple[int, int, int], size: np.ndarray, out: float) -> np.ndarra
 
 
 def _cell(marker: Marker, row: int, column: int, cells: int) -> np.ndarray:
-    """Corners (n, 3) [m] of a square of so many cells."""
+    """Corners (n, 3) [m] of a square of `cells` by `cells` cells whose first cell is at this row and column."""
     corner, right, _, down = marker.corners
     across, along = (right - corner) / CELLS, (down - corner) / CELLS
     first = corner + column * across + row * along

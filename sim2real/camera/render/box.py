@@ -31,7 +31,7 @@ class Box(NamedTuple):
 
     @property
     def pixels(self) -> int:
-        """How many it holds."""
+        """The number of pixels."""
         rows, columns = self.shape
         return rows * columns
 
@@ -41,7 +41,7 @@ class Box(NamedTuple):
         return self.bottom <= self.top or self.right <= self.left
 
     def common(self, other: Box) -> Box:
-        """The pixels of both."""
+        """The intersection of two boxes."""
         return Box(
             max(self.top, other.top),
             max(self.left, other.left),
@@ -59,11 +59,11 @@ class Box(NamedTuple):
         )
 
     def wider(self, margin: int) -> Box:
-        """With so many pixels more on each side."""
+        """The box enlarged by so many pixels on each side."""
         return Box(self.top - margin, self.left - margin, self.bottom + margin, self.right + margin)
 
     def within(self, other: Box) -> tuple[slice, slice]:
-        """Where its pixels are in a picture of `other`, which holds them all."""
+        """The slices (rows, columns) of this box in a picture of `other`, which contains it."""
         return (
             slice(self.top - other.top, self.bottom - other.top),
             slice(self.left - other.left, self.right - other.left),

@@ -1,4 +1,4 @@
-"""How much of each pixel an outline covers, exactly: edges are anti-aliased by area, not by samples."""
+"""The exact share of each pixel that an outline covers: anti-aliasing by area instead of by samples."""
 
 from __future__ import annotations
 
@@ -8,12 +8,13 @@ from sim2real.camera.render.box import Box
 
 
 def coverage(outline: np.ndarray, box: Box) -> np.ndarray:
-    """Share, 0 to 1, of each pixel of `box` inside the polygon `outline` (n, 2), u and v of its corners [pixels].
+    """The share (rows, columns), 0 to 1, of each pixel of `box` inside the polygon `outline` (n, 2), u and v of its
+    corners [pixels].
 
-    The centre of the first pixel is at (0, 0), as in OpenCV, so that pixel i reaches from i - 0.5 to i + 0.5. The
-    polygon must not cross itself. By Green's theorem, edge by edge: a piece of an edge that lies in one pixel covers
-    what is on its right in this pixel, and its height in all pixels further right in this row; a running sum along
-    the rows adds those up. What is cut off by the box is cut exactly.
+    The centre of the first pixel is at (0, 0), as in OpenCV, so pixel i reaches from i - 0.5 to i + 0.5. The polygon
+    must not cross itself. By Green's theorem, edge by edge: a piece of an edge within one pixel contributes the area on
+    its right in this pixel, and its height to all pixels further right in the row; a cumulative sum along the rows adds
+    these up. A polygon that extends beyond the box is clipped exactly.
     """
     rows, columns = box.shape
     start, end = _in_one_pixel(outline - np.array([box.left - 0.5, box.top - 0.5]))
@@ -34,8 +35,8 @@ def coverage(outline: np.ndarray, box: Box) -> np.ndarray:
 
 
 def cut(corners: np.ndarray, longest: float) -> tuple[np.ndarray, np.ndarray]:
-    """The edges of the polygon `corners` (n, k) in equal pieces no longer than `longest`: where each piece starts
-    (m, k), and the step (m, k) to its end."""
+    """Divide the edges of the polygon `corners` (n, k) into equal pieces no longer than `longest`: the start (m, k) of
+    each piece, and the step (m, k) to its end."""
     edge = np.roll(corners, -1, axis=0) - corners
     pieces = np.maximum(np.ceil(np.sqrt((edge**2).sum(axis=1)) / longest), 1.0).astype(np.intp)
     step = np.repeat(edge / pieces[:, None], pieces, axis=0)
@@ -44,7 +45,7 @@ def cut(corners: np.ndarray, longest: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _in_one_pixel(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The polygon's edges cut at the pixels' borders, whole numbers here: starts (m, 2) and ends (m, 2)."""
+    """Cut the polygon's edges at the pixels' borders, which are whole numbers here: starts (m, 2) and ends (m, 2)."""
     start, step = cut(corners, 1.0)  # crosses at most one border each way
     first, last = np.floor(start), np.floor(start + step)
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -1,4 +1,4 @@
-"""A renderer: the picture that a camera would take of the table at a moment."""
+"""The renderer: the picture that a camera would take of the table in a given state."""
 
 from __future__ import annotations
 
@@ -8,61 +8,62 @@ from dataclasses import replace
 import numpy as np
 
 from sim2real.camera.render.background import Background
-from sim2real.camera.render.bodies import Drawn, draw
+from sim2real.camera.render.bodies import BodyShapes, draw
 from sim2real.camera.render.box import Box
-from sim2real.camera.render.moment import Moment
 from sim2real.camera.render.paint import Shape, paint
-from sim2real.camera.render.sensor import Noise, Sensor
+from sim2real.camera.render.scene_state import SceneState
+from sim2real.camera.render.sensor import PixelNoise, Sensor
 from sim2real.camera.render.table import Table
-from sim2real.camera.render.view import View
+from sim2real.camera.render.view import CameraView
 
-PER_PIXEL = 4  # instants at which something that moves by one pixel during the exposure is drawn
-EMPTIES = 8  # pictures of the empty table that take turns where nothing moves: their noise repeats
+PER_PIXEL = 4  # instants per pixel of motion during the exposure
+EMPTIES = 8  # pictures of the empty table, used in turn where nothing moves, so that their noise repeats
 
 
 class Renderer:
-    """Pictures of `table` in `view`. The same seed, moment and number always give the same picture.
+    """Renders pictures of a table in a view. The same seed, state and number always give the same picture.
 
-    >>> renderer = Renderer(table, View.like_the_real_one(table.length, table.width))
-    >>> image = renderer.picture(Moment(puck=Motion(0.7, 0.4, vx=3.0)), number=17)
+    >>> renderer = Renderer(table, CameraView.like_the_real_one(table.length, table.width))
+    >>> image = renderer.picture(SceneState(puck=BodyState(0.7, 0.4, vx=3.0)), number=17)
 
-    The outline of whatever moves is projected with OpenCV and covers pixels by exact area; the puck's edge is where it
-    should be to about 1e-3 pixels, which is 2 micrometres of the table. Only what moves is drawn anew.
+    Outlines are projected with OpenCV and cover pixels by exact area: the puck's edge is exact to about 1e-3 pixels,
+    which is 2 micrometres on the table. Only the parts in which something moves are drawn anew.
     """
 
-    def __init__(self, table: Table, view: View, sensor: Sensor | None = None, seed: int = 0) -> None:
+    def __init__(self, table: Table, view: CameraView, sensor: Sensor | None = None, seed: int = 0) -> None:
         self.table, self.view = table, view
         self.sensor = sensor or Sensor()
         self._still = Background(table, view)
         self.box = self._still.box
-        self._noise = Noise(self.box, seed)
+        self._noise = PixelNoise(self.box, seed)
         self._blurred = self.sensor.spread(self._still.light)
         self._empties: dict[int, np.ndarray] = {}
 
-    def picture(self, moment: Moment, number: int = 0, box: Box | None = None) -> np.ndarray:
-        """The picture uint8, (rows, columns) of `box` or of the whole frame; `number` chooses its noise."""
+    def picture(self, state: SceneState, number: int = 0, box: Box | None = None) -> np.ndarray:
+        """Render a picture uint8 (rows, columns) of `box`, or of the whole frame if None; `number` selects its
+        noise."""
         box = self.box if box is None else box.common(self.box)
         image = self._empty(number % EMPTIES)[box.within(self.box)].copy()
-        instants = self._instants(moment)
+        instants = self._instants(state)
         for part in self._changed(instants, box):
             light = self._light(instants, part)
             image[part.within(box)] = self.sensor.levels(light, self._noise.of(number, part))
         return image
 
-    def light(self, moment: Moment, box: Box | None = None) -> np.ndarray:
-        """The same before noise and rounding, in grey levels without limit: float64 (rows, columns)."""
+    def light(self, state: SceneState, box: Box | None = None) -> np.ndarray:
+        """The picture before noise, rounding and saturation: grey levels float64 (rows, columns)."""
         box = self.box if box is None else box.common(self.box)
         light = self._blurred[box.within(self.box)].astype(float)
-        instants = self._instants(moment)
+        instants = self._instants(state)
         for part in self._changed(instants, box):
             light[part.within(box)] = self._light(instants, part)
         return light
 
-    def box_of(self, moment: Moment, margin: int = 20) -> Box:
-        """The pixels round the puck, where there is one: a region of interest."""
-        if moment.puck is None:
-            raise ValueError("the moment has no puck; give one that has, or take the whole frame")
-        (puck,) = draw(Moment(puck=moment.puck), self.table, self.view).low
+    def box_of(self, state: SceneState, margin: int = 20) -> Box:
+        """The box of the puck with a margin [pixels]. Raises ValueError for a state without a puck."""
+        if state.puck is None:
+            raise ValueError("the state has no puck; give one that has, or take the whole frame")
+        (puck,) = draw(SceneState(puck=state.puck), self.table, self.view).low
         return Box.around(puck.outline).wider(margin).common(self.box)
 
     def _empty(self, kind: int) -> np.ndarray:
@@ -71,16 +72,16 @@ class Renderer:
             self._empties[kind] = self.sensor.levels(self._blurred, self._noise.of(kind, self.box))
         return self._empties[kind]
 
-    def _instants(self, moment: Moment) -> list[Drawn]:
-        """What moves, at evenly spread instants of the exposure: as many as its motion asks for."""
-        speed = max((math.hypot(mover.vx, mover.vy) for mover in moment.movers), default=0.0)
+    def _instants(self, state: SceneState) -> list[BodyShapes]:
+        """The bodies at evenly spread instants of the exposure, more of them for faster motion."""
+        speed = max((math.hypot(body.vx, body.vy) for body in state.bodies), default=0.0)
         pixels = speed * self.sensor.exposure * self.view.matrix[0, 0] / self.view.place[2]  # at most, nearly
         count = max(math.ceil(PER_PIXEL * pixels), 1)
         times = ((np.arange(count) + 0.5) / count - 0.5) * self.sensor.exposure
-        return [draw(_later(moment, float(time)), self.table, self.view) for time in times]
+        return [draw(_later(state, float(time)), self.table, self.view) for time in times]
 
-    def _changed(self, instants: list[Drawn], box: Box) -> list[Box]:
-        """Parts of `box` in which something moves. Where they overlap, each shows all that is there."""
+    def _changed(self, instants: list[BodyShapes], box: Box) -> list[Box]:
+        """The parts of `box` in which something moves; near ones are joined if that saves pixels."""
         parts: list[Box] = []
         for same in zip(*([*drawn.low, *drawn.high] for drawn in instants), strict=True):
             around = Box.around(np.concatenate([shape.outline for shape in same]))
@@ -91,14 +92,14 @@ class Renderer:
             parts.append(part)
         return [part for part in parts if not part.empty]
 
-    def _light(self, instants: list[Drawn], box: Box) -> np.ndarray:
-        """Blurred light float64 in `box`, averaged over the exposure."""
+    def _light(self, instants: list[BodyShapes], box: Box) -> np.ndarray:
+        """Blurred light float64 (rows, columns) in `box`, averaged over the exposure."""
         wide = box.wider(self.sensor.reach).common(self.box)
         mean = np.mean([self._sharp(drawn, wide) for drawn in instants], axis=0)
         return self.sensor.spread(mean)[box.within(wide)]
 
-    def _sharp(self, drawn: Drawn, box: Box) -> np.ndarray:
-        """Light float64 at an instant, without blur."""
+    def _sharp(self, drawn: BodyShapes, box: Box) -> np.ndarray:
+        """Light float64 (rows, columns) in `box` at one instant, without blur."""
         still = self._still.light[box.within(self.box)]
         light = still.astype(float)
         _paint_all(light, box, drawn.low)
@@ -113,6 +114,6 @@ def _paint_all(light: np.ndarray, box: Box, shapes: list[Shape]) -> None:
         paint(light, box, shape)
 
 
-def _later(moment: Moment, time: float) -> Moment:
-    movers = {name: getattr(moment, name) for name in ("puck", "opponent", "mallet")}
-    return replace(moment, **{name: mover.after(time) for name, mover in movers.items() if mover})
+def _later(state: SceneState, time: float) -> SceneState:
+    bodies = {name: getattr(state, name) for name in ("puck", "opponent", "mallet")}
+    return replace(state, **{name: body.after(time) for name, body in bodies.items() if body})

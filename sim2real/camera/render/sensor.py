@@ -1,4 +1,4 @@
-"""What lens and sensor make of light: blur, noise, whole grey levels."""
+"""The lens and the sensor: blur, noise and rounding to grey levels."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ import numpy as np
 
 from sim2real.camera.render.box import Box
 
-SHIFTS = 256  # rows and columns by which the noise of one picture is shifted against another's
+SHIFTS = 256  # rows and columns by which the noise field is shifted between pictures
 
 
 @dataclass(frozen=True)
 class Sensor:
-    """exposure [s]; blur: standard deviation of the lens's spread [pixels]; read_noise: standard deviation in the dark
-    [grey levels]; shot_noise: variance that each grey level of light adds [grey levels].
+    """The parameters of lens and sensor.
 
-    Blur and noise are those of the real table's photographs: an edge rises over two pixels, and a level of 55 scatters
-    by 0.85.
+    exposure: [s]; blur: standard deviation of the point spread function [pixels]; read_noise: standard deviation in the
+    dark [grey levels]; shot_noise: variance per grey level of light [grey levels]. Blur and noise match the real
+    table's photographs: an edge rises over two pixels, and a level of 55 has a standard deviation of 0.85.
     """
 
     exposure: float = 100e-6
@@ -29,27 +29,28 @@ class Sensor:
 
     @property
     def reach(self) -> int:
-        """How far [pixels] light is spread."""
+        """The radius [pixels] of the point spread function."""
         return math.ceil(4.0 * self.blur)
 
     def spread(self, light: np.ndarray) -> np.ndarray:
-        """Light (rows, columns) as the lens spreads it; exact where it is `reach` pixels from the border."""
+        """Blur light (rows, columns); exact at `reach` pixels and more from the border."""
         if not self.blur:
             return light
         side = 2 * self.reach + 1
         return cv2.GaussianBlur(light, (side, side), self.blur, borderType=cv2.BORDER_REPLICATE)
 
     def levels(self, light: np.ndarray, noise: np.ndarray) -> np.ndarray:
-        """Grey levels (rows, columns) uint8 of light and as much standard normal noise; above 255 it is saturated."""
+        """Grey levels uint8 (rows, columns) from light and standard normal noise, both (rows, columns); saturated at
+        255."""
         deviation = np.sqrt(self.read_noise**2 + self.shot_noise * np.maximum(light, 0.0))
         return np.clip(np.rint(light + deviation * noise), 0, 255).astype(np.uint8)
 
 
-class Noise:
-    """Standard normal noise for the pixels of any box of any picture: the same for the same seed, number and pixel.
+class PixelNoise:
+    """Standard normal noise for the pixels of any box of any picture, reproducible by seed, number and pixel.
 
-    One large field is drawn, and each picture takes it shifted by another of SHIFTS^2 steps, which is far faster than
-    drawing anew and as good where a picture is compared with the few thousand next ones.
+    One large field is drawn, and each picture uses it with one of SHIFTS^2 shifts. That is much faster than new draws
+    and as good for comparisons among a few thousand pictures.
     """
 
     def __init__(self, box: Box, seed: int) -> None:

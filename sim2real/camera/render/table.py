@@ -1,4 +1,4 @@
-"""What stands still: the table's warped surface, its walls, its lines, the markers round it, and how bright all is."""
+"""The rendered table: its curved surface, walls, lines, the markers round it, and all grey levels."""
 
 from __future__ import annotations
 
@@ -6,25 +6,29 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-ROUND = 256  # corners of a circle's outline
-STANDARD_RING, LOW_RING = 0.090, 0.040  # m, height of the opponent's ring on either attachment; the report has neither
+ROUND = 256  # corners of the polygon for a circle
+STANDARD_RING, LOW_RING = (
+    0.090,
+    0.040,
+)  # m, heights of the opponent's ring on the two attachments; the report has neither
 
 
 @dataclass(frozen=True)
-class Surface:
+class RenderedSurface:
     """The table's height z = a0 + a1 x + a2 y + a3 x^2 + a4 x y + a5 y^2 [m] (report eq. 15); flat by default."""
 
     coefficients: tuple[float, float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
     def height(self, x: np.ndarray | float, y: np.ndarray | float) -> np.ndarray | float:
-        """Heights at x, y [m]."""
+        """Heights [m] at x, y [m]."""
         a0, a1, a2, a3, a4, a5 = self.coefficients
         return a0 + x * (a1 + a3 * x + a4 * y) + y * (a2 + a5 * y)
 
     def disc(self, x: float, y: float, radius: float, above: float = 0.0) -> np.ndarray:
-        """The rim (ROUND, 3) of a flat disc, tangent to the surface, whose centre is `above` over it at x, y.
+        """The rim (ROUND, 3) [m] of a flat disc that is parallel to the surface, with its centre `above` it at x, y
+        [m].
 
-        As a polygon it has the circle's area: its edges are off by less than 3 parts in 100,000 of the radius.
+        The polygon has the circle's area; its edges differ from the circle by less than 3e-5 of the radius.
         """
         _, a1, a2, a3, a4, a5 = self.coefficients
         angle = 2.0 * np.pi / ROUND
@@ -34,7 +38,7 @@ class Surface:
         return np.stack([x + across, y + along, z], axis=1)
 
     def on(self, corners: np.ndarray, above: float = 0.0) -> np.ndarray:
-        """Points (n, 3) at x, y (n, 2), `above` over the surface [m]."""
+        """Points (n, 3) [m] at places (n, 2), `above` the surface [m]."""
         return np.column_stack([corners, self.height(*corners.T) + np.full(len(corners), above)])
 
 
@@ -43,7 +47,8 @@ _CIRCLE = np.stack([trig(2.0 * np.pi * np.arange(ROUND) / ROUND) for trig in (np
 
 @dataclass(frozen=True)
 class Glint:
-    """A bright reflection: an ellipse `above` the table's surface, of half-axes along x and y [m]."""
+    """A bright reflection: an ellipse `above` the table's surface [m] with half-axes along x and y [m] and a grey
+    level."""
 
     x: float
     y: float
@@ -57,7 +62,7 @@ class Glint:
 class Marker:
     """An ArUco marker of the dictionary 4x4_50.
 
-    corners: (4, 3) [m] of its black border, top left first and then clockwise as one looks at it, as OpenCV has them.
+    corners: (4, 3) [m] of its black border, top left first, then clockwise as seen from above, in OpenCV's order.
     """
 
     number: int
@@ -65,7 +70,8 @@ class Marker:
 
     @classmethod
     def lying(cls, number: int, x: float, y: float, z: float, size: float = 0.06) -> Marker:
-        """One that lies flat with its middle at x, y, z, upright for who looks along the table from the robot's end."""
+        """A marker of a side length [m] that lies flat with its middle at x, y, z [m], upright as seen from the robot's
+        end."""
         half = 0.5 * size
         steps = np.array([(half, half), (half, -half), (-half, -half), (-half, half)])
         return cls(number, np.column_stack([steps + np.array([x, y]), np.full(4, z)]))
@@ -73,8 +79,8 @@ class Marker:
 
 @dataclass(frozen=True)
 class Levels:
-    """Grey levels, 0 to 255, in the picture's middle. All that is known is that retro-reflective film is far brighter
-    than all else at 100 us (report 2.2.1); the rest is a choice."""
+    """Grey levels, 0 to 255, in the picture's middle. Known is only that retro-reflective film is far brighter than
+    everything else at 100 us (report 2.2.1); the numbers are chosen."""
 
     floor: float = 5.0
     table: float = 11.0
@@ -94,14 +100,14 @@ class Levels:
 
 @dataclass(frozen=True)
 class Table:
-    """A table and what lies on it; lengths in metres. Where the report has no number, it is a choice.
+    """A table and the sizes of what is on it [m]; values without a source in the report are chosen.
 
-    Not drawn: goal mouths, round corners, the side of the puck, shadows, and the opponent's hand and arm.
+    Not rendered: goal mouths, round corners, the side of the puck, shadows, and the opponent's hand and arm.
     """
 
     length: float = 2.0
     width: float = 1.0
-    surface: Surface = Surface()
+    surface: RenderedSurface = RenderedSurface()
     wall_height: float = 0.03
     rail_width: float = 0.09
     puck_radius: float = 0.0309  # report C.2.3
@@ -120,7 +126,7 @@ class Table:
 
     @classmethod
     def with_markers(cls, length: float = 2.0, width: float = 1.0) -> Table:
-        """One with six markers beside the rails, as the real one has."""
+        """A table of this length and width [m] with six markers beside the rails, as the real one has."""
         sides = width + 0.14, -0.14
         places = [(share * length, y) for share in (0.15, 0.55, 0.95) for y in sides]
         return cls(length, width, markers=tuple(Marker.lying(k, *place, 0.03) for k, place in enumerate(places)))

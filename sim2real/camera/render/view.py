@@ -1,6 +1,6 @@
-"""The renderer's camera: where points of the table are seen. Projection is OpenCV's, and stays on this side.
+"""The renderer's camera. It projects with OpenCV.
 
-Whatever finds things in pictures has a projection of its own, so that a mistake in one does not hide in the other.
+The vision has a camera model of its own, so that a mistake in one projection cannot cancel in the other.
 """
 
 from __future__ import annotations
@@ -14,17 +14,17 @@ import numpy as np
 from sim2real.camera.render.coverage import cut
 
 SIZE = (1440, 1080)  # columns and rows of the real table's camera during play
-FOCAL = 1152.0  # pixels; as all below, its calibration made round, at 2048 columns, scaled to SIZE
+FOCAL = 1152.0  # pixels; this and the values below are the rounded calibration at 2048 columns, scaled to SIZE
 PRINCIPAL_POINT = (716.0, 543.0)  # pixels
 DISTORTION = (-0.128, 0.156, 0.0012, -0.0002, -0.065)
 PLACE = (-0.19, 0.5, 0.665)  # of the real table's camera, in lengths, widths and lengths of the table
-TARGET = (0.305, 0.5)  # what it looks at, in lengths and widths
-BEND = 0.02  # of the focal length: a straight edge is cut in pieces no longer than this before the lens bends it
+TARGET = (0.305, 0.5)  # the point that it looks at, in lengths and widths
+PIECE = 0.02  # focal lengths, longest piece of a straight edge before the distortion is applied
 
 
 @dataclass(frozen=True)
-class View:
-    """A camera and where it stands. Table's frame: x forward, y left, z up [m]; camera's: x right, y down, z ahead.
+class CameraView:
+    """A camera and its pose. Table's frame: x forward, y left, z up [m]; camera's: x right, y down, z ahead.
 
     matrix: (3, 3), focal lengths and principal point [pixels], the first pixel's centre at (0, 0); distortion: k1, k2,
     p1, p2, k3 (report B.1); rotation: (3,) vector and shift: (3,) [m], from the table's frame to the camera's; size:
@@ -38,13 +38,13 @@ class View:
     size: tuple[int, int] = SIZE
 
     @classmethod
-    def like_the_real_one(cls, length: float, width: float) -> View:
-        """A view of a table of this length and width [m] like that of the real one: from behind the robot's end."""
+    def like_the_real_one(cls, length: float, width: float) -> CameraView:
+        """The real camera's view, from behind the robot's end, scaled to a table of this length and width [m]."""
         scale = np.array([length, width, length])
         return cls.from_place(scale * PLACE, scale * (*TARGET, 0.0))
 
     @classmethod
-    def from_place(cls, place: np.ndarray, target: np.ndarray) -> View:
+    def from_place(cls, place: np.ndarray, target: np.ndarray) -> CameraView:
         """The real table's camera at `place`, looking at `target` (3,) [m], with the horizon level."""
         ahead = np.asarray(target, float) - place
         right = np.cross(ahead, (0.0, 0.0, 1.0))
@@ -60,7 +60,7 @@ class View:
 
     @cached_property
     def place(self) -> np.ndarray:
-        """Where the camera stands in the table's frame (3,) [m]."""
+        """The camera's place (3,) [m] in the table's frame."""
         return -self.turn.T @ self.shift
 
     def project(self, points: np.ndarray) -> np.ndarray:
@@ -68,17 +68,17 @@ class View:
         return cv2.projectPoints(points, self.rotation, self.shift, self.matrix, self.distortion)[0][:, 0]
 
     def silhouette(self, points: np.ndarray) -> np.ndarray:
-        """The outline (m, 2) [pixels] of a convex body, of which `points` (n, 3) [m] hold all corners."""
+        """The outline (m, 2) [pixels] of the convex hull of points (n, 3) [m]."""
         seen = points @ self.turn.T + self.shift
         rays = (seen[:, :2] / seen[:, 2:]).astype(np.float32)  # convexHull takes no doubles; 1e-4 pixels are lost
         corners = cv2.convexHull(rays)[:, 0].astype(float)
-        edges, _ = cut(np.column_stack([corners, np.ones(len(corners))]), BEND)
+        edges, _ = cut(np.column_stack([corners, np.ones(len(corners))]), PIECE)
         return cv2.projectPoints(edges, np.zeros(3), np.zeros(3), self.matrix, self.distortion)[0][:, 0]
 
     def brightness(self) -> np.ndarray:
-        """How bright the lamp beside the camera makes what lies at the table's height, for each pixel (rows, columns).
+        """The illumination float32 (rows, columns) of the table's plane by the lamp beside the camera, at each pixel.
 
-        Relative to the middle of the picture; it falls with the square of the distance. Looked up between every 16th
+        It falls with the square of the distance and is 1 in the middle of the picture; interpolated between every 16th
         pixel.
         """
         columns, rows = self.size
@@ -92,6 +92,6 @@ class View:
         return cv2.remap(coarse, u, v, cv2.INTER_LINEAR)
 
     def brightness_at(self, point: np.ndarray) -> float:
-        """The same for a point (3,) [m] in the table's frame."""
+        """The illumination of a point (3,) [m] in the table's frame, relative to the middle of the picture."""
         middle = self.place[2] / -self.turn[2, 2]  # from the camera to where it looks
         return float(middle**2 / ((point - self.place) ** 2).sum())

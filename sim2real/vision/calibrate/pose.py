@@ -1,4 +1,4 @@
-"""Where the camera is: from the corners of markers whose places are known."""
+"""The camera's pose from the corners of markers whose places are known (resection)."""
 
 from __future__ import annotations
 
@@ -9,22 +9,25 @@ import numpy as np
 
 from sim2real.vision.calibrate.residuals import CORNER_STD
 from sim2real.vision.calibrate.robust_fit import robust_fit
-from sim2real.vision.camera import Camera
+from sim2real.vision.camera import CameraModel
 from sim2real.vision.camera_file import Setup
 from sim2real.vision.markers import FEWEST
-from sim2real.vision.motion import moved, rotation
-from sim2real.vision.scene import Scene
+from sim2real.vision.motion import apply_motion, rotation
+from sim2real.vision.table_geometry import TableGeometry
 
 # px rms of markers' corners: a right calibration by two views alone has 0.2 to 0.4 in a third photograph of the real
 # table and 0.2 on made-up ones; one marker of six that is 5 mm off makes 0.7 to 1.6
 FAR = 1.0
-LOST = 3.0  # px rms: beyond it no robust fit nor check tells anything; up to it a check tells how far off all is
+LOST = 3.0  # px rms: above it a pose is meaningless; up to it a check on an unused view measures the error
 
 
 @dataclass(frozen=True)
 class Pose:
-    """`motion` (6,): rotation vector and shift [m] from the table's rigid frame to the camera's; `covariance` (6, 6):
-    how uncertain it is where the markers are certain; `residuals` (n, 2): stated less seen of each corner [pixels]."""
+    """A camera's pose.
+
+    motion: (6,) rotation vector [rad] and shift [m] from the table's rigid frame to the camera's; covariance: (6, 6) of
+    the motion, given exact markers; residuals: (n, 2) projected minus detected corners [pixels].
+    """
 
     motion: np.ndarray
     covariance: np.ndarray
@@ -32,7 +35,7 @@ class Pose:
 
     @property
     def origin(self) -> np.ndarray:
-        """Where the camera is (3,) [m]."""
+        """The camera's place (3,) [m] in the table's rigid frame."""
         return -rotation(self.motion[:3]).T @ self.motion[3:]
 
     @property
@@ -42,12 +45,13 @@ class Pose:
 
     @property
     def rms_of_markers(self) -> np.ndarray:
-        """The same of each marker (n / 4,)."""
+        """Root mean square (n / 4,) of each marker's residuals [pixels]."""
         return np.sqrt((self.residuals**2).sum(axis=1).reshape(-1, 4).mean(axis=1))
 
 
-def rough_pose(camera: Camera, points: np.ndarray, pixels: np.ndarray) -> np.ndarray:
-    """A motion (6,) that brings points (n, 3) [m], n at least 4, near to where they are seen (n, 2)."""
+def rough_pose(camera: CameraModel, points: np.ndarray, pixels: np.ndarray) -> np.ndarray:
+    """An approximate motion (6,) that projects points (n, 3) [m], n at least 4, near to their pixels (n, 2), by SQPnP.
+    Raises ValueError if there is none."""
     rays = camera.rays(pixels)
     found, turn, shift = cv2.solvePnP(points, rays, np.eye(3), np.zeros(4), flags=cv2.SOLVEPNP_SQPNP)
     if not found:
@@ -55,11 +59,12 @@ def rough_pose(camera: Camera, points: np.ndarray, pixels: np.ndarray) -> np.nda
     return np.concatenate([turn.ravel(), shift.ravel()])
 
 
-def find_pose(camera: Camera, points: np.ndarray, pixels: np.ndarray) -> Pose:
-    """Where the camera is that sees corners (n, 3) [m] at pixels (n, 2). ValueError, in one line, if nowhere."""
+def find_pose(camera: CameraModel, points: np.ndarray, pixels: np.ndarray) -> Pose:
+    """The pose of a camera that sees points (n, 3) [m] at pixels (n, 2), by robust least squares. Raises ValueError, in
+    one line, if there is none."""
 
     def evaluate(motion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        seen, by, _ = moved(motion, points)
+        seen, by, _ = apply_motion(motion, points)
         found, by_seen = camera.project(seen)
         return ((found - pixels) / CORNER_STD).ravel(), (by_seen @ by / CORNER_STD).reshape(-1, 6)
 
@@ -68,20 +73,23 @@ def find_pose(camera: Camera, points: np.ndarray, pixels: np.ndarray) -> Pose:
     return Pose(fitted.vector, fitted.covariance, residuals)
 
 
-def camera_pose(setup: Setup, scene: Scene, corners: dict[int, np.ndarray], most: float = FAR) -> Pose:
-    """Where the camera is that sees markers' corners, id -> (4, 2) [pixels]. ValueError, in one line, if it sees too
-    few of them, or sees them elsewhere than this scene has them, by more than `most` [pixels, rms]."""
-    shared = [marker for marker in scene.markers if marker in corners]
+def camera_pose(setup: Setup, geometry: TableGeometry, corners: dict[int, np.ndarray], most: float = FAR) -> Pose:
+    """The pose of a camera that sees markers' corners, (4, 2) [pixels] by id, over a calibrated table.
+
+    Raises ValueError, in one line, if it sees fewer than three of the calibration's markers, or if the residuals exceed
+    `most` [pixels, root mean square]; the text names a single marker that is responsible, if there is one.
+    """
+    shared = [marker for marker in geometry.markers if marker in corners]
     if len(shared) < FEWEST:
         raise ValueError(
-            f"{len(shared)} of the calibration's {len(scene.markers)} markers are seen; expected {FEWEST} at least"
+            f"{len(shared)} of the calibration's {len(geometry.markers)} markers are seen; expected {FEWEST} at least"
         )
-    pose = _pose_of(setup.camera, scene, corners, shared)
+    pose = _pose_of(setup.camera, geometry, corners, shared)
     if pose.rms <= most:
         return pose
     said = f"markers are {pose.rms:.1f} px rms from where the calibration has them; expected {most:g} at most: "
     if len(shared) > FEWEST:
-        rest = {one: _pose_of(setup.camera, scene, corners, [k for k in shared if k != one]).rms for one in shared}
+        rest = {one: _pose_of(setup.camera, geometry, corners, [k for k in shared if k != one]).rms for one in shared}
         best = min(rest, key=lambda one: rest[one])
         if rest[best] <= most:
             raise ValueError(
@@ -95,7 +103,7 @@ def camera_pose(setup: Setup, scene: Scene, corners: dict[int, np.ndarray], most
     )
 
 
-def _pose_of(camera: Camera, scene: Scene, corners: dict[int, np.ndarray], markers: list[int]) -> Pose:
-    """Where the camera is by some of the markers."""
-    points = np.concatenate([scene.markers[marker] for marker in markers])
+def _pose_of(camera: CameraModel, geometry: TableGeometry, corners: dict[int, np.ndarray], markers: list[int]) -> Pose:
+    """The pose from the given markers."""
+    points = np.concatenate([geometry.markers[marker] for marker in markers])
     return find_pose(camera, points, np.concatenate([corners[marker] for marker in markers]))

@@ -1,4 +1,4 @@
-"""Least squares of pairs of residuals, of which a few may be blunders (Student's t in two dimensions)."""
+"""Robust least squares of pairs of residuals, by iterative reweighting for Student's t in two dimensions."""
 
 from __future__ import annotations
 
@@ -9,22 +9,25 @@ import numpy as np
 from scipy.optimize import least_squares
 
 TAIL = 4.0  # degrees of freedom of Student's t
-MEDIAN = 1.1774  # the median length of two standard normal numbers
-EFFICIENT = 0.845  # what a pair's weight is worth where errors are normal: E[w + q w']^2 / (E[w^2 q / 2] E[w])
-LEAST_FREE = 0.1  # of a pair: of one that has nothing to check it, a small residual says nothing
-ROUNDS = 20  # of weighing anew
-STILL = 0.02  # a change of weights that ends them
-CLOSE = 1e-6  # a change of the sum of squares, as a share of it, that ends a round's search
-WEAK = 1e-14  # of the best known combination of unknowns: what is known less counts as known so well
+MEDIAN = 1.1774  # median length of a pair of standard normal numbers
+EFFICIENT = 0.845  # efficiency of the weights under normal errors: E[w + q w']^2 / (E[w^2 q / 2] E[w])
+LEAST_FREE = 0.1  # least redundancy of a pair: where nothing checks a pair, its residual is small in any case
+ROUNDS = 20  # of reweighting
+STILL = 0.02  # relative change of weights at which they have converged
+CLOSE = 1e-6  # relative change of the sum of squares at which a round has converged
+WEAK = 1e-14  # least eigenvalue of the normal matrix relative to the greatest; smaller ones are raised to it
 
 Evaluate = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
 @dataclass(frozen=True)
-class Fitted:
-    """`vector` of unknowns and its covariance; of each pair how much it tells (pairs,), `information` 1 for a pair with
-    an error of one standard deviation, towards 0 for a blunder, and how many standard deviations, by the errors of
-    its kind, it is `off` (pairs,)."""
+class RobustFit:
+    """The solution of a robust fit.
+
+    vector: (n,) unknowns; covariance: (n, n) of them; information: (pairs,) weight of each pair, 1 for errors of one
+    standard deviation, towards 0 for a blunder; off: (pairs,) studentized length of each pair's residual, in standard
+    deviations estimated from all pairs of its kind.
+    """
 
     vector: np.ndarray
     covariance: np.ndarray
@@ -34,11 +37,14 @@ class Fitted:
 
 def robust_fit(
     at: Callable[[np.ndarray], Evaluate], start: np.ndarray, kinds: np.ndarray, information: np.ndarray | None = None
-) -> Fitted:
-    """Fit residuals in standard deviations: the first of them are pairs that are weighed together, each of a kind
-    (pairs,), 0 or more, whose errors may all be larger than that; the rest are certain. `at(vector)` makes the
-    function of residuals (m,) and derivatives (m, n) that holds near a vector; `information` of a fit alike saves time.
-    ValueError where the search finds no finite answer."""
+) -> RobustFit:
+    """Fit residuals that are given in standard deviations.
+
+    The first 2 * pairs residuals are pairs, each reweighted as one; the rest (priors) keep weight 1. kinds: (pairs,) of
+    whole numbers from 0; the errors of each kind may all be larger than stated, and their scale is estimated. at:
+    makes, near a vector, the function of residuals (m,) and derivatives (m, n). start: (n,) initial unknowns.
+    information: (pairs,) of a similar fit, to save rounds. Raises ValueError if the residuals are not finite.
+    """
     vector, information = start, np.ones(len(kinds)) if information is None else information
     for _ in range(ROUNDS):
         vector, residuals, slope = _solve(at(vector), vector, information / EFFICIENT)
@@ -51,12 +57,12 @@ def robust_fit(
         before, information = information, EFFICIENT * (TAIL + 2.0) / (TAIL * spread**2 + far**2)
         if np.abs(information - before).max() < STILL * information.max():
             break
-    return Fitted(vector, covariance, information, far / np.sqrt(free) / spread)
+    return RobustFit(vector, covariance, information, far / np.sqrt(free) / spread)
 
 
 def _covariance(slope: np.ndarray, information: np.ndarray) -> np.ndarray:
-    """The covariance (n, n) of unknowns by which residuals have these derivatives (m, n), the first of them pairs of
-    some information (pairs,). What nothing determines is very uncertain, and not infinitely."""
+    """The covariance (n, n) of unknowns from the derivatives (m, n) of the residuals and the information (pairs,).
+    Combinations of unknowns that nothing determines get a very large, finite variance."""
     rows = slope * _rows(information, slope)[:, None]
     scale = np.maximum(np.linalg.norm(rows, axis=0), 1e-30)
     values, vectors = np.linalg.eigh((rows / scale).T @ (rows / scale))
@@ -65,13 +71,13 @@ def _covariance(slope: np.ndarray, information: np.ndarray) -> np.ndarray:
 
 
 def _spread(far: np.ndarray, free: np.ndarray) -> float:
-    """How many times larger errors are than they must be, by how far off pairs (n,) are and what share of each (n,) the
-    fit left free."""
+    """The scale of errors, at least 1, by the median of residual lengths (n,) divided by the root of their redundancy
+    (n,)."""
     return max(float(np.median(far / np.sqrt(free))) / MEDIAN, 1.0)
 
 
 def _solve(evaluate: Evaluate, start: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The best vector under weights, with residuals and derivatives there without them."""
+    """Least squares with fixed weights (pairs,): the vector, and residuals and derivatives there without weights."""
     latest: dict[bytes, tuple[np.ndarray, np.ndarray]] = {}
 
     def at(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -97,5 +103,5 @@ def _solve(evaluate: Evaluate, start: np.ndarray, weights: np.ndarray) -> tuple[
 
 
 def _rows(weights: np.ndarray, like: np.ndarray) -> np.ndarray:
-    """Square roots of weights for every residual."""
+    """Square roots of the weights of all residuals (m,); `like` has their number."""
     return np.sqrt(np.concatenate([np.repeat(weights, 2), np.ones(len(like) - 2 * len(weights))]))

@@ -1,7 +1,8 @@
-"""A disc of known radius from some of its rim: the rest may be hidden, and points may belong to other things.
+"""Fit a disc of known radius to edge points, of which some belong to its rim and some to other things.
 
-Hypotheses go through pairs of edge points; each is worth the points that lie on its rim and face outwards, less those
-that lie just outside, where the disc has no edge. What lies inside says nothing: there whatever hides the disc ends.
+Hypotheses go through pairs of points (RANSAC with fixed pairs). The score of one is the number of points that lie on
+its rim and face outwards, minus the number of points just outside of it, where a disc has no edges. Points inside do
+not count: there the edges of whatever hides the disc may lie. A robust least-squares fit refines the best one.
 """
 
 from __future__ import annotations
@@ -12,28 +13,31 @@ from dataclasses import dataclass
 import numpy as np
 
 from puckpilot_env.kernel import array_kernel, kernel
-from sim2real.vision.track.rim import Rim
-from sim2real.vision.track.two_by_two import deviation
+from sim2real.vision.track.covariance import deviation
+from sim2real.vision.track.subpixel_edges import EdgePoints
 
-STARTS = 40  # first points of pairs
-JUDGES = 60  # points, about, by which a hypothesis is judged
-PARTNERS = (0.11, 0.19, 0.31, 0.43)  # of a whole rim's points: how far on along the outlines the second ones are
-WIDE = 1.5  # radii from the centre: what is farther off belongs to other things
-NEAR = 0.7  # px from the rim that count as on it, for a hypothesis
-FACING = 0.6  # cosine between where an edge faces and where the rim does, at least
-ROUNDS = 8  # of the refinement at most,
-STILL = 1e-7  # m: which ends when the centre moves less
-SPREAD = (0.04, 0.3)  # px, the least and the greatest scatter that edges are taken to have
-CUT = 3.0  # times the scatter: farther points have no weight (Tukey's biweight)
-BINS = 36  # parts of the rim
-TOGETHER = 4.0  # neighbouring points that err as one: so much greater is the variance than that of as many points
-COMMON = 0.03  # px: standard deviation of what all edges of a disc err by alike, which an arc's centre follows
+STARTS = 40  # number of first points of pairs
+JUDGES = 60  # approximate number of points that vote on a hypothesis
+PARTNERS = (0.11, 0.19, 0.31, 0.43)  # steps along the outlines to the second points, as shares of a whole rim's points
+WIDE = 1.5  # radii from the centre; farther points belong to other things
+NEAR = 0.7  # px, greatest distance from the rim of a point that votes for a hypothesis
+FACING = 0.6  # least cosine between the directions in which an edge and the rim face
+ROUNDS = 8  # iterations of the refinement at most
+STILL = 1e-7  # m, step at which the refinement has converged
+SPREAD = (0.04, 0.3)  # px, limits of the estimated scatter of edge points
+CUT = 3.0  # scatters, distance from which points have no weight (Tukey's biweight)
+BINS = 36  # sectors of the rim
+TOGETHER = 4.0  # number of neighbouring points with a common error, the factor of the variance
+COMMON = 0.03  # px, standard deviation of the error common to all edges of a disc, which shifts an arc's centre
 
 
 @dataclass(frozen=True)
 class Disc:
-    """A disc: its centre (2,) [m], the centre's covariance (2, 2) [m^2], the share of the rim that was seen, and how
-    many edge points lie on it and outside of it."""
+    """A fitted disc.
+
+    centre: (2,) [m]; covariance: (2, 2) of the centre [m^2]; seen: share of the rim with edge points; on, outside:
+    number of edge points on the rim and outside of it.
+    """
 
     centre: np.ndarray
     covariance: np.ndarray
@@ -47,10 +51,10 @@ class Disc:
         return deviation(self.covariance)
 
 
-def find_disc(rim: Rim, radius: float) -> Disc | None:
-    """The best disc of this radius [m]; None where no three points agree on one."""
+def find_disc(edge: EdgePoints, radius: float) -> Disc | None:
+    """The best disc of this radius [m] through edge points; None if no three points agree on one."""
     centre, covariance, counts = np.zeros(2), np.zeros((2, 2)), np.zeros(3, np.int64)
-    if len(rim) < 3 or not _find(rim.places, rim.steps, radius, centre, covariance, counts):
+    if len(edge) < 3 or not _find(edge.places, edge.steps, radius, centre, covariance, counts):
         return None
     on, outside, bins = counts.tolist()
     return Disc(centre, covariance, bins / BINS, on, outside)
@@ -58,7 +62,7 @@ def find_disc(rim: Rim, radius: float) -> Disc | None:
 
 @array_kernel
 def _find(places, steps, radius, centre, covariance, counts):
-    """Put the best disc's centre, its covariance and `_count` of it where they belong; whether there is one."""
+    """Find the best disc; fill its centre (2,), covariance (2, 2) and counts (3,). Returns whether there is one."""
     if _guess(places, steps, radius, centre) <= 0.0:
         return False
     normal, total = np.zeros((2, 2)), np.zeros(2)
@@ -72,7 +76,7 @@ def _find(places, steps, radius, centre, covariance, counts):
 
 @kernel
 def _off(places, steps, i, radius, x, y):
-    """How far [px] point i lies outside of the rim round (x, y), and whether it faces as the rim does there."""
+    """The distance [px] of point i from the rim round (x, y), positive outside, and whether it faces outwards."""
     dx, dy = places[i, 0] - x, places[i, 1] - y
     far = math.hypot(dx, dy)
     step = math.hypot(steps[i, 0], steps[i, 1])
@@ -83,25 +87,25 @@ def _off(places, steps, i, radius, x, y):
 
 
 @kernel
-def _worth(places, steps, radius, x, y, stride):
-    """Points on the rim less points outside, of every `stride`-th."""
-    worth = 0
+def _score(places, steps, radius, x, y, stride):
+    """The score of a hypothesis from every `stride`-th point: points on the rim minus points outside."""
+    score = 0
     for i in range(0, places.shape[0], stride):
         off, faces = _off(places, steps, i, radius, x, y)
         if abs(off) < NEAR and faces:
-            worth += 1
+            score += 1
         elif off >= 2.0 * NEAR and math.hypot(places[i, 0] - x, places[i, 1] - y) < WIDE * radius:
-            worth -= 1
-    return worth
+            score -= 1
+    return score
 
 
 @kernel
 def _guess(places, steps, radius, centre):
-    """Put the best hypothesis into `centre` (2,); its worth."""
+    """Write the centre of the best hypothesis into `centre` (2,) and return its score."""
     count = places.shape[0]
     stride = max(count // JUDGES, 1)
     whole = 2.0 * math.pi * radius / math.hypot(steps[count // 2, 0], steps[count // 2, 1])
-    all_of_them = (count + stride - 1) // stride
+    most = (count + stride - 1) // stride
     best = 0
     for start in range(min(STARTS, count)):
         i = start * count // min(STARTS, count)
@@ -117,20 +121,23 @@ def _guess(places, steps, radius, centre):
                 y = 0.5 * (places[i, 1] + places[j, 1]) + side * aside * dx
                 if not (_off(places, steps, i, radius, x, y)[1] and _off(places, steps, j, radius, x, y)[1]):
                     continue
-                worth = _worth(places, steps, radius, x, y, stride)
-                if worth > best:
-                    best = worth
+                score = _score(places, steps, radius, x, y, stride)
+                if score > best:
+                    best = score
                     centre[0], centre[1] = x, y
-                if worth == all_of_them:
+                if score == most:
                     return best
     return best
 
 
 @array_kernel
 def _refine(places, steps, radius, centre, normal, total):
-    """Move `centre` to where the points' distances from the rim [px] are least (Gauss, Newton; Tukey's weights). Fill
-    the normal matrix (2, 2) [px^2/m^2], and its right side (2,) [px/m] for points that all lie a pixel outside. The
-    points' scatter [px]; 0 where they tell no centre."""
+    """Refine `centre` (2,) by robust least squares of the points' distances from the rim [px] (Gauss-Newton, Tukey's
+    biweight).
+
+    Fills the normal matrix (2, 2) [px^2/m^2], and in `total` its right side (2,) [px/m] for points that all lie one
+    pixel outside. Returns the scatter of the points [px], 0 if they do not determine a centre.
+    """
     count = places.shape[0]
     off, near = np.empty(count), np.empty(count)
     scatter = SPREAD[1]
@@ -172,7 +179,8 @@ def _refine(places, steps, radius, centre, normal, total):
 
 @kernel
 def _spread(normal, total, scatter, covariance):
-    """The centre's covariance (2, 2) [m^2]: of what points err by, neighbours alike, and of what all err by."""
+    """Fill the centre's covariance (2, 2) [m^2]: the scatter of points, correlated between neighbours, and the error
+    common to all."""
     det = normal[0, 0] * normal[1, 1] - normal[0, 1] ** 2
     xx, xy, yy = normal[1, 1] / det, -normal[0, 1] / det, normal[0, 0] / det
     leaning_x, leaning_y = COMMON * (xx * total[0] + xy * total[1]), COMMON * (xy * total[0] + yy * total[1])
@@ -183,7 +191,7 @@ def _spread(normal, total, scatter, covariance):
 
 @kernel
 def _count(places, steps, radius, scatter, centre, bins, counts):
-    """Count points on the rim, points outside, and the parts of the rim, `bins`, that the former show."""
+    """Fill `counts` (3,): points on the rim, points outside, and sectors of the rim with points, marked in `bins`."""
     for i in range(places.shape[0]):
         away, faces = _off(places, steps, i, radius, centre[0], centre[1])
         if faces and abs(away) < CUT * scatter:

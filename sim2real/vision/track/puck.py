@@ -1,56 +1,65 @@
-"""The puck: a bright disc, of which a gantry, a mallet or a wall may hide some."""
+"""Find the puck: a bright disc that gantry, mallet or wall may partly hide."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from sim2real.vision.track.bright import Blob
+from sim2real.vision.track.blobs import Blob
 from sim2real.vision.track.disc import Disc, find_disc
-from sim2real.vision.track.rim import Places, Rim, rim_of
+from sim2real.vision.track.subpixel_edges import EdgePoints, Places, find_edge_points
 
-LEAST_SEEN = 0.2  # of the rim; with less an arc's ends, where what hides the disc begins, pull it off by millimetres
-ENOUGH_SEEN = 0.4  # with so much of it, a glint may touch it,
-LEAST_ON = 10  # edge points
-MOST_OUTSIDE, TOUCHED = 0.15, 0.5  # points outside for each one on the rim, at most, and where a glint touches it
+LEAST_SEEN = (
+    0.2  # least visible share of the rim; the ends of a shorter arc, at what hides it, shift the fit by millimetres
+)
+ENOUGH_SEEN = 0.4  # visible share of the rim at which a glint may touch the disc
+LEAST_ON = 10  # least number of edge points on the rim
+MOST_OUTSIDE, TOUCHED = 0.15, 0.5  # most points outside for each one on the rim, the latter where a glint may touch it
 
 
 class PuckFinder:
-    """`places`: from pixels to the table at the height of the puck's top; `radius` [m]."""
+    """Finds discs of the puck's size.
+
+    places: maps pixels to the table at the height of the puck's top; radius: of the puck [m].
+    """
 
     def __init__(self, places: Places, radius: float) -> None:
         self.places, self.radius = places, radius
 
     def find(self, image: np.ndarray, blobs: list[Blob]) -> list[Disc]:
-        """All that may be the puck, the best first: discs of single blobs, and of several within a puck's size of each
-        other, as those of one that a beam divides."""
-        rims = [rim for rim in (rim_of(image, blob.outline, self.places) for blob in blobs) if len(rim) >= LEAST_ON]
-        found = [find_disc(Rim.joined(group), self.radius) for group in self._groups(rims)]
+        """Find all candidates for the puck in a picture, the best first. A disc is fitted to each blob alone and to
+        blobs that lie within a puck's size of each other, as the parts of a puck that a beam divides do."""
+        edges = [
+            edge
+            for edge in (find_edge_points(image, blob.outline, self.places) for blob in blobs)
+            if len(edge) >= LEAST_ON
+        ]
+        found = [find_disc(EdgePoints.joined(group), self.radius) for group in self._groups(edges)]
         good = [disc for disc in found if disc is not None and _is_puck(disc)]
         return self._apart(sorted(good, key=lambda disc: disc.outside - disc.on))
 
     def _apart(self, discs: list[Disc]) -> list[Disc]:
-        """Those that can be there at once: of two that overlap, the former."""
+        """The discs that can exist together: of two that overlap, the better one stays."""
         kept: list[Disc] = []
         for disc in discs:
             if all(np.linalg.norm(disc.centre - other.centre) >= 2.0 * self.radius for other in kept):
                 kept.append(disc)
         return kept
 
-    def _groups(self, rims: list[Rim]) -> list[list[Rim]]:
-        """Each rim alone, and with all that lie so near that one disc can have both."""
-        alone = [[rim] for rim in rims]
-        if len(rims) < 2:
+    def _groups(self, edges: list[EdgePoints]) -> list[list[EdgePoints]]:
+        """Each edge alone, and each together with those near enough to belong to the same disc."""
+        alone = [[edge] for edge in edges]
+        if len(edges) < 2:
             return alone
-        middles = [rim.places.mean(axis=0) for rim in rims]
+        middles = [edge.places.mean(axis=0) for edge in edges]
         together = []
-        for first, rim in enumerate(rims):
+        for first, edge in enumerate(edges):
             near = [
                 other
-                for second, other in enumerate(rims)
+                for second, other in enumerate(edges)
                 if second > first and np.linalg.norm(middles[second] - middles[first]) < 2.0 * self.radius
             ]
             if near:
-                together.append([rim, *near])
+                together.append([edge, *near])
         return alone + together
 
 

@@ -1,7 +1,7 @@
-"""The opponent's mallet: a bright flat ring on top (report D). What shines round a round dark hole is the ring.
+"""Find the opponent's mallet: a flat bright ring with a round dark hole on its top (report D).
 
-Fingers and the gantry's beam may hide some of it, so that its outline is open or in parts: what faces outwards of its
-edges lies on the outer circle, what faces inwards on the hole's, round the same middle.
+Fingers and the gantry's beam may hide parts of it, so its outline may be open or in pieces. Edges that face outwards
+belong to the outer circle, edges that face inwards to the hole's, and both circles are concentric.
 """
 
 from __future__ import annotations
@@ -11,22 +11,25 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from sim2real.vision.track.bright import FEWEST, Blob
-from sim2real.vision.track.circles import OFF, fit_circles, guess_hole, shares_of_circles
-from sim2real.vision.track.rim import Places, Rim, rim_of
+from sim2real.vision.track.blobs import FEWEST, Blob
+from sim2real.vision.track.concentric_circles import OFF, fit_circles, guess_hole, shares_of_circles
+from sim2real.vision.track.subpixel_edges import EdgePoints, Places, find_edge_points
 
-HEIGHTS = {"standard": 0.090, "low": 0.040}  # m, of both attachments; the report has neither, so measure your own
-SMALLEST = 0.015  # m, of a ring's outer radius
-HOLES = (0.25, 0.85)  # of the outer radius, the hole's
-FULL = 0.8  # of its hull: what shines in more of it is no part of a ring
-LEAST_ON = 0.6  # of the edges that face inwards: on the hole's circle
-LEAST_SEEN = 0.4  # of each circle
-EDGE_ERROR = 0.5e-3  # m, standard deviation of an edge point, if they erred apart: neighbours err as one
+HEIGHTS = {"standard": 0.090, "low": 0.040}  # m, of the two attachments; the report has neither, so measure your own
+SMALLEST = 0.015  # m, least outer radius
+HOLES = (0.25, 0.85)  # limits of the hole's radius as a share of the outer one
+FULL = 0.8  # greatest share of its convex hull that an open piece of a ring fills
+LEAST_ON = 0.6  # least share of inward-facing edges that lie on the hole's circle
+LEAST_SEEN = 0.4  # least visible share of each circle
+EDGE_ERROR = 0.5e-3  # m, effective standard deviation of an edge point: large, because neighbours have common errors
 
 
 @dataclass(frozen=True)
 class Ring:
-    """A ring: its middle (2,) [m], the middle's covariance (2, 2) [m^2], and its radii, outer and hole's [m]."""
+    """A fitted ring.
+
+    centre: (2,) [m]; covariance: (2, 2) of the centre [m^2]; radius, hole: outer radius and the hole's [m].
+    """
 
     centre: np.ndarray
     covariance: np.ndarray
@@ -35,29 +38,31 @@ class Ring:
 
 
 class RingFinder:
-    """`places`: from pixels to the table at the ring's height."""
+    """Finds rings. `places` maps pixels to the table at the ring's height."""
 
     def __init__(self, places: Places) -> None:
         self.places = places
 
     def find(self, image: np.ndarray, blobs: list[Blob]) -> tuple[list[Ring], list[Blob]]:
-        """The rings, and what else shines: a puck may touch a ring in the picture."""
-        rims = [self._rim(image, blob) for blob in blobs if _is_hollow(blob)]
+        """Find the rings in a picture. Returns them and the blobs that remain: a puck may touch a ring in the
+        picture."""
+        edges = [self._edge(image, blob) for blob in blobs if _is_hollow(blob)]
         rings: list[Ring] = []
-        for rim in rims:
-            ring = self._ring(rim, Rim.joined(rims))
+        for edge in edges:
+            ring = self._ring(edge, EdgePoints.joined(edges))
             if ring and all(np.linalg.norm(ring.centre - other.centre) > other.radius for other in rings):
                 rings.append(ring)
         for ring in rings:
             blobs = self._beside(ring, blobs)
         return rings, blobs
 
-    def _rim(self, image: np.ndarray, blob: Blob) -> Rim:
+    def _edge(self, image: np.ndarray, blob: Blob) -> EdgePoints:
         outline = blob.outline if blob.hole is None else np.concatenate([blob.outline, blob.hole])
-        return rim_of(image, outline, self.places)
+        return find_edge_points(image, outline, self.places)
 
-    def _ring(self, part: Rim, whole: Rim) -> Ring | None:
-        """The ring of which some is seen in a part, by all that can be of it."""
+    def _ring(self, part: EdgePoints, whole: EdgePoints) -> Ring | None:
+        """The ring that one piece of an edge suggests, fitted to all edges that can belong to it; None if there is
+        none."""
         found = np.zeros(4)
         if len(part) < FEWEST or not guess_hole(part.places, part.steps, found):
             return None
@@ -73,7 +78,7 @@ class RingFinder:
         return Ring(found[:2], EDGE_ERROR**2 * covariance, radius, hole)
 
     def _beside(self, ring: Ring, blobs: list[Blob]) -> list[Blob]:
-        """What is left of blobs outside of a ring."""
+        """The parts of blobs that lie outside of a ring."""
         left = []
         for blob in blobs:
             x, y = (self.places(blob.outline) - ring.centre).T

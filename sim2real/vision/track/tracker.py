@@ -1,4 +1,4 @@
-"""Frames in, a recording out: finds the camera's place from the first picture, then puck and opponent in each."""
+"""From frames to a recording: locates the camera in the first picture, then puck and opponent in each."""
 
 from __future__ import annotations
 
@@ -8,29 +8,32 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim2real.camera.frame import Frame
-from sim2real.camera.watch import Trouble
-from sim2real.recording import Recording
-from sim2real.recording_checks import FORMAT
-from sim2real.recording_csv import Stream
+from sim2real.camera.frame_monitor import Trouble
+from sim2real.recording.checks import FORMAT
+from sim2real.recording.folder import Recording
+from sim2real.recording.stream_csv import Stream
 from sim2real.vision.calibrate.pose import Pose, camera_pose
-from sim2real.vision.calibrate.table_file import Table
-from sim2real.vision.camera import Camera
+from sim2real.vision.calibrate.table_file import TableCalibration
+from sim2real.vision.camera import CameraModel
 from sim2real.vision.locate import Locator
 from sim2real.vision.markers import FEWEST, find_markers
 from sim2real.vision.photograph import check_size
-from sim2real.vision.track.eye import Eye, Seen
-from sim2real.vision.track.follow import Estimate
-from sim2real.vision.track.moved import MOST, Moved, hidden, moved
+from sim2real.vision.track.camera_shift import MOST, CameraShift, camera_moved, markers_hidden
+from sim2real.vision.track.detector import Detections, Detector
+from sim2real.vision.track.kalman_tracker import TrackState
 
 COLUMNS = ("t", "puck_x", "puck_y", "opponent_x", "opponent_y")
 NOWHERE = (np.nan, np.nan)
-BLIND = -1  # things that may be the puck, in a picture of a camera that nobody knows where it stands
+BLIND = -1  # in place of the number of candidates, for a picture in which the camera's pose is unknown
 
 
 @dataclass(frozen=True)
-class Things:
-    """What is looked for: the puck's radius, the height of the opponent's ring above the table [m], and the grey level
-    above which film shines, in the middle of the table."""
+class Targets:
+    """The objects to be tracked.
+
+    puck_radius: [m]; ring_height: of the opponent's ring above the table [m]; level: grey level above which film counts
+    as bright, in the middle of the table.
+    """
 
     puck_radius: float
     ring_height: float
@@ -38,79 +41,86 @@ class Things:
 
 
 class Tracker:
-    """Give it sound frames in order of time. `locator`: the camera's place now, None while it is not known."""
+    """Tracks puck and opponent through valid frames in order of time.
 
-    def __init__(self, table: Table, things: Things) -> None:
-        self._table, self.things = table, things
-        self._eye: Eye | None = None
-        self._moved: Moved | None = None
-        self._rows: list[tuple[float, ...]] = []  # COLUMNS, and how many things may be the puck
-        self._trusted = 0  # rows up to the last look at which the camera stood where it did
+    locator: of the camera at present, None while its pose is unknown; pose: the last one found, None before the first.
+    """
+
+    def __init__(self, table: TableCalibration, targets: Targets) -> None:
+        self._table, self.targets = table, targets
+        self._detector: Detector | None = None
+        self._shift: CameraShift | None = None
+        self._rows: list[tuple[float, ...]] = []  # COLUMNS, and the number of candidates for the puck
+        self._trusted = 0  # rows up to the last check that found the camera in its place
         self.locator: Locator | None = None
         self.pose: Pose | None = None
 
-    def add(self, frame: Frame) -> Seen:
-        """Look at one. ValueError, in one line, if the first does not show where the camera is."""
-        if self._moved is None:
+    def add(self, frame: Frame) -> Detections:
+        """Detect puck and opponent in one frame. Raises ValueError, in one line, if the first frame does not show
+        enough markers to locate the camera."""
+        if self._shift is None:
             try:
                 self._begin(frame.image, FEWEST)
             except ValueError as error:
-                raise ValueError(f"the first picture does not tell where the camera is: {error}") from None
-        found = self._eye.look(frame.image, frame.time) if self._eye else Seen(None, None, BLIND)
+                raise ValueError(f"the camera cannot be located in the first picture: {error}") from None
+        found = self._detector.detect(frame.image, frame.time) if self._detector else Detections(None, None, BLIND)
         self._rows.append((frame.time, *_cells(found.puck), *_cells(found.opponent), found.pucks))
         return found
 
-    def moved(self, image: np.ndarray) -> Trouble | None:
-        """A check for `camera.watch.Watch`: whether the camera is where it was. If not, what was seen since it last was
-        is not known, and its place is found anew as soon as a picture tells it."""
-        if self._moved is None:
+    def check_camera(self, image: np.ndarray) -> Trouble | None:
+        """Check, for `FrameMonitor`, whether the camera is still in its place in a picture uint8 (rows, columns).
+
+        If it is not, the positions since the last successful check are discarded, and the camera is located anew as
+        soon as a picture shows enough markers.
+        """
+        if self._shift is None:
             return None
-        shifts = self._moved.shifts(image)
-        if self._eye and not len(shifts):
-            return hidden()
-        if self._eye and shifts.max() <= MOST:
+        shifts = self._shift.shifts(image)
+        if self._detector and not len(shifts):
+            return markers_hidden()
+        if self._detector and shifts.max() <= MOST:
             self._trusted = len(self._rows)
             return None
         self._rows[self._trusted :] = [(row[0], *NOWHERE, *NOWHERE, BLIND) for row in self._rows[self._trusted :]]
-        self._eye = self.locator = None
+        self._detector = self.locator = None
         with suppress(ValueError):
             self._begin(image, FEWEST + 1)
             self._trusted = len(self._rows)
-        return moved(shifts) if len(shifts) else hidden()
+        return camera_moved(shifts) if len(shifts) else markers_hidden()
 
     @property
-    def camera(self) -> Camera:
+    def camera(self) -> CameraModel:
         """The camera of the calibration."""
         return self._table.setup.camera
 
     @property
     def place_std(self) -> float:
-        """How far off along each axis [m] the calibration typically has places, alike in all pictures."""
+        """The typical error of the calibration along each axis [m], common to all pictures."""
         return self._table.place_std
 
     @property
     def heights(self) -> tuple[float, float]:
-        """Of the puck's top and of the opponent's ring above the table [m]."""
-        return self._table.setup.puck_top, self.things.ring_height
+        """The heights of the puck's top and of the opponent's ring above the table [m]."""
+        return self._table.setup.puck_top, self.targets.ring_height
 
     @property
     def counts(self) -> dict[str, int]:
-        """Frames: in which the puck is known, in which there is none, and in which what there is is not it; of those
-        in which the camera's place was known."""
+        """The number of frames with a known camera pose in which the puck's state is known ("seen"), in which there is
+        no candidate for it ("hidden"), and in which there are candidates but the state is unknown ("unsure")."""
         known, pucks = (np.array([row[k] for row in self._rows]) for k in (1, -1))
         blank = np.isnan(known)
         return {"seen": int((~blank).sum()), "hidden": int((blank & (pucks == 0)).sum()),
                 "unsure": int((blank & (pucks > 0)).sum())}  # fmt: skip
 
     def recording(self, name: str, note: str) -> Recording:
-        """All that was seen so far. Nominal values that no picture tells are None."""
+        """The recording of all frames so far. Nominal values that pictures do not show are None."""
         columns = np.array([row[: len(COLUMNS)] for row in self._rows], dtype=float).reshape(-1, len(COLUMNS)).T
         setup = self._table.setup
         rate = round(1.0 / float(np.median(np.diff(columns[0]))), 3) if len(self._rows) > 1 else None
         meta = {
             "format": FORMAT,
             "table": {"length_m": setup.length, "width_m": setup.width, "goal_width_m": setup.goal_width},
-            "puck": {"radius_m": self.things.puck_radius},
+            "puck": {"radius_m": self.targets.puck_radius},
             "mallet": {"radius_m": None},
             "camera": {"rate_hz": rate, "position_std_m": None, "place_std_m": self.place_std or None},
             "note": note,
@@ -118,22 +128,23 @@ class Tracker:
         return Recording(name, meta, frames=Stream(dict(zip(COLUMNS, columns, strict=True))))
 
     def _begin(self, image: np.ndarray, fewest: int) -> None:
-        """By so many markers at least: three have little that could contradict them, which after a bump matters."""
-        setup, scene, things = self._table.setup, self._table.scene, self.things
+        """Locate the camera by `fewest` markers at least, and start a detector. After a bump one more marker is
+        required: three alone leave too little redundancy. ValueError, in one line, if that fails."""
+        setup, geometry, targets = self._table.setup, self._table.geometry, self.targets
         check_size("it", image, setup.camera)
         corners = find_markers(image, setup.camera, setup.dictionary)
-        pose = camera_pose(setup, scene, corners)
-        if 4 * min(fewest, len(scene.markers)) > len(pose.residuals):
+        pose = camera_pose(setup, geometry, corners)
+        if 4 * min(fewest, len(geometry.markers)) > len(pose.residuals):
             raise ValueError(f"{len(pose.residuals) // 4} markers are seen; expected {fewest} at least")
         self.pose = pose
-        self.locator = Locator(setup.camera, self.pose.motion, scene.surface, scene.bend)
-        self._moved = Moved(image, corners)
-        self._eye = Eye(
-            self.locator, image.shape[::-1], length=setup.length, width=setup.width, puck_radius=things.puck_radius,
-            puck_height=setup.puck_top, ring_height=things.ring_height, level=things.level,
+        self.locator = Locator(setup.camera, self.pose.motion, geometry.surface, geometry.warp)
+        self._shift = CameraShift(image, corners)
+        self._detector = Detector(
+            self.locator, image.shape[::-1], length=setup.length, width=setup.width, puck_radius=targets.puck_radius,
+            puck_height=setup.puck_top, ring_height=targets.ring_height, level=targets.level,
             calibration_error=self.place_std,
         )  # fmt: skip
 
 
-def _cells(there: Estimate | None) -> tuple[float, float]:
-    return NOWHERE if there is None else (float(there.place[0]), float(there.place[1]))
+def _cells(state: TrackState | None) -> tuple[float, float]:
+    return NOWHERE if state is None else (float(state.place[0]), float(state.place[1]))

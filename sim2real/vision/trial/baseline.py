@@ -1,13 +1,13 @@
-"""The report's rules for a puck that may be partly hidden (C.2), and the plain centroid: the disc's rivals."""
+"""Baselines for the puck's centre: the report's rules for a puck that may be partly hidden (C.2), and the centroid."""
 
 from __future__ import annotations
 
 import numpy as np
 
-STRIP = 1.2e-3  # m from the lowest and highest x (eq. 20, 21)
-ON = 2.5e-3  # m from the circle (eq. 24)
-SAME = 2e-3  # m between the candidates of a puck that is not hidden,
-CLEARLY = 1.5  # and how many times more points the better of two has (eq. 25)
+STRIP = 1.2e-3  # m, width of the strips at the lowest and the highest x (eq. 20, 21)
+ON = 2.5e-3  # m, greatest distance of a point that lies on the circle (eq. 24)
+SAME = 2e-3  # m, greatest distance between the candidates of a puck that is not hidden
+CLEARLY = 1.5  # ratio of points by which one candidate is better than the other (eq. 25)
 
 
 def centroid(contour: np.ndarray) -> np.ndarray:
@@ -16,8 +16,10 @@ def centroid(contour: np.ndarray) -> np.ndarray:
 
 
 def report_centre(contour: np.ndarray, radius: float, before: np.ndarray) -> np.ndarray:
-    """Centre (2,) [m] of a puck of this radius whose contour (n, 2) is on the table, and that was at `before` (2,) in
-    the last picture."""
+    """The centre (2,) [m] of a puck by the report's rules.
+
+    contour: (n, 2) on the table [m]; radius: of the puck [m]; before: (2,) its centre in the last picture [m].
+    """
     x = contour[:, 0]
     step = np.array([radius, 0.0])
     low, high = contour[x < x.min() + STRIP].mean(axis=0) + step, contour[x > x.max() - STRIP].mean(axis=0) - step

@@ -79,7 +79,7 @@ def test_a_frame_that_comes_while_one_waits_ends_the_wait() -> None:
         assert frame and frame.sequence == 1 and time.perf_counter() - began < 0.5 * PATIENCE
 
 
-def test_a_failure_is_told_after_the_last_picture() -> None:
+def test_a_failure_is_raised_after_the_last_picture() -> None:
     with Hand() as source:
         source.push(1, CameraError("the cable is out; plug it in"))
         assert source.newest(PATIENCE)
@@ -135,7 +135,7 @@ class Webcam:
         self.released = True
 
 
-def test_a_webcams_pictures_are_turned_grey_and_its_end_is_told(monkeypatch) -> None:
+def test_a_webcams_pictures_are_turned_grey_and_its_end_is_reported(monkeypatch) -> None:
     monkeypatch.setattr(device.cv2, "VideoCapture", Webcam)
     with open_source("device:0") as source, pytest.raises(CameraError, match="device:0 gives no more pictures"):
         frames = [source.newest(PATIENCE) for _ in range(9)]

@@ -124,11 +124,11 @@ def test_a_recording_to_render_is_named() -> None:
 
 
 @pytest.mark.parametrize("word", ["nowhere.mp4", "", "device", "aravis", "webcam:0"])
-def test_an_unknown_word_is_told_what_is_known(word: str, tmp_path: Path, monkeypatch) -> None:
+def test_an_unknown_word_is_answered_with_the_known_ones(word: str, tmp_path: Path, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(CameraError) as told:
+    with pytest.raises(CameraError) as error:
         open_source(word or "/nowhere/")
-    assert KNOWN in str(told.value) and "\n" not in str(told.value)
+    assert KNOWN in str(error.value) and "\n" not in str(error.value)
 
 
 @pytest.mark.parametrize("word", ["device:", "device:x", "device:-1"])

@@ -6,11 +6,11 @@ import cv2
 import numpy as np
 import pytest
 
-from sim2real.vision.camera import Camera
-from sim2real.vision.motion import moved, rotation
-from tests.sim2real.vision.world import BENT, SIZE, K
+from sim2real.vision.camera import CameraModel
+from sim2real.vision.motion import apply_motion, rotation
+from tests.sim2real.vision.world import DISTORTION, SIZE, K
 
-CAMERA = Camera(K[0, 0], K[1, 1], K[0, 2], K[1, 2], tuple(BENT), SIZE)
+CAMERA = CameraModel(K[0, 0], K[1, 1], K[0, 2], K[1, 2], tuple(DISTORTION), SIZE)
 MOTIONS = [np.array(one) for one in ([0.3, -0.4, 2.5, 0.1, 0.2, 3.0], [1e-9, 2e-9, 0, 0, 0, 2.0], [0, 0, 0, 0, 0, 2.0])]
 
 
@@ -20,8 +20,8 @@ def points() -> np.ndarray:
 
 @pytest.mark.parametrize("motion", MOTIONS)
 def test_pixels_and_derivatives_are_opencvs(motion: np.ndarray):
-    theirs, by = cv2.projectPoints(points(), motion[:3], motion[3:], K, BENT)
-    seen, by_motion, turn = moved(motion, points())
+    theirs, by = cv2.projectPoints(points(), motion[:3], motion[3:], K, DISTORTION)
+    seen, by_motion, turn = apply_motion(motion, points())
     ours, by_point = CAMERA.project(seen)
     np.testing.assert_allclose(ours, theirs[:, 0], atol=1e-9)
     np.testing.assert_allclose((by_point @ by_motion).reshape(-1, 6), by[:, :6], atol=1e-6)
@@ -40,14 +40,14 @@ def test_derivatives_by_points_are_differences():
 def test_rays_of_a_whole_picture_are_opencvs():
     u, v = np.meshgrid(np.arange(0, SIZE[0], 64.0), np.arange(0, SIZE[1], 64.0))
     pixels = np.stack([u.ravel(), v.ravel()], axis=1)
-    theirs = cv2.undistortPoints(pixels[:, None], K, BENT, criteria=(3, 100, 1e-14))[:, 0]
+    theirs = cv2.undistortPoints(pixels[:, None], K, DISTORTION, criteria=(3, 100, 1e-14))[:, 0]
     np.testing.assert_allclose(CAMERA.rays(pixels), theirs, atol=1e-10)
-    np.testing.assert_allclose(CAMERA.curved(CAMERA.straight(pixels)), pixels, atol=1e-9)
+    np.testing.assert_allclose(CAMERA.distort(CAMERA.undistort(pixels)), pixels, atol=1e-9)
 
 
 def test_what_cannot_be_seen_is_nan():
     assert np.isnan(CAMERA.project(np.array([[0.1, 0.1, -1.0], [0.0, 0.0, 0.0]]))[0]).all()
-    folding = Camera(500.0, 500.0, 320.0, 240.0, (-0.5, 0.0, 0.0, 0.0, 0.0))
+    folding = CameraModel(500.0, 500.0, 320.0, 240.0, (-0.5, 0.0, 0.0, 0.0, 0.0))
     assert np.isnan(folding.rays(np.array([[900.0, 240.0]]))).all()
     assert np.isfinite(folding.rays(np.array([[500.0, 240.0]]))).all()
 

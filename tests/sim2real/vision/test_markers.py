@@ -17,14 +17,14 @@ from tests.sim2real.vision.test_camera import CAMERA
 
 @cache
 def picture(blur: float) -> np.ndarray:
-    return world.photograph(world.camera_motion(world.EYES[0]), blur)
+    return world.photograph(world.camera_motion(world.CAMERA_PLACES[0]), blur)
 
 
 def errors(found: dict[int, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     """Of each corner (24, 2) how far off it is, and (24,) how far outward from its marker's middle."""
     off, outward = [], []
     for name, corners in world.markers().items():
-        pixels = world.seen(world.camera_motion(world.EYES[0]), corners)
+        pixels = world.seen(world.camera_motion(world.CAMERA_PLACES[0]), corners)
         away = pixels - pixels.mean(axis=0)
         off.append(found[name] - pixels)
         outward.append((off[-1] * away).sum(axis=1) / np.linalg.norm(away, axis=1))
@@ -59,7 +59,7 @@ AWRY = np.array([[2.0, 1.5], [-1.5, 2.0], [-2.0, -1.0], [2.0, -1.5]])  # px
 
 
 def truly_seen(name: int) -> np.ndarray:
-    return world.seen(world.camera_motion(world.EYES[0]), world.markers()[name])
+    return world.seen(world.camera_motion(world.CAMERA_PLACES[0]), world.markers()[name])
 
 
 def test_corners_that_are_detected_far_off_are_found():
@@ -83,7 +83,7 @@ def test_a_marker_that_is_seen_twice_is_not_taken():
 
 
 def test_markers_of_another_dictionary_are_named():
-    image = world.photograph(world.camera_motion(world.EYES[0]), book=cv2.aruco.DICT_5X5_100)
+    image = world.photograph(world.camera_motion(world.CAMERA_PLACES[0]), book=cv2.aruco.DICT_5X5_100)
     with pytest.raises(ValueError, match=r"0 markers of DICT_4X4_50 are seen; expected 3 .* 6 of DICT_5X5_\d+ are"):
         find_markers(image, CAMERA, "DICT_4X4_50")
 
@@ -92,7 +92,7 @@ def test_too_few_markers_are_counted():
     image = picture(1.0).copy()
     image[:, :1024] = 90
     for name in (0, 1):
-        u, v = world.seen(world.camera_motion(world.EYES[0]), world.markers()[name]).mean(axis=0).astype(int)
+        u, v = world.seen(world.camera_motion(world.CAMERA_PLACES[0]), world.markers()[name]).mean(axis=0).astype(int)
         image[v - 60 : v + 60, u - 60 : u + 60] = 90
     with pytest.raises(ValueError, match="1 markers of DICT_4X4_50 are seen; expected 3 at least: are they hidden"):
         find_markers(image, CAMERA, "DICT_4X4_50")

@@ -9,24 +9,25 @@ import cv2
 import numpy as np
 
 K = np.array([[1640.0, 0.0, 1018.0], [0.0, 1639.0, 772.0], [0.0, 0.0, 1.0]])
-BENT = np.array([-0.128, 0.155, 0.0012, -0.00017, -0.065])
+DISTORTION = np.array([-0.128, 0.155, 0.0012, -0.00017, -0.065])
 SIZE = (2048, 1536)
 LENGTH, WIDTH, TOP, SIDE = 2.0, 1.0, 0.006, 0.08
 CURVATURE = (0.004, -0.002, -0.008)  # 1/m, about the middle
-EYES = ((-0.55, 0.5, 1.6), (-0.35, 0.15, 1.75), (-0.45, 0.85, 1.7), (-0.6, 0.6, 1.8))
+CAMERA_PLACES = ((-0.55, 0.5, 1.6), (-0.35, 0.15, 1.75), (-0.45, 0.85, 1.7), (-0.6, 0.6, 1.8))
 LOOK = (0.9, 0.5, 0.0)
 SAMPLES = 5  # a pixel's width of rays
 MARGIN = 1  # cells of white round a marker
 
 
-def camera_motion(eye: tuple[float, float, float]) -> np.ndarray:
-    """Rotation vector and shift (6,) of a camera at `eye` that looks at the table, its image's top away from x = 0."""
-    ahead = np.subtract(LOOK, eye)
+def camera_motion(place: tuple[float, float, float]) -> np.ndarray:
+    """Rotation vector and shift (6,) of a camera at `place` [m] that looks at the table; the image's top shows its far
+    end."""
+    ahead = np.subtract(LOOK, place)
     ahead /= np.linalg.norm(ahead)
     right = np.cross(ahead, [0.0, 0.0, 1.0])
     right /= np.linalg.norm(right)
     turn = np.stack([right, np.cross(ahead, right), ahead])
-    return np.concatenate([cv2.Rodrigues(turn)[0].ravel(), -turn @ eye])
+    return np.concatenate([cv2.Rodrigues(turn)[0].ravel(), -turn @ place])
 
 
 def height(places: np.ndarray) -> np.ndarray:
@@ -36,7 +37,7 @@ def height(places: np.ndarray) -> np.ndarray:
 
 def seen(motion: np.ndarray, points: np.ndarray) -> np.ndarray:
     """Pixels (n, 2) of points (n, 3), by OpenCV."""
-    return cv2.projectPoints(points, motion[:3], motion[3:], K, BENT)[0][:, 0]
+    return cv2.projectPoints(points, motion[:3], motion[3:], K, DISTORTION)[0][:, 0]
 
 
 def puck_points(places: np.ndarray) -> np.ndarray:
@@ -78,7 +79,7 @@ def photograph(
         steps = (np.arange(SAMPLES) + 0.5) / SAMPLES - 0.5
         u = (np.arange(low[0], high[0])[:, None] + steps).ravel()
         v = (np.arange(low[1], high[1])[:, None] + steps).ravel()
-        rays = cv2.undistortPoints(np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 1, 2), K, BENT,
+        rays = cv2.undistortPoints(np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 1, 2), K, DISTORTION,
                                    criteria=(3, 40, 1e-12))[:, 0]  # fmt: skip
         right, down = (corners[1] - corners[0]) / SIDE, (corners[3] - corners[0]) / SIDE
         plane = turn @ np.stack([right, down, corners[0]], axis=1)
@@ -92,10 +93,10 @@ def photograph(
     return np.clip(np.rint(image), 0, 255).astype(np.uint8)
 
 
-def camera_words() -> dict:
+def camera_fields() -> dict:
     return {
         "K": K.tolist(),
-        "distortion_k1_k2_p1_p2_k3": BENT.tolist(),
+        "distortion_k1_k2_p1_p2_k3": DISTORTION.tolist(),
         "aruco_dictionary": "DICT_4X4_50",
         "puck_top_above_table_m": TOP,
         "table": {"length_m": LENGTH, "width_m": WIDTH, "goal_width_m": None},
@@ -111,5 +112,5 @@ def write_view(folder: Path, image: np.ndarray, pixels: np.ndarray, places: np.n
 
 
 def write_camera_file(path: Path) -> Path:
-    path.write_text(json.dumps(camera_words()))
+    path.write_text(json.dumps(camera_fields()))
     return path

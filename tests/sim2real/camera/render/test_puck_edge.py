@@ -7,34 +7,36 @@ import numpy as np
 import pytest
 
 from sim2real.camera.render.box import Box
-from sim2real.camera.render.moment import Moment, Motion
 from sim2real.camera.render.renderer import Renderer
+from sim2real.camera.render.scene_state import BodyState, SceneState
 from sim2real.camera.render.sensor import Sensor
-from sim2real.camera.render.table import Levels, Surface, Table
-from sim2real.camera.render.view import View
+from sim2real.camera.render.table import Levels, RenderedSurface, Table
+from sim2real.camera.render.view import CameraView
 
 DARK = Levels(*(0.0,) * 14)
 SHARP = Sensor(blur=0.0, read_noise=0.0, shot_noise=0.0)
 WARP = (0.001, 0.002, -0.003, -0.0015, 0.001, 0.002)  # m, a millimetre or two over the table
 PLACES = [(0.2, 0.15), (0.61, 0.5), (1.1, 0.93), (1.7, 0.2)]
 VIEWS = {
-    "real": View.like_the_real_one(2.0, 1.0),
-    "side": View.from_place(np.array([0.9, -0.7, 1.1]), np.array([1.0, 0.5, 0.0])),
-    "above": View.from_place(np.array([0.99, 0.5, 2.1]), np.array([1.0, 0.5, 0.0])),
+    "real": CameraView.like_the_real_one(2.0, 1.0),
+    "side": CameraView.from_place(np.array([0.9, -0.7, 1.1]), np.array([1.0, 0.5, 0.0])),
+    "above": CameraView.from_place(np.array([0.99, 0.5, 2.1]), np.array([1.0, 0.5, 0.0])),
 }
 
 
-def only_the_puck(view: View, motion: Motion, warp=(0.0,) * 6, sensor: Sensor = SHARP) -> tuple[np.ndarray, Box]:
+def only_the_puck(
+    view: CameraView, motion: BodyState, warp=(0.0,) * 6, sensor: Sensor = SHARP
+) -> tuple[np.ndarray, Box]:
     """Share of each pixel that is puck, in a box round it."""
     levels = Levels(**{**DARK.__dict__, "puck": 100.0})
-    renderer = Renderer(Table(surface=Surface(warp), levels=levels), view, sensor)
-    moment = Moment(puck=motion)
-    box = renderer.box_of(moment)
-    brightness = view.brightness_at(np.array([motion.x, motion.y, Surface(warp).height(*motion[:2]) + 0.00585]))
-    return renderer.light(moment, box) / (100.0 * brightness), box
+    renderer = Renderer(Table(surface=RenderedSurface(warp), levels=levels), view, sensor)
+    state = SceneState(puck=motion)
+    box = renderer.box_of(state)
+    brightness = view.brightness_at(np.array([motion.x, motion.y, RenderedSurface(warp).height(*motion[:2]) + 0.00585]))
+    return renderer.light(state, box) / (100.0 * brightness), box
 
 
-def rim(motion: Motion, warp, count: int = 3000) -> np.ndarray:
+def rim(motion: BodyState, warp, count: int = 3000) -> np.ndarray:
     """Points of the puck's rim: on the plane tangent to the surface, shifted up."""
     a0, a1, a2, a3, a4, a5 = warp
     x, y = motion[:2]
@@ -47,7 +49,7 @@ def rim(motion: Motion, warp, count: int = 3000) -> np.ndarray:
 @pytest.mark.parametrize("place", PLACES)
 @pytest.mark.parametrize("name", VIEWS)
 def test_coverage_is_that_of_the_rim_as_opencv_projects_it(name: str, place: tuple[float, float]) -> None:
-    view, motion = VIEWS[name], Motion(*place)
+    view, motion = VIEWS[name], BodyState(*place)
     shares, box = only_the_puck(view, motion, WARP)
     points = rim(motion, WARP)
     outline = cv2.projectPoints(points, view.rotation, view.shift, view.matrix, view.distortion)[0][:, 0]
@@ -79,7 +81,7 @@ def by_lines(outline: np.ndarray, box: Box, lines: int = 128) -> np.ndarray:
 def test_traced_back_to_the_table_centre_and_radius_are_right_to_10_micrometres(name, place) -> None:
     """Each pixel's covered area, moved along its ray to the plane of the puck's top, adds up to the puck's disc."""
     view = VIEWS[name]
-    shares, box = only_the_puck(view, Motion(*place))
+    shares, box = only_the_puck(view, BodyState(*place))
     v, u = np.mgrid[box.top : box.bottom, box.left : box.right].astype(float)
     corners = [on_plane(view, u + du, v + dv) for du, dv in ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))]
     diagonals = corners[2] - corners[0], corners[3] - corners[1]
@@ -90,7 +92,7 @@ def test_traced_back_to_the_table_centre_and_radius_are_right_to_10_micrometres(
     assert np.sqrt(weight.sum() / np.pi) == pytest.approx(0.0309, abs=2e-6)
 
 
-def on_plane(view: View, u: np.ndarray, v: np.ndarray, z: float = 0.00585) -> np.ndarray:
+def on_plane(view: CameraView, u: np.ndarray, v: np.ndarray, z: float = 0.00585) -> np.ndarray:
     """Where the rays of pixels meet the plane z: x and y (..., 2)."""
     k1, k2, p1, p2, k3 = view.distortion
     (fx, _, cx), (_, fy, cy), _ = view.matrix
@@ -110,8 +112,8 @@ def on_plane(view: View, u: np.ndarray, v: np.ndarray, z: float = 0.00585) -> np
 def test_a_fast_puck_is_a_streak_around_its_middle() -> None:
     view, exposure, speed = VIEWS["above"], 2e-3, 5.0
     sensor = Sensor(exposure=exposure, blur=0.0)
-    still, box = only_the_puck(view, Motion(1.0, 0.5))
-    fast, _ = only_the_puck(view, Motion(1.0, 0.5, vx=speed), sensor=sensor)
+    still, box = only_the_puck(view, BodyState(1.0, 0.5))
+    fast, _ = only_the_puck(view, BodyState(1.0, 0.5, vx=speed), sensor=sensor)
     rows = np.arange(box.shape[0])
     middles, spreads = [], []
     for shares in (still, fast):

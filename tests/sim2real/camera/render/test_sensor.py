@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sim2real.camera.render.box import Box
-from sim2real.camera.render.sensor import Noise, Sensor
+from sim2real.camera.render.sensor import PixelNoise, Sensor
 
 BOX = Box(0, 0, 40, 60)
 
@@ -25,14 +25,14 @@ def test_blur_keeps_energy_and_middle_and_adds_its_variance() -> None:
 
 @pytest.mark.parametrize("level", [12.0, 90.0, 200.0])
 def test_noise_has_the_stated_variance(level: float) -> None:
-    sensor, noise = Sensor(read_noise=1.5, shot_noise=0.03), Noise(BOX, 1)
+    sensor, noise = Sensor(read_noise=1.5, shot_noise=0.03), PixelNoise(BOX, 1)
     pictures = np.stack([sensor.levels(np.full(BOX.shape, level), noise.of(k, BOX)) for k in range(40)]).astype(float)
     assert pictures.mean() == pytest.approx(level, abs=0.05)
     assert pictures.var(axis=0).mean() == pytest.approx(1.5**2 + 0.03 * level + 1 / 12, rel=0.05)  # and rounding's
 
 
 def test_noise_of_pictures_in_a_row_and_of_neighbours_is_unrelated() -> None:
-    noise = Noise(BOX, 2)
+    noise = PixelNoise(BOX, 2)
     fields = np.stack([noise.of(k, BOX) for k in range(30)])
     flat = fields.reshape(30, -1)
     between = np.corrcoef(flat) - np.eye(30)

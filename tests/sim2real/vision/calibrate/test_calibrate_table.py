@@ -10,12 +10,15 @@ import numpy as np
 import pytest
 
 import puckpilot
-from sim2real.vision.calibrate.check import check
+from sim2real.vision.calibrate.calibration_view import read_view
+from sim2real.vision.calibrate.holdout_view import check_holdout
 from sim2real.vision.calibrate.table_file import read_table
-from sim2real.vision.calibrate.view_file import read_view
+from tests.places import UBC
 from tests.sim2real.vision import world
 
-UBC = Path(__file__).resolve().parents[5] / "shared" / "recordings" / "ubc" / "calibration"
+pytestmark = pytest.mark.slow
+
+CALIBRATION = UBC / "calibration"
 
 
 @pytest.fixture(scope="module")
@@ -23,8 +26,8 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder of camera.json and four views, places known to 0.3 mm; one point of the second is 5 mm off."""
     folder = tmp_path_factory.mktemp("made")
     world.write_camera_file(folder / "camera.json")
-    for k, eye in enumerate(world.EYES):
-        motion, rng = world.camera_motion(eye), np.random.default_rng(k)
+    for k, place in enumerate(world.CAMERA_PLACES):
+        motion, rng = world.camera_motion(place), np.random.default_rng(k)
         pixels = world.seen(motion, world.puck_points(world.grid())) + rng.normal(0.0, 0.1, (36, 2))
         places = world.grid() + rng.normal(0.0, 3e-4, (36, 2))
         places[7] += np.array([0.003, 0.004]) * (k == 1)
@@ -41,21 +44,21 @@ def calibrated(folder: Path, views: list[str], check: str | None, out: Path, cap
 
 
 def test_a_made_up_table_is_found(made: Path, tmp_path: Path, capsys):
-    told = calibrated(made, ["view_0", "view_1", "view_2"], "view_3", tmp_path / "table.json", capsys)
-    assert told["check"] == "view_3" and told["markers"] == 6 and told["fit"]["points"] == 108
-    assert told["median_mm"] <= told["mean_mm"] < 0.6 and told["max_mm"] < 1.5
-    assert [(one["view"], one["point"]) for one in told["wrong"]] == [("view_1", 8)]
-    assert told["wrong"][0]["off_mm"] == pytest.approx(5.0, abs=0.8)
-    assert max(told["corner_rms_px"]) < 0.05 and not told["step_across"]["clear"] and not told["weakest"]["matters"]
-    for k, one in enumerate(told["surface_per_m"].values()):
+    found = calibrated(made, ["view_0", "view_1", "view_2"], "view_3", tmp_path / "table.json", capsys)
+    assert found["check"] == "view_3" and found["markers"] == 6 and found["fit"]["points"] == 108
+    assert found["median_mm"] <= found["mean_mm"] < 0.6 and found["max_mm"] < 1.5
+    assert [(one["view"], one["point"]) for one in found["wrong"]] == [("view_1", 8)]
+    assert found["wrong"][0]["off_mm"] == pytest.approx(5.0, abs=0.8)
+    assert max(found["corner_rms_px"]) < 0.05 and not found["step_across"]["clear"] and not found["weakest"]["matters"]
+    for k, one in enumerate(found["surface_per_m"].values()):
         assert abs(one["value"] - world.CURVATURE[k]) < 4.0 * one["std"]
     words, table = json.loads((tmp_path / "table.json").read_text()), read_table(tmp_path / "table.json")
     far = [1e3 * np.hypot(*point["off_m"]) for view in words["views"] for point in view["points"]]
-    assert told["fit"] == {"points": 108, "mean_mm": pytest.approx(np.mean(far)), "max_mm": pytest.approx(max(far))}
-    far = 1e3 * np.hypot(*check(table.setup, table.scene, read_view(made / "view_3", table.setup)).off.T)
-    figures = [told["mean_mm"], told["median_mm"], told["max_mm"], told["farthest_point"]]
+    assert found["fit"] == {"points": 108, "mean_mm": pytest.approx(np.mean(far)), "max_mm": pytest.approx(max(far))}
+    far = 1e3 * np.hypot(*check_holdout(table.setup, table.geometry, read_view(made / "view_3", table.setup)).off.T)
+    figures = [found["mean_mm"], found["median_mm"], found["max_mm"], found["farthest_point"]]
     assert figures == pytest.approx([far.mean(), np.median(far), far.max(), far.argmax() + 1])
-    markers = table.scene.markers
+    markers = table.geometry.markers
     off = [np.abs(markers[name] - corners).max() for name, corners in world.markers().items()]
     assert max(off) < 4e-3
     assert sorted(path.name for path in tmp_path.iterdir()) == ["table.json", "table.png"]
@@ -65,9 +68,9 @@ def test_a_made_up_table_is_found(made: Path, tmp_path: Path, capsys):
 def test_it_says_so_in_words(made: Path, tmp_path: Path, capsys):
     words = ["calibrate", "table", *(str(made / f"view_{k}") for k in range(2)), "--camera", str(made / "camera.json")]
     assert puckpilot.main([*words, "--out", str(tmp_path / "t.json"), "--check", str(made / "view_2")]) == 0
-    told = capsys.readouterr().out
-    assert "2 views, 6 markers, 72 points in " in told and "wrong measurement: view_1, point 8, " in told
-    assert "check on view_2, not used: mean 0." in told and f"{tmp_path / 't.png'} shows it" in told
+    found = capsys.readouterr().out
+    assert "2 views, 6 markers, 72 points in " in found and "wrong measurement: view_1, point 8, " in found
+    assert "check on view_2, not used: mean 0." in found and f"{tmp_path / 't.png'} shows it" in found
 
 
 @pytest.mark.parametrize("again", [["view_0/../view_1"], ["copy"], ["--check", "view_1"], ["--check", "copy"]])
@@ -76,8 +79,8 @@ def test_a_view_that_is_given_twice_is_refused(made: Path, tmp_path: Path, again
     views = [word if word.startswith("--") else str(made / word) for word in ["view_0", "view_1", *again]]
     words = ["--camera", str(made / "camera.json"), "--out", str(tmp_path / "t.json")]
     assert puckpilot.main(["calibrate", "table", *views, *words]) == 2
-    told = capsys.readouterr().err
-    assert f"{made / again[-1]} shows the same photograph as {made / 'view_1'}; give each once" in told
+    found = capsys.readouterr().err
+    assert f"{made / again[-1]} shows the same photograph as {made / 'view_1'}; give each once" in found
     assert not list(tmp_path.iterdir())
 
 
@@ -92,15 +95,15 @@ def test_a_check_that_cannot_be_leaves_no_file(made: Path, tmp_path: Path, capsy
     assert "mistyped: not seen where measured: point 5 (" in capsys.readouterr().err and not list(tmp_path.iterdir())
 
 
-def test_a_table_that_is_not_covered_is_told(made: Path, tmp_path: Path, capsys):
+def test_a_table_that_is_not_covered_is_reported(made: Path, tmp_path: Path, capsys):
     for k in range(2):
         shutil.copytree(made / f"view_{k}", made / f"near_{k}")
         lines = (made / f"near_{k}" / "pixels.csv").read_text().splitlines()
         (made / f"near_{k}" / "pixels.csv").write_text("\n".join(lines[:19]) + "\n")
     words = [str(made / "near_0"), str(made / "near_1"), "--camera", str(made / "camera.json")]
     assert puckpilot.main(["calibrate", "table", *words, "--out", str(tmp_path / "t.json")]) == 0
-    told = capsys.readouterr().out
-    assert "the table is not covered: at (2.00, " in told and " m from any point, places are known to " in told
+    found = capsys.readouterr().out
+    assert "the table is not covered: at (2.00, " in found and " m from any point, places are known to " in found
 
 
 def test_the_picture_does_not_take_the_tables_place(made: Path, tmp_path: Path, capsys):
@@ -111,9 +114,9 @@ def test_the_picture_does_not_take_the_tables_place(made: Path, tmp_path: Path, 
 
 @pytest.fixture
 def real() -> Path:
-    if not UBC.exists():
-        pytest.skip(f"no photographs of the real table beside the project ({UBC})")
-    return UBC
+    if not CALIBRATION.exists():
+        pytest.skip(f"no photographs of the real table beside the project ({CALIBRATION})")
+    return CALIBRATION
 
 
 @pytest.mark.parametrize("kept", [1, 2, 3])
@@ -121,15 +124,17 @@ def test_the_real_table_each_view_by_the_others(real: Path, kept: int, tmp_path:
     """Leave-one-out on real photographs. The largest errors of view 2 are of the points that the other two, together
     with it, show to be measured wrong."""
     views = [f"view_{k}" for k in (1, 2, 3) if k != kept]
-    told = calibrated(real, views, f"view_{kept}", tmp_path / "table.json", capsys)
+    found = calibrated(real, views, f"view_{kept}", tmp_path / "table.json", capsys)
     with capsys.disabled():
-        print(f"\nview_{kept}: mean {told['mean_mm']:.2f}, median {told['median_mm']:.2f}, max {told['max_mm']:.2f} mm")
-    assert told["mean_mm"] < 0.7 and told["median_mm"] < 0.6
-    assert told["max_mm"] < {1: 1.8, 2: 2.6, 3: 1.5}[kept]
+        print(
+            f"\nview_{kept}: mean {found['mean_mm']:.2f}, median {found['median_mm']:.2f}, max {found['max_mm']:.2f} mm"
+        )
+    assert found["mean_mm"] < 0.7 and found["median_mm"] < 0.6
+    assert found["max_mm"] < {1: 1.8, 2: 2.6, 3: 1.5}[kept]
 
 
 def test_the_real_tables_wrong_points_and_width_are_named(real: Path, tmp_path: Path, capsys):
-    told = calibrated(real, ["view_1", "view_2", "view_3"], None, tmp_path / "table.json", capsys)
-    assert [(one["view"], one["point"]) for one in told["wrong"]] == [("view_2", 3), ("view_2", 27)]
-    assert told["step_across"]["clear"] and told["step_across"]["mm"] == pytest.approx(2.6, abs=0.4)
-    assert max(told["corner_rms_px"]) < 0.2
+    found = calibrated(real, ["view_1", "view_2", "view_3"], None, tmp_path / "table.json", capsys)
+    assert [(one["view"], one["point"]) for one in found["wrong"]] == [("view_2", 3), ("view_2", 27)]
+    assert found["step_across"]["clear"] and found["step_across"]["mm"] == pytest.approx(2.6, abs=0.4)
+    assert max(found["corner_rms_px"]) < 0.2

@@ -7,10 +7,10 @@ from functools import cache
 import numpy as np
 import pytest
 
-from sim2real.vision.calibrate.multiview import Solved, solve
-from sim2real.vision.calibrate.view import View
-from sim2real.vision.calibrate.width import step_across
-from sim2real.vision.scene import BEFORE
+from sim2real.vision.calibrate.calibration_view import CalibrationView
+from sim2real.vision.calibrate.multiview import MultiviewFit, solve
+from sim2real.vision.calibrate.width_check import width_step
+from sim2real.vision.table_geometry import MARKERS_START
 from tests.sim2real.vision import world
 from tests.sim2real.vision.calibrate.test_multiview import SETUP, true_vector
 
@@ -18,9 +18,9 @@ TABLES = 8
 PIXEL_NOISE, CORNER_NOISE = 0.2, 0.1
 
 
-def view(k: int, table: int, ruler: float, gross: dict[int, tuple[float, float]]) -> View:
+def view(k: int, table: int, ruler: float, gross: dict[int, tuple[float, float]]) -> CalibrationView:
     """Camera k, its points measured with a ruler of some standard deviation [m], some of them grossly wrong."""
-    rng, motion = np.random.default_rng([table, k]), world.camera_motion(world.EYES[k])
+    rng, motion = np.random.default_rng([table, k]), world.camera_motion(world.CAMERA_PLACES[k])
     corners = {
         name: world.seen(motion, one) + rng.normal(0.0, CORNER_NOISE, (4, 2)) for name, one in world.markers().items()
     }
@@ -28,24 +28,25 @@ def view(k: int, table: int, ruler: float, gross: dict[int, tuple[float, float]]
     places = world.grid() + rng.normal(0.0, ruler, (36, 2))
     for point, off in gross.items():
         places[point] += off
-    return View(f"view_{k}", corners, pixels, places)
+    return CalibrationView(f"view_{k}", corners, pixels, places)
 
 
 @cache
-def tables(ruler: float) -> list[Solved]:
+def tables(ruler: float) -> list[MultiviewFit]:
     return [solve(SETUP, tuple(view(k, table, ruler, {}) for k in range(3))) for table in range(TABLES)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ruler", [0.3e-3, 0.5e-3, 1.0e-3, 1.5e-3])
 def test_deviations_are_as_large_as_errors(ruler: float):
     """A ruler of 0.3 mm is better than is believed of any, and bars are then a quarter too long."""
     z = np.array(
-        [(one.scene.vector() - true_vector()) / np.sqrt(np.diag(one.scene_covariance())) for one in tables(ruler)]
+        [(one.geometry.vector() - true_vector()) / np.sqrt(np.diag(one.geometry_covariance())) for one in tables(ruler)]
     )
-    steps = [step_across(one, world.WIDTH) for one in tables(ruler)]
-    found = [z[:, :3], z[:, BEFORE:], np.array([one.value / one.std for one in steps if one is not None])]
-    told = [float(np.sqrt((one**2).mean())) for one in found]
-    assert min(told) > 0.6 and max(told) < 1.5, told
+    steps = [width_step(one, world.WIDTH) for one in tables(ruler)]
+    found = [z[:, :3], z[:, MARKERS_START:], np.array([one.value / one.std for one in steps if one is not None])]
+    output = [float(np.sqrt((one**2).mean())) for one in found]
+    assert min(output) > 0.6 and max(output) < 1.5, output
     assert len(found[2]) == TABLES
 
 

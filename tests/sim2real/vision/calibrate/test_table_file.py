@@ -10,27 +10,27 @@ import numpy as np
 import pytest
 
 from sim2real.vision.calibrate.multiview import solve
-from sim2real.vision.calibrate.table_file import FORMAT, Table, read_table, write_table
+from sim2real.vision.calibrate.table_file import FORMAT, TableCalibration, read_table, write_table
 from sim2real.vision.camera_file import read_setup, write_camera
-from sim2real.vision.track.tracker import Things, Tracker
+from sim2real.vision.track.tracker import Targets, Tracker
 from tests.sim2real.vision import world
-from tests.sim2real.vision.calibrate.test_multiview import SETUP, solved, view
+from tests.sim2real.vision.calibrate.test_multiview import SETUP, fit, view
 from tests.sim2real.vision.test_camera import CAMERA
 
 
 @pytest.fixture
 def table(tmp_path: Path) -> Path:
-    write_table(tmp_path / "table.json", SETUP, solved())
+    write_table(tmp_path / "table.json", SETUP, fit())
     return tmp_path / "table.json"
 
 
 def test_a_table_is_read_as_it_was_written(table: Path):
     found = read_table(table)
     assert found.setup == SETUP
-    assert list(found.scene.markers) == list(solved().scene.markers)
-    np.testing.assert_array_equal(found.scene.vector(), solved().scene.vector())
-    assert found.scene.bend.box == solved().scene.bend.box
-    assert found.place_std == Table.of(SETUP, solved()).place_std and 5e-5 < found.place_std < 1e-3
+    assert list(found.geometry.markers) == list(fit().geometry.markers)
+    np.testing.assert_array_equal(found.geometry.vector(), fit().geometry.vector())
+    assert found.geometry.warp.box == fit().geometry.warp.box
+    assert found.place_std == TableCalibration.of(SETUP, fit()).place_std and 5e-5 < found.place_std < 1e-3
     assert [path.name for path in table.parent.iterdir()] == ["table.json"]
 
 
@@ -38,7 +38,7 @@ def test_the_file_says_how_far_off_each_point_was(table: Path):
     words = json.loads(table.read_text())
     assert words["format"] == FORMAT == "puckpilot-table/1"
     off = [point["off_m"] for view in words["views"] for point in view["points"]]
-    np.testing.assert_array_equal(off, np.concatenate(solved().off))
+    np.testing.assert_array_equal(off, np.concatenate(fit().off))
     assert all(len(one["corners_m"]) == 4 and min(map(min, one["std"])) > 0.0 for one in words["markers"])
 
 
@@ -53,15 +53,15 @@ def test_it_states_standard_deviations_and_which_points_are_wrong(tmp_path: Path
     wrong = [(one["name"], k) for one in words["views"] for k, point in enumerate(one["points"]) if point["wrong"]]
     assert wrong == [("view_1", 7)]
     stated = [words["surface"]["std"], words["frame"]["std"], *(np.ravel(one["std"]) for one in words["markers"])]
-    np.testing.assert_allclose(np.concatenate(stated) ** 2, np.diag(found.scene_covariance()), rtol=1e-9)
+    np.testing.assert_allclose(np.concatenate(stated) ** 2, np.diag(found.geometry_covariance()), rtol=1e-9)
 
 
 @pytest.mark.parametrize("goal", [None, 0.34])
 def test_a_goals_width_comes_into_recordings_if_it_is_known(tmp_path: Path, goal: float | None):
-    write_table(tmp_path / "table.json", replace(SETUP, goal_width=goal), solved())
+    write_table(tmp_path / "table.json", replace(SETUP, goal_width=goal), fit())
     found = read_table(tmp_path / "table.json")
     assert found.setup.goal_width == goal
-    table = Tracker(found, Things(0.031, 0.02, 75.0)).recording("seen", "").meta["table"]
+    table = Tracker(found, Targets(0.031, 0.02, 75.0)).recording("seen", "").meta["table"]
     assert table == {"length_m": world.LENGTH, "width_m": world.WIDTH, "goal_width_m": goal}
 
 
@@ -80,7 +80,7 @@ def put(words: object, keys: list, value: object) -> None:
 
 
 @pytest.mark.parametrize(
-    "keys, value, told",
+    "keys, value, message",
     [
         (["table", "length_m"], 1000, '"length_m" is 1000; expected a number from 0.3 to 5 metres'),
         (
@@ -102,21 +102,21 @@ def put(words: object, keys: list, value: object) -> None:
         (["camera", "distortion_k1_k2_p1_p2_k3", 0], -9.0, "folds the picture over"),
     ],
 )
-def test_a_table_that_cannot_be_is_named(table: Path, keys: list, value: object, told: str):
+def test_a_table_that_cannot_be_is_named(table: Path, keys: list, value: object, message: str):
     words = json.loads(table.read_text())
     put(words, keys, value)
     table.write_text(json.dumps(words))
-    with pytest.raises(ValueError, match=f"^{table}: .*{told}"):
+    with pytest.raises(ValueError, match=f"^{table}: .*{message}"):
         read_table(table)
 
 
 @pytest.mark.parametrize(
-    "key, value, told",
+    "key, value, message",
     [
         ("format", "puckpilot-table/2", "format is 'puckpilot-table/2'; expected a calibration of format"),
         ("markers", None, '"markers" is no list of objects'),
         ("surface", 3, '"surface" is missing or no object'),
-        ("frame", {"axis_i_j": []}, "the terms of the frame's bend are others"),
+        ("frame", {"axis_i_j": []}, "the terms of the frame's warp are others"),
         (
             "puck_top_above_table_m",
             "high",
@@ -125,9 +125,9 @@ def test_a_table_that_cannot_be_is_named(table: Path, keys: list, value: object,
         ("camera", {"K": [[1, 2], [3, 4]]}, r'"K" is \[\[1, 2\], \[3, 4\]\]; expected 3 by 3 numbers'),
     ],
 )
-def test_a_broken_table_is_named(table: Path, key: str, value: object, told: str):
+def test_a_broken_table_is_named(table: Path, key: str, value: object, message: str):
     table.write_text(json.dumps({**json.loads(table.read_text()), key: value}))
-    with pytest.raises(ValueError, match=told):
+    with pytest.raises(ValueError, match=message):
         read_table(table)
 
 
@@ -136,7 +136,7 @@ def test_a_setup_is_read(tmp_path: Path):
 
 
 @pytest.mark.parametrize(
-    "change, told",
+    "change, message",
     [
         ({"K": [[1640, 1, 1018], [0, 1639, 772], [0, 0, 1]]}, r'"K" is .* expected \[\[fx, 0, cx\]'),
         ({"K": [[1640, 0, float("nan")], [0, 1639, 772], [0, 0, 1]]}, '"K" holds nan; expected 3 by 3 numbers'),
@@ -161,10 +161,10 @@ def test_a_setup_is_read(tmp_path: Path):
         ({"distortion_k1_k2_p1_p2_k3": [0, 0]}, "expected 5 numbers"),
     ],
 )
-def test_a_broken_setup_is_named(tmp_path: Path, change: dict, told: str):
+def test_a_broken_setup_is_named(tmp_path: Path, change: dict, message: str):
     path = tmp_path / "camera.json"
-    path.write_text(json.dumps({**world.camera_words(), **change}))
-    with pytest.raises(ValueError, match=told):
+    path.write_text(json.dumps({**world.camera_fields(), **change}))
+    with pytest.raises(ValueError, match=message):
         read_setup(path)
 
 

@@ -1,4 +1,4 @@
-"""Rendered games before the eye: how often it knows where the puck is, and how often it errs though it says so.
+"""Rendered games in front of the detector: how often it knows the puck's place, and how far that is off.
 
 python -m tests.sim2real.vision.track.games [SECONDS [SEED [PLAYER PLAYER]]]
 """
@@ -11,36 +11,36 @@ from itertools import islice
 
 import numpy as np
 
-from sim2real.camera.moments import simulated
-from sim2real.camera.render.moment import Motion
 from sim2real.camera.render.renderer import Renderer
+from sim2real.camera.render.scene_state import BodyState
 from sim2real.camera.render.table import Table
-from sim2real.camera.render.view import View
-from sim2real.vision.track.eye import Eye
-from sim2real.vision.track.follow import Estimate
-from sim2real.vision.trial.rendered import exact_locator, eye_for
+from sim2real.camera.render.view import CameraView
+from sim2real.camera.scene_states import simulated_states
+from sim2real.vision.track.detector import Detector
+from sim2real.vision.track.kalman_tracker import TrackState
+from sim2real.vision.trial.rendered_calibration import detector_for, exact_locator
 
 RATE, PLAYERS = 120.0, ("veteran", "bank_shot")
 
 
 @dataclass
 class Judged:
-    """Of what is known: how far off [m], the square of that in standard deviations, and the velocity's; and pictures
-    without."""
+    """The errors of known states: of places [m], squared Mahalanobis distances of places and of velocities, and the
+    number of pictures without a known state."""
 
     far: list[float] = field(default_factory=list)
     squares: list[float] = field(default_factory=list)
     speeds: list[float] = field(default_factory=list)
     unknown: int = 0
 
-    def add(self, estimate: Estimate | None, truth: Motion) -> None:
-        if estimate is None:
+    def add(self, state: TrackState | None, truth: BodyState) -> None:
+        if state is None:
             self.unknown += 1
             return
-        error, faster = estimate.place - truth[:2], estimate.velocity - truth[2:4]
+        error, faster = state.place - truth[:2], state.velocity - truth[2:4]
         self.far.append(float(np.linalg.norm(error)))
-        self.squares.append(float(error @ np.linalg.solve(estimate.covariance[:2, :2], error)))
-        self.speeds.append(float(faster @ np.linalg.solve(estimate.covariance[2:, 2:], faster)))
+        self.squares.append(float(error @ np.linalg.solve(state.covariance[:2, :2], error)))
+        self.speeds.append(float(faster @ np.linalg.solve(state.covariance[2:, 2:], faster)))
 
     def __str__(self) -> str:
         mm, squares = 1e3 * np.array(self.far), np.array(self.squares)
@@ -53,29 +53,29 @@ class Judged:
 
 
 def share_within(squares: list[float]) -> float:
-    """Of the 95 % ellipse, two numbers' chi-square."""
+    """The share of squared distances within the 95 % quantile of chi-square with two degrees of freedom."""
     return float((np.array(squares) < 5.991).mean())
 
 
 def judge(pictures: int, seed: int, players: tuple[str, str] = PLAYERS) -> dict[str, Judged]:
-    """The puck and the opponent's ring in the first pictures of a game, before an eye with the exact calibration."""
+    """The puck and the opponent's ring in the first pictures of a game, by a detector with the exact calibration."""
     table = Table.with_markers()
-    renderer = Renderer(table, View.like_the_real_one(table.length, table.width), seed=seed)
-    return judge_before(eye_for(renderer, exact_locator(table, renderer.view)), renderer, pictures, seed, players)
+    renderer = Renderer(table, CameraView.like_the_real_one(table.length, table.width), seed=seed)
+    return judge_before(detector_for(renderer, exact_locator(table, renderer.view)), renderer, pictures, seed, players)
 
 
 def judge_before(
-    eye: Eye, renderer: Renderer, pictures: int, seed: int, players: tuple[str, str] = PLAYERS
+    detector: Detector, renderer: Renderer, pictures: int, seed: int, players: tuple[str, str] = PLAYERS
 ) -> dict[str, Judged]:
-    """The same before any eye, at RATE [Hz]."""
+    """The same by any detector, at RATE [Hz]."""
     judged = {"puck": Judged(), "ring": Judged()}
-    moments = simulated("puckpilot/match-v0", players, seed, RATE)
-    for number, moment in enumerate(islice(moments, pictures)):
-        seen = eye.look(renderer.picture(moment, number), moment.time)
-        if moment.puck:
-            judged["puck"].add(seen.puck, moment.puck)
-        assert moment.opponent
-        judged["ring"].add(seen.opponent, moment.opponent)
+    states = simulated_states("puckpilot/match-v0", players, seed, RATE)
+    for number, state in enumerate(islice(states, pictures)):
+        found = detector.detect(renderer.picture(state, number), state.time)
+        if state.puck:
+            judged["puck"].add(found.puck, state.puck)
+        assert state.opponent
+        judged["ring"].add(found.opponent, state.opponent)
     return judged
 
 

@@ -2,8 +2,8 @@
 
     python -m tests.sim2real.vision.track.glints [FRAMES [SEED]]
 
-Each scene lasts LASTS pictures in which gantry and opponent move, glints stay or move with them. The beam's streak is
-in every picture that has a gantry.
+Each scene lasts LASTS pictures in which gantry and opponent move, glints stay or move with them. The beam's streak
+is in every picture that has a gantry.
 """
 
 from __future__ import annotations
@@ -15,19 +15,19 @@ from itertools import chain, islice
 
 import numpy as np
 
-from sim2real.camera.render.moment import Moment, Motion
 from sim2real.camera.render.renderer import Renderer
+from sim2real.camera.render.scene_state import BodyState, SceneState
 from sim2real.camera.render.table import LOW_RING, STANDARD_RING, Glint, Table
-from sim2real.camera.render.view import View
-from sim2real.vision.trial.rendered import exact_locator, eye_for
+from sim2real.camera.render.view import CameraView
+from sim2real.vision.trial.rendered_calibration import detector_for, exact_locator
 
-LASTS = 10  # pictures of a scene
+LASTS = 10  # pictures of a geometry
 EVERY = 1.0 / 120.0  # s
 MOST = 6  # glints at once
 
 
-def scenes(seed: int, table: Table) -> Iterator[list[Moment]]:
-    """Endless scenes of LASTS moments each."""
+def scenes(seed: int, table: Table) -> Iterator[list[SceneState]]:
+    """Endless scenes of LASTS states each."""
     rng = np.random.default_rng(seed)
     while True:
         opponent = _mover(rng, (1.06, 1.94), table) if rng.random() < 0.5 else None
@@ -35,7 +35,7 @@ def scenes(seed: int, table: Table) -> Iterator[list[Moment]]:
         glints = [_glint(rng, table) for _ in range(rng.integers(1, MOST + 1))]
         drifts = rng.normal(0.0, 1.0, (len(glints), 2)) * (rng.random((len(glints), 1)) < 0.5)
         yield [
-            Moment(
+            SceneState(
                 time,
                 opponent=opponent and _kept(opponent.after(time), table),
                 mallet=mallet and _kept(mallet.after(time), table),
@@ -53,23 +53,23 @@ def pucks_seen(frames: int, seed: int) -> list[tuple[int, np.ndarray]]:
     seen = []
     for number, height in enumerate((STANDARD_RING, LOW_RING)):
         table = replace(Table.with_markers(), ring_height=height)
-        renderer = Renderer(table, View.like_the_real_one(table.length, table.width), seed=seed)
-        eye = eye_for(renderer, exact_locator(table, renderer.view))
-        moments = chain.from_iterable(scenes(2 * seed + number, table))
-        for k, moment in enumerate(islice(moments, frames // 2)):
-            puck = eye.look(renderer.picture(moment, k), k * EVERY).puck
+        renderer = Renderer(table, CameraView.like_the_real_one(table.length, table.width), seed=seed)
+        detector = detector_for(renderer, exact_locator(table, renderer.view))
+        states = chain.from_iterable(scenes(2 * seed + number, table))
+        for k, state in enumerate(islice(states, frames // 2)):
+            puck = detector.detect(renderer.picture(state, k), k * EVERY).puck
             if puck is not None:
                 seen.append((k + number * (frames // 2), puck.place))
     return seen
 
 
-def _mover(rng: np.random.Generator, along: tuple[float, float], table: Table) -> Motion:
+def _mover(rng: np.random.Generator, along: tuple[float, float], table: Table) -> BodyState:
     x, y = rng.uniform((along[0], 0.06), (along[1], table.width - 0.06))
     vx, vy = rng.normal(0.0, 1.5, 2)
-    return Motion(x, y, vx, vy)
+    return BodyState(x, y, vx, vy)
 
 
-def _kept(motion: Motion, table: Table) -> Motion:
+def _kept(motion: BodyState, table: Table) -> BodyState:
     radius = table.mallet_radius
     x, y = np.clip(motion[:2], radius, (table.length - radius, table.width - radius))
     return motion._replace(x=x, y=y)

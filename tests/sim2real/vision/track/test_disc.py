@@ -6,26 +6,30 @@ import numpy as np
 import pytest
 
 from sim2real.vision.track.disc import find_disc
-from sim2real.vision.track.rim import Rim
+from sim2real.vision.track.subpixel_edges import EdgePoints
 
 RADIUS, PIXEL = 0.0309, 1.8e-3
 CENTRE = np.array([0.7, 0.4])
 
 
-def arc(begin: float, end: float, noise: float = 0.0, radius: float = RADIUS, seed: int = 0, count: int = 100) -> Rim:
+def arc(
+    begin: float, end: float, noise: float = 0.0, radius: float = RADIUS, seed: int = 0, count: int = 100
+) -> EdgePoints:
     """Points of a circle from one angle to another [degrees], off by some noise [px] outwards."""
     angle = np.radians(np.linspace(begin, end, max(int(count * abs(end - begin) / 360), 2), endpoint=False))
     out = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     off = PIXEL * np.random.default_rng(seed).normal(0.0, noise, (len(angle), 1))
-    return Rim(CENTRE + (radius + off) * out, PIXEL * out)
+    return EdgePoints(CENTRE + (radius + off) * out, PIXEL * out)
 
 
-def line(start: tuple[float, float], end: tuple[float, float], outwards: tuple[float, float], count: int = 30) -> Rim:
+def line(
+    start: tuple[float, float], end: tuple[float, float], outwards: tuple[float, float], count: int = 30
+) -> EdgePoints:
     places = np.linspace(start, end, count)
-    return Rim(places, PIXEL * np.tile(outwards, (count, 1)))
+    return EdgePoints(places, PIXEL * np.tile(outwards, (count, 1)))
 
 
-def off(rim: Rim) -> float:
+def off(rim: EdgePoints) -> float:
     disc = find_disc(rim, RADIUS)
     assert disc is not None
     return float(np.linalg.norm(disc.centre - CENTRE))
@@ -39,13 +43,13 @@ def test_exact_points_give_the_exact_centre(span):
 def test_the_chord_of_what_hides_it_pulls_it_nowhere():
     half = arc(-80, 80)
     chord = line(half.places[0], half.places[-1], (-1.0, 0.0))  # the beam's edge: inside the disc, facing outwards
-    assert off(Rim.joined([half, chord])) < 1e-6
+    assert off(EdgePoints.joined([half, chord])) < 1e-6
 
 
 def test_glints_beside_it_and_a_wrong_fifth_of_the_points_pull_it_nowhere():
     rim = arc(0, 250, noise=0.05)
-    glint = Rim(arc(0, 360, radius=0.008, count=30).places + np.array([0.04, 0.02]), arc(0, 360, count=30).steps)
-    assert off(Rim.joined([rim, glint])) < 0.1e-3
+    glint = EdgePoints(arc(0, 360, radius=0.008, count=30).places + np.array([0.04, 0.02]), arc(0, 360, count=30).steps)
+    assert off(EdgePoints.joined([rim, glint])) < 0.1e-3
 
 
 def test_deviations_cover_the_errors_of_arcs_whose_points_err_together_in_fours():
@@ -55,8 +59,8 @@ def test_deviations_cover_the_errors_of_arcs_whose_points_err_together_in_fours(
             coarse = np.repeat(np.random.default_rng(seed).normal(0.0, 0.05, 25), 4)
             whole = arc(0, 360, count=100)
             angle = np.degrees(np.arctan2(*(whole.places - CENTRE).T[::-1])) % 360
-            bent = Rim(whole.places + coarse[:, None] * whole.steps, whole.steps).where(angle < span[1])
-            disc = find_disc(bent, RADIUS)
+            distorted = EdgePoints(whole.places + coarse[:, None] * whole.steps, whole.steps).where(angle < span[1])
+            disc = find_disc(distorted, RADIUS)
             assert disc is not None
             error = disc.centre - CENTRE
             far.append(error @ np.linalg.solve(disc.covariance, error))
@@ -80,7 +84,7 @@ def test_a_disc_of_another_size_has_few_points_on_it_and_a_line_has_none():
 
 def test_a_hole_is_no_disc():
     inwards = arc(0, 360)
-    assert find_disc(Rim(inwards.places, -inwards.steps), RADIUS) is None
+    assert find_disc(EdgePoints(inwards.places, -inwards.steps), RADIUS) is None
 
 
 def test_how_much_is_seen():

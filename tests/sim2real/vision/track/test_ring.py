@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from sim2real.vision.track.bright import Blob
+from sim2real.vision.track.blobs import Blob
 from sim2real.vision.track.ring import RingFinder
 
 PIXEL, FINE = 1.8e-3, 16

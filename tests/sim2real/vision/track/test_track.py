@@ -14,19 +14,19 @@ import numpy as np
 import pytest
 
 import puckpilot
-from sim2real.camera import sound, sources
+from sim2real.camera import sources, valid_frames
 from sim2real.camera.frame import Frame
-from sim2real.camera.moments import simulated
-from sim2real.camera.render.moment import Moment, Motion
 from sim2real.camera.render.renderer import Renderer
+from sim2real.camera.render.scene_state import BodyState, SceneState
 from sim2real.camera.render.table import Table
-from sim2real.camera.render.view import View
-from sim2real.recording import read_recording
+from sim2real.camera.render.view import CameraView
+from sim2real.camera.scene_states import simulated_states
+from sim2real.recording.folder import read_recording
 from sim2real.vision.calibrate.table_file import write_table
-from sim2real.vision.trial.rendered_calibration import estimated
+from sim2real.vision.trial.rendered_calibration import estimated_calibration
 
 TABLE = Table.with_markers()
-VIEW = View.like_the_real_one(TABLE.length, TABLE.width)
+VIEW = CameraView.like_the_real_one(TABLE.length, TABLE.width)
 RENDERER = Renderer(TABLE, VIEW)
 RATE = 120.0
 
@@ -35,7 +35,7 @@ RATE = 120.0
 def calibration(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A calibration as a user would come by it."""
     file = tmp_path_factory.mktemp("calibration") / "table.json"
-    write_table(file, *estimated(TABLE, VIEW, seed=3))
+    write_table(file, *estimated_calibration(TABLE, VIEW, seed=3))
     return file
 
 
@@ -47,27 +47,28 @@ def folder_of(images: list[np.ndarray], folder: Path, numbers: list[int] | None 
 
 
 def still(pictures: int) -> list[np.ndarray]:
-    moment = Moment(puck=Motion(1.0, 0.3), opponent=Motion(1.6, 0.5))
-    return [RENDERER.picture(moment, number) for number in range(pictures)]
+    state = SceneState(puck=BodyState(1.0, 0.3), opponent=BodyState(1.6, 0.5))
+    return [RENDERER.picture(state, number) for number in range(pictures)]
 
 
 def run(calibration: Path, source: Path | str, out: Path, *more: str) -> int:
     return puckpilot.main(["track", str(source), "--calibration", str(calibration), "--out", str(out), *more])
 
 
+@pytest.mark.slow
 def test_a_game_in_a_folder_becomes_a_recording(calibration: Path, tmp_path: Path, capsys):
     """Positions are within the errors of the calibration, and blank where nobody could know."""
-    game = list(islice(simulated("puckpilot/match-v0", ("veteran", "follower"), 0, RATE), 90))
-    folder = folder_of([RENDERER.picture(moment, k) for k, moment in enumerate(game)], tmp_path / "pictures")
+    game = list(islice(simulated_states("puckpilot/match-v0", ("veteran", "follower"), 0, RATE), 90))
+    folder = folder_of([RENDERER.picture(state, k) for k, state in enumerate(game)], tmp_path / "pictures")
     film = tmp_path / "preview.mp4"
     assert run(calibration, folder, tmp_path / "out", "--video", str(film), "--json") == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told["frames"] == 90 == told["seen"] + told["hidden"] + told["unsure"] and told["dropped"] == 0
+    output = json.loads(capsys.readouterr().out)
+    assert output["frames"] == 90 == output["seen"] + output["hidden"] + output["unsure"] and output["dropped"] == 0
     frames = read_recording(tmp_path / "out").frames
     assert frames is not None
     assert frames.t == pytest.approx(np.arange(90) / RATE)
     for name in ("puck", "opponent"):
-        truth = np.array([getattr(moment, name)[:2] for moment in game])
+        truth = np.array([getattr(state, name)[:2] for state in game])
         found = np.stack([frames[f"{name}_x"], frames[f"{name}_y"]], axis=1)
         far = 1e3 * np.linalg.norm(found - truth, axis=1)
         assert np.isfinite(far).sum() >= 75 and np.isnan(far[0])
@@ -123,12 +124,16 @@ def test_its_options_are_heard(calibration: Path, tmp_path: Path, capsys):
 def test_after_a_bump_the_camera_is_found_anew(calibration: Path, tmp_path: Path, capsys):
     """At 10 Hz the markers are looked at every half second: 0.5, 1.0, then the bump, 1.5, ..."""
     images = still(13)
-    elsewhere = Renderer(TABLE, View.from_place(VIEW.place + np.array([0.0, 0.01, 0.0]), np.array([0.61, 0.51, 0.0])))
-    bumped = [elsewhere.picture(Moment(puck=Motion(1.0, 0.3), opponent=Motion(1.6, 0.5)), 20 + k) for k in range(11)]
+    elsewhere = Renderer(
+        TABLE, CameraView.from_place(VIEW.place + np.array([0.0, 0.01, 0.0]), np.array([0.61, 0.51, 0.0]))
+    )
+    bumped = [
+        elsewhere.picture(SceneState(puck=BodyState(1.0, 0.3), opponent=BodyState(1.6, 0.5)), 20 + k) for k in range(11)
+    ]
     folder = folder_of([*images, *bumped], tmp_path / "pictures")
     assert run(calibration, folder, tmp_path / "out", "--rate", "10") == 1
-    told = capsys.readouterr().out
-    shift = re.search(r"moved camera, once from 1.5 s on: 6 of 6 markers are up to (\S+) px", told)
+    output = capsys.readouterr().out
+    shift = re.search(r"moved camera, once from 1.5 s on: 6 of 6 markers are up to (\S+) px", output)
     corners = np.stack([marker.corners for marker in TABLE.markers])
     off = [elsewhere.view.project(one) - VIEW.project(one) for one in corners]
     assert shift and float(shift[1]) == pytest.approx(np.hypot(*np.median(off, axis=1).T).max(), abs=0.2)
@@ -136,7 +141,7 @@ def test_after_a_bump_the_camera_is_found_anew(calibration: Path, tmp_path: Path
     assert frames is not None
     known = np.isfinite(frames["puck_x"])
     assert known[1:10].all() and not known[11:15].any() and known[17:].all()
-    assert told.splitlines()[0].endswith(" 0 dropped, 5 left out")  # from 1.0 s, the last good look, to 1.5
+    assert output.splitlines()[0].endswith(" 0 dropped, 5 left out")  # from 1.0 s, the last good check, to 1.5
     assert np.abs(frames["puck_x"][known] - 1.0).max() < 1e-3 and np.abs(frames["puck_y"][known] - 0.3).max() < 1e-3
 
 
@@ -151,17 +156,17 @@ def test_a_lamp_that_goes_out_is_named_and_places_from_then_on_are_blank(calibra
 
 def test_a_puck_that_is_now_here_now_there_is_named(calibration: Path, tmp_path: Path, capsys):
     places = np.random.default_rng(0).uniform((0.9, 0.1), (1.8, 0.9), (24, 2))
-    images = [RENDERER.picture(Moment(puck=Motion(*place)), k) for k, place in enumerate(places.tolist())]
+    images = [RENDERER.picture(SceneState(puck=BodyState(*place)), k) for k, place in enumerate(places.tolist())]
     assert run(calibration, folder_of(images, tmp_path / "pictures"), tmp_path / "out", "--json") == 1
-    told = json.loads(capsys.readouterr().out)
-    assert told["unsure"] > 17 and told["left_out"] == 0 and list(told["troubles"]) == ["not sure"]
+    output = json.loads(capsys.readouterr().out)
+    assert output["unsure"] > 17 and output["left_out"] == 0 and list(output["troubles"]) == ["not sure"]
 
 
 def test_a_table_on_which_no_puck_is_seen_is_named(calibration: Path, tmp_path: Path, capsys):
-    images = [RENDERER.picture(Moment(opponent=Motion(1.6, 0.5)), k) for k in range(3)]
+    images = [RENDERER.picture(SceneState(opponent=BodyState(1.6, 0.5)), k) for k in range(3)]
     assert run(calibration, folder_of(images, tmp_path / "pictures"), tmp_path / "out") == 1
-    told = capsys.readouterr().out
-    assert "no puck, once from 0.0 s on: it was known in no picture; see that its film shines" in told
+    output = capsys.readouterr().out
+    assert "no puck, once from 0.0 s on: it was known in no picture; see that its film shines" in output
 
 
 def test_rendered_pictures_need_no_calibration(tmp_path: Path, capsys):
@@ -195,10 +200,10 @@ def test_a_camera_that_stalls_is_named_and_what_was_seen_is_kept(
     calibration: Path, tmp_path: Path, monkeypatch, capsys
 ):
     monkeypatch.setattr(sources, "open_source", lambda word, rate, exposure: Stalling(still(3)))
-    monkeypatch.setattr(sound, "PATIENCE", 0.2)
+    monkeypatch.setattr(valid_frames, "PATIENCE", 0.2)
     assert run(calibration, "device:0", tmp_path / "out") == 1
-    told = capsys.readouterr().out
-    lines = told.splitlines()
+    output = capsys.readouterr().out
+    lines = output.splitlines()
     assert lines[0] == "3 frames: puck known in 2, hidden in 0, not sure in 1; 0 dropped" and len(lines) == 4
     assert lines[2].startswith("stalled, ") and "no picture for 0.2 s" in lines[2]
     frames = read_recording(tmp_path / "out").frames
@@ -210,11 +215,11 @@ def test_what_was_seen_before_a_source_fails_is_kept(calibration: Path, tmp_path
     damaged = folder / "frame_0003.png"
     damaged.write_bytes(damaged.read_bytes()[:5000])
     assert run(calibration, folder, tmp_path / "out") == 1
-    told = capsys.readouterr().out
+    output = capsys.readouterr().out
     assert (
-        told.startswith("3 frames: ")
-        and "source failed, once from 0.0 s on: " in told
-        and "frame_0003.png is cut off" in told
+        output.startswith("3 frames: ")
+        and "source failed, once from 0.0 s on: " in output
+        and "frame_0003.png is cut off" in output
     )
     frames = read_recording(tmp_path / "out").frames
     assert frames is not None and frames.rows == 3
@@ -224,7 +229,7 @@ def test_a_clock_that_runs_back_is_named_and_that_picture_left_out(
     calibration: Path, tmp_path: Path, monkeypatch, capsys
 ):
     monkeypatch.setattr(sources, "open_source", lambda word, rate, exposure: Stalling(still(4), back=5))
-    monkeypatch.setattr(sound, "PATIENCE", 0.02)
+    monkeypatch.setattr(valid_frames, "PATIENCE", 0.02)
     assert run(calibration, "device:0", tmp_path / "out") == 1
     assert "clock, once from 0.0 s on: a picture of -0.025000 s came after one of 0.008333 s" in capsys.readouterr().out
     frames = read_recording(tmp_path / "out").frames
@@ -244,7 +249,7 @@ def test_what_cannot_be_is_refused_in_one_line(calibration: Path, tmp_path: Path
     small = folder_of([np.zeros((480, 640), np.uint8)], tmp_path / "small")
     good = folder_of(still(1), tmp_path / "good")
     for source, more, why in (
-        (empty, (), "the first picture does not tell where the camera is: 0 markers of DICT_4X4_50 are seen"),
+        (empty, (), "the camera cannot be located in the first picture: 0 markers of DICT_4X4_50 are seen"),
         (small, (), "a picture has 640 x 480 pixels; expected 1440 x 1080, as calibrated"),
         (good, ("--ring-height", "high"), "--ring-height is 'high'; expected standard, low, or metres from 0 to 0.3"),
         (good, ("--puck-radius", "30"), "--puck-radius is 30; expected metres from 0.005 to 0.1"),

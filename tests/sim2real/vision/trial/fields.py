@@ -10,12 +10,12 @@ import sys
 import numpy as np
 from numpy.polynomial.legendre import legvander2d
 
-from sim2real.camera.render.moment import Moment
 from sim2real.camera.render.renderer import Renderer
-from sim2real.camera.render.table import Table as Scene
-from sim2real.camera.render.view import View
+from sim2real.camera.render.scene_state import SceneState
+from sim2real.camera.render.table import Table
+from sim2real.camera.render.view import CameraView
 from sim2real.vision.calibrate.pose import camera_pose
-from sim2real.vision.calibrate.table_file import Table
+from sim2real.vision.calibrate.table_file import TableCalibration
 from sim2real.vision.locate import Locator
 from sim2real.vision.markers import find_markers
 from sim2real.vision.trial import rendered_calibration
@@ -26,20 +26,21 @@ ORDER, GRID, INSET = 6, (25, 13), 0.04  # of polynomials; places along and acros
 def errors_of(seed: int) -> tuple[np.ndarray, np.ndarray]:
     """One calibration's coefficients (ORDER + 1, ORDER + 1, 2) by the orders in x and y, of the errors of x and y in
     units of the stated deviation; and those of places (n, 2), likewise."""
-    scene = Scene.with_markers()
-    view = View.like_the_real_one(scene.length, scene.width)
-    table = Table.of(*rendered_calibration.estimated(scene, view, seed))
+    rendered = Table.with_markers()
+    view = CameraView.like_the_real_one(rendered.length, rendered.width)
+    table = TableCalibration.of(*rendered_calibration.estimated_calibration(rendered, view, seed))
     camera = table.setup.camera
-    corners = find_markers(Renderer(scene, view, seed=seed).picture(Moment()), camera, table.setup.dictionary)
-    pose = camera_pose(table.setup, table.scene, corners)
-    locator = Locator(camera, pose.motion, table.scene.surface, table.scene.bend)
+    corners = find_markers(Renderer(rendered, view, seed=seed).picture(SceneState()), camera, table.setup.dictionary)
+    pose = camera_pose(table.setup, table.geometry, corners)
+    locator = Locator(camera, pose.motion, table.geometry.surface, table.geometry.warp)
     axes = [
-        np.linspace(INSET, side - INSET, many) for side, many in zip((scene.length, scene.width), GRID, strict=True)
+        np.linspace(INSET, side - INSET, many)
+        for side, many in zip((rendered.length, rendered.width), GRID, strict=True)
     ]
     places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=2).reshape(-1, 2)
-    pixels = view.project(scene.surface.on(places, scene.puck_height))
+    pixels = view.project(rendered.surface.on(places, rendered.puck_height))
     off = (locator.places(pixels, table.setup.puck_top) - places) / table.place_std
-    x, y = (2.0 * places / (scene.length, scene.width) - 1.0).T
+    x, y = (2.0 * places / (rendered.length, rendered.width) - 1.0).T
     few = np.add.outer(np.arange(ORDER + 1), np.arange(ORDER + 1)) <= ORDER
     columns = legvander2d(x, y, [ORDER, ORDER])[:, few.ravel()]
     found = np.zeros((ORDER + 1, ORDER + 1, 2))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sim2real.diagnose.glide.place_error import COEFFICIENT, ORDERS
+from sim2real.diagnose.sensor_noise.map_error import COEFFICIENT, ORDERS
 from tests.sim2real.vision.trial.fields import errors_of
 
 

@@ -1,0 +1,101 @@
+"""From a picture to the states of puck and opponent: search regions, blobs, ring and disc, Kalman trackers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sim2real.vision.locate import Locator, PlaceGrid
+from sim2real.vision.track.blobs import LEVEL, BlobDetector
+from sim2real.vision.track.disc import Disc
+from sim2real.vision.track.kalman_tracker import KalmanTracker, Measurement, TrackState
+from sim2real.vision.track.puck import PuckFinder
+from sim2real.vision.track.ring import Ring, RingFinder
+from sim2real.vision.track.search_region import SearchRegions
+
+SURE_WITHIN = 0.25e-3  # m, greatest standard deviation of a disc that can only be the puck
+PUCK_POWER, OPPONENT_POWER = 0.02, 5.0  # m^2/s^3, spectral density of the white acceleration between contacts
+AROUND = 2.0  # puck radii of a search region round the predicted place,
+ROOM = 4.0  # and standard deviations of the prediction beyond that
+EVERY = 4  # while no opponent is tracked, one in so many pictures is searched as a whole
+
+
+@dataclass(frozen=True)
+class Detections:
+    """The result for one picture.
+
+    puck, opponent: the states of the tracks, None where the place is unknown; pucks: number of candidates for the puck.
+    """
+
+    puck: TrackState | None
+    opponent: TrackState | None
+    pucks: int
+
+
+class Detector:
+    """Detects puck and opponent in the pictures of one camera and tracks both."""
+
+    def __init__(
+        self, locator: Locator, size: tuple[int, int], *, length: float, width: float, puck_radius: float,
+        puck_height: float, ring_height: float, level: float = LEVEL, calibration_error: float = 0.0,
+    ) -> None:  # fmt: skip
+        """size: columns and rows of the pictures; length, width: of the table [m]; puck_radius: [m]; puck_height,
+        ring_height: of the puck's top and of the opponent's ring above the table [m]; level: see `blobs.LEVEL`;
+        calibration_error: standard deviation along each axis of the error common to all pictures [m]."""
+        self._reach = AROUND * puck_radius
+        self._regions = [SearchRegions(locator, height, length, width) for height in (puck_height, ring_height)]
+        self._blobs = BlobDetector(locator, size, length, width, ring_height, level)
+        self._pucks = PuckFinder(PlaceGrid(locator, puck_height, size).places, puck_radius)
+        self._rings = RingFinder(PlaceGrid(locator, ring_height, size).places)
+        self._puck, self._opponent = KalmanTracker(PUCK_POWER), KalmanTracker(OPPONENT_POWER)
+        self._calibration = np.diag([calibration_error**2, calibration_error**2, 0.0, 0.0])
+        self._partly = 0  # pictures since one was searched as a whole
+
+    def detect(self, image: np.ndarray, time: float) -> Detections:
+        """Detect in a picture uint8 (rows, columns) of mid-exposure time `time` [s], and update the tracks. Pictures
+        come in order of time; ValueError otherwise."""
+        near = self._find_in_regions(image, time)
+        self._partly = 0 if near is None else self._partly + 1
+        rings, discs = self._find(image, None) if near is None else near
+        puck = self._puck.update(time, [_disc_measurement(disc) for disc in discs])
+        opponent = self._opponent.update(time, [_ring_measurement(ring) for ring in rings])
+        return Detections(self._with_calibration(puck), self._with_calibration(opponent), len(discs))
+
+    def _find_in_regions(self, image: np.ndarray, time: float) -> tuple[list[Ring], list[Disc]] | None:
+        """Rings and discs in the search regions; None if the whole picture has to be searched, because the puck's place
+        is unknown, or puck or opponent is not in its region. While no opponent is tracked, one picture in EVERY is
+        searched as a whole."""
+        region = self._region(0, time)
+        if region is None:
+            return None
+        _, discs = self._find(image, region)  # if both are near, each region shows both
+        if not any(_disc_measurement(disc).sure for disc in discs):
+            return None
+        region = self._region(1, time)
+        if region is None:
+            return None if self._opponent.in_sight or self._partly >= EVERY - 1 else ([], discs)
+        rings, _ = self._find(image, region)
+        return (rings, discs) if rings else None
+
+    def _region(self, which: int, time: float) -> tuple[int, int, int, int] | None:
+        """The search region of the puck (0) or the opponent (1): left, top, and the column and row after the last; None
+        if its place is unknown."""
+        state = (self._puck, self._opponent)[which].predict(time)
+        return self._regions[which].around(state.place, self._reach + ROOM * state.deviation) if state else None
+
+    def _with_calibration(self, state: TrackState | None) -> TrackState | None:
+        """The state with the calibration's error added to its covariance, which no number of pictures reduces."""
+        return state and replace(state, covariance=state.covariance + self._calibration)
+
+    def _find(self, image: np.ndarray, region: tuple[int, int, int, int] | None) -> tuple[list[Ring], list[Disc]]:
+        rings, rest = self._rings.find(image, self._blobs.blobs(image, region))
+        return rings, self._pucks.find(image, rest)
+
+
+def _disc_measurement(disc: Disc) -> Measurement:
+    return Measurement(disc.centre, disc.covariance, disc.deviation <= SURE_WITHIN)
+
+
+def _ring_measurement(ring: Ring) -> Measurement:
+    return Measurement(ring.centre, ring.covariance, True)
