@@ -1,8 +1,8 @@
-"""How exact and how fast the vision is on this machine, on one core, with rendered pictures of 1440 x 1080 pixels.
+"""Measure the errors and the run time of the vision on this machine: one core, rendered pictures of 1440 x 1080 pixels.
 
-The calibration is estimated, from rendered views and places measured to 0.3 mm. Errors are of the puck, clear and half
-hidden by the gantry: of the disc, which is what finds it; of the report's rules, which are told the right outline and
-the place before; and of the outline's centroid. Times are of looks at pictures that have just come, as in play.
+The calibration is estimated from rendered views and places measured to 0.3 mm. Errors are of the puck's centre, clear
+and half hidden by the gantry, by three methods: the disc fit that the tracker uses; the report's rules, which are given
+the right outline and the place before; and the outline's centroid. Times are of new pictures, as in play.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Measure and print; 0. Raises ValueError, in one line, for an impossible number of pictures."""
+    """Measure and print. Returns 0; raises ValueError, in one line, for an invalid option."""
     if not 1 <= args.pictures <= MOST:
         raise ValueError(f"--pictures is {args.pictures}; expected a whole number from 1 to {MOST:,}")
     if args.seed < 0:
@@ -34,47 +34,47 @@ def run(args: argparse.Namespace) -> int:
     import numpy as np
 
     from baselines.commands.options import progress_bar
-    from sim2real.vision.trial.bench import Stage, errors, speed
+    from sim2real.vision.trial.bench import BenchmarkTable, centre_errors, detection_times
 
     with progress_bar("calibrating, timing, measuring") as progress:
-        stage = Stage.with_estimated_calibration(args.seed)
+        bench = BenchmarkTable.with_estimated_calibration(args.seed)
         progress(1, 4)
-        told: dict[str, Any] = {
+        result: dict[str, Any] = {
             name: {
                 "median_ms": 1e3 * float(np.median(took[:, 0])),
                 "p90_ms": 1e3 * float(np.percentile(took[:, 0], 90)),
                 "again_median_ms": 1e3 * float(np.median(took[:, 1])),
             }
-            for name, took in speed(stage, args.pictures, args.seed).items()
+            for name, took in detection_times(bench, args.pictures, args.seed).items()
         }
         for hidden, name in enumerate(("clear", "half hidden")):
             progress(2 + hidden, 4)
-            found = errors(stage, args.pictures, bool(hidden), args.seed + 1 + hidden)
-            told[name] = {way: _figures(far) for way, far in found.items()}
+            found = centre_errors(bench, args.pictures, bool(hidden), args.seed + 1 + hidden)
+            result[name] = {method: _figures(far) for method, far in found.items()}
     if args.json:
-        print(json.dumps(told, indent=1, allow_nan=False))
+        print(json.dumps(result, indent=1, allow_nan=False))
         return 0
     for name in ("full frame", "region of interest"):
-        one = told[name]
+        one = result[name]
         print(
             f"{name:20}{one['median_ms']:.2f} ms median, {one['p90_ms']:.2f} in 9 of 10; "
             f"{one['again_median_ms']:.2f} at the same picture at once again"
         )
     for name in ("clear", "half hidden"):
-        for way, one in told[name].items():
+        for method, one in result[name].items():
             print(
-                f"{name:12}{way:12}mm: mean {one['mean_mm']:.3f}, median {one['median_mm']:.3f}, "
+                f"{name:12}{method:12}mm: mean {one['mean_mm']:.3f}, median {one['median_mm']:.3f}, "
                 f"p95 {one['p95_mm']:.3f}, p99 {one['p99_mm']:.3f}; found in {one['found']} of {one['pictures']}"
             )
     return 0
 
 
 def _figures(far: np.ndarray) -> dict[str, Any]:
-    """Of distances (n,) [m], NaN where nothing was found; ready for JSON."""
+    """Statistics of distances (n,) [m], NaN where nothing was found, as a JSON object."""
     import numpy as np
 
     mm = 1e3 * far[np.isfinite(far)]
     figures = {"mean_mm": np.mean, "median_mm": np.median}
-    told: dict[str, Any] = {name: float(of(mm)) if len(mm) else None for name, of in figures.items()}
-    told |= {f"p{share}_mm": float(np.percentile(mm, share)) if len(mm) else None for share in (95, 99)}
-    return {**told, "found": len(mm), "pictures": len(far)}
+    result: dict[str, Any] = {name: float(of(mm)) if len(mm) else None for name, of in figures.items()}
+    result |= {f"p{share}_mm": float(np.percentile(mm, share)) if len(mm) else None for share in (95, 99)}
+    return {**result, "found": len(mm), "pictures": len(far)}

@@ -1,8 +1,8 @@
 """A camera's intrinsics from photographs of a flat board, a dozen from all sides, tilted by 20 to 45 degrees.
 
-The board fills the picture now here, now there, up to its corners. Writes camera.json; fill in there what the table's
-calibration must know besides: the dictionary of the table's markers, the height of the puck's mark, and the table's
-size. A photograph that the others contradict is named.
+The boards together should cover the picture up to its corners. Writes camera.json, in which the user fills in what the
+table's calibration needs in addition: the dictionary of the table's markers, the height of the puck's mark, and the
+table's size. A photograph that the others contradict is named.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     import numpy as np
 
-    from sim2real.vision.calibrate.board import Board
-    from sim2real.vision.calibrate.intrinsics import Intrinsics
+    from sim2real.vision.calibrate.intrinsics.board import CalibrationBoard
+    from sim2real.vision.calibrate.intrinsics.calibrate import Intrinsics
 
 BOARD = "9x6"
 
@@ -37,10 +37,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """0: calibrated. Raises ValueError, in one line, for what cannot be."""
-    from puckpilot_env.whole_file import check_folder
-    from sim2real.vision.calibrate.board import Board
-    from sim2real.vision.calibrate.intrinsics import calibrate
+    """Calibrate the camera and write the file. Returns 0; raises ValueError, in one line, if that is impossible."""
+    from puckpilot_env.files.whole_file import check_folder
+    from sim2real.vision.calibrate.intrinsics.board import CalibrationBoard
+    from sim2real.vision.calibrate.intrinsics.calibrate import calibrate
     from sim2real.vision.camera_file import write_camera
 
     size = re.fullmatch(r"(\d{1,2})x(\d{1,2})", args.board)
@@ -51,7 +51,7 @@ def run(args: argparse.Namespace) -> int:
     if args.out.exists():  # what was filled in by hand is not written over
         raise ValueError(f"{args.out} exists already; choose another name or remove it")
     check_folder(args.out.absolute().parent)
-    seen, (width, height) = _find(Board(int(size[1]), int(size[2]), args.charuco, args.marker), args.images)
+    seen, (width, height) = _find(CalibrationBoard(int(size[1]), int(size[2]), args.charuco, args.marker), args.images)
     names = [str(path) for path in seen]
     if not names:
         raise ValueError(
@@ -59,15 +59,18 @@ def run(args: argparse.Namespace) -> int:
         )
     found = calibrate(names, list(seen.values()), (width, height))
     without = [str(path) for path in args.images if path not in seen]
-    told = {"file": str(args.out), **_told(names, found), "without_board": without}
+    result = {"file": str(args.out), **_result(names, found), "without_board": without}
     args.out.parent.mkdir(parents=True, exist_ok=True)
-    write_camera(args.out, found.camera, f"rms {told['rms_px']:.3f} px over {len(names)} photographs")
-    print(json.dumps(told, indent=1, allow_nan=False) if args.json else "\n".join(_lines(told, width, height)))
+    write_camera(args.out, found.camera, f"rms {result['rms_px']:.3f} px over {len(names)} photographs")
+    print(json.dumps(result, indent=1, allow_nan=False) if args.json else "\n".join(_lines(result, width, height)))
     return 0
 
 
-def _find(board: Board, paths: list[Path]) -> tuple[dict[Path, tuple[np.ndarray, np.ndarray]], tuple[int, int]]:
-    """The board's corners in photographs that show it, and the width and height of all."""
+def _find(
+    board: CalibrationBoard, paths: list[Path]
+) -> tuple[dict[Path, tuple[np.ndarray, np.ndarray]], tuple[int, int]]:
+    """Find the board: its corners by photograph, for those that show it, and the width and height of all photographs.
+    Raises ValueError for photographs of different sizes and for the same photograph twice."""
     from baselines.commands.options import progress_bar
     from sim2real.camera.grey_image import read_grey
 
@@ -91,8 +94,8 @@ def _find(board: Board, paths: list[Path]) -> tuple[dict[Path, tuple[np.ndarray,
     return seen, (shape[1], shape[0])
 
 
-def _told(names: list[str], found: Intrinsics) -> dict[str, Any]:
-    """What the fit found, ready for JSON."""
+def _result(names: list[str], found: Intrinsics) -> dict[str, Any]:
+    """The result of the fit as a JSON object."""
     camera = found.camera
     values = (camera.fx, camera.fy, camera.cx, camera.cy, *camera.distortion)
     each = zip(names, found.rms, found.tilt, found.off, found.others, found.contradicted, strict=True)
@@ -119,21 +122,21 @@ def _told(names: list[str], found: Intrinsics) -> dict[str, Any]:
     }
 
 
-def _lines(told: dict[str, Any], width: int, height: int) -> list[str]:
-    """The same for a reader."""
+def _lines(result: dict[str, Any], width: int, height: int) -> list[str]:
+    """The result as lines of text."""
     return [
-        *(f"no board is seen in {path}; a checkerboard must be in it whole" for path in told["without_board"]),
-        f"{told['photographs']} photographs of {width}x{height} pixels, {told['rms_px']:.3f} px rms",
+        *(f"no board is seen in {path}; a checkerboard must be in it whole" for path in result["without_board"]),
+        f"{result['photographs']} photographs of {width}x{height} pixels, {result['rms_px']:.3f} px rms",
         *(
             f"{one['photograph']} stands out: its corners are {one['off_px']:.2f} px off where the others put the "
             f"camera, theirs {one['others_px']:.2f} px; if it is blurred, mirrored or of a bent board, leave it out"
-            for one in told["each"]
+            for one in result["each"]
             if one["contradicted"]
         ),
-        *(f"{name} {one['value']:.5g} ({one['std']:.2g})" for name, one in told["values"].items()),
-        f"{told['file']} holds them; fill in there by hand, lengths in metres:",
+        *(f"{name} {one['value']:.5g} ({one['std']:.2g})" for name, one in result["values"].items()),
+        f"{result['file']} holds them; fill in there by hand, lengths in metres:",
         '  "aruco_dictionary": of the markers round the table, "DICT_4X4_50" say',
         '  "puck_top_above_table_m": the height of the puck\'s mark above the surface',
         '  "length_m", "width_m": of the table, from wall to wall; "goal_width_m" may stay null',
-        f"then: puckpilot calibrate table VIEW... --camera {told['file']}",
+        f"then: puckpilot calibrate table VIEW... --camera {result['file']}",
     ]

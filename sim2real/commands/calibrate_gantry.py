@@ -1,7 +1,7 @@
-"""The pulley's radius by the two-point procedure of the report (L.2).
+"""Calibrate the pulley's radius by the two-point procedure of the report (L.2).
 
-The motors stay off; you move the mallet by hand, with the jig that keeps it at known distances from the walls, from the
-right-hand corner to the left-hand one, both at the robot's end of the table, as seen from there.
+The motors stay off. The user moves the mallet by hand, with a jig that keeps it at known distances from the walls, from
+the right-hand corner to the left-hand one, both at the robot's end of the table, as seen from there.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sim2real.commands.port import add_port, session_of
+from sim2real.link.arguments import add_port, session_of
 
 if TYPE_CHECKING:
     from sim2real.link.session import Session
-    from sim2real.link.two_points import Pair, Shafts
+    from sim2real.link.two_points import Pair, ShaftAngles
 
-ALIKE = 0.003  # m that the jig may be off along x between both corners
+ALIKE = 0.003  # m, greatest difference along x between both corners
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -36,11 +36,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """0: calibrated. Raises ValueError, in one line, for what cannot be."""
+    """Calibrate and write the file. Returns 0; raises ValueError, in one line, if that is impossible."""
+    from puckpilot_env.files.whole_file import check_folder, write_text_whole
     from puckpilot_env.parameters import TABLE, checked
-    from puckpilot_env.whole_file import check_folder, write_text_whole
-    from sim2real.link.trial import meet
-    from sim2real.link.two_points import Shafts, solve
+    from sim2real.link.link_quality import wait_for_board
+    from sim2real.link.two_points import ShaftAngles, solve
 
     defaults = {row.name: row.default for row in TABLE}
     width = checked("width", defaults["width"] if args.width is None else args.width)
@@ -52,9 +52,9 @@ def run(args: argparse.Namespace) -> int:
     if args.out.is_dir():
         raise ValueError(f"--out is {args.out}, a folder; expected a file")
     corner = (radius + args.jig[0], radius + args.jig[1])
-    shafts = Shafts()
+    shafts = ShaftAngles()
     with session_of(args) as session:
-        meet(session)
+        wait_for_board(session)
         right = _at(session, shafts, "1. Put the mallet into the right-hand corner, with the jig, and press Enter.")
         left = _at(session, shafts, "2. Slide it, in less than a minute, to the left-hand corner, and press Enter.")
     found = solve(right, left, corner, width)
@@ -66,8 +66,13 @@ def run(args: argparse.Namespace) -> int:
     checked("pulley_radius", found.pulley_radius)
     write_text_whole(args.out, f"pulley_radius = {found.pulley_radius:.6g}  # m\n")
     if args.json:
-        told = {"pulley_radius": found.pulley_radius, "sideways": found.sideways, "home": corner, "file": str(args.out)}
-        print(json.dumps(told, indent=1))
+        result = {
+            "pulley_radius": found.pulley_radius,
+            "sideways": found.sideways,
+            "home": corner,
+            "file": str(args.out),
+        }
+        print(json.dumps(result, indent=1))
         return 0
     print(f"pulley radius {1000 * found.pulley_radius:.3f} mm; both corners alike within "
           f"{1000 * abs(found.sideways):.2f} mm along x")  # fmt: skip
@@ -76,31 +81,31 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _at(session: Session, shafts: Shafts, words: str) -> Pair:
-    """The shafts' angles when Enter is pressed; all telemetry on the way is followed. ValueError if the port vanishes,
-    the board is reset, or nobody is there to press it."""
+def _at(session: Session, shafts: ShaftAngles, words: str) -> Pair:
+    """The shafts' angles [rad] when the user presses Enter; all telemetry until then is taken. Raises ValueError if the
+    port vanishes, the board is reset, or the input ends."""
     print(words, file=sys.stderr, flush=True)
     resets = session.resets
     while not select.select([sys.stdin], [], [], 0.0)[0]:
-        _follow(session, shafts, resets)
+        _take_telemetry(session, shafts, resets)
     if not sys.stdin.readline():
         raise ValueError(
             "nobody pressed Enter: this command asks for it at each corner, on a terminal or through a pipe"
         )
-    _follow(session, shafts, resets)
+    _take_telemetry(session, shafts, resets)
     if shafts.angles is None:
         raise ValueError("the board sends no telemetry; see `puckpilot link test`")
     return shafts.angles
 
 
-def _follow(session: Session, shafts: Shafts, resets: int) -> None:
-    missing = session.view.missing
+def _take_telemetry(session: Session, shafts: ShaftAngles, resets: int) -> None:
+    missing = session.telemetry_status.missing
     session.poll()
     if not session.port_is_open or session.resets > resets:
         raise ValueError(
             "the port vanished or the board was reset on the way, so that turns were not counted; begin anew"
         )
-    if session.view.missing > missing + 20:
+    if session.telemetry_status.missing > missing + 20:
         raise ValueError("too much telemetry was lost to count turns; see `puckpilot link test`")
     for telemetry in session.take_telemetry():
         shafts.take(telemetry.angle)

@@ -3,8 +3,8 @@
 A VIEW is a folder: view.png, a photograph with at least three markers, and pixels.csv with u,v,x,y: where the puck's
 centre was seen [pixels] when it lay at a place measured by hand [m]. Three views from apart are good; all places
 should be spread over the whole table. Writes table.json and, beside it, a picture of how far off each point is.
-With --check a view that was not used is put to the test: the camera's place from its markers alone, then its
-pixels as places on the table against those measured.
+With --check the calibration is tested on a view that was not used: the camera is located by that view's markers alone,
+and its pixels, mapped to the table, are compared with the measured places.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from sim2real.vision.calibrate.check import Checked
-    from sim2real.vision.calibrate.coverage import Weakest
-    from sim2real.vision.calibrate.multiview import Solved
-    from sim2real.vision.calibrate.view import View
-    from sim2real.vision.calibrate.width import Step
+    from sim2real.vision.calibrate.calibration_view import CalibrationView
+    from sim2real.vision.calibrate.holdout_view import HoldoutCheck
+    from sim2real.vision.calibrate.multiview import MultiviewFit
+    from sim2real.vision.calibrate.place_uncertainty import WorstKnownPlace
+    from sim2real.vision.calibrate.width_check import WidthStep
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -33,14 +33,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """0: calibrated. Raises ValueError, in one line, for what cannot be."""
-    from puckpilot_env.whole_file import check_folder, write_whole
-    from sim2real.vision.calibrate.check import check
-    from sim2real.vision.calibrate.coverage import weakest
+    """Calibrate the table and write table.json and the plot. Returns 0; raises ValueError, in one line, if that is
+    impossible."""
+    from puckpilot_env.files.whole_file import check_folder, write_whole
+    from sim2real.vision.calibrate.calibration_view import read_view
+    from sim2real.vision.calibrate.holdout_view import check_holdout
     from sim2real.vision.calibrate.multiview import solve
+    from sim2real.vision.calibrate.place_uncertainty import worst_known_place
     from sim2real.vision.calibrate.table_file import write_table
-    from sim2real.vision.calibrate.view_file import read_view
-    from sim2real.vision.calibrate.width import step_across
+    from sim2real.vision.calibrate.width_check import width_step
     from sim2real.vision.camera_file import read_setup
 
     if args.out.suffix != ".json":
@@ -51,27 +52,29 @@ def run(args: argparse.Namespace) -> int:
     folders = [*args.views, *([args.check] if args.check else [])]
     views = [read_view(folder, setup) for folder in folders]
     _refuse_twice(folders, views)
-    solved = solve(setup, tuple(views[: len(args.views)]))
+    fit = solve(setup, tuple(views[: len(args.views)]))
     seconds = time.perf_counter() - begin
-    checked = check(setup, solved.scene, views[-1]) if args.check else None
-    step, weak = step_across(solved, setup.width), weakest(solved, setup.length, setup.width)
-    write_table(args.out, setup, solved)
+    checked = check_holdout(setup, fit.geometry, views[-1]) if args.check else None
+    step, weak = width_step(fit, setup.width), worst_known_place(fit, setup.length, setup.width)
+    write_table(args.out, setup, fit)
 
-    from sim2real.vision.calibrate.picture import draw  # matplotlib is slow to load, and nothing else here needs it
+    from sim2real.vision.calibrate.residual_plot import (
+        write_plot,  # matplotlib is slow to load, and nothing else here needs it
+    )
 
-    picture = write_whole(args.out.with_suffix(".png"), lambda draft: draw(draft, setup, solved, checked))
-    told = {"file": str(args.out), "picture": str(picture), "seconds": round(seconds, 2), **_told(solved, step, weak)}
+    picture = write_whole(args.out.with_suffix(".png"), lambda draft: write_plot(draft, setup, fit, checked))
+    result = {"file": str(args.out), "picture": str(picture), "seconds": round(seconds, 2), **_result(fit, step, weak)}
     if checked is not None:
-        told = {**_figures(checked), **told}
+        result = {**_figures(checked), **result}
     if args.json:
-        print(json.dumps(told, indent=1, allow_nan=False))
+        print(json.dumps(result, indent=1, allow_nan=False))
     else:
-        print("\n".join(_lines(told, solved, setup.width)))
+        print("\n".join(_lines(result, fit, setup.width)))
     return 0
 
 
-def _refuse_twice(folders: list[Path], views: list[View]) -> None:
-    """ValueError for a photograph that is given twice: what a fit saw proves nothing."""
+def _refuse_twice(folders: list[Path], views: list[CalibrationView]) -> None:
+    """Raise ValueError for a photograph that is given twice: a check on a view of the fit would prove nothing."""
     seen: dict[bytes, Path] = {}
     for folder, view in zip(folders, views, strict=True):
         corners = b"".join(corners.tobytes() for corners in view.corners.values())
@@ -81,26 +84,26 @@ def _refuse_twice(folders: list[Path], views: list[View]) -> None:
             )
 
 
-def _told(solved: Solved, step: Step | None, weak: Weakest) -> dict[str, Any]:
-    """What the fit found, ready for JSON."""
+def _result(fit: MultiviewFit, step: WidthStep | None, weak: WorstKnownPlace) -> dict[str, Any]:
+    """The result of the fit as a JSON object."""
     import numpy as np
 
-    std = np.sqrt(np.diag(solved.scene_covariance()))
-    far = 1e3 * np.concatenate([np.hypot(*off.T) for off in solved.off])
+    std = np.sqrt(np.diag(fit.geometry_covariance()))
+    far = 1e3 * np.concatenate([np.hypot(*off.T) for off in fit.off])
     return {
-        "views": [view.name for view in solved.problem.views],
-        "markers": len(solved.scene.markers),
+        "views": [view.name for view in fit.problem.views],
+        "markers": len(fit.geometry.markers),
         "fit": {"points": len(far), "mean_mm": float(far.mean()), "max_mm": float(far.max())},
-        "corner_rms_px": solved.corner_rms,
-        "bend_mm": 1e3 * solved.bend,
-        "marker_std_mm": float(1e3 * np.sqrt((solved.marker_std() ** 2).mean())),
+        "corner_rms_px": fit.corner_rms,
+        "bend_mm": 1e3 * fit.warp,
+        "marker_std_mm": float(1e3 * np.sqrt((fit.marker_std() ** 2).mean())),
         "surface_per_m": {
             name: {"value": value, "std": float(one)}
-            for name, value, one in zip(("xx", "xy", "yy"), solved.scene.surface.curvature, std, strict=False)
+            for name, value, one in zip(("xx", "xy", "yy"), fit.geometry.surface.curvature, std, strict=False)
         },
         "wrong": [
             {"view": view.name, "point": int(k) + 1, "off_mm": float(1e3 * np.hypot(*off[k]))}
-            for view, off, wrong in zip(solved.problem.views, solved.off, solved.wrong, strict=True)
+            for view, off, wrong in zip(fit.problem.views, fit.off, fit.wrong, strict=True)
             for k in np.flatnonzero(wrong)
         ],
         "step_across": None if step is None else {"mm": 1e3 * step.value, "std": 1e3 * step.std, "clear": step.clear},
@@ -113,8 +116,8 @@ def _told(solved: Solved, step: Step | None, weak: Weakest) -> dict[str, Any]:
     }
 
 
-def _figures(checked: Checked) -> dict[str, Any]:
-    """How well an unused view's points are found, ready for JSON."""
+def _figures(checked: HoldoutCheck) -> dict[str, Any]:
+    """The errors on the unused view as a JSON object."""
     import numpy as np
 
     far = 1e3 * checked.distances
@@ -128,41 +131,47 @@ def _figures(checked: Checked) -> dict[str, Any]:
     }
 
 
-def _lines(told: dict[str, Any], solved: Solved, width: float) -> list[str]:
-    """The same for a reader."""
-    fit, surface = told["fit"], told["surface_per_m"]
+def _lines(result: dict[str, Any], fit: MultiviewFit, width: float) -> list[str]:
+    """The result as lines of text."""
+    points, surface = result["fit"], result["surface_per_m"]
     heights = ", ".join(f"{name} {1e3 * one['value']:.2f} ({1e3 * one['std']:.2f})" for name, one in surface.items())
-    corners = ", ".join(f"{name} {rms:.2f}" for name, rms in zip(told["views"], told["corner_rms_px"], strict=True))
+    corners = ", ".join(f"{name} {rms:.2f}" for name, rms in zip(result["views"], result["corner_rms_px"], strict=True))
     lines = [
-        f"{len(told['views'])} views, {told['markers']} markers, {fit['points']} points in {told['seconds']:.1f} s: "
-        f"points {fit['mean_mm']:.2f} mm off on average, {fit['max_mm']:.2f} mm at most",
-        f"corners of markers, px rms: {corners}; placed to {told['marker_std_mm']:.1f} mm",
-        f"surface, mm at 1 m from the middle: {heights}; measured places bend by up to {told['bend_mm']:.1f} mm",
+        f"{len(result['views'])} views, {result['markers']} markers, {points['points']} points in "
+        f"{result['seconds']:.1f} s: points {points['mean_mm']:.2f} mm off on average, {points['max_mm']:.2f} mm at "
+        "most",
+        f"corners of markers, px rms: {corners}; placed to {result['marker_std_mm']:.1f} mm",
+        f"surface, mm at 1 m from the middle: {heights}; measured places bend by up to {result['bend_mm']:.1f} mm",
         *(
             f"wrong measurement: {one['view']}, point {one['point']}, {one['off_mm']:.1f} mm off"
-            for one in told["wrong"]
+            for one in result["wrong"]
         ),
     ]
-    step = told["step_across"]
+    step = result["step_across"]
     if step is not None and step["clear"]:
         lines.append(
             f"points left of the middle are stated {step['mm']:.1f} ({step['std']:.1f}) mm too far left against those "
             f"right of it: if they were measured from the left wall, the table is {width - 1e-3 * step['mm']:.4f} m "
             f"wide, not {width:g}; coordinates here follow the stated ones as well as a smooth map can"
         )
-    weak = told["weakest"]
+    weak = result["weakest"]
     if weak["matters"]:
         lines.append(
             f"the table is not covered: at ({weak['place_m'][0]:.2f}, {weak['place_m'][1]:.2f}), "
             f"{weak['nearest_point_m']:.2f} m from any point, places are known to {weak['std_mm']:.0f} mm only; lay "
             "the puck there, too"
         )
-    if "check" in told:
+    if "check" in result:
         from sim2real.vision.calibrate.pose import FAR
 
         lines.append(
-            f"check on {told['check']}, not used: mean {told['mean_mm']:.2f} mm, median {told['median_mm']:.2f} mm, "
-            f"max {told['max_mm']:.2f} mm (point {told['farthest_point']}); markers {told['markers_rms_px']:.2f} px rms"
-            + ("" if told["markers_rms_px"] <= FAR else f", too far: expected {FAR:g} at most; was one of them moved?")
+            f"check on {result['check']}, not used: mean {result['mean_mm']:.2f} mm, median "
+            f"{result['median_mm']:.2f} mm, max {result['max_mm']:.2f} mm (point {result['farthest_point']}); markers "
+            f"{result['markers_rms_px']:.2f} px rms"
+            + (
+                ""
+                if result["markers_rms_px"] <= FAR
+                else f", too far: expected {FAR:g} at most; was one of them moved?"
+            )
         )
-    return [*lines, f"{told['file']} holds it; {told['picture']} shows it"]
+    return [*lines, f"{result['file']} holds it; {result['picture']} shows it"]

@@ -1,10 +1,11 @@
-"""A first look, in a minute or two: players meet, a game is filmed, a recording is compared.
+"""A first look, in a minute or two: players meet, a game is filmed, a recording is compared and diagnosed.
 
 1. A trained player and a scripted one, or any two, meet in paired games on every registered environment; a table with
    95 % intervals.
 2. The first of those matches is filmed.
-3. A small bundled recording, made by an independent table with physics that the simulator leaves out, is cut into
-   glides and hits, and each is compared with what the simulator says.
+3. A small bundled recording, made by an independent table with physics that the simulator leaves out, is compared with
+   the simulator: it departs from it.
+4. The same recording is diagnosed: which physics is missing, and how much the fit improves on launches held out.
 """
 
 from __future__ import annotations
@@ -12,7 +13,10 @@ from __future__ import annotations
 import argparse
 import json
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from sim2real.diagnose.pipeline import Diagnosis
 
 FILMED = "puckpilot/match-v0"
 BUNDLED = Path(__file__).resolve().parent.parent / "demo_recording"
@@ -28,12 +32,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Show all three; 0. Raises ValueError, in one line, for unknown players."""
+    """Show all four; 0. Raises ValueError, in one line, for unknown players."""
     from baselines import find_player
     from baselines.commands.options import console_for
-    from baselines.match import MOST_GAMES
-    from baselines.role_table import role_table
-    from sim2real.compare import compare_recording, print_summary
+    from baselines.matches.match import MOST_GAMES
+    from baselines.matches.role_table import role_table
+    from sim2real.commands.compare import compare_recording, print_summary
+    from sim2real.diagnose.output.files import as_dict
+    from sim2real.diagnose.report.summary import summary
 
     players = tuple(args.players or ("policy:champion", "veteran"))
     if len(players) != 2:
@@ -44,15 +50,16 @@ def run(args: argparse.Namespace) -> int:
         raise ValueError(f"--games is {args.games}; expected a whole number from 1 to {MOST_GAMES:,}")
     args.out.mkdir(parents=True, exist_ok=True)
     film = args.out / "match.gif"
-    meetings = _meet(players, args.games, args.seed, film)
+    matchups = _meet(players, args.games, args.seed, film)
     comparison = compare_recording(BUNDLED, args.out)
     if args.json:
-        print(json.dumps({"meetings": meetings, "film": str(film), "compare": comparison}, indent=1))
+        found = as_dict(_diagnose(args.out)[0])
+        print(json.dumps({"meetings": matchups, "film": str(film), "compare": comparison, "diagnose": found}, indent=1))
         return 0
-    matches = _table(players, meetings)
+    matches = _table(players, matchups)
     drills = [
         role_table(f"{row['id'].removeprefix('puckpilot/')}, how the episodes ended", row["tested"])
-        for row in meetings
+        for row in matchups
         if "tested" in row
     ]
     console = console_for(matches, *drills)
@@ -71,21 +78,34 @@ def run(args: argparse.Namespace) -> int:
     console.print("A recording of a table with physics that the simulator leaves out, beside the simulator")
     console.print("(puckpilot compare --help explains the words):")
     print_summary(comparison)
+    console.print(f"\nWhich physics the simulator lacks of that recording's table (puckpilot diagnose {BUNDLED}):")
+    print("\n".join(summary(*_diagnose(args.out))))
     console.print(
-        f"\nNext, which physics that recording's table has beyond the simulator: puckpilot diagnose {BUNDLED}\n"
-        "Or puckpilot envs, puckpilot tournament, puckpilot compare RECORDING; each explains itself with --help."
+        "\nNext: puckpilot envs, puckpilot tournament, puckpilot diagnose RECORDING; each explains itself with --help."
     )
     return 0
+
+
+def _diagnose(out: Path) -> tuple[Diagnosis, list[Path]]:
+    """The diagnosis of the bundled recording, and its files in `out`/diagnosis."""
+    from baselines.commands.options import progress_bar
+    from sim2real.diagnose.output.files import write
+    from sim2real.diagnose.pipeline import diagnose
+    from sim2real.recording.folder import read_recording
+
+    with progress_bar("diagnosing") as progress:
+        found = diagnose([read_recording(BUNDLED)], [], {}, lambda stage, share: progress(round(100 * share), 100))
+    return found, write(found, out / "diagnosis")
 
 
 def _meet(players: tuple[str, str], games: int, seed: int, film: Path) -> list[dict[str, Any]]:
     """One row an environment; the first game of FILMED goes to `film`."""
     from baselines.commands.options import progress_bar
-    from baselines.filming import FirstGame
-    from baselines.match import play
-    from baselines.role import roles_of
+    from baselines.matches.filming import FirstGame
+    from baselines.matches.match import play
+    from baselines.matches.role import roles_of
+    from puckpilot_env.rendering.video import VideoWriter
     from puckpilot_env.variants import all_variants
-    from puckpilot_env.video import VideoWriter
 
     rows = []
     for id_, variant in all_variants().items():
@@ -101,7 +121,7 @@ def _meet(players: tuple[str, str], games: int, seed: int, film: Path) -> list[d
     return rows
 
 
-def _table(players: tuple[str, str], meetings: list[dict[str, Any]]) -> Any:
+def _table(players: tuple[str, str], matchups: list[dict[str, Any]]) -> Any:
     from rich import box
     from rich.table import Table
 
@@ -110,7 +130,7 @@ def _table(players: tuple[str, str], meetings: list[dict[str, Any]]) -> Any:
     table.add_column("environment", no_wrap=True)
     for heading in ("won", "drawn", "lost", "goals", "fouls a game", "share", "95 %"):
         table.add_column(heading, justify="right", no_wrap=True)
-    for row in meetings:
+    for row in matchups:
         if "tested" in row:
             continue
         rate = row["decisive_win_rate"]

@@ -30,33 +30,33 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """0: diagnosed, whatever the verdict. Raises ValueError or OSError, in one line, where it cannot."""
-    from puckpilot_env.whole_file import check_folder
-    from sim2real.diagnose.asked import Asked
-    from sim2real.diagnose.diagnosis import diagnose
-    from sim2real.diagnose.files import as_dict, write
-    from sim2real.nominal import read_baseline
-    from sim2real.recording import read_recording
+    from puckpilot_env.files.whole_file import check_folder
+    from sim2real.diagnose.output.files import as_dict, write
+    from sim2real.diagnose.pipeline import diagnose
+    from sim2real.diagnose.result.context import ReportContext
+    from sim2real.recording.folder import read_recording
+    from sim2real.recording.table_parameters import read_baseline
 
     _refuse_twice([*args.recordings, *args.holdout])
-    shipped = read_baseline(args.baseline) if args.baseline else {}
+    defaults = read_baseline(args.baseline) if args.baseline else {}
     with _bar() as bar:
         task = bar.add_task("reading", total=1.0)
         recordings, heldout = ([read_recording(path) for path in paths] for paths in (args.recordings, args.holdout))
-        asked = Asked(tuple(one.name for one in (*recordings, *heldout)), shipped)
+        context = ReportContext(tuple(one.name for one in (*recordings, *heldout)), defaults)
         check_folder(args.out)
 
         def progress(stage: str, share: float) -> None:
             bar.update(task, description=stage, completed=share)
 
-        diagnosis = diagnose(recordings, heldout, shipped, progress)
+        diagnosis = diagnose(recordings, heldout, defaults, progress)
         progress("writing", 0.95)
-        written = write(diagnosis, args.out, asked)
+        written = write(diagnosis, args.out, context)
     if args.json:
         print(json.dumps(as_dict(diagnosis), indent=1, allow_nan=False))
     else:
-        from sim2real.diagnose.summary import summary
+        from sim2real.diagnose.report.summary import summary
 
-        print("\n".join(summary(diagnosis, written, asked)))
+        print("\n".join(summary(diagnosis, written, context)))
     return 0
 
 

@@ -1,4 +1,4 @@
-"""Build the microcontroller's program: write both sides' messages from firmware/protocol.toml, and compile.
+"""Build the microcontroller's program: generate both sides' messages from firmware/protocol.toml, and compile.
 
 Needs make and arm-none-eabi-gcc.
 """
@@ -11,11 +11,11 @@ import subprocess
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """There are none."""
+    """Declare the arguments of the command: none."""
 
 
 def run(args: argparse.Namespace) -> int:
-    """0: built. Raises ValueError, in one line, if it does not."""
+    """Build. Returns 0; raises ValueError, in one line, if that fails."""
     from firmware import ELF, FOLDER
     from firmware.definition import read_protocol
     from firmware.generate import write

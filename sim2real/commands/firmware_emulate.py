@@ -1,7 +1,7 @@
-"""Run the microcontroller's program in an emulator, with a gantry on its motors, behind a serial port of its own.
+"""Run the microcontroller's program in an emulator, with a gantry on its motors, at a serial port of its own.
 
-Until Ctrl-C `puckpilot link monitor PORT` and all that talks to a board talk to it there, at whatever speed. No hand
-can move its mallet, as `calibrate gantry` asks for.
+Until Ctrl-C it serves `puckpilot link monitor PORT` and every other program for a board, at any baud rate. Its mallet
+cannot be moved by hand, so `calibrate gantry` does not work with it.
 """
 
 from __future__ import annotations
@@ -22,7 +22,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """0: it ran. Raises ValueError, in one line, where it cannot."""
+    """Run the emulator until the time is over or Ctrl-C. Returns 0; raises ValueError, in one line, if that is
+    impossible."""
     from firmware import ELF
 
     if args.seconds is not None and not args.seconds > 0:
@@ -38,7 +39,7 @@ def run(args: argparse.Namespace) -> int:
         from sim2real.emulate.machine import Machine
     except ImportError:
         raise ValueError("the emulator needs unicorn; install it with: pip install 'puckpilot[emulate]'") from None
-    from sim2real.emulate.paced import serve, terminal
+    from sim2real.emulate.pseudo_terminal import serve, terminal
 
     machine = Machine(ELF, seed=time.time_ns() % 2**31)
     gantry = Gantry(machine, place=(args.place[0], args.place[1]))
@@ -48,7 +49,7 @@ def run(args: argparse.Namespace) -> int:
         try:
             behind = serve(machine, descriptor, lambda seconds: seconds < most)
         except KeyboardInterrupt as stop:
-            if stop.args:  # told to end from outside
+            if stop.args:  # terminated from outside
                 raise
             behind = 0.0
     x, y = gantry.place(machine.now)

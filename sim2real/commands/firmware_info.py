@@ -1,4 +1,4 @@
-"""What the microcontroller's program is: its protocol, its size and checksum, and its ticks' instructions."""
+"""Describe the microcontroller's program: its protocol, size and checksum, and the instructions of its ticks."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """0: told."""
+    """Print the description. Returns 0."""
     import zlib
 
     from firmware import ELF
@@ -46,8 +46,9 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _ticks() -> dict[str, int]:
+    """The instructions of ticks; empty if the emulator is not installed."""
     try:
-        from sim2real.emulate.ticks import count_ticks
+        from sim2real.emulate.tick_instructions import count_ticks
     except ImportError:
         return {}
     return count_ticks()

@@ -1,6 +1,6 @@
-"""Watch the line to the microcontroller: what the board says of itself, twice a second, and everything that happens.
+"""Monitor the line to the microcontroller: print the board's status twice a second, and every event.
 
-Ctrl-C ends it. The board is neither armed nor configured; one that is found armed is disarmed.
+Ctrl-C ends it. The board is neither armed nor configured; an armed one is disarmed.
 """
 
 from __future__ import annotations
@@ -9,9 +9,9 @@ import argparse
 import json
 import time
 
-from sim2real.commands.port import add_port, session_of
+from sim2real.link.arguments import add_port, session_of
 
-EVERY = 0.5  # s from a line to the next
+EVERY = 0.5  # s between status lines
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -22,9 +22,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """0: watched. Raises ValueError, in one line, where it cannot."""
-    from sim2real.link.trial import meet
-    from sim2real.link.words import event_words, figures, line
+    """Monitor until the time is over or Ctrl-C. Returns 0; raises ValueError, in one line, if there is no board."""
+    from sim2real.link.link_quality import wait_for_board
+    from sim2real.link.status_text import event_text, status_figures, status_line
 
     if args.seconds is not None and not 0.0 < args.seconds <= 1e6:
         raise ValueError(f"--seconds is {args.seconds:g}; expected a number above 0, at most 1e6")
@@ -32,20 +32,20 @@ def run(args: argparse.Namespace) -> int:
         begin = time.perf_counter()
         due = begin + EVERY
         try:
-            meet(session)
+            wait_for_board(session)
             while args.seconds is None or time.perf_counter() < begin + args.seconds:
                 session.poll()
                 if not session.port_is_open:
                     time.sleep(0.01)
                 now = time.perf_counter()
-                for words in [*session.take_notes(), *map(event_words, session.take_events())]:
+                for words in [*session.take_notes(), *map(event_text, session.take_events())]:
                     _print(now - begin, words, {"note": words}, args.json)
                 session.take_telemetry()
                 if now >= due:
                     due = max(due + EVERY, now)
-                    _print(now - begin, line(session), figures(session), args.json)
+                    _print(now - begin, status_line(session), status_figures(session), args.json)
         except KeyboardInterrupt as stop:
-            if stop.args:  # told to end from outside
+            if stop.args:  # terminated from outside
                 raise
         return 0
 

@@ -1,7 +1,7 @@
-"""Test the line to the microcontroller: say hello, send pings, tell round trip, clock, telemetry and losses.
+"""Test the line to the microcontroller: send hello and pings, and report round trip, clock, telemetry and losses.
 
-Ends with 0 if all is good, 1 if something is not. The board is neither armed nor configured; one that is found armed is
-disarmed.
+Ends with 0 if everything is good, with 1 if something is not. The board is neither armed nor configured; an armed one
+is disarmed.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 import argparse
 import json
 
-from sim2real.commands.port import add_port, session_of
+from sim2real.link.arguments import add_port, session_of
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -20,17 +20,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """0: all is good; 1: something is not. Raises ValueError, in one line, where it cannot be tested."""
+    """Test the line. Returns 0 if everything is good, 1 if something is not; raises ValueError, in one line, if it
+    cannot be tested."""
     from rich.console import Console
 
-    from sim2real.link.trial import meet, trial
+    from sim2real.link.link_quality import measure_link, wait_for_board
 
     if not 2 <= args.pings <= 1000:
         raise ValueError(f"--pings is {args.pings}; expected a whole number from 2 to 1000")
     with session_of(args) as session, Console(stderr=True).status("greeting the board") as status:
-        meet(session)
+        wait_for_board(session)
         status.update(f"{args.pings} pings")
-        found = {"port": args.port, **trial(session, args.pings)}
+        found = {"port": args.port, **measure_link(session, args.pings)}
     if args.json:
         print(json.dumps(found, allow_nan=False))
     else:
@@ -39,7 +40,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _summary(found: dict) -> list[str]:
-    from sim2real.link.words import drift_words
+    from sim2real.link.status_text import drift_text
 
     protocol = ".".join(map(str, found["protocol"]))
     lines = [
@@ -51,7 +52,7 @@ def _summary(found: dict) -> list[str]:
         lines += [
             f"round trip: median {trip['median']:.2f} ms, 99 % within {trip['p99']:.2f} ms",
             f"board's clock: known within {found['clock_error_us']:.0f} us, "
-            f"{drift_words(found['drift_ppm'], found['drift_error_ppm'])}",
+            f"{drift_text(found['drift_ppm'], found['drift_error_ppm'])}",
         ]
     if found["telemetry_hz"] is not None:
         lines += [

@@ -1,8 +1,8 @@
 """How often a diagnosis is right: cases with something hidden, diagnosed blindly, then scored.
 
-Tables are drawn at random by an independent simulator (tests/reality): nothing missing, other parameters only, one
-effect, two, or a law that is in no list. A separate process diagnoses each and sees the recording alone; the key is
-opened for scoring only. A study that was stopped goes on where it was.
+An independent simulator draws tables at random: nothing missing, other parameters only, one effect, two, or a law that
+is in no list. A separate process diagnoses each and sees the recording alone; the key is opened for scoring only. A
+study that was stopped goes on where it was.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
-"""Puck and opponent's ring in a camera's pictures, as a recording that compare and diagnose read.
+"""Track puck and opponent's ring in a camera's pictures, and write a recording that compare and diagnose read.
 
 SOURCE is a folder of pictures, a video file, device:0, aravis:NAME, flir:SERIAL, synthetic, or synthetic:RECORDING.
-The first picture must show three markers of the calibration at least: they tell where the camera stands. Numbers at
-the ends of a folder's names are the pictures' own. Ctrl-C ends a live source, and what was seen so far is written. A
-cell is blank where the puck is not known: under the gantry, and in the first picture after, if it was struck there.
-Ends with 1 if something was wrong with the pictures, which is named, in the recording's note too.
+The first picture must show at least three markers of the calibration, by which the camera is located. Numbers at the
+ends of a folder's file names are the pictures' sequence numbers. Ctrl-C ends a live source; everything up to then is
+written. A cell is blank where the puck's place is unknown: under the gantry, and in the first picture after that if the
+puck was struck there. Ends with 1 if something was wrong with the pictures; the recording's note names it.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from sim2real.camera.frame import Frame
-    from sim2real.camera.sound import SoundFrames
-    from sim2real.vision.calibrate.table_file import Table
-    from sim2real.vision.track.eye import Seen
-    from sim2real.vision.track.tracker import Tracker
+    from sim2real.camera.valid_frames import ValidFrames
+    from sim2real.vision.calibrate.table_file import TableCalibration
+    from sim2real.vision.track.detector import Detections
+    from sim2real.vision.track.tracker import Targets, Tracker
 
-FILM_RATE = 25.0  # pictures a second of the preview
-FEW, UNSURE = 10, 0.3  # pictures, and a share of all, that may be unsure: under a gantry 3 % are
+PREVIEW_RATE = 25.0  # pictures a second of the preview
+FEW, UNSURE = 10, 0.3  # tolerated number and share of unsure pictures; with a gantry 3 % are
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -53,9 +53,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """0: tracked; 1: tracked, but something was wrong. Raises ValueError, in one line, for what cannot be."""
-    from puckpilot_env.whole_file import check_folder
-    from sim2real.recording import write_recording
+    """Track and write the recording. Returns 0, or 1 if something was wrong with the pictures; raises ValueError, in
+    one line, if tracking is impossible."""
+    from puckpilot_env.files.whole_file import check_folder
+    from sim2real.recording.folder import write_recording
     from sim2real.vision.track.tracker import Tracker
 
     if args.seconds is not None and not 0.0 < args.seconds <= 1e6:
@@ -63,38 +64,39 @@ def run(args: argparse.Namespace) -> int:
     if args.out.exists():
         raise ValueError(f"{args.out} exists already; choose another name or remove it")
     check_folder(args.out.absolute().parent)
-    tracker = Tracker(_table(args), _things(args))
-    frames = _follow(args, tracker)
-    told = _told(frames, tracker)
-    note = "; ".join([f"tracked from {args.source}", *_troubles(told)])
+    tracker = Tracker(_table(args), _targets(args))
+    frames = _track_frames(args, tracker)
+    summary = _summary(frames, tracker)
+    note = "; ".join([f"tracked from {args.source}", *_troubles(summary)])
     write_recording(args.out, tracker.recording(args.out.name, note))
     if args.json:
-        print(json.dumps({"recording": str(args.out), **told}, indent=1, allow_nan=False))
+        print(json.dumps({"recording": str(args.out), **summary}, indent=1, allow_nan=False))
     else:
-        print("\n".join(_lines(args, told)))
-    return 1 if told["troubles"] else 0
+        print("\n".join(_lines(args, summary)))
+    return 1 if summary["troubles"] else 0
 
 
-def _table(args: argparse.Namespace) -> Table:
-    """The calibration: the one given, or for rendered pictures one made as a user would make it."""
-    from sim2real.vision.calibrate.table_file import Table, read_table
+def _table(args: argparse.Namespace) -> TableCalibration:
+    """The given calibration, or for rendered pictures one that is estimated as a user would do it."""
+    from sim2real.vision.calibrate.table_file import TableCalibration, read_table
 
     if args.calibration is not None:
         return read_table(args.calibration)
     kind, _, name = args.source.partition(":")
     if kind != "synthetic":
         raise ValueError("--calibration is missing; give the table.json of puckpilot calibrate table")
-    from sim2real.camera.synthetic import scene_of
-    from sim2real.vision.trial.rendered_calibration import estimated
+    from sim2real.camera.synthetic import table_and_view
+    from sim2real.vision.trial.rendered_calibration import estimated_calibration
 
-    return Table.of(*estimated(*scene_of(name), seed=0))
+    return TableCalibration.of(*estimated_calibration(*table_and_view(name), seed=0))
 
 
-def _things(args: argparse.Namespace) -> Any:
+def _targets(args: argparse.Namespace) -> Targets:
+    """The tracked objects by the arguments. ValueError, in one line, for a number out of range."""
     from puckpilot_env.parameters import BY_NAME
-    from sim2real.vision.track.bright import LEVEL
+    from sim2real.vision.track.blobs import LEVEL
     from sim2real.vision.track.ring import HEIGHTS
-    from sim2real.vision.track.tracker import Things
+    from sim2real.vision.track.tracker import Targets
 
     radius = BY_NAME["puck_radius"].default if args.puck_radius is None else args.puck_radius
     level = LEVEL if args.level is None else args.level
@@ -108,23 +110,23 @@ def _things(args: argparse.Namespace) -> Any:
         raise ValueError(f"--puck-radius is {radius:g}; expected metres from 0.005 to 0.1")
     if not 1.0 <= level <= 250.0:
         raise ValueError(f"--level is {level:g}; expected a grey level from 1 to 250")
-    return Things(radius, height, level)
+    return Targets(radius, height, level)
 
 
-def _follow(args: argparse.Namespace, tracker: Tracker) -> SoundFrames:
-    """Look at every frame."""
+def _track_frames(args: argparse.Namespace, tracker: Tracker) -> ValidFrames:
+    """Track every valid frame of the source. Returns the frames' statistics."""
     from baselines.commands.options import progress_bar
-    from sim2real.camera.sound import SoundFrames
+    from sim2real.camera.frame_monitor import FrameMonitor, colour_mosaic, over_exposed
     from sim2real.camera.sources import open_source
-    from sim2real.camera.watch import Watch, colour_mosaic, over_exposed
+    from sim2real.camera.valid_frames import ValidFrames
 
-    watch = Watch(tracker.camera.size, (over_exposed, colour_mosaic, tracker.moved))
+    monitor = FrameMonitor(tracker.camera.size, (over_exposed, colour_mosaic, tracker.check_camera))
     with (
         open_source(args.source, rate=args.rate, exposure=args.exposure) as source,
-        _film(args, tracker) as show,
+        _preview(args, tracker) as show,
         progress_bar(f"tracking {args.source}") as progress,
     ):
-        frames = SoundFrames(source, watch, args.seconds or math.inf)
+        frames = ValidFrames(source, monitor, args.seconds or math.inf)
         with suppress(KeyboardInterrupt):
             for frame in frames:
                 show(frame, tracker.add(frame))
@@ -135,35 +137,36 @@ def _follow(args: argparse.Namespace, tracker: Tracker) -> SoundFrames:
         if not frames.frames:
             raise ValueError(f"{args.source} gave no picture; see that the camera runs")
         if tracker.pose is None:
-            raise ValueError("; ".join(account.text for account in frames.troubles.values()))
+            raise ValueError("; ".join(trouble.text for trouble in frames.troubles.values()))
     return frames
 
 
 @contextmanager
-def _film(args: argparse.Namespace, tracker: Tracker) -> Iterator[Callable[[Frame, Seen], None]]:
-    """What takes each frame with what was seen in it, and shows some in the preview, if there is to be one."""
+def _preview(args: argparse.Namespace, tracker: Tracker) -> Iterator[Callable[[Frame, Detections], None]]:
+    """A function that takes each frame with its detections and adds some of them to the preview video, if there is
+    one."""
     if args.video is None:
-        yield lambda frame, seen: None
+        yield lambda frame, found: None
         return
-    from puckpilot_env.video import VideoWriter
+    from puckpilot_env.rendering.video import VideoWriter
     from sim2real.vision.track.preview import Preview
 
-    due, preview = float("-inf"), Preview(tracker.heights, tracker.things.puck_radius)
+    due, preview = float("-inf"), Preview(tracker.heights, tracker.targets.puck_radius)
 
-    def show(frame: Frame, seen: Seen) -> None:
+    def show(frame: Frame, found: Detections) -> None:
         nonlocal due
         if frame.time < due - 1e-9:
             return
-        film.add(preview.draw(tracker.locator, frame.image, frame.time, seen))
-        due = (math.floor(frame.time * FILM_RATE + 1e-6) + 1) / FILM_RATE
+        video.add(preview.draw(tracker.locator, frame.image, frame.time, found))
+        due = (math.floor(frame.time * PREVIEW_RATE + 1e-6) + 1) / PREVIEW_RATE
 
-    with VideoWriter(args.video, FILM_RATE) as film:
+    with VideoWriter(args.video, PREVIEW_RATE) as video:
         yield show
 
 
-def _told(frames: SoundFrames, tracker: Tracker) -> dict[str, Any]:
-    """What came of it, ready for JSON."""
-    from sim2real.camera.watch import Trouble
+def _summary(frames: ValidFrames, tracker: Tracker) -> dict[str, Any]:
+    """The statistics of the run as a JSON object; adds troubles that only the whole run shows."""
+    from sim2real.camera.frame_monitor import Trouble
 
     counts = tracker.counts
     if not counts["seen"] and not frames.troubles:
@@ -187,23 +190,24 @@ def _told(frames: SoundFrames, tracker: Tracker) -> dict[str, Any]:
     }
 
 
-def _troubles(told: dict[str, Any]) -> list[str]:
+def _troubles(summary: dict[str, Any]) -> list[str]:
     return [
         f"{name}, {'once' if one['times'] == 1 else str(one['times']) + ' times'} from {one['first_s']:.1f} s on: "
         f"{one['text']}"
-        for name, one in told["troubles"].items()
+        for name, one in summary["troubles"].items()
     ]
 
 
-def _lines(args: argparse.Namespace, told: dict[str, Any]) -> list[str]:
-    """The same for a reader."""
-    left_out = f", {told['left_out']} left out" if told["left_out"] else ""
-    std = 1e3 * told["place_std_m"]
+def _lines(args: argparse.Namespace, summary: dict[str, Any]) -> list[str]:
+    """The statistics as lines of text."""
+    left_out = f", {summary['left_out']} left out" if summary["left_out"] else ""
+    std = 1e3 * summary["place_std_m"]
     calibrated = f"; by the calibration places are off by {std:.1f} mm along each axis, alike in all pictures"
     return [
-        f"{told['frames']} frames: puck known in {told['seen']}, hidden in {told['hidden']}, not sure in "
-        f"{told['unsure']}; {told['dropped']} dropped{left_out}",
-        f"camera found by {told['markers']} markers, {told['markers_rms_px']:.2f} px rms{calibrated if std else ''}",
-        *_troubles(told),
+        f"{summary['frames']} frames: puck known in {summary['seen']}, hidden in {summary['hidden']}, not sure in "
+        f"{summary['unsure']}; {summary['dropped']} dropped{left_out}",
+        f"camera found by {summary['markers']} markers, {summary['markers_rms_px']:.2f} px rms"
+        f"{calibrated if std else ''}",
+        *_troubles(summary),
         f"{args.out} holds them" + (f"; {args.video} shows it" if args.video else ""),
     ]

@@ -14,43 +14,38 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sim2real.diagnose.contacts import WALLS, geometry, mallet_tracks
-from sim2real.diagnose.glide.data import GlideData, glide_data
-from sim2real.diagnose.impacts import glide_before
-from sim2real.diagnose.pieces import Pieces, cut
-from sim2real.recording import Recording, Stream
+from sim2real.diagnose.regimes.contact.motion import glide_before
+from sim2real.diagnose.regimes.sliding.data import GlideData, glide_data
+from sim2real.diagnose.sensor_noise.model import stated_map_error
+from sim2real.diagnose.tuned import SPLIT
+from sim2real.recording.folder import Recording, Stream
+from sim2real.segmentation.causes import WALLS, geometry, mallet_tracks
+from sim2real.segmentation.segments import Segments, segment
 
-PROVES = 6  # about every so manieth launch proves
-KINDS = (
-    *WALLS,
-    "nothing near",
-    "robot",
-)  # of hits; of a table whose size is wrongly stated a wall is not where it should be
-ENOUGH = 4  # hits of a kind, which the launches that do not prove keep: fewer do not tell where a wall is
-LONGEST_BLOCK = 3.0  # s of the gantry's path, of which about every PROVES-th proves
-FEWEST_BLOCKS = 20  # where the path is short
+# Kinds of contacts; where the table's size is wrongly stated, a wall is not where it should be
+KINDS = (*WALLS, "nothing near", "robot")
 
 
-class Divided(NamedTuple):
+class DataSplit(NamedTuple):
     """Recordings less what proves, and what proves: of the puck's frames, and of the mallet's path. What one regime
     takes as given, such as the mallet's path for the puck's, stays whole."""
 
-    rest: list[Recording]
-    proof: list[Recording]
-    gantry_rest: list[Recording]
-    gantry_proof: list[Recording]
+    training: list[Recording]
+    holdout: list[Recording]
+    gantry_training: list[Recording]
+    gantry_holdout: list[Recording]
 
 
-def divide(recordings: Sequence[Recording], heldout: Sequence[Recording]) -> Divided:
+def split_data(recordings: Sequence[Recording], heldout: Sequence[Recording]) -> DataSplit:
     """The recordings `heldout` prove or, where there are none, parts of the others."""
     if heldout:
-        return Divided(list(recordings), list(heldout), list(recordings), list(heldout))
-    pieces = [cut(one) for one in recordings]
-    of_row, met = _launches(recordings, pieces)
-    chosen = _every(PROVES, met)
+        return DataSplit(list(recordings), list(heldout), list(recordings), list(heldout))
+    segments = [segment(one) for one in recordings]
+    of_row, met = _launches(recordings, segments)
+    chosen = _every(SPLIT.launches, met)
     shows = [np.isin(rows, chosen) for rows in of_row]
     paths = [_path_that_proves(*each) for each in zip(recordings, of_row, shows, strict=True)]
-    return Divided(
+    return DataSplit(
         [_only(one, "frames", ~some) for one, some in zip(recordings, shows, strict=True)],
         [_only(one, "frames", some) for one, some in zip(recordings, shows, strict=True)],
         [_only(one, "mallet", ~some) for one, some in zip(recordings, paths, strict=True)],
@@ -75,19 +70,21 @@ def _path_that_proves(one: Recording, of_row: np.ndarray, shows: np.ndarray) -> 
     if shows.any():
         assert one.frames is not None
         return shows[np.clip(np.searchsorted(one.frames.t, t, side="right") - 1, 0, len(of_row) - 1)]
-    block = min(LONGEST_BLOCK, float(t[-1] - t[0]) / FEWEST_BLOCKS) or LONGEST_BLOCK
-    return ((t - t[0]) // block).astype(int) % PROVES == PROVES - 1
+    block = min(SPLIT.longest_block, float(t[-1] - t[0]) / SPLIT.fewest_blocks) or SPLIT.longest_block
+    return ((t - t[0]) // block).astype(int) % SPLIT.launches == SPLIT.launches - 1
 
 
-def launches_of(recordings: Sequence[Recording], pieces: Sequence[Pieces]) -> tuple[np.ndarray, ...]:
+def launches_of(recordings: Sequence[Recording], segments: Sequence[Segments]) -> tuple[np.ndarray, ...]:
     """For each recording, the number (frames,) of the launch of each row of its frames, counted through all of them."""
-    return _launches(recordings, pieces)[0]
+    return _launches(recordings, segments)[0]
 
 
-def _launches(recordings: Sequence[Recording], pieces: Sequence[Pieces]) -> tuple[tuple[np.ndarray, ...], np.ndarray]:
-    """The number of each row's launch, for each recording, and how many hits each launch (launches, KINDS) has met."""
+def _launches(
+    recordings: Sequence[Recording], segments: Sequence[Segments]
+) -> tuple[tuple[np.ndarray, ...], np.ndarray]:
+    """The number of each row's launch, for each recording, and how many contacts each launch (launches, KINDS) has."""
     of_row, first, met = [], 0, []
-    for recording, some in zip(recordings, pieces, strict=True):
+    for recording, some in zip(recordings, segments, strict=True):
         part = _launched(recording, some, 0.0)
         _, opening = np.unique(part.cluster, return_index=True)
         begun = _rows(recording, part)[opening]
@@ -98,26 +95,36 @@ def _launches(recordings: Sequence[Recording], pieces: Sequence[Pieces]) -> tupl
     return tuple(of_row), np.concatenate(met)
 
 
-def _met(pieces: Pieces, part: GlideData) -> np.ndarray:
-    """How many hits of each wall and of the robot's mallet each launch (launches, kinds) has between two glides."""
+def _met(segments: Segments, part: GlideData) -> np.ndarray:
+    """How many contacts of each kind each launch (launches, KINDS) has between two glides."""
     met = np.zeros((max(part.clusters, 1), len(KINDS)), int)
     begin, finish = part.t[part.first[:-1]], part.t[part.first[1:] - 1]
-    for k, hit in enumerate(pieces.hits):
-        before = glide_before(pieces, begin, finish, k)
-        if before is not None and hit.where in KINDS:
-            met[part.cluster[before + 1], KINDS.index(hit.where)] += 1
+    for k, contact in enumerate(segments.contacts):
+        before = glide_before(segments, begin, finish, k)
+        if before is not None and contact.where in KINDS:
+            met[part.cluster[before + 1], KINDS.index(contact.where)] += 1
     return met
 
 
 def _every(step: int, met: np.ndarray) -> np.ndarray:
-    """One of each `step` launches that `met` (launches, KINDS) so many hits, or one of fewer: the last that leaves the
-    others ENOUGH of each kind, where there are so many. Where none of them met any wall, or the robot, one that did
-    takes the place of one that is not missed."""
+    """The launches of the holdout, by number: one of each `step` launches, or one of fewer. `met` (launches, KINDS):
+    how many contacts each has.
+
+    It is the last of them that leaves the others `SPLIT.fewest_contacts` of each kind, where there are so many. Where
+    none of the chosen met any wall, or the robot, one that did takes the place of one that is not missed.
+    """
     ends = range(step, len(met) + 1, step) if len(met) >= step else [len(met)] * (len(met) > 1)
     chosen, left = [], met.sum(axis=0)
     for end in ends:
         some = range(end - 1, max(end - step, 0) - 1, -1)
-        k = next((k for k in some if np.all((left - met[k] >= ENOUGH) | (met[k] == 0) | (left < ENOUGH))), end - 1)
+        k = next(
+            (
+                k
+                for k in some
+                if np.all((left - met[k] >= SPLIT.fewest_contacts) | (met[k] == 0) | (left < SPLIT.fewest_contacts))
+            ),
+            end - 1,
+        )
         chosen.append(k)
         left = left - met[k]
     both = np.stack([met[:, :-1].sum(axis=1), met[:, -1]], axis=1)
@@ -136,14 +143,14 @@ def _missed(met: np.ndarray, rest: list[int], k: int) -> tuple[int, int]:
     return int(alone.sum()), int(met[k].sum())
 
 
-def glides_of(recording: Recording, pieces: Pieces) -> GlideData:
+def glides_of(recording: Recording, segments: Segments) -> GlideData:
     """The glides of a recording, with what its calibration says that it errs by."""
-    return _launched(recording, pieces, recording.nominal("camera", "place_std_m") or 0.0)
+    return _launched(recording, segments, stated_map_error(recording))
 
 
-def _launched(recording: Recording, pieces: Pieces, stated: float) -> GlideData:
+def _launched(recording: Recording, segments: Segments, stated: float) -> GlideData:
     t = np.zeros(0) if recording.frames is None else recording.frames.t
-    return glide_data(pieces, geometry(recording), mallet_tracks(recording, t), stated)
+    return glide_data(segments, geometry(recording), mallet_tracks(recording, t), stated)
 
 
 def _rows(recording: Recording, part: GlideData) -> np.ndarray:

@@ -13,7 +13,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
-from puckpilot_env.whole_file import write_text_whole
+from puckpilot_env.files.whole_file import write_text_whole
 from sim2real.study.making import ROOT, Progress, with_root
 
 LONGEST = 600.0  # s, for one diagnosis

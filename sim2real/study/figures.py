@@ -55,7 +55,7 @@ class Figure:
 
 
 def share(name: str, answers: Iterable[bool | None], least: float = 0.0, most: float = 1.0) -> Figure:
-    """A share of yes among yes and no, with the interval of Clopper and Pearson (see `baselines.intervals`)."""
+    """A share of yes among yes and no, with the interval of Clopper and Pearson (see `baselines.ratings.intervals`)."""
     from scipy.stats import binomtest
 
     known = [answer for answer in answers if answer is not None]

@@ -1,4 +1,4 @@
-"""Labelled cases from the independent table, which lives in the project's tests and shares no code with the product."""
+"""Labelled cases from the independent table, which shares no code with the simulator and the diagnosis."""
 
 from __future__ import annotations
 
@@ -10,21 +10,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 Progress = Callable[[int, int], None]
-MAKER = "tests.reality.make_cases"
-
-
-def has_maker(root: Path) -> bool:
-    """Whether the independent table is in a folder."""
-    return (root / "tests" / "reality" / "make_cases.py").is_file()
-
-
-def checkout(around: Path, here: Path) -> Path:
-    """The clone that a study runs: the one `around` this file or, where that is an installation without tests, the one
-    that it is called in, `here`."""
-    return here if has_maker(here) and not has_maker(around) else around
-
-
-ROOT = checkout(Path(__file__).resolve().parents[2], Path.cwd())
+MAKER = "sim2real.study.independent_table.make_cases"
+ROOT = Path(__file__).resolve().parents[2]  # of the code that makes cases and diagnoses them
 
 
 @dataclass(frozen=True)
@@ -44,16 +31,11 @@ class Plan:
         return asdict(self)
 
 
-def make_cases(plan: Plan, folder: Path, workers: int, progress: Progress, root: Path = ROOT) -> list[str]:
+def make_cases(plan: Plan, folder: Path, workers: int, progress: Progress) -> list[str]:
     """Have the cases written to recordings/, heldout/ and key/ in `folder`; returns their labels.
 
-    What is there already stays. ValueError, in one line, where there is no maker or it refuses the plan.
+    What is there already stays. ValueError, in one line, where the plan is refused.
     """
-    if not has_maker(root):
-        raise ValueError(
-            f"the study needs the independent table in tests/reality, which is not in {root}; run it in a clone of the "
-            "repository"
-        )
     command = [
         sys.executable, "-m", MAKER, "--cases", str(plan.cases), "--seed", str(plan.seed), "--out",
         str(folder.resolve()), "--seconds", str(plan.seconds), "--workers", str(workers),
@@ -63,7 +45,7 @@ def make_cases(plan: Plan, folder: Path, workers: int, progress: Progress, root:
     command += ["--filmed"] if plan.filmed else []
     labels = []
     with subprocess.Popen(
-        command, cwd=root, env=with_root(root), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        command, cwd=ROOT, env=with_root(ROOT), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     ) as maker:
         assert maker.stdout is not None and maker.stderr is not None
         for line in maker.stdout:

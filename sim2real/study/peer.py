@@ -53,10 +53,10 @@ def accelerations(recording: Any) -> list[np.ndarray]:
     """One array (n, 7) for each glide that is long enough: t, x, y, vx, vy, ax, ay."""
     from pysindy import SmoothedFiniteDifference
 
-    from sim2real.diagnose.pieces import cut
+    from sim2real.segmentation.segments import segment
 
     glides = []
-    for glide in cut(recording).glides:
+    for glide in segment(recording).glides:
         if len(glide.t) < WINDOW + 8:
             continue
         slope: Any = SmoothedFiniteDifference(smoother_kws={"window_length": WINDOW, "polyorder": ORDER})
@@ -125,7 +125,7 @@ def sparse(rows: np.ndarray, threshold: float) -> np.ndarray:
 
 def diagnose(folder: Path) -> dict[str, Any]:
     """A diagnosis of the recording in `folder`, in the format puckpilot-diagnosis/1, without a held-out proof."""
-    from sim2real.recording import read_recording
+    from sim2real.recording.folder import read_recording
 
     recording = read_recording(folder)
     length, width = (recording.meta["table"][name] for name in ("length_m", "width_m"))
@@ -151,11 +151,11 @@ def diagnose(folder: Path) -> dict[str, Any]:
 
 def _estimates(parts: Sequence[np.ndarray], kept: np.ndarray) -> list[dict[str, float]]:
     """Least squares with the kept terms, and the percentiles of a bootstrap over glides."""
-    grams = np.array([part[:, :-1][:, kept].T @ part[:, :-1][:, kept] for part in parts])
+    equations = np.array([part[:, :-1][:, kept].T @ part[:, :-1][:, kept] for part in parts])
     sides = np.array([part[:, :-1][:, kept].T @ part[:, -1] for part in parts])
     rng = np.random.default_rng(0)
     draws = [np.arange(len(parts)), *(rng.integers(len(parts), size=len(parts)) for _ in range(RESAMPLES))]
-    fits = np.array([np.linalg.lstsq(grams[d].sum(axis=0), sides[d].sum(axis=0), rcond=None)[0] for d in draws])
+    fits = np.array([np.linalg.lstsq(equations[d].sum(axis=0), sides[d].sum(axis=0), rcond=None)[0] for d in draws])
     low, high = np.quantile(fits[1:], (0.025, 0.975), axis=0)
     value = fits[0]
     rows = zip(value, np.minimum(low, value), np.maximum(high, value), strict=True)

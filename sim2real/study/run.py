@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from puckpilot_env.whole_file import write_text_whole, write_whole
+from puckpilot_env.files.whole_file import write_text_whole, write_whole
 from sim2real.study import confusion as matrix
 from sim2real.study.diagnosing import THIS, diagnose_cases
 from sim2real.study.figures import Figure, by_mechanism, figures
@@ -63,11 +63,11 @@ def run_study(
     with progress_bar("cases diagnosed") as progress:
         answers = diagnose_cases(folder, labels, tool or THIS, "diagnoses", heldout, workers, progress)
     keys = {label: json.loads((folder / "key" / f"{label}.json").read_text()) for label in labels}
-    asked = [label for label in labels if peer and can_be_asked(keys[label])]
+    asked_of_peer = [label for label in labels if peer and can_be_asked(keys[label])]
     with progress_bar("cases put to PySINDy") as progress:
-        replies = diagnose_cases(folder, asked, PEER, "peer", False, workers, progress)
+        replies = diagnose_cases(folder, asked_of_peer, PEER, "peer", False, workers, progress)
     scores = [score(label, keys[label], answers[label]) for label in labels]
-    peer_scores = [score(label, keys[label], replies[label]) for label in asked]
+    peer_scores = [score(label, keys[label], replies[label]) for label in asked_of_peer]
     study = Study(
         plan=plan,
         scores=scores,
@@ -75,7 +75,7 @@ def run_study(
         by_mechanism=by_mechanism(scores),
         confusion=matrix.confuse(scores),
         peer_scores=peer_scores,
-        peer_figures=figures(peer_scores, plan.seconds) if asked else [],
+        peer_figures=figures(peer_scores, plan.seconds) if asked_of_peer else [],
     )
     write_text_whole(folder / "study.json", json.dumps(study.as_dict(), indent=1) + "\n")
     write_whole(folder / "confusion.png", lambda draft: matrix.draw(draft, study.confusion))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from pathlib import Path
 
-FOLDERS = ("sim2real", "puckpilot_env", "tests/reality")  # the diagnosis, its physics, and the table that it is told of
+FOLDERS = ("sim2real", "puckpilot_env")  # the diagnosis, its physics, and the independent table
 
 
 def code_version(root: Path) -> str:

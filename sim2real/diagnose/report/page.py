@@ -1,102 +1,73 @@
-"""The whole page of a diagnosis."""
+"""The whole page of a diagnosis, from the templates beside this file."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from pathlib import Path
 
-from sim2real.diagnose.asked import PLAIN, Asked
-from sim2real.diagnose.diagnosis import Diagnosis
-from sim2real.diagnose.finding import TO_THE_NOISE, Account
-from sim2real.diagnose.plain_words import left_over
-from sim2real.diagnose.report import words
-from sim2real.diagnose.report.bars import proof_bars
-from sim2real.diagnose.report.findings import finding_section
-from sim2real.diagnose.report.glossary import glossary
-from sim2real.diagnose.report.regimes import regime_section
-from sim2real.diagnose.report.sensor import sensor_section
-from sim2real.diagnose.report.style import CSS
-from sim2real.diagnose.report.words import number, text
-from sim2real.diagnose.summary import sentence
-from sim2real.diagnose.untested import untested
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
+
+from sim2real.diagnose.pipeline import Diagnosis
+from sim2real.diagnose.report.charts import bars_picture
+from sim2real.diagnose.report.findings import finding_view
+from sim2real.diagnose.report.plain_words import NOTHING, left_over, number, proof_sizes
+from sim2real.diagnose.report.regimes import regime_view
+from sim2real.diagnose.report.sensor import sensor_view
+from sim2real.diagnose.report.summary import sentence
+from sim2real.diagnose.result.context import PLAIN, ReportContext
+from sim2real.diagnose.result.result import TO_THE_NOISE, RegimeResult
+from sim2real.diagnose.result.untested import untested
+
+TEMPLATES = Path(__file__).parent / "templates"
+NO_SIZES = (NOTHING, NOTHING, NOTHING)
 
 
-def page(diagnosis: Diagnosis, asked: Asked = PLAIN) -> str:
-    """The diagnosis as one HTML page that needs nothing beside itself."""
-    said = sentence(diagnosis, asked)
-    missing = untested(diagnosis)
-    parts = [
-        f'<header><p class="verdict">Diagnosis: {text(diagnosis.verdict.replace("_", " "))}</p>'
-        f"<h1>{text(said)}</h1>{_names(diagnosis, asked)}{glossary() if diagnosis.accounts else ''}</header>",
-        _overview(diagnosis, missing),
-        *(finding_section(one, k) for k, one in enumerate(diagnosis.findings, 1)),
-        _next(diagnosis),
-        *(regime_section(each, asked, missing) for each in diagnosis.accounts),
-        sensor_section(diagnosis),
-    ]
-    return (
-        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f"<title>{text(said)}</title><style>{CSS}</style></head><body>\n<main>\n{''.join(parts)}</main>\n</body></html>\n"
+def page(diagnosis: Diagnosis, context: ReportContext = PLAIN) -> str:
+    """The diagnosis as one HTML page that needs nothing beside itself, without scripts."""
+    environment = Environment(
+        loader=FileSystemLoader(TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
+        lstrip_blocks=True, keep_trailing_newline=True,
+    )  # fmt: skip
+    missing, bars = untested(diagnosis), ""
+    if diagnosis.proof is not None:
+        bars = bars_picture("Residuals on the holdout", proof_sizes(diagnosis.proof, bool(diagnosis.findings)))
+    return environment.get_template("page.html.j2").render(
+        diagnosis=diagnosis,
+        verdict=sentence(diagnosis, context),
+        recordings=context.recordings or [one.recording for one in diagnosis.sensor_summaries],
+        overview=_overview(diagnosis, missing),
+        bars=bars,
+        findings=[finding_view(one, k) for k, one in enumerate(diagnosis.findings, 1)],
+        unexplained=_unexplained(diagnosis),
+        regimes=[regime_view(each, context, missing) for each in diagnosis.regime_results],
+        sensor=sensor_view(diagnosis),
     )
 
 
-def _names(diagnosis: Diagnosis, asked: Asked) -> str:
-    names = asked.recordings or [one.recording for one in diagnosis.sights]
-    what = "Recordings" if len(names) > 1 else "Recording"
-    return words.paragraph(f"{what}: {', '.join(map(text, names))}" if names else "")
+def _overview(diagnosis: Diagnosis, missing: dict[str, str]) -> list[list[str]]:
+    """A row a regime: its name, what is missing, residuals before and after in units of the noise, what held out."""
+    there = {each.regime for each in diagnosis.regime_results}
+    rows = [_row(each, missing) for each in diagnosis.regime_results]
+    return rows + [[name, f"not tested: {why}", *NO_SIZES] for name, why in missing.items() if name not in there]
 
 
-def _overview(diagnosis: Diagnosis, missing: dict[str, str]) -> str:
-    rows = [_row(each, missing) for each in diagnosis.accounts]
-    there = {each.regime for each in diagnosis.accounts}
-    rows += [[text(name), _not_tested(why), *NO_SIZES] for name, why in missing.items() if name not in there]
-    body = ""
-    if diagnosis.reason:
-        body += words.paragraph(f"Nothing can be said: {text(diagnosis.reason)}.") + _list(diagnosis.notes)
-    if diagnosis.accounts:
-        head = ("regime", "missing", "refitted baseline", "with the law", "tried on")
-        caption = "What is left of held-out launches, in units of what noise alone leaves (1 is perfect)"
-        body += words.table(caption, head, rows, (2, 3, 4))
-    if diagnosis.proof is not None:
-        found = bool(diagnosis.findings)
-        over = "Over the regimes in which something is named:" if found else "Over all regimes:"
-        body += words.paragraph(over) + proof_bars(diagnosis.proof, "Held-out residuals", found)
-    body += _list(diagnosis.proof_remarks, "open")
-    return words.section("overview", "How far simulator and recording are apart", body)
-
-
-NO_SIZES = ("–", "–", "–")
-
-
-def _row(each: Account, missing: dict[str, str]) -> list[str]:
-    link = f'<a href="#regime-{text(each.regime)}">{text(each.regime)}</a>'
+def _row(each: RegimeResult, missing: dict[str, str]) -> list[str]:
+    link = Markup('<a href="#regime-{0}">{0}</a>').format(each.regime)
     if each.regime in missing:
-        return [link, _not_tested(missing[each.regime]), *NO_SIZES]
+        return [link, f"not tested: {missing[each.regime]}", *NO_SIZES]
     names = ", ".join(one.mechanism for one in each.findings)
-    said = f"undetermined: {each.undetermined}" if each.undetermined else "nothing"
-    return [link, text(names or said), *_sizes(each)]
+    return [link, names or (f"undetermined: {each.undetermined}" if each.undetermined else "nothing"), *_sizes(each)]
 
 
-def _not_tested(why: str) -> str:
-    return text(f"not tested: {why}")
-
-
-def _sizes(each: Account) -> tuple[str, ...]:
+def _sizes(each: RegimeResult) -> tuple[str, ...]:
     if each.proof is None or not each.proof.floor_m or not each.proof.pieces:
         return NO_SIZES
     before, after = (number(size / each.proof.floor_m) for size in (each.proof.before_m, each.proof.after_m))
-    return before, after if each.findings else "–", str(each.proof.pieces)
+    return before, after if each.findings else NOTHING, str(each.proof.pieces)
 
 
-def _next(diagnosis: Diagnosis) -> str:
-    body = _list(diagnosis.advice or [diagnosis.next_recording], "next")
-    named = {each.regime: each.times_noise for each in diagnosis.accounts if each.findings}
-    more = [f"in the {name} {left_over(many)}" for name, many in named.items() if many and many > TO_THE_NOISE]
-    if more:
-        body += words.paragraph(text(f"What is named does not explain all: {'; '.join(more)}."))
-    return words.section("next", "What to do next", body)
-
-
-def _list(items: Iterable[str], kind: str = "") -> str:
-    lines = "".join(f"<li>{text(one)}</li>" for one in dict.fromkeys(items))
-    return f'<ul class="{kind}">{lines}</ul>' if lines else ""
+def _unexplained(diagnosis: Diagnosis) -> str:
+    """Regimes in which something was found and more than noise is left, in a sentence; "" where there are none."""
+    found = {each.regime: each.times_noise for each in diagnosis.regime_results if each.findings}
+    more = [f"in the {name} {left_over(times)}" for name, times in found.items() if times and times > TO_THE_NOISE]
+    return f"What was found does not explain all: {'; '.join(more)}." if more else ""

@@ -1,120 +1,120 @@
-"""A regime in the report: what it says, the baseline's numbers, and where recording and simulator part."""
+"""A regime in the report: its conclusion, the baseline's numbers, the proof with its controls, and the residuals."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
-from sim2real.diagnose.asked import Asked
-from sim2real.diagnose.finding import TO_THE_NOISE, Account, Parting, Proof
-from sim2real.diagnose.plain_words import left_over, pieces, with_gist
-from sim2real.diagnose.report import words
-from sim2real.diagnose.report.bars import FAULTS, LAWS, proof_bars
-from sim2real.diagnose.report.draw import map_pictures, parting_pictures, unchanged
-from sim2real.diagnose.report.twins import twins_table
-from sim2real.diagnose.report.words import number, text
-from sim2real.diagnose.untested import NO_PATH
+from sim2real.diagnose.engine.null_controls import NULL, PERMUTED
+from sim2real.diagnose.report.binned_residuals import map_arrows, unchanged
+from sim2real.diagnose.report.charts import bars_picture, map_picture, residual_pictures
+from sim2real.diagnose.report.intervals import estimate_cells
+from sim2real.diagnose.report.plain_words import NOTHING, left_over, number, pieces, proof_sizes, with_gist
+from sim2real.diagnose.result.context import ReportContext
+from sim2real.diagnose.result.result import TO_THE_NOISE, Mismatch, RegimeResult
+from sim2real.diagnose.result.untested import NO_PATH
 
 FEWEST = 8  # pieces that a picture needs
+CONTROLS = {NULL: "simulated control", PERMUTED: "sign-flipped control"}
 
 
-def regime_section(one: Account, asked: Asked, missing: Mapping[str, str]) -> str:
-    """What one regime of the recording says; `missing`: what regimes that were not tested would take."""
-    body = words.paragraph(text(_says(one, asked, missing)))
-    body += words.paragraph(text(f"{one.doubt[:1].upper()}{one.doubt[1:]}." if one.doubt else ""))
-    if one.baseline:
-        body += _baseline(one, asked)
+def regime_view(one: RegimeResult, context: ReportContext, missing: Mapping[str, str]) -> dict[str, Any]:
+    """What regime.html.j2 shows of a regime; `missing`: what regimes that were not tested would take."""
+    bars = ""
     if one.proof is not None and one.proof.pieces:
-        body += _proof(one, one.proof)
-    if one.parting is not None and len(one.parting.before) >= FEWEST:
-        body += _parting(one.parting)
-    return words.section(f"regime-{one.regime}", f"Regime: {text(one.regime)}", body)
+        sizes = proof_sizes(one.proof, bool(one.findings), one.regime == "sensing")
+        bars = bars_picture(f"Residuals on the holdout, {one.regime}", sizes)
+    shown = one.mismatch is not None and len(one.mismatch.before) >= FEWEST
+    return {
+        "result": one,
+        "conclusion": _conclusion(one, context, missing),
+        "doubt": f"{one.doubt[:1].upper()}{one.doubt[1:]}." if one.doubt else "",
+        "standard": context.standard,
+        "baseline": [_baseline_row(name, each, context) for name, each in one.baseline.items()],
+        "bars": bars,
+        "proof": _proof(one) if bars else "",
+        "null_controls": _null_controls(one),
+        "residuals": _residuals(one.mismatch) if one.mismatch is not None and shown else None,
+    }
 
 
-def _proof(one: Account, proof: Proof) -> str:
-    title, found = f"Held-out residuals, {one.regime}", bool(one.findings)
-    said = f"Rms residual on {pieces(one)} that no fit, choice or correction saw."
+def _baseline_row(name: str, estimate, context: ReportContext) -> list[str]:
+    label, *fitted = estimate_cells(name, estimate)
+    return [label, number(context.value(name)), *fitted]
+
+
+def _proof(one: RegimeResult) -> str:
     if one.regime == "sensing":
-        said = f"Rms of all that the faults make wrong, together and in metres, on {pieces(one)} that no fit saw; "
-        said += "each finding tells of its own, in units of each miss's error."
-    bars = proof_bars(proof, title, found, FAULTS if one.regime == "sensing" else LAWS)
-    return f"<h3>Proof on held-out data</h3>{words.paragraph(text(said))}{bars}{twins_table(one)}"
+        return (
+            f"Rms of all that the faults make wrong, together and in metres, on {pieces(one)} of the holdout; each "
+            "finding has its own residuals, in units of their standard errors."
+        )
+    return f"Rms residual on {pieces(one)} that no fit, choice or correction used."
 
 
-def _baseline(one: Account, asked: Asked) -> str:
-    rows = []
-    for name, value in one.baseline.items():
-        label, fitted, interval, unit = words.estimate_cells(name, value)
-        rows.append([label, number(asked.value(name)), fitted, interval, unit])
-    head = ("parameter", asked.standard, "fitted", "95 % interval", "unit")
-    return words.table("The baseline's parameters, refitted", head, rows, (1, 2, 3))
+def _null_controls(one: RegimeResult) -> list[tuple[str, ...]]:
+    """Rows of the regime's launches, each predicted by laws fitted to others, and of their null controls; [] where
+    there are none."""
+    controls = next((each.null_controls for each in one.findings if each.null_controls), {})
+    if not controls or one.selection is None or not one.selection.floor_m:
+        return []
+    before, after = (number(size / one.selection.floor_m) for size in (one.selection.before_m, one.selection.after_m))
+    rows = [("the recording", before, after, "yes")]
+    for name, each in controls.items():
+        named = NOTHING if each.named is None else f"in {each.named} of {each.of}"
+        rows.append((CONTROLS[name], number(each.before), number(each.after), named))
+    return rows
 
 
-def _says(one: Account, asked: Asked, missing: Mapping[str, str]) -> str:
+def _conclusion(one: RegimeResult, context: ReportContext, missing: Mapping[str, str]) -> str:
     if one.undetermined:
         return f"Undetermined: {one.undetermined}."
     if one.regime in missing:
         return f"Not tested: {missing[one.regime]}."
     if one.regime == "sensing":
-        return _sensing(one, missing) + _rest(one, "That undone")
+        return _sensing(one, missing) + _rest(one, "With that corrected")
     rest = _rest(one, "With it" if one.findings else "With them")
     if one.findings:
         return f"Physics is missing here: {', '.join(with_gist(each.mechanism) for each in one.findings)}.{rest}"
-    if not one.shipped:
-        other = f"with other numbers than {asked.standard}"
-        return f"The simulator's law explains this regime, {other}.{rest}"
+    if not one.defaults:
+        return f"The simulator's law explains this regime, with other numbers than {context.standard}.{rest}"
     if rest:
         return f"Nothing is found to be missing here.{_rest(one, 'Yet')}"
-    return f"{asked.simulator} explains this regime to the noise of its sensors."
+    return f"{context.simulator} explains this regime to the noise of its sensors."
 
 
-def _rest(one: Account, after: str) -> str:
-    """A sentence on what is left of launches, where that is more than noise."""
-    many = one.times_noise
-    return f" {after}, {left_over(many)}." if many and many > TO_THE_NOISE else ""
+def _rest(one: RegimeResult, after: str) -> str:
+    """A sentence on the residuals of launches, where they are more than noise."""
+    times = one.times_noise
+    return f" {after}, {left_over(times)}." if times and times > TO_THE_NOISE else ""
 
 
-def _sensing(one: Account, missing: Mapping[str, str]) -> str:
+def _sensing(one: RegimeResult, missing: Mapping[str, str]) -> str:
     """What was looked for depends on what was recorded."""
-    told = "No fault shows in where the walls are seen, nor in how often frames repeat."
+    found = "No fault shows in where the walls are measured, nor in how often frames repeat."
     if one.findings:
-        told = f"The sensors err: {', '.join(with_gist(each.mechanism) for each in one.findings)}."
+        found = f"The sensors err: {', '.join(with_gist(each.mechanism) for each in one.findings)}."
     if missing.get("gantry") == NO_PATH:
-        return f"{told} Not tested: the camera's delay and clock, since {NO_PATH}."
-    return f"{told} Not tested: the camera's delay and clock." if one.next_recording and not one.findings else told
+        return f"{found} Not tested: the camera's delay and clock, since {NO_PATH}."
+    untested = one.next_recording and not one.findings
+    return f"{found} Not tested: the camera's delay and clock." if untested else found
 
 
-def _parting(one: Parting) -> str:
-    same = unchanged(one)
-    laws = (
-        "under the baseline's law, refitted"
-        if same
-        else '<span class="before">before</span> (the baseline\'s law, refitted) and <span class="after">after</span> '
-        "(the law found)"
-    )
-    body = words.paragraph(
-        f"What the law does not foretell: {text(one.what)} [{text(one.unit)}], {laws}. {_how_to_read(one)}"
-    )
-    if one.place is not None and one.size is not None:
-        maps = [
-            words.picture(
-                svg, f"By place, {name}: nine in ten arrows are shorter than {number(scale)} {text(one.unit)}, longer "
-                "ones are cut; grey ones are noise.",
-            )
-            for name, (svg, scale) in map_pictures(one).items()
-        ]  # fmt: skip
-        body += f'<div class="maps">{"".join(maps)}</div>'
+def _residuals(one: Mismatch) -> dict[str, Any]:
     shown = [label for label, x in one.by.items() if len(np.unique(x[np.isfinite(x)])) > 1]
-    figures = [words.picture(parting_pictures(one, label), f"By {text(label)}") for label in shown]
-    body += f'<div class="panels">{"".join(figures)}</div>'
-    if same:
-        return words.folded("Where recording and simulator would part: pictures of what is left", body)
-    return f"<h3>Where recording and simulator part</h3>{body}"
+    maps = map_arrows(one) if one.place is not None and one.size is not None else {}
+    return {
+        "unchanged": unchanged(one),
+        "what": one.what,
+        "unit": one.unit,
+        "how_to_read": _how_to_read(one),
+        "maps": [(name, number(arrows.scale), map_picture(one, name, arrows)) for name, arrows in maps.items()],
+        "panels": [(label, residual_pictures(one, label)) for label in shown],
+    }
 
 
-def _how_to_read(one: Parting) -> str:
-    means = f"Means of {len(one.before)} {one.of}, ±2 standard errors"
-    if one.components == ("rms",):
-        return f"{means}; noise alone lies on one."
-    return f"Seen less foretold, {means[:1].lower()}{means[1:]}; what is explained lies on zero."
+def _how_to_read(one: Mismatch) -> str:
+    target = "noise alone gives one" if one.components == ("rms",) else "what is explained lies on zero"
+    return f"Means of {len(one.before)} {one.of}, ±2 standard errors; {target}."

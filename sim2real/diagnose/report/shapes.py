@@ -1,4 +1,4 @@
-"""Smooth laws that have no formula, in words: their names say what acts and what it depends on."""
+"""Smooth laws without a formula, in words: their names say what acts and what it depends on."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import re
 WHAT = {
     "force": "an extra force",
     "loss": "an extra loss of speed",
-    "pull": "more or less pull of the motors than their volts have",
+    "pull": "more or less pull of the motors than their volts give",
     "restitution": "another restitution",
     "tangential ratio": "another share kept of the speed along the contact",
     "share kept": "another share kept of the speed, against the wall or mallet and along it",
@@ -16,10 +16,10 @@ WHAT = {
 BY = {
     "place": "the place",
     "speed": "the speed",
-    "volts": "the volts asked for",
+    "volts": "the commanded volts",
     "time": "the time",
     "heading": "the direction of motion",
-    "angle": "the angle of the blow",
+    "angle": "the angle of the contact",
     "place along the table": "the place along the table",
     "place across the table": "the place across the table",
     "history": "the volts and the speed of the last second",

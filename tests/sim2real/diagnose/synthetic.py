@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim2real.recording import Recording, Stream
+from sim2real.recording.folder import Recording, Stream
 
 LENGTH, WIDTH, RADIUS, MALLET = 2.0, 1.0, 0.03, 0.05
 RATE = 150.0
@@ -21,7 +21,7 @@ META = {
 class Truth:
     """Times, walls and normal speeds of the hits, and the frames that were spoilt."""
 
-    hits: list[tuple[float, str, float]]
+    contacts: list[tuple[float, str, float]]
     wild: np.ndarray
     held: np.ndarray
 
@@ -29,19 +29,19 @@ class Truth:
 def bouncing(launches, seconds: float, restitution: float = 0.8, deceleration: float = 0.0):
     """Positions (frames, 2) at RATE, and the hits; each launch (x, y, vx, vy) lasts `seconds`."""
     step = 1.0 / RATE
-    path, hits = [], []
+    path, contacts = [], []
     for number, (x, y, vx, vy) in enumerate(launches):
         p, v, now = np.array([x, y]), np.array([vx, vy]), number * seconds
         for k in range(round(seconds * RATE)):
             path.append(p.copy())
             now = number * seconds + k * step
-            p, v = _advance(p, v, now, step, restitution, hits)
+            p, v = _advance(p, v, now, step, restitution, contacts)
             speed = np.linalg.norm(v)
             v = v * max(0.0, 1 - deceleration * step / max(speed, 1e-9))
-    return np.array(path), hits
+    return np.array(path), contacts
 
 
-def _advance(p, v, now, left, restitution, hits):
+def _advance(p, v, now, left, restitution, contacts):
     limits = (("x", RADIUS, LENGTH - RADIUS), ("y", RADIUS, WIDTH - RADIUS))
     while True:
         first, axis, wall = left, None, ""
@@ -54,11 +54,11 @@ def _advance(p, v, now, left, restitution, hits):
         if axis is None:
             return p, v
         now, left = now + first, left - first
-        hits.append((now, wall, abs(v[axis])))
+        contacts.append((now, wall, abs(v[axis])))
         v = v * np.where(np.arange(2) == axis, -restitution, 1.0)
 
 
-def recorded(path, hits, rng, noise=0.0005, drops=0.0, held=0.0, wild=0.0, jitter=0.0):
+def recorded(path, contacts, rng, noise=0.0005, drops=0.0, held=0.0, wild=0.0, jitter=0.0):
     """The recording of `path` by a camera with `noise` [m], and the truth about it."""
     t = np.arange(len(path)) / RATE
     seen = path + rng.normal(0, noise, path.shape)
@@ -75,4 +75,4 @@ def recorded(path, hits, rng, noise=0.0005, drops=0.0, held=0.0, wild=0.0, jitte
     unseen = np.full(len(t), np.nan)
     stamps = t + rng.uniform(0, jitter, len(t))
     columns = {"t": stamps, "puck_x": seen[:, 0], "puck_y": seen[:, 1], "opponent_x": unseen, "opponent_y": unseen}
-    return Recording("synthetic", META, Stream(columns)), Truth(hits, was_wild & ~blank, was_held & ~blank)
+    return Recording("synthetic", META, Stream(columns)), Truth(contacts, was_wild & ~blank, was_held & ~blank)

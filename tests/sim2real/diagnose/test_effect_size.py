@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sim2real.diagnose.effect_size import LEAST
-from sim2real.diagnose.explaining import identify_regime
-from sim2real.diagnose.glide.data import GlideData
-from sim2real.diagnose.glide.problem import GlideProblem
-from tests.sim2real.diagnose.engine.linear_problem import SHIPPED, LinearProblem
+from sim2real.diagnose.identify_regime import identify_regime
+from sim2real.diagnose.regimes.sliding.data import GlideData
+from sim2real.diagnose.regimes.sliding.problem import GlideProblem
+from tests.sim2real.diagnose.engine.linear_problem import NO_EVIDENCE, LinearProblem, LinearRegime
 
 TABLE = {"length": 2.0, "width": 1.0}
 
@@ -22,7 +21,7 @@ def test_a_tilt_moves_the_end_of_a_glide_by_half_its_time_squared() -> None:
         t, place, np.full((len(t), 2), 1e-4), np.array([0, 40, 120]), np.arange(2), np.zeros(2, int), np.full(2, np.nan)
     )
     problem, law = GlideProblem(data, TABLE), {"friction": 0.0, "drag": 0.0}
-    moved = problem.ends_apart(law, {**law, "tilt_y": 0.02})
+    moved = problem.distance_of_ends(law, {**law, "tilt_y": 0.02})
     assert moved == pytest.approx(0.01 * np.sqrt((0.5**4 + 1.0) / 2.0), rel=1e-3)
 
 
@@ -30,12 +29,12 @@ def test_a_tilt_moves_the_end_of_a_glide_by_half_its_time_squared() -> None:
 def test_a_law_that_is_sure_but_moves_nothing_is_told_and_not_reported(size_mm: float, named: bool) -> None:
     """The noise is 1 mm, of which a tilt makes so much in each of 1,200 numbers: far beyond chance in any case."""
     problem = LinearProblem({"tilt_x": size_mm / 50.0})
-    said = identify_regime(problem, SHIPPED, [])
-    assert [one.mechanism for one in said.account.findings] == (["table_tilt"] if named else [])
+    said = identify_regime(LinearRegime(), problem, NO_EVIDENCE, {})
+    assert [one.mechanism for one in said.regime_result.findings] == (["table_tilt"] if named else [])
     if named:
-        assert said.account.findings[0].size_m == pytest.approx(1e-3 * size_mm, rel=0.15)
-        assert said.account.minor == ""
+        assert said.regime_result.findings[0].size_m == pytest.approx(1e-3 * size_mm, rel=0.15)
+        assert said.regime_result.minor == ""
     else:
-        assert said.account.minor.startswith("table_tilt is there, but moves things by 0.3")
-        assert said.account.minor.endswith(f"less than {1e3 * LEAST['glide']:g} mm is not reported")
-        assert said.account.verdict in ("agrees", "parameters_only")
+        assert said.regime_result.minor.startswith("table_tilt is significant, but makes only 0.3")
+        assert said.regime_result.minor.endswith(f"less than {1e3 * LinearRegime.least_size:g} mm is not reported")
+        assert said.regime_result.verdict in ("agrees", "parameters_only")

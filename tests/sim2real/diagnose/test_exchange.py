@@ -11,14 +11,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sim2real.diagnose.diagnosis import Diagnosis, diagnose, diagnose_divided
-from sim2real.diagnose.draws_toml import draws_toml
-from sim2real.diagnose.effects_toml import effects_toml
-from sim2real.diagnose.files import as_dict
-from sim2real.diagnose.split import divide
-from sim2real.recording import Recording, Stream, read_recording
-from tests.reality import Law
-from tests.reality.record import make_recording
+from sim2real.diagnose.output.draws_toml import draws_toml
+from sim2real.diagnose.output.effects_toml import effects_toml
+from sim2real.diagnose.output.files import as_dict
+from sim2real.diagnose.pipeline import Diagnosis, diagnose, diagnose_split
+from sim2real.diagnose.split import split_data
+from sim2real.recording.folder import Recording, Stream, read_recording
+from sim2real.study.independent_table import Law
+from sim2real.study.independent_table.recorder.record import make_recording
+
+pytestmark = pytest.mark.slow
 
 TRUTH = Law(tilt_x=0.05, wall_restitution=0.6)
 SECONDS, LATE = 40.0, 0.01  # s
@@ -78,12 +80,12 @@ def _without_proof(value: Any) -> Any:
 
 @pytest.fixture(scope="module")
 def divided(recording: Recording):
-    return divide([recording], [])
+    return split_data([recording], [])
 
 
 @pytest.fixture(scope="module")
 def found(divided) -> Diagnosis:
-    return diagnose_divided(divided, {}, quiet)
+    return diagnose_split(divided, {}, quiet)
 
 
 def test_there_is_something_to_prove(found: Diagnosis) -> None:
@@ -95,16 +97,16 @@ def test_there_is_something_to_prove(found: Diagnosis) -> None:
 @pytest.mark.parametrize("make", [noise, nothing])
 def test_launches_that_prove_change_nothing_but_the_proof(divided, found, make: Callable) -> None:
     swapped = divided._replace(
-        proof=[make(one) for one in divided.proof], gantry_proof=[make(one) for one in divided.gantry_proof]
+        holdout=[make(one) for one in divided.holdout], gantry_holdout=[make(one) for one in divided.gantry_holdout]
     )
-    other = diagnose_divided(swapped, {}, quiet)
+    other = diagnose_split(swapped, {}, quiet)
     assert words(other) == words(found)
     assert other.proof != found.proof
     assert not found.proof_remarks
 
 
 def test_launches_of_another_table_change_nothing_but_the_proof(divided, found, another: Recording) -> None:
-    other = diagnose_divided(divided._replace(proof=[another], gantry_proof=[another]), {}, quiet)
+    other = diagnose_split(divided._replace(holdout=[another], gantry_holdout=[another]), {}, quiet)
     assert words(other) == words(found)
     assert other.proof is not None and other.proof.after_m > 3.0 * other.proof.floor_m
     assert any("glide: held-out data speak against what was found" in said for said in other.proof_remarks)

@@ -9,11 +9,13 @@ from pathlib import Path
 import pytest
 
 from puckpilot_env.parameters import TABLE
-from sim2real.diagnose.diagnosis import Diagnosis, diagnose
-from sim2real.recording import read_recording
-from tests.reality.cases import FILM
-from tests.reality.law import Law
-from tests.reality.record import make_recording
+from sim2real.diagnose.pipeline import Diagnosis, diagnose
+from sim2real.recording.folder import read_recording
+from sim2real.study.independent_table.cases import FILM
+from sim2real.study.independent_table.physics.law import Law
+from sim2real.study.independent_table.recorder.record import make_recording
+
+pytestmark = pytest.mark.slow
 
 SHIPPED = {row.name: row.default for row in TABLE}
 SECONDS = 45.0
@@ -31,9 +33,9 @@ def diagnosed(folder: Path, law: Law, scenario: str, seed: int, stated: bool = T
 @pytest.mark.parametrize(("scenario", "seed"), [("launches", 1), ("rally", 2)])
 def test_nothing_is_missing(tmp_path: Path, scenario: str, seed: int) -> None:
     found = diagnosed(tmp_path, Law(), scenario, seed)
-    assert found.verdict == "agrees" and not found.findings and not any(one.lost for one in found.accounts)
-    (sight,) = found.sights
-    assert 0.005 < sight.memory_s < 0.03 and sight.place_std_m == 1.8e-4
+    assert found.verdict == "agrees" and not found.findings and not any(one.misfit for one in found.regime_results)
+    (sensor_summary,) = found.sensor_summaries
+    assert 0.005 < sensor_summary.memory_s < 0.03 and sensor_summary.place_std_m == 1.8e-4
 
 
 def test_a_calibration_that_does_not_say_how_far_it_errs_is_taken_for_physics(tmp_path: Path) -> None:
@@ -67,7 +69,7 @@ def test_what_untouched_recordings_err_by_tells_the_fit_nothing(tmp_path: Path) 
     baselines = []
     for proof in proofs:
         (glide,) = (
-            one for one in diagnose([fitted], [proof], SHIPPED, lambda *_: None).accounts if one.regime == "glide"
+            one for one in diagnose([fitted], [proof], SHIPPED, lambda *_: None).regime_results if one.regime == "glide"
         )
         baselines.append([glide.baseline[name].value for name in ("friction", "drag")])
     assert baselines[0] == pytest.approx(baselines[1], rel=1e-6)

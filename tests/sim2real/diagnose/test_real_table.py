@@ -8,46 +8,47 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from puckpilot_env.parameters import TABLE
-from sim2real.diagnose.contacts import geometry, mallet_tracks
-from sim2real.diagnose.engine.explain import Explained, explain
-from sim2real.diagnose.engine.fit import given
-from sim2real.diagnose.glide.data import glide_data
-from sim2real.diagnose.glide.problem import GlideProblem
-from sim2real.diagnose.impacts import find_impacts
-from sim2real.diagnose.pieces import Pieces, cut
-from sim2real.diagnose.wall.data import Bounces, bounces
-from sim2real.diagnose.wall.problem import WallProblem
-from sim2real.diagnose.wall.scatter import explain_bounces
-from sim2real.nominal import parameters
-from sim2real.recording import Recording, read_recording
+from sim2real.diagnose.engine.least_squares import given
+from sim2real.diagnose.engine.model_search import SearchResult, search_model
+from sim2real.diagnose.regimes.contact.motion import find_contact_motions
+from sim2real.diagnose.regimes.sliding.data import glide_data
+from sim2real.diagnose.regimes.sliding.problem import GlideProblem
+from sim2real.diagnose.regimes.wall.data import WallContacts, wall_contacts
+from sim2real.diagnose.regimes.wall.problem import WallProblem
+from sim2real.diagnose.regimes.wall.scatter import search_wall_model
+from sim2real.recording.folder import Recording, read_recording
+from sim2real.recording.table_parameters import parameters
+from sim2real.segmentation.causes import geometry, mallet_tracks
+from sim2real.segmentation.segments import Segments, segment
+from tests.places import UBC
 
-UBC = Path(__file__).resolve().parents[4] / "shared" / "recordings" / "ubc"
+pytestmark = pytest.mark.slow
+
 SHIPPED = {row.name: row.default for row in TABLE if row.name in GlideProblem.base}
 HALF = 83.3  # s, of a recording of 167 s
 
 
 @dataclass(frozen=True)
-class Part:
+class RecordingPart:
     recording: Recording
-    pieces: Pieces
+    pieces: Segments
     glides: GlideProblem
 
 
 @cache
-def part(name: str) -> Part:
+def part(name: str) -> RecordingPart:
     if not (UBC / name).exists():
         pytest.skip(f"no recordings of the real table beside the project ({UBC / name})")
     recording = read_recording(UBC / name)
-    pieces = cut(recording)
+    pieces = segment(recording)
     assert recording.frames is not None
     data = glide_data(pieces, geometry(recording), mallet_tracks(recording, recording.frames.t))
-    return Part(recording, pieces, GlideProblem(data, parameters(recording, {})))
+    return RecordingPart(recording, pieces, GlideProblem(data, parameters(recording, {})))
 
 
 def begun(problem: GlideProblem) -> np.ndarray:
@@ -58,16 +59,16 @@ def begun(problem: GlideProblem) -> np.ndarray:
 
 
 @cache
-def glides_of_first_half() -> Explained:
+def glides_of_first_half() -> SearchResult:
     problem = part("play_a").glides
-    return explain(problem, SHIPPED, np.flatnonzero(begun(problem) < HALF))
+    return search_model(problem, SHIPPED, np.flatnonzero(begun(problem) < HALF))
 
 
-def bounces_of(name: str) -> tuple[Bounces, int]:
+def bounces_of(name: str) -> tuple[WallContacts, int]:
     """The bounces of a recording, told by the law of the glides, and its number of launches."""
     here = part(name)
-    states = here.glides.states(given(glides_of_first_half().mended))
-    found = bounces(find_impacts(here.pieces, here.glides, states), geometry(here.recording))
+    states = here.glides.states(given(glides_of_first_half().all_values))
+    found = wall_contacts(find_contact_motions(here.pieces, here.glides, states), geometry(here.recording))
     return found, here.glides.clusters
 
 
@@ -81,16 +82,17 @@ def test_what_the_first_half_s_glides_say_holds_in_the_second() -> None:
     assert found.unlisted is None or found.unlisted.family == "position"  # no real table is quite a quadratic surface
     second = np.flatnonzero(begun(problem) >= HALF)
     before, after = (
-        float(np.sum(problem.residuals(values, (), second).r ** 2)) for values in (found.baseline.values, found.mended)
+        float(np.sum(problem.residuals(values, (), second).r ** 2))
+        for values in (found.baseline.values, found.all_values)
     )
     print(f"glides, second half of play_a: RSS {after / before - 1:+.1%} against the refitted baseline")
     assert after < 0.3 * before
 
 
 def test_what_the_bounces_of_one_recording_say_holds_in_another() -> None:
-    values = dict(glides_of_first_half().mended)
+    values = dict(glides_of_first_half().all_values)
     data, launches = bounces_of("play_a")
-    _, found = explain_bounces(
+    _, found = search_wall_model(
         WallProblem(data, launches, values), {"wall_restitution": 0.7}, np.unique(data.cluster), True
     )
     assert {law.name for law in found.listed} == {"wall_friction_spin", "speed_dependent_restitution"}
@@ -100,12 +102,12 @@ def test_what_the_bounces_of_one_recording_say_holds_in_another() -> None:
     )
     assert mu.low < 0.11 < mu.high
     other, launches = bounces_of("puck_a")
-    seen, before = other.split(other.after), other.split(other.before)
-    shipped = typical(seen - np.array([-0.7, 0.7]) * before)
+    seen, before = other.components(other.velocity_after), other.components(other.velocity_before)
+    defaults = typical(seen - np.array([-0.7, 0.7]) * before)
     refitted = typical(seen - found.baseline.values["wall_restitution"] * np.array([-1.0, 1.0]) * before)
     final = typical(seen - WallProblem(other, launches, values).predicted(found.law.values))
-    for words, base in (("shipped", shipped), ("refitted baseline", refitted)):
+    for words, base in (("shipped", defaults), ("refitted baseline", refitted)):
         change = final / base - 1.0
         print(f"puck_a's bounces, against the {words}: normal {change[0]:+.0%}, along the wall {change[1]:+.0%}")
-    assert final[0] < 0.55 * shipped[0] and final[1] < 0.4 * shipped[1]
+    assert final[0] < 0.55 * defaults[0] and final[1] < 0.4 * defaults[1]
     assert final[0] < refitted[0] and final[1] < 0.4 * refitted[1]

@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
-from sim2real.diagnose.pieces import cut
-from sim2real.diagnose.split import PROVES, _every, divide, launches_of
-from sim2real.recording import read_recording
-from tests.reality import Law
-from tests.reality.record import make_recording
+from sim2real.diagnose.split import _every, launches_of, split_data
+from sim2real.diagnose.tuned import SPLIT
+from sim2real.recording.folder import read_recording
+from sim2real.segmentation.segments import segment
+from sim2real.study.independent_table import Law
+from sim2real.study.independent_table.recorder.record import make_recording
 
 
 def test_every_fifth_launch_is_taken_where_all_meet_everything():
@@ -45,21 +46,26 @@ def test_of_few_launches_the_last_is_taken_and_of_one_none():
 def test_each_frame_is_in_one_part_and_a_path_goes_with_its_launches(tmp_path):
     make_recording(tmp_path / "one", Law(), "rally", 3, 30.0)
     recording = read_recording(tmp_path / "one")
-    divided = divide([recording], [])
-    (rest,), (proof,), (path,), (apart) = divided.rest, divided.proof, divided.gantry_rest, divided.gantry_proof
+    divided = split_data([recording], [])
+    (rest,), (proof,), (path,), (path_proof,) = (
+        divided.training,
+        divided.holdout,
+        divided.gantry_training,
+        divided.gantry_holdout,
+    )
     assert recording.frames is not None and rest.frames is not None and proof.frames is not None
     np.testing.assert_array_equal(np.sort(np.concatenate([rest.frames.t, proof.frames.t])), recording.frames.t)
-    assert 0.5 / PROVES < proof.frames.rows / recording.frames.rows < 2.0 / PROVES
+    assert 0.5 / SPLIT.launches < proof.frames.rows / recording.frames.rows < 2.0 / SPLIT.launches
     assert rest.mallet is proof.mallet is recording.mallet and path.frames is recording.frames
-    assert path.mallet is not None and apart[0].mallet is not None and recording.mallet is not None
-    np.testing.assert_array_equal(np.sort(np.concatenate([path.mallet.t, apart[0].mallet.t])), recording.mallet.t)
-    frame = proof.frames.t[np.clip(np.searchsorted(proof.frames.t, apart[0].mallet.t, side="right") - 1, 0, None)]
-    assert np.median(apart[0].mallet.t - frame) < 0.02  # seconds apart, if other launches were meant
+    assert path.mallet is not None and path_proof.mallet is not None and recording.mallet is not None
+    np.testing.assert_array_equal(np.sort(np.concatenate([path.mallet.t, path_proof.mallet.t])), recording.mallet.t)
+    frame = proof.frames.t[np.clip(np.searchsorted(proof.frames.t, path_proof.mallet.t, side="right") - 1, 0, None)]
+    assert np.median(path_proof.mallet.t - frame) < 0.02  # seconds, if other launches were meant
 
 
 def test_launches_are_counted_through_all_recordings(tmp_path):
     for k in range(2):
         make_recording(tmp_path / f"{k}", Law(), "launches", k, 30.0)
     recordings = [read_recording(tmp_path / f"{k}") for k in range(2)]
-    first, second = (np.unique(rows) for rows in launches_of(recordings, [cut(one) for one in recordings]))
+    first, second = (np.unique(rows) for rows in launches_of(recordings, [segment(one) for one in recordings]))
     assert second[0] == first[-1] + 1 and len(first) > 3

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from sim2real.study import peer
-from tests.reality import Law
-from tests.reality.camera import Camera
-from tests.reality.record import make_recording
+from sim2real.study.independent_table import Law
+from sim2real.study.independent_table.recorder.camera import Camera
+from sim2real.study.independent_table.recorder.record import make_recording
 
 CLEAN = Camera(noise=0.00002, jitter=0.0)
 

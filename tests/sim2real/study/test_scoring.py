@@ -12,15 +12,15 @@ import pytest
 from PIL import Image
 
 from puckpilot_env.physics.effects import EFFECTS
-from sim2real.diagnose.engine.fit import Fit
 from sim2real.diagnose.engine.law import Law as Named
-from sim2real.diagnose.labels import labelled
+from sim2real.diagnose.engine.least_squares import LeastSquaresFit
+from sim2real.diagnose.result.labels import labelled
 from sim2real.study.confusion import confuse, draw
 from sim2real.study.figures import by_mechanism, figures, median, share
+from sim2real.study.independent_table import Law
+from sim2real.study.independent_table.mechanisms import MECHANISMS
+from sim2real.study.independent_table.physics.puck import acceleration
 from sim2real.study.scoring import OTHER_NAMES, Score, score
-from tests.reality import Law
-from tests.reality.mechanisms import MECHANISMS
-from tests.reality.puck import acceleration
 
 TILT = {"tilt_x": 0.03, "tilt_y": -0.04}
 
@@ -108,7 +108,7 @@ def test_what_a_diagnosis_calls_its_numbers_the_key_does_too(name: str):
     known = {label for change in draws for label in change.values}
     rows = [row.name for row in EFFECTS[name].rows.values()]
     free = ("wall_restitution", "mallet_restitution", *rows)
-    fitted = Fit(dict.fromkeys(free, 0.5), free, 1e-8 * np.eye(len(free)), 0.0, 0, 100, ())
+    fitted = LeastSquaresFit(dict.fromkeys(free, 0.5), free, 1e-8 * np.eye(len(free)), 0.0, 0, 100, ())
     labels = {OTHER_NAMES.get(label, label) for label in labelled(Named(name, tuple(rows[:1])), fitted)}
     assert labels & known and labels - known <= {"spin_coefficient"}  # of a spin that no camera sees
 

@@ -13,7 +13,6 @@ import pytest
 
 from sim2real.commands import study
 from sim2real.study.confusion import Confusion
-from sim2real.study.making import Plan, checkout, make_cases
 
 SCRIPT = """
 import json, pathlib, sys
@@ -40,6 +39,7 @@ def call(*words: str) -> int:
     return study.run(parser.parse_args([*words, "--seconds", "2", "--workers", "1", "--seed", "4"]))
 
 
+@pytest.mark.slow
 def test_a_study_asks_blindly_scores_and_goes_on_where_it_stopped(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     out = tmp_path / "out"
     tool, log = script(tmp_path, stop=True)
@@ -72,6 +72,7 @@ def test_a_study_asks_blindly_scores_and_goes_on_where_it_stopped(tmp_path: Path
         call(*words)
 
 
+@pytest.mark.slow
 def test_a_study_of_one_kind_counts_silence_as_right(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     tool, _ = script(tmp_path)
     words = ["--cases", "2", "--only", "nothing", "--out", str(tmp_path / "out"), "--tool", tool]
@@ -94,18 +95,7 @@ def test_silence_is_no_mistaken_name(said: str, title: str):
     assert told.title.startswith(title)
 
 
-def test_an_installed_study_runs_the_clone_that_it_is_called_in(tmp_path: Path):
-    installed, clone = tmp_path / "site-packages", tmp_path / "clone"
-    (clone / "tests" / "reality").mkdir(parents=True)
-    (clone / "tests" / "reality" / "make_cases.py").touch()
-    assert checkout(installed, clone) == clone
-    assert checkout(clone, installed) == checkout(clone, clone) == clone
-    assert checkout(installed, tmp_path) == installed  # which is refused by name
-
-
 def test_what_cannot_be_studied_is_said_in_one_line(tmp_path: Path):
-    with pytest.raises(ValueError, match=r"needs the independent table in tests/reality"):
-        make_cases(Plan(1, 0, 2.0), tmp_path, 1, lambda done, total: None, root=tmp_path)
     with pytest.raises(ValueError, match=r"unknown mechanism 'gremlins'"):
         call("--cases", "1", "--out", str(tmp_path / "out"), "--mechanism", "gremlins")
     with pytest.raises(ValueError, match=r"--tool nosuchtool: there is no such program"):

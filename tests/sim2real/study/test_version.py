@@ -8,7 +8,7 @@ from sim2real.study.version import code_version
 
 
 def test_any_source_that_answers_or_cases_depend_on_counts(tmp_path: Path):
-    files = ("sim2real/diagnose/a.py", "puckpilot_env/physics/b.py", "tests/reality/c.py")
+    files = ("sim2real/diagnose/a.py", "puckpilot_env/physics/b.py", "sim2real/study/independent_table/c.py")
     for name in files:
         (tmp_path / name).parent.mkdir(parents=True)
         (tmp_path / name).write_text("x = 1\n")
@@ -20,5 +20,6 @@ def test_any_source_that_answers_or_cases_depend_on_counts(tmp_path: Path):
     seen.append(code_version(tmp_path))
     assert len(set(seen)) == 5
     (tmp_path / "sim2real/diagnose/notes.txt").write_text("no source")
+    (tmp_path / "tests").mkdir()
     (tmp_path / "tests/test_other.py").write_text("x = 1\n")
     assert code_version(tmp_path) == seen[-1]

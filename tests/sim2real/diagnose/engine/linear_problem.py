@@ -5,9 +5,13 @@ from functools import partial
 
 import numpy as np
 
-from sim2real.diagnose.engine import gram
+from sim2real.diagnose.engine import normal_equations
 from sim2real.diagnose.engine.law import Law
-from sim2real.diagnose.problem import Columns, Residuals, Units
+from sim2real.diagnose.engine.model_search import SearchResult
+from sim2real.diagnose.engine.problem import DesignMatrix, Problem, Residuals, Units
+from sim2real.diagnose.regimes.base import Evidence, Known, RecordingPart, Regime
+from sim2real.diagnose.regimes.formula_words import mismatch_by_launch
+from sim2real.diagnose.result.result import Mismatch
 
 LAUNCHES, PIECES, EACH = 20, 3, 20
 NAMES = ("friction", "drag", "tilt_x", "tilt_y", "linear_drag", "spin")
@@ -27,7 +31,7 @@ class LinearProblem:
 
     regime = "glide"
     base: tuple[str, ...] = ("friction", "drag")
-    plain: tuple[str, ...] = base
+    first_fitted: tuple[str, ...] = base
     noise_m = 0.001
     place_error_m = 0.0
 
@@ -65,22 +69,48 @@ class LinearProblem:
         jacobian = -self.felt[:, [NAMES.index(name) for name in free]]
         return Residuals(left[here], jacobian[here], self.launch[here])
 
-    def columns(self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None) -> Columns:
+    def columns(self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None) -> DesignMatrix:
         """See `Problem.columns`."""
         exact = self.residuals(values, NAMES, np.arange(LAUNCHES))
         piece = np.repeat(np.arange(LAUNCHES * PIECES), EACH)
-        grams = gram.make_grams(NAMES, exact.r, exact.jacobian, piece, LAUNCHES * PIECES)
+        equations = normal_equations.make_equations(NAMES, exact.r, exact.jacobian, piece, LAUNCHES * PIECES)
         columns = ("tilt_x", "tilt_y")
         if self.spinning:
             own = exact.jacobian[:, NAMES.index("spin"), None] * (self.launch[:, None] == np.arange(LAUNCHES))
             spins = tuple(f"spin {k}" for k in range(LAUNCHES))
-            grams = gram.make_grams(
+            equations = normal_equations.make_equations(
                 (*NAMES, *spins), exact.r, np.hstack([exact.jacobian, own]), piece, LAUNCHES * PIECES
             )
             family = Law("side force by spin", spins, "history", mechanism="side_force", each_launch=True)
-            return Columns(grams, [Law("table_tilt", columns), Law("linear_drag", ("linear_drag",))], [family])
+            return DesignMatrix(equations, [Law("table_tilt", columns), Law("linear_drag", ("linear_drag",))], [family])
         if self.likeness:
-            return Columns(
-                grams, [], [Law("push by place", columns, "position", switch=partial(_switched, self.launch))]
+            return DesignMatrix(
+                equations, [], [Law("push by place", columns, "position", switch=partial(_switched, self.launch))]
             )
-        return Columns(grams, [Law("table_tilt", columns), Law("linear_drag", ("linear_drag",))], [])
+        return DesignMatrix(equations, [Law("table_tilt", columns), Law("linear_drag", ("linear_drag",))], [])
+
+
+class LinearRegime(Regime):
+    """A regime whose problem is a `LinearProblem`; what it takes as given stands, or does not."""
+
+    name = "glide"
+    more_of = "launches of the puck"
+    least_size = 5e-4
+
+    def __init__(self, stands: bool = True) -> None:
+        self.stands = stands
+
+    def parameters(self, evidence: Evidence, known: Known) -> Mapping[str, float]:
+        return SHIPPED
+
+    def premises(self, evidence: Evidence, known: Known) -> tuple[bool, bool]:
+        return True, self.stands
+
+    def parts(self, problem: Problem, evidence: Evidence, known: Known) -> list[RecordingPart]:
+        return []
+
+    def mismatch(self, problem: Problem, found: SearchResult) -> Mismatch:
+        return mismatch_by_launch(problem, found, self.unit)
+
+
+NO_EVIDENCE = Evidence((), (), (), (), {})

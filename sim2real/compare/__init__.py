@@ -1,0 +1,1 @@
+"""What a recording shows beside what the simulator predicts, segment by segment."""

@@ -1,0 +1,107 @@
+"""Contacts against the simulator: the velocity after them, predicted from the one before, with its uncertainty."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from puckpilot_env.physics.contacts import bounce
+from puckpilot_env.physics.contacts import contact as collision
+from sim2real.compare.map_error import MapError
+from sim2real.segmentation.events import ContactEvent
+from sim2real.segmentation.mallet_path import MalletPath
+from sim2real.segmentation.velocity_jumps import VelocityJump
+
+STEP = 1e-6  # s, m, m/s, by which an input moves for a derivative
+TIME, PLACE, V_IN, V_OUT, MALLET, MALLET_V = 0, slice(1, 3), slice(3, 5), slice(5, 7), slice(7, 9), slice(9, 11)
+INPUTS = 11
+
+
+@dataclass(frozen=True)
+class ContactError:
+    """A contact against its prediction; velocities (2,) [m/s] along the normal and the tangent.
+
+    `before` and `after` are recorded, relative to the mallet if one touched the puck; `predicted`: the velocity after;
+    `std`: standard deviation of `error` under noise alone.
+    """
+
+    contact: ContactEvent
+    before: np.ndarray
+    after: np.ndarray
+    predicted: np.ndarray
+    std: np.ndarray
+
+    @property
+    def error(self) -> np.ndarray:
+        """The velocity after (2,) [m/s], recorded less predicted."""
+        return self.after - self.predicted
+
+
+def predict_wall(jump: VelocityJump, restitution: float, map_error: MapError) -> ContactError:
+    """The velocity after a wall, from that before it."""
+    normal = jump.contact.normal
+
+    def after(inputs: np.ndarray) -> np.ndarray:
+        return np.array(bounce.reflect(*map(float, inputs[V_IN]), *map(float, normal), restitution))
+
+    inputs, spread = np.zeros(INPUTS), np.zeros((INPUTS, INPUTS))
+    inputs[:7], spread[:7, :7] = jump.state, jump.covariance
+    axes = _axes(normal)
+    by_map = _by_map(inputs, map_error, seen_by_camera=False)
+    std = _std(lambda z: axes @ (z[V_OUT] - after(z)), inputs, spread + by_map @ by_map.T)
+    return ContactError(jump.contact, axes @ jump.v_in, axes @ jump.v_out, axes @ after(inputs), std)
+
+
+def predict_mallet(
+    jump: VelocityJump, mallet: MalletPath, restitution: float, map_error: MapError
+) -> ContactError | None:
+    """The velocity after a mallet, from those of puck and mallet; all relative to the mallet.
+
+    The normal is the line of centres. None where too few samples show the mallet.
+    """
+    motion = mallet.motion(jump.t)
+    if motion is None:
+        return None
+    (place, velocity, acceleration), covariance = motion
+
+    def after(inputs: np.ndarray) -> np.ndarray:
+        later = inputs[TIME] - jump.t  # the mallet moves on while the contact is late
+        m, m_v = inputs[MALLET] + later * velocity, inputs[MALLET_V] + later * acceleration
+        normal = (inputs[PLACE] - m) / np.linalg.norm(inputs[PLACE] - m)
+        return np.array(collision.reflect(*map(float, (*inputs[V_IN], *m_v, *normal)), restitution))
+
+    inputs, spread = np.concatenate([jump.state, place, velocity]), np.zeros((INPUTS, INPUTS))
+    spread[:7, :7] = jump.covariance
+    for axis in (0, 1):
+        rows = np.array([MALLET.start, MALLET_V.start]) + axis
+        spread[np.ix_(rows, rows)] = covariance[axis, :2, :2]
+    axes = _axes((jump.place - place) / np.linalg.norm(jump.place - place))
+    by_map = _by_map(inputs, map_error, seen_by_camera=jump.contact.where == "opponent")
+    std = _std(lambda z: axes @ (z[V_OUT] - after(z)), inputs, spread + by_map @ by_map.T)
+    before, measured, predicted = (axes @ (v - velocity) for v in (jump.v_in, jump.v_out, after(inputs)))
+    return ContactError(jump.contact, before, measured, predicted, std)
+
+
+def _axes(normal: np.ndarray) -> np.ndarray:
+    """Axes (2, 2) along a normal (2,) and along its tangent, in rows."""
+    return np.array([normal, [-normal[1], normal[0]]])
+
+
+def _by_map(inputs: np.ndarray, map_error: MapError, seen_by_camera: bool) -> np.ndarray:
+    """Deviations (INPUTS, m) of the inputs by the map's error; of the mallet's where the camera sees it as well."""
+    place, v_in = map_error.of_motion(inputs[PLACE], inputs[V_IN])
+    by_map = np.zeros((INPUTS, place.shape[1]))
+    by_map[PLACE], by_map[V_IN] = place, v_in
+    by_map[V_OUT] = map_error.of_motion(inputs[PLACE], inputs[V_OUT])[1]
+    if seen_by_camera:
+        by_map[MALLET], by_map[MALLET_V] = map_error.of_motion(inputs[MALLET], inputs[MALLET_V])
+    return by_map
+
+
+def _std(function: Callable[[np.ndarray], np.ndarray], inputs: np.ndarray, covariance: np.ndarray) -> np.ndarray:
+    """Standard deviations (k,) of a `function` (k,) of inputs (n,) with this covariance (n, n), to first order."""
+    here = function(inputs)
+    jacobian = np.stack([(function(moved) - here) / STEP for moved in inputs + STEP * np.eye(len(inputs))], axis=1)
+    return np.sqrt(np.diag(jacobian @ covariance @ jacobian.T))

@@ -1,0 +1,76 @@
+"""What the simulator predicts for each segment of a recording, and how far the segment is from it."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim2real.compare.contacts import ContactError, predict_mallet, predict_wall
+from sim2real.compare.glides import GlideError, predict_glide, why_not_usable
+from sim2real.compare.map_error import MapError
+from sim2real.recording.folder import Recording
+from sim2real.segmentation.mallet_path import opponent_path, robot_path
+from sim2real.segmentation.segments import Segments
+from sim2real.segmentation.velocity_jumps import velocity_jumps
+
+UNEXPLAINED = "unexplained events"
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """All segments that could be compared, and for each kind why others could not (reason -> count)."""
+
+    glides: tuple[GlideError, ...]
+    walls: tuple[ContactError, ...]
+    mallets: tuple[ContactError, ...]
+    unusable: dict[str, Counter]
+
+
+def compare_segments(recording: Recording, segments: Segments, values: dict[str, float]) -> Comparison:
+    """Predict every usable segment of `recording` with the parameters `values`, by name."""
+    unusable: dict[str, Counter] = {"glide": Counter(), "wall": Counter(), "mallet": Counter(), "other": Counter()}
+    size = np.array([values["length"], values["width"]])
+    map_error = MapError(size, recording.nominal("camera", "place_std_m") or 0.0)
+    glides = []
+    for piece in segments.glides:
+        reason = why_not_usable(piece)
+        if reason:
+            unusable["glide"][reason] += 1
+        else:
+            glides.append(predict_glide(piece, segments.noise, map_error, values["friction"], values["drag"]))
+    walls, mallets = _contacts(recording, segments, values, map_error, unusable)
+    return Comparison(tuple(glides), tuple(walls), tuple(mallets), unusable)
+
+
+def _contacts(
+    recording: Recording,
+    segments: Segments,
+    values: dict[str, float],
+    map_error: MapError,
+    unusable: dict[str, Counter],
+) -> tuple[list[ContactError], list[ContactError]]:
+    """The contacts with walls and with mallets against their predictions; those that are `unusable` are counted."""
+    jumps = velocity_jumps(recording, segments, values["friction"], values["drag"])
+    by_contact = {id(jump.contact): jump for jump in jumps}
+    touched = {contact.where for contact in segments.of_kind("mallet")}
+    read = {"robot": robot_path, "opponent": opponent_path}
+    paths = {who: read[who](recording) for who in touched}
+    walls, mallets = [], []
+    for contact in segments.contacts:
+        if contact.kind not in ("wall", "mallet"):
+            name = UNEXPLAINED if contact.kind == "unexplained" else "goal post hits, not compared"
+            unusable["other"][name] += 1
+        elif not contact.clean or (jump := by_contact.get(id(contact))) is None:
+            unusable[contact.kind]["too few frames beside another event"] += 1
+        elif contact.kind == "wall":
+            walls.append(predict_wall(jump, values["wall_restitution"], map_error))
+        else:
+            path = paths[contact.where]
+            found = path and predict_mallet(jump, path, values["mallet_restitution"], map_error)
+            if found is None:
+                unusable["mallet"]["mallet not seen"] += 1
+            else:
+                mallets.append(found)
+    return walls, mallets

@@ -1,0 +1,179 @@
+"""Candidate models: listed laws, a smooth term in their place, or both; the simplest that predicts well is taken."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sim2real.diagnose.engine.backward_elimination import eliminated, explains_nearly_all, has_misfit, refit
+from sim2real.diagnose.engine.forward_selection import ForwardSelection, Gain
+from sim2real.diagnose.engine.law import Law, Model
+from sim2real.diagnose.engine.least_squares import LeastSquaresFit
+from sim2real.diagnose.engine.nonparametric import NonparametricFit, fit_nonparametric
+from sim2real.diagnose.engine.problem import DesignMatrix, Problem
+from sim2real.diagnose.engine.tuned import ENGINE
+
+
+@dataclass(frozen=True)
+class CandidateModel:
+    """A `model` as it was chosen, the fit of its listed laws, and the `smooth` term on top of it, if any. `cv_loss`:
+    cross-validation loss, linearized about the fit itself."""
+
+    model: Model
+    law: LeastSquaresFit
+    smooth: NonparametricFit | None
+    cv_loss: float
+
+    @property
+    def cost(self) -> int:
+        """How much the model says: a listed law is a name, a smooth term a name and a shape."""
+        return len(self.model.laws) + (self.smooth is not None)
+
+
+def best_candidate(
+    problem: Problem,
+    baseline: LeastSquaresFit,
+    law: LeastSquaresFit,
+    listed: Model,
+    selection: ForwardSelection,
+    screen: DesignMatrix,
+    use: np.ndarray,
+) -> CandidateModel:
+    """Return the simplest of the candidates that predict well: the `listed` laws, fitted as `law`; smooth terms by
+    themselves, also with listed laws that show only beside them; and the listed laws, or fewer of them, with a smooth
+    term for what they leave. Smooth terms are tried only where listed laws leave a misfit or a significant remainder.
+
+    `baseline`: fit without laws; `selection`: of the listed laws, in the design matrix `screen` about the baseline.
+    """
+    only_listed = CandidateModel(listed, law, None, np.inf)
+    if explains_nearly_all(problem, baseline, law, use):
+        return only_listed
+    columns = screen
+    if law is not baseline:
+        columns = identifiable(problem.columns(law.values, law.free, None), problem, use, law.free)
+    refitted = ForwardSelection(columns.equations, problem.units, use, selection.dispersion, selection.least)
+    rest = _remainder(selection, listed, refitted, law, columns)
+    if rest is None and not has_misfit(problem, baseline, law, use):
+        return only_listed
+    candidates = [replace(only_listed, cv_loss=float(refitted.cv_loss(Model(law.free)).sum()))]
+    baseline_loss = float(selection.cv_loss(Model(problem.base)).sum())
+    gains = _promising_terms(selection, Model(problem.base), screen)
+    if rest is not None and not listed.laws and rest.law.name not in {gain.law.name for gain in gains}:
+        gains.append(rest)
+    alone = []
+    for gain in gains:
+        least = baseline_loss - gain.fitted  # a bound on what the term leaves, as far as the screen is right
+        if least < min(one.cv_loss for one in (*candidates, *alone)):
+            alone.append(_with_term(problem, Model(problem.base), baseline, gain, selection, use))
+    if not listed_suffice(candidates[0], alone, baseline_loss):
+        candidates += alone
+        candidates += _term_with_laws(problem, baseline, gains, alone, selection, screen, use)
+    if rest is not None and listed.laws:
+        candidates.append(_with_term(problem, listed, law, rest, selection, use))
+        fewer = selection.eliminate_backward(listed.plus(rest.law, rest.spread)).minus(rest.law)
+        if len(fewer.laws) < len(listed.laws) and fewer.laws:
+            fewer, fitted = eliminated(problem, baseline, fewer, screen, use)
+            candidates.append(_with_term(problem, fewer, fitted, rest, selection, use))
+    return simplest(candidates, baseline_loss)
+
+
+def simplest(candidates: Sequence[CandidateModel], baseline_loss: float) -> CandidateModel:
+    """Return the candidate of least cost among those whose cross-validation loss is near the least: within the least
+    gain of a law, or a share of what the best explains of the `baseline_loss`."""
+    best = min(one.cv_loss for one in candidates)
+    slack = max(ENGINE.cv_gain, ENGINE.share_of_explained * (baseline_loss - best))
+    return min((one for one in candidates if one.cv_loss < best + slack), key=lambda one: (one.cost, one.cv_loss))
+
+
+def listed_suffice(listed: CandidateModel, alone: Sequence[CandidateModel], baseline_loss: float) -> bool:
+    """Whether few listed laws explain most of what the best smooth term alone does, so that they do not stand in for
+    what it describes."""
+    best = min((one.cv_loss for one in alone), default=np.inf)
+    explained = baseline_loss - listed.cv_loss
+    return 0 < len(listed.model.laws) <= ENGINE.few_listed and explained > ENGINE.sufficient * (baseline_loss - best)
+
+
+def identifiable(columns: DesignMatrix, problem: Problem, use: np.ndarray, base: Sequence[str] = ()) -> DesignMatrix:
+    """Return the design matrix without smooth terms of too many coefficients for the degrees of freedom of the clusters
+    `use`; of variants that differ in a size alone, the one that fits best beside the parameters `base`, the problem's
+    if none are given, remains."""
+    most = float(problem.freedom[use].sum()) / ENGINE.residuals_per_coefficient
+    selection = ForwardSelection(columns.equations, problem.units, use)
+    found: dict[str, Law] = {}
+    left: dict[str, float] = {}
+    for law in columns.families:
+        key = law.variant_of or law.name
+        loss = 0.0
+        if law.variant_of:
+            loss = selection.fitted_loss(Model(tuple(base) or problem.base, (law,), (ENGINE.spreads[-1],)))
+        if len(law.columns) <= most and loss < left.get(key, np.inf):
+            found[key], left[key] = law, loss
+    return replace(columns, families=list(found.values()))
+
+
+def _term_with_laws(
+    problem: Problem,
+    baseline: LeastSquaresFit,
+    gains: Sequence[Gain],
+    alone: Sequence[CandidateModel],
+    selection: ForwardSelection,
+    screen: DesignMatrix,
+    use: np.ndarray,
+) -> list[CandidateModel]:
+    """The best smooth term of those `alone` with listed laws that show only beside it; none where it leaves little."""
+    best = min(alone, key=lambda one: one.cv_loss, default=None)
+    baseline_loss = float(selection.cv_loss(Model(problem.base)).sum())
+    if (
+        best is None
+        or best.smooth is None
+        or best.cv_loss - selection.noise_loss < ENGINE.remainder * (baseline_loss - best.cv_loss)
+    ):
+        return []
+    gain = next(gain for gain in gains if gain.law.name == best.smooth.family.name)
+    term = Model(problem.base).plus(gain.law, gain.spread)
+    grown = selection.eliminate_backward(selection.grow(term, screen.listed, ENGINE.joint_laws))
+    if gain.law not in grown.laws or len(grown.laws) == 1:
+        return []
+    listed = grown.minus(gain.law)  # which may have no size without the term, so that none is eliminated here
+    fitted = refit(problem, baseline, listed.laws, screen, use)
+    return [_with_term(problem, listed, fitted, gain, selection, use)]
+
+
+def _with_term(
+    problem: Problem,
+    listed: Model,
+    law: LeastSquaresFit,
+    gain: Gain,
+    selection: ForwardSelection,
+    use: np.ndarray,
+) -> CandidateModel:
+    """The listed laws, fitted as `law`, with the smooth term of a gain on top."""
+    smooth = fit_nonparametric(problem, law, gain.law, use, selection.dispersion)
+    return CandidateModel(listed.plus(smooth.family, smooth.spread), smooth.law, smooth, smooth.cv_loss)
+
+
+def _promising_terms(selection: ForwardSelection, base: Model, screen: DesignMatrix) -> list[Gain]:
+    """The smooth terms that may explain most by themselves, about the baseline's path: those that fit best by AIC, and
+    those that predict best."""
+    gains = [gain for gain in (selection.gain(base, law) for law in screen.families) if selection.fits(gain)]
+    predicting = sorted(gains, key=lambda gain: -gain.total)[: ENGINE.fitted_terms]
+    fitting = sorted(gains, key=lambda gain: 2.0 * len(gain.law.columns) - gain.fitted)[: ENGINE.fitted_terms]
+    return list({gain.law.name: gain for gain in (*fitting, *predicting)}.values())
+
+
+def _remainder(
+    selection: ForwardSelection,
+    model: Model,
+    refitted: ForwardSelection,
+    law: LeastSquaresFit,
+    columns: DesignMatrix,
+) -> Gain | None:
+    """The smooth term that predicts most of what the listed laws leave once they are refitted (`law`, with its design
+    matrix `columns`), if it passes and is worth a law of its own."""
+    gains = sorted((refitted.gain(Model(law.free), one) for one in columns.families), key=lambda gain: -gain.total)
+    explained = float((selection.cv_loss(Model(model.base)) - selection.cv_loss(model)).sum())
+    excess = refitted.fitted_loss(Model(law.free)) - refitted.noise_loss if model.laws else 0.0
+    worth = max(ENGINE.remainder * explained, ENGINE.remainder_of_excess * excess)
+    return next((gain for gain in gains if refitted.passes(gain) and gain.total > worth), None)

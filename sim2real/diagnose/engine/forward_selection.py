@@ -1,0 +1,258 @@
+"""Model selection: laws added forward by cross-validation loss, then eliminated backward where they are not needed.
+
+A loss is the sum of the units' `group_loss` divided by the dispersion, in units of the noise: a few units that no law
+explains outweigh the rest in no comparison.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+
+from sim2real.diagnose.engine import normal_equations
+from sim2real.diagnose.engine.law import Law, Model
+from sim2real.diagnose.engine.normal_equations import NormalEquations
+from sim2real.diagnose.engine.problem import Units
+from sim2real.diagnose.engine.tuned import ENGINE
+from sim2real.statistics.robust import group_loss
+
+
+@dataclass(frozen=True)
+class Gain:
+    """What a law adds to the model `beside` it: how much lower the `fitted` loss is, and the cross-validation loss of
+    each launch (launches,); `spread`: the prior standard deviation of its coefficients."""
+
+    beside: Model
+    law: Law
+    fitted: float
+    cv_loss: np.ndarray
+    spread: float
+
+    @property
+    def total(self) -> float:
+        """Of all launches."""
+        return float(self.cv_loss.sum())
+
+    @property
+    def without_best(self) -> float:
+        """Of all launches but the one that gains most: no single one may carry a discovery."""
+        return self.total - float(self.cv_loss.max())
+
+
+class ForwardSelection:
+    """Compares models on the units of the clusters `use`.
+
+    `dispersion`: variance of the noise in units of the sensor's, at least 1; see `estimated_dispersion`. `least`: how
+    much lower a law must make the loss to be named, as where the sensor has systematic errors. Each loss of a model is
+    computed once.
+    """
+
+    def __init__(
+        self, equations: NormalEquations, units: Units, use: np.ndarray, dispersion: float = 1.0, least: float = 0.0
+    ) -> None:
+        self.equations, self.use, self.dispersion, self.least = equations, units.of(use), dispersion, least
+        self._freedom = units.freedom[self.use] * dispersion
+        self._launch = np.unique(units.cluster[self.use], return_inverse=True)[1]
+        draws = np.random.default_rng(0).integers(self._launches, size=(ENGINE.bootstrap_draws, self._launches))
+        self._computed: dict[tuple[Any, ...], Any] = {}
+        self._resampled = np.stack([np.bincount(row, minlength=self._launches) for row in draws])
+
+    @property
+    def _launches(self) -> int:
+        return int(self._launch.max()) + 1
+
+    @property
+    def noise_loss(self) -> float:
+        """Loss that noise alone leaves: the degrees of freedom."""
+        return float(self._freedom.sum()) / self.dispersion
+
+    def fitted_loss(self, model: Model) -> float:
+        """Loss that a model leaves when fitted to all units."""
+        return self._once("fitted", model, self._fitted_loss)
+
+    def cv_loss(self, model: Model) -> np.ndarray:
+        """Cross-validation loss (launches,): each unit is predicted by the model fitted to the units of other folds, of
+        the same launch or another, since no other launch may meet what a single one met, such as a patch."""
+        return self._once("units", model, self._cv_loss)
+
+    def launch_cv_loss(self, model: Model) -> np.ndarray:
+        """Cross-validation loss (launches,): each launch is predicted by the model fitted to all other launches."""
+        return self._once("launches", model, self._launch_cv_loss)
+
+    def _once(self, what: str, model: Model, work: Callable[[Model], Any]) -> Any:
+        key = (what, *model.key)
+        if key not in self._computed:
+            self._computed[key] = work(model)
+        return self._computed[key]
+
+    def _fitted_loss(self, model: Model) -> float:
+        columns, ridge = model.columns(self.equations)
+        theta = normal_equations.solve_robustly(self.equations, columns, self.use, self._freedom, ridge)
+        left = normal_equations.losses(self.equations, columns, theta, self.use)
+        return float(group_loss(left, self._freedom).sum()) / self.dispersion
+
+    def _cv_loss(self, model: Model) -> np.ndarray:
+        folds = np.arange(len(self.use)) % ENGINE.unit_folds
+        return self._held_out(model, [folds == fold for fold in np.unique(folds)])
+
+    def _launch_cv_loss(self, model: Model) -> np.ndarray:
+        return self._held_out(model, [self._launch == launch for launch in range(self._launches)])
+
+    def _held_out(self, model: Model, folds: Sequence[np.ndarray]) -> np.ndarray:
+        """Loss (launches,), the units of each of the `folds` (units,) bool predicted by those outside it."""
+        columns, ridge = model.columns(self.equations)
+        left = np.zeros(len(self.use))
+        for out in folds:
+            theta = normal_equations.solve_robustly(self.equations, columns, self.use[~out], self._freedom[~out], ridge)
+            left[out] = normal_equations.losses(self.equations, columns, theta, self.use[out])
+        return np.bincount(self._launch, group_loss(left, self._freedom)) / self.dispersion
+
+    def gain(self, model: Model, law: Law) -> Gain:
+        """What `law` adds to `model`; a smooth term with the spread that predicts best."""
+        before, fitted = self.cv_loss(model), self.fitted_loss(model)
+        best: Gain | None = None
+        for spread in ENGINE.spreads if law.family else (np.inf,):
+            more = model.plus(law, spread)
+            gain = Gain(model, law, fitted - self.fitted_loss(more), before - self.cv_loss(more), spread)
+            if best is None or gain.total > best.total:
+                best = gain
+        assert best is not None
+        return best
+
+    def gains(self, model: Model, laws: Sequence[Law]) -> list[Gain]:
+        """What each of the `laws` that a model lacks adds to it, best first."""
+        taken = {law.name for law in model.laws}
+        return sorted((self.gain(model, law) for law in laws if law.name not in taken), key=lambda one: -one.total)
+
+    def fits(self, gain: Gain) -> bool:
+        """Whether a law lowers the fitted loss by more than chance (a fixed threshold, AIC's 2 for each coefficient,
+        and 2 log of the places searched), and by `least`."""
+        chance = ENGINE.fit_gain + 2.0 * len(gain.law.columns) + 2.0 * float(np.log(gain.law.searched))
+        return gain.fitted > max(chance, self.least)
+
+    def passes(self, gain: Gain) -> bool:
+        """Whether a law fits and predicts better than chance, and not by few launches alone: the gain stays positive in
+        nearly all bootstrap samples of launches, or two launches gain far more than chance from each other's."""
+        if not self.fits(gain) or gain.total <= ENGINE.cv_gain or gain.without_best <= ENGINE.cv_gain_elsewhere:
+            return False
+        if self._surely_positive(gain.cv_loss):
+            return True
+        two = np.argsort(gain.cv_loss)[-2:]
+        if float(gain.cv_loss[two].min()) <= ENGINE.fit_gain:
+            return False
+        more = gain.beside.plus(gain.law, gain.spread)
+        between = self.launch_cv_loss(gain.beside)[two] - self.launch_cv_loss(more)[two]
+        return bool(between.min() > ENGINE.fit_gain)
+
+    def inconclusive(self, gain: Gain) -> bool:
+        """Whether a law fits far better than chance, and yet does not pass: few launches support it."""
+        return self.fits(gain) and not self.passes(gain)
+
+    def confirmed(self, model: Model) -> bool:
+        """Whether launches confirm a model to each other, each predicted by all others: its gain over the baseline is
+        most of what the baseline leaves beyond noise, is no small part of the noise, and is positive in nearly all
+        bootstrap samples of launches."""
+        baseline = self.launch_cv_loss(Model(model.base))
+        gained = baseline - self.launch_cv_loss(model)
+        enough = max(
+            ENGINE.proving_share * (float(baseline.sum()) - self.noise_loss), ENGINE.share_of_noise * self.noise_loss
+        )
+        return self._surely_positive(gained) and float(gained.sum()) > enough
+
+    def _surely_positive(self, gained: np.ndarray) -> bool:
+        """Whether the sum of what launches gain (launches,) is positive in nearly all bootstrap samples of them."""
+        return float(np.quantile(self._resampled @ gained, ENGINE.bootstrap_quantile)) > 0.0
+
+    def same_sign_in_halves(self, model: Model, law: Law) -> bool:
+        """Whether odd and even launches give the law coefficients of the same sign, or one half does not determine it:
+        the inner product of both by the Fisher information is positive."""
+        columns, ridge = model.plus(law, 1.0).columns(self.equations)
+        at = np.isin(columns, self.equations.columns(law.columns))
+        halves, sizes = [], []
+        for k in (0, 1):
+            half = self._launch % 2 == k
+            theta = normal_equations.solve_robustly(self.equations, columns, self.use[half], self._freedom[half], ridge)
+            halves.append(theta[at])
+            information = self.equations.g[np.ix_(self.use[half], columns[at], columns[at])].sum(axis=0)
+            sizes.append(float(halves[k] @ information @ halves[k]))
+        weight = self.equations.g[np.ix_(self.use, columns[at], columns[at])].sum(axis=0)
+        undetermined = min(sizes) < ENGINE.sign_information * len(law.columns)
+        return undetermined or float(halves[0] @ weight @ halves[1]) > 0.0
+
+    def add_forward(self, model: Model, laws: Sequence[Law], most: int) -> Model:
+        """Forward selection up to `most` laws, significant or not: `eliminate_backward` decides on all together.
+
+        It starts from the best pair of laws instead where that ends with a much lower loss, since either alone may
+        explain little of what both do.
+        """
+        single = self.grow(model, laws, most)
+        pairs = [
+            model.plus(one, np.inf).plus(other, np.inf)
+            for one, other in combinations(laws, 2)
+            if one.name != other.name
+        ]
+        best = min(pairs, key=lambda pair: float(self.cv_loss(pair).sum()), default=None)
+        if best is None or most < len(best.laws):
+            return single
+        paired = self.grow(best, laws, most)
+        better = float((self.cv_loss(single) - self.cv_loss(paired)).sum())
+        return paired if better > ENGINE.cv_gain else single
+
+    def grow(self, model: Model, laws: Sequence[Law], most: int) -> Model:
+        """Add the law with the greatest cross-validation gain, again and again, until the model has `most` or no law
+        gains enough."""
+        while len(model.laws) < most:
+            gains = self.gains(model, laws)
+            if not gains or gains[0].total < ENGINE.cv_gain:
+                break
+            model = model.plus(gains[0].law, gains[0].spread)
+        return model
+
+    def eliminate_backward(self, model: Model) -> Model:
+        """Take out laws that are needless or not significant beside the others, the one with the least gain first."""
+        explained = float((self.cv_loss(Model(model.base)) - self.cv_loss(model)).sum())
+        enough = min(ENGINE.share_of_explained * explained, ENGINE.share_of_noise * self.noise_loss)
+        while model.laws:
+            gains = [self.gain(model.minus(law), law) for law in model.laws]
+            worth = enough if len(gains) > 1 else 0.0
+            failing = [one for one in gains if one.total < worth or not self.significant(model, one)]
+            if not failing:
+                break
+            model = model.minus(min(failing, key=lambda one: one.total).law)
+        return model
+
+    def significant(self, model: Model, gain: Gain) -> bool:
+        """Whether a law of the model passes, and has the same sign in both halves of the launches if it is listed."""
+        rest = model.minus(gain.law)
+        return self.passes(gain) and (bool(gain.law.family) or self.same_sign_in_halves(rest, gain.law))
+
+
+def estimated_dispersion(
+    equations: NormalEquations, units: Units, base: tuple[str, ...], laws: Sequence[Law], use: np.ndarray
+) -> float:
+    """Estimate the variance of the noise in units of the sensor's, at least 1: the median over launches of the reduced
+    chi-square that a fit of all `laws` together leaves, its degrees of freedom by the trace of the hat matrix."""
+    richest = Model(base, tuple(laws), (1.0,) * len(laws))
+    columns, ridge = richest.columns(equations)
+    parts = units.of(use)
+    theta = normal_equations.solve(equations, columns, parts, ridge + ENGINE.dispersion_ridge)
+    fitted = _fitted_freedom(equations.g[np.ix_(parts, columns, columns)], ridge + ENGINE.dispersion_ridge)
+    launch = units.cluster[parts]
+    launches = int(units.cluster.max(initial=0)) + 1
+    left = np.bincount(launch, normal_equations.losses(equations, columns, theta, parts), launches)
+    free = np.bincount(launch, units.freedom[parts] - fitted, launches)
+    known = free > 1.0
+    return float(max(np.median(left[known] / free[known]), 1.0)) if known.any() else 1.0
+
+
+def _fitted_freedom(g: np.ndarray, ridge: np.ndarray) -> np.ndarray:
+    """Degrees of freedom (units,) of each unit that a ridge fit of all columns to all units uses up, with normal
+    matrices `g` (units, k, k): its part of the trace of the hat matrix, tr(G_u (sum G + ridge)^-1)."""
+    normal = g.sum(axis=0) + np.diag(ridge)
+    size = np.sqrt(np.maximum(np.diag(normal), 0.0))
+    inverse = np.linalg.pinv(normal / size[:, None] / size, hermitian=True) / size[:, None] / size
+    return np.einsum("cij,ji->c", g, inverse)

@@ -1,0 +1,134 @@
+"""Nonparametric fits: a smooth term of the basis library on top of a law, linearized about the path of both.
+
+Ridge regression on basis functions: the coefficients have a normal prior about 0, whose standard deviation (`spread`)
+cross-validation chooses.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from puckpilot_env.parameters import BY_NAME
+from sim2real.diagnose.engine import normal_equations
+from sim2real.diagnose.engine.forward_selection import ForwardSelection
+from sim2real.diagnose.engine.law import Law, Model
+from sim2real.diagnose.engine.least_squares import LeastSquaresFit
+from sim2real.diagnose.engine.problem import DesignMatrix, Problem
+from sim2real.diagnose.engine.tuned import ENGINE
+from sim2real.statistics.robust import group_loss
+
+
+@dataclass(frozen=True)
+class NonparametricFit:
+    """A smooth term `family` fitted on top of `law`.
+
+    `theta` (n + k,): steps of the law's n free parameters, then the term's k coefficients. `columns`: the design matrix
+    that they belong to, whose residuals are those without the term wherever it was linearized. `spread`: the prior
+    standard deviation of the coefficients; `cv_loss`: the cross-validation loss.
+    """
+
+    law: LeastSquaresFit
+    family: Law
+    spread: float
+    columns: DesignMatrix
+    theta: np.ndarray
+    cv_loss: float
+
+    @property
+    def model(self) -> Model:
+        """The law's free parameters and the smooth term."""
+        return Model(self.law.free, (self.family,), (self.spread,))
+
+    def covariance(self, problem: Problem, use: np.ndarray) -> np.ndarray:
+        """Of `theta` (n + k, n + k), from the clusters `use` that it was fitted to."""
+        launches = normal_equations.gathered(self.columns.equations, problem.units.cluster, problem.clusters)
+        return normal_equations.covariance(launches, self.model.columns(self.columns.equations)[0], self.theta, use)
+
+
+def fit_nonparametric(
+    problem: Problem, law: LeastSquaresFit, family: Law, use: np.ndarray, dispersion: float
+) -> NonparametricFit:
+    """Fit `family` on top of `law` to the clusters `use`; `dispersion`: variance of the noise in units of the sensor's.
+
+    Where the simulator can represent a term that is not linear, Gauss-Newton takes the design matrix anew about the
+    path with it, until no step leads downhill; else it is taken once, about the path without it. A term of which every
+    step leads uphill predicts nothing: its `cv_loss` is infinite.
+    """
+    search = _Search(problem, use, dispersion)
+    here = search.linearized(law, family, np.zeros(len(family.columns)))
+    best = search.solved(here)
+    if family.linear or not family.switch(best.theta[len(law.free) :]):
+        return best
+    cv_loss = np.inf
+    for _ in range(ENGINE.term_rounds):
+        there = search.downhill(here, best)
+        if there is None:
+            return replace(best, theta=np.concatenate([np.zeros(len(law.free)), here.coefficients]), cv_loss=cv_loss)
+        cv_loss, now = best.cv_loss, search.loss(here, best.spread)
+        here, best = there, search.solved(there)
+        if now - search.loss(here, best.spread) < ENGINE.term_decrease * now:
+            break
+    return best
+
+
+@dataclass(frozen=True)
+class _Linearization:
+    """The design matrix about the path of a law with `coefficients` (k,) of a smooth term, its residuals those without
+    the term."""
+
+    law: LeastSquaresFit
+    family: Law
+    coefficients: np.ndarray
+    columns: DesignMatrix
+
+
+class _Search:
+    """Steps of Gauss-Newton on the clusters `use`."""
+
+    def __init__(self, problem: Problem, use: np.ndarray, dispersion: float) -> None:
+        self._problem, self._use, self._dispersion = problem, use, dispersion
+        self._units = problem.units.of(use)
+        self._freedom = problem.units.freedom[self._units] * dispersion
+
+    def linearized(self, law: LeastSquaresFit, family: Law, coefficients: np.ndarray) -> _Linearization:
+        """About the path of the law with these coefficients of the term."""
+        values: Mapping[str, float] = {**law.values, **(family.switch(coefficients) if coefficients.any() else {})}
+        columns = self._problem.columns(values, law.free, None)
+        family = next(one for one in columns.families if one.name == family.name)
+        index = columns.equations.columns(family.columns)
+        without = normal_equations.moved(columns.equations, index, -coefficients)
+        return _Linearization(law, family, coefficients, replace(columns, equations=without))
+
+    def loss(self, here: _Linearization, spread: float) -> float:
+        """Robust loss at a linearization plus the penalty sum(coefficients²) / spread²."""
+        index = here.columns.equations.columns(here.family.columns)
+        left = normal_equations.losses(here.columns.equations, index, here.coefficients, self._units)
+        return float(group_loss(left, self._freedom).sum() + np.sum(here.coefficients**2) / spread**2)
+
+    def solved(self, here: _Linearization) -> NonparametricFit:
+        """The robust least squares there, with the spread of the least cross-validation loss."""
+        equations = here.columns.equations
+        selection = ForwardSelection(equations, self._problem.units, self._use, self._dispersion)
+        models = [Model(here.law.free, (here.family,), (spread,)) for spread in ENGINE.spreads]
+        cv_loss = [float(selection.cv_loss(model).sum()) for model in models]
+        best = int(np.argmin(cv_loss))
+        index, ridge = models[best].columns(equations)
+        theta = normal_equations.solve_robustly(equations, index, self._units, self._freedom, ridge)
+        return NonparametricFit(here.law, here.family, ENGINE.spreads[best], here.columns, theta, cv_loss[best])
+
+    def downhill(self, here: _Linearization, step: NonparametricFit) -> _Linearization | None:
+        """Where a step leads, or the longest part of it that lowers the loss; None where none does."""
+        n = len(here.law.free)
+        now = self.loss(here, step.spread)
+        for part in 0.5 ** np.arange(ENGINE.term_halvings):
+            values = dict(here.law.values)
+            for name, change in zip(here.law.free, part * step.theta[:n], strict=True):
+                values[name] = BY_NAME[name].within(values[name] + change)
+            coefficients = here.coefficients + part * (step.theta[n:] - here.coefficients)
+            there = self.linearized(replace(here.law, values=values), here.family, coefficients)
+            if self.loss(there, step.spread) < now:
+                return there
+        return None

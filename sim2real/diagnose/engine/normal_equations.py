@@ -1,0 +1,161 @@
+"""Normal equations of each cluster: fits and held-out losses of any columns to any clusters are sums of small matrices.
+
+Residuals are `r + J theta` in units of the sensor's noise, so that least squares is maximum likelihood and G = J'J is
+the Fisher information. With G, b = J'r and s = r'r of each cluster, the sum of squares that theta leaves of it is
+s + 2 b'theta + theta'G theta, and least squares on some clusters solves (sum G) theta = -sum b, whatever the length of
+the recording. Clusters here are launches, or the units within them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import eigh
+
+from sim2real.diagnose.engine.tuned import ENGINE
+from sim2real.statistics.robust import group_weights
+
+
+@dataclass(frozen=True)
+class NormalEquations:
+    """Sums over each of `c` clusters: `g` = J'J (c, k, k), `b` = J'r (c, k), `s` = r'r (c,), and the `count` (c,) of
+    residuals; `names` (k) of the columns of J."""
+
+    names: tuple[str, ...]
+    g: np.ndarray
+    b: np.ndarray
+    s: np.ndarray
+    count: np.ndarray
+
+    @property
+    def clusters(self) -> int:
+        """The number of clusters."""
+        return len(self.s)
+
+    def columns(self, names: Sequence[str]) -> np.ndarray:
+        """Indices of the columns with these names."""
+        index = {name: k for k, name in enumerate(self.names)}
+        return np.array([index[name] for name in names], int)
+
+
+def make_equations(
+    names: Sequence[str], r: np.ndarray, jacobian: np.ndarray, cluster: np.ndarray, clusters: int
+) -> NormalEquations:
+    """Sum residuals `r` (n,) and their `jacobian` (n, k) by `cluster` (n,) int, in any order."""
+    k = jacobian.shape[1]
+    g, b = np.zeros((clusters, k, k)), np.zeros((clusters, k))
+    s, count = np.zeros(clusters), np.zeros(clusters)
+    order = np.argsort(cluster, kind="stable")
+    edges = np.searchsorted(cluster[order], np.arange(clusters + 1))
+    for c in range(clusters):
+        rows = order[edges[c] : edges[c + 1]]
+        j, rest = jacobian[rows], r[rows]
+        g[c], b[c] = j.T @ j, j.T @ rest
+        s[c], count[c] = rest @ rest, len(rows)
+    return NormalEquations(tuple(names), g, b, s, count)
+
+
+def gathered(equations: NormalEquations, into: np.ndarray, count: int) -> NormalEquations:
+    """Sum small clusters to large ones: cluster i joins number `into[i]` (c,) of `count`."""
+    shapes = {"g": equations.g, "b": equations.b, "s": equations.s, "count": equations.count}
+    sums = {name: np.zeros((count, *part.shape[1:])) for name, part in shapes.items()}
+    for name, part in shapes.items():
+        np.add.at(sums[name], into, part)
+    return NormalEquations(equations.names, **sums)
+
+
+def moved(equations: NormalEquations, columns: np.ndarray, theta: np.ndarray) -> NormalEquations:
+    """The equations of the residuals `r + J theta`, with the same derivatives: b + G theta, s + 2 b'theta +
+    theta'G theta."""
+    g = np.einsum("cij,j->ci", equations.g[:, :, columns], theta)
+    more = 2.0 * equations.b[:, columns] @ theta + g[:, columns] @ theta
+    return NormalEquations(equations.names, equations.g, equations.b + g, equations.s + more, equations.count)
+
+
+def solve(
+    equations: NormalEquations, columns: np.ndarray, clusters: np.ndarray, ridge: np.ndarray | float = 0.0
+) -> np.ndarray:
+    """Ridge regression: the theta (k,) of `columns` that minimizes the sum of squares of `clusters` plus
+    sum(ridge theta²); columns without data get 0."""
+    g = equations.g[np.ix_(clusters, columns, columns)].sum(axis=0)
+    b = equations.b[np.ix_(clusters, columns)].sum(axis=0)
+    return solve_normal(g + np.diag(np.broadcast_to(ridge, len(columns)).astype(float)), -b)
+
+
+def solve_robustly(
+    equations: NormalEquations,
+    columns: np.ndarray,
+    clusters: np.ndarray,
+    freedom: np.ndarray,
+    ridge: np.ndarray | float = 0.0,
+) -> np.ndarray:
+    """Like `solve`, for the sum of the clusters' `group_loss` with degrees of `freedom` (clusters,), by iteratively
+    reweighted least squares."""
+    g, b = equations.g[np.ix_(clusters, columns, columns)], equations.b[np.ix_(clusters, columns)]
+    penalty = np.diag(np.broadcast_to(ridge, len(columns)).astype(float))
+    weight, theta = np.ones(len(clusters)), np.zeros(len(columns))
+    for _ in range(ENGINE.reweighting_rounds):
+        theta = solve_normal(np.tensordot(weight, g, 1) + penalty, -(weight @ b))
+        left = equations.s[clusters] + 2.0 * b @ theta + np.einsum("i,cij,j->c", theta, g, theta)
+        fresh = group_weights(left, freedom)
+        if np.all(np.abs(fresh - weight) < ENGINE.reweighting_change * weight):
+            break
+        weight = fresh
+    return theta
+
+
+def solve_normal(g: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """The theta (k,) of g theta = b for a symmetric `g` (k, k) >= 0, by the pseudo-inverse of `g` scaled to unit
+    diagonal; directions without data get 0."""
+    scale = np.sqrt(np.maximum(np.diag(g), 0.0))
+    good = scale > 0.0
+    theta = np.zeros(len(b))
+    if not good.any():
+        return theta
+    unit = scale[good]
+    value, vector = _eigen(g[np.ix_(good, good)] / unit[:, None] / unit)
+    keep = value > ENGINE.rank_tolerance * value[-1]
+    theta[good] = (vector[:, keep] @ ((vector[:, keep].T @ (b[good] / unit)) / value[keep])) / unit
+    return theta
+
+
+def _eigen(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Eigenvalues, ascending, and vectors of a symmetric matrix. numpy's divide and conquer is fast, but was seen to
+    fail on a finite one (OpenBLAS 0.3.31); QR then does not."""
+    try:
+        return np.linalg.eigh(matrix)
+    except np.linalg.LinAlgError:
+        return eigh(matrix, driver="ev")
+
+
+def losses(equations: NormalEquations, columns: np.ndarray, theta: np.ndarray, clusters: np.ndarray) -> np.ndarray:
+    """Sums of squares (clusters,) that `theta` leaves: s + 2 b'theta + theta'G theta."""
+    g = equations.g[np.ix_(clusters, columns, columns)]
+    b = equations.b[np.ix_(clusters, columns)]
+    return equations.s[clusters] + 2.0 * b @ theta + np.einsum("i,cij,j->c", theta, g, theta)
+
+
+def covariance(equations: NormalEquations, columns: np.ndarray, theta: np.ndarray, clusters: np.ndarray) -> np.ndarray:
+    """Covariance (k, k) of a least-squares `theta`: of two estimates the larger standard deviations, with the
+    correlations of the first.
+
+    By the model: inverse Fisher information G^-1 times the dispersion, at least 1. By the scatter between clusters: the
+    cluster-robust sandwich G^-1 (sum of u u') G^-1 c / (c - 1) of the scores u = b + G theta of c clusters (CR1: Liang
+    and Zeger, Biometrika 73, 1986), where there are more than two clusters beyond the columns.
+    """
+    g = equations.g[np.ix_(clusters, columns, columns)]
+    whole = g.sum(axis=0)
+    size = np.sqrt(np.maximum(np.diag(whole), 0.0))
+    size[size == 0.0] = 1.0  # scaled, since parameters differ by many powers of ten
+    inverse = np.linalg.pinv(whole / size[:, None] / size, hermitian=True) / size[:, None] / size
+    count, c = equations.count[clusters].sum(), len(clusters)
+    dispersion = max(losses(equations, columns, theta, clusters).sum() / max(count - len(columns), 1.0), 1.0)
+    model = inverse * dispersion
+    if c <= len(columns) + 2:
+        return model
+    scores = equations.b[np.ix_(clusters, columns)] + np.einsum("cij,j->ci", g, theta)
+    sandwich = inverse @ (scores.T @ scores) @ inverse * c / (c - 1.0)
+    more = np.sqrt(np.maximum(np.diag(sandwich) / np.maximum(np.diag(model), 1e-300), 1.0))
+    return model * np.outer(more, more)

@@ -1,1 +1,0 @@
-"""The gantry: what of the mallet's path the commands do not explain."""

@@ -1,1 +1,0 @@
-"""Free glides: what brakes and pushes the puck between two contacts."""

@@ -1,0 +1,74 @@
+"""One regime: what it lacks, what stands of it where each launch is predicted by the others, and in words."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from sim2real.diagnose.consistency import check_consistency
+from sim2real.diagnose.effect_size import effect_size
+from sim2real.diagnose.engine.cross_validation import Selection, select
+from sim2real.diagnose.engine.model_search import bare, without
+from sim2real.diagnose.engine.problem import Problem
+from sim2real.diagnose.regimes.base import TOO_LITTLE, Evidence, IdentifiedRegime, Known, Regime
+from sim2real.diagnose.result.regime_result import regime_result
+from sim2real.diagnose.result.result import RegimeResult
+from sim2real.diagnose.tuned import IDENTIFICATION
+
+TOO_ROUGH = "it rests on the glides, whose law is not known well enough"
+
+
+def identify_regime(regime: Regime, problem: Problem, evidence: Evidence, known: Known) -> IdentifiedRegime:
+    """What a regime lacks, by its `problem` and the regimes `known` before it.
+
+    If these leave a misfit, nothing is named where much stays unexplained.
+    """
+    live = np.flatnonzero(problem.freedom > 0)
+    if len(live) < IDENTIFICATION.fewest_launches or problem.freedom[live].sum() < IDENTIFICATION.fewest_residuals:
+        return IdentifiedRegime(problem, RegimeResult(regime.name, (), {}, False, None, TOO_LITTLE, regime.more))
+    clear, stands = regime.premises(evidence, known)
+    values = regime.parameters(evidence, known)
+    defaults = {name: values[name] for name in problem.base}
+    check_consistency(problem, defaults, regime.parts(problem, evidence, known))
+    problem, found = regime.search(problem, defaults, live, clear)
+    chosen = _that_matter(regime, problem, select(problem, found, stands))
+    result = regime_result(regime, problem, chosen, defaults)
+    if not stands and (result.unexplained or result.misfit):
+        chosen = Selection(chosen.cross_validation, bare(chosen.found), {})
+        result = regime_result(regime, problem, chosen, defaults)
+        result = replace(result, undetermined=TOO_ROUGH, misfit=False)
+    elif (result.misfit or result.unexplained) and not result.next_recording:
+        result = replace(result, next_recording=regime.more)
+    result = replace(result, doubt="; ".join(filter(None, (result.doubt, regime.note(problem)))))
+    explained = found.unlisted is None and not found.misfit
+    return _illustrated(regime, IdentifiedRegime(problem, result, chosen.found, chosen.without, explained))
+
+
+def _illustrated(regime: Regime, one: IdentifiedRegime) -> IdentifiedRegime:
+    """The same with the findings' curves, formulas and sizes [m], and where recording and simulator differ."""
+    problem, found = one.problem, one.final
+    assert problem is not None and found is not None
+    sizes = [effect_size(regime, problem, found, one.without[name]) for name in one.laws]
+    findings = tuple(
+        replace(regime.illustrated(problem, found, finding, found.clusters), size_m=size)
+        for finding, size in zip(one.regime_result.findings, sizes, strict=True)
+    )
+    mismatch = regime.mismatch(problem, found)
+    return replace(one, regime_result=replace(one.regime_result, findings=findings, mismatch=mismatch))
+
+
+def _that_matter(regime: Regime, problem: Problem, chosen: Selection) -> Selection:
+    """The laws without those of which nobody would notice anything, the smallest first."""
+    while chosen.found.model.laws:
+        sizes = {
+            one.name: effect_size(regime, problem, chosen.found, chosen.without[one.name])
+            for one in chosen.found.model.laws
+        }
+        name, size = min(sizes.items(), key=lambda one: one[1])
+        if size >= regime.least_size:
+            break
+        found = chosen.without[name]
+        rest = {one.name: without(problem, found, one) for one in found.model.laws}
+        chosen = replace(chosen, found=found, without=rest, small={**chosen.small, name: size})
+    return chosen

@@ -1,0 +1,126 @@
+"""Whether recordings can be believed at all: reasons for which a diagnosis names nothing, each with a remedy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from sim2real.diagnose.report.plain_words import counted
+from sim2real.diagnose.tuned import INPUT
+from sim2real.recording.folder import POSITIONS, Recording, Stream
+from sim2real.recording.stated import assumptions
+from sim2real.segmentation.clock_jumps import clock_jumps
+
+
+class UndeterminedError(Exception):
+    """Why nothing can be said of the recordings, in one clause, and what to do about it, in one sentence."""
+
+    def __init__(self, reason: str, remedy: str) -> None:
+        super().__init__(reason)
+        self.reason, self.remedy = reason, remedy
+
+
+def two_tables(one: str, other: str, why: str) -> UndeterminedError:
+    """What to raise where the recordings of these names cannot be of one table."""
+    return UndeterminedError(f"{one} and {other} disagree as two tables do: {why}", "diagnose each recording by itself")
+
+
+def check_usable(recordings: Sequence[Recording]) -> None:
+    """Raise `UndeterminedError` for recordings that are too short, still, cut off, or of clocks that leap."""
+    seconds = sum(_seconds(one) for one in recordings)
+    if seconds < INPUT.least_seconds:
+        raise UndeterminedError(f"too little data, {seconds:.1f} s in all", "record a minute or more in one go")
+    if all(_still(one) for one in recordings):
+        raise UndeterminedError("the puck never moves", "launch the puck some twenty times, in all directions")
+    for one in recordings:
+        for check in (_cut_off, _clock_jumping, _paused):
+            for reason, remedy in check(one):
+                raise UndeterminedError(f"in {one.name}, {reason}", remedy)
+
+
+def notes(recordings: Sequence[Recording]) -> tuple[str, ...]:
+    """What should be known of the recordings, a sentence each: blunders, pauses at which they were cut, and numbers
+    that none of them states."""
+    found = [f"{one.name}: {note}" for one in recordings for note in one.notes]
+    for one in recordings:
+        for name, stream in _rows(one).items():
+            pauses = int((np.diff(stream.t) > INPUT.pause).sum()) if name in POSITIONS else 0
+            if pauses:
+                many = counted(pauses, "pause", "pauses")
+                found.append(f"{one.name}: {name}.csv has {many} of more than {INPUT.pause:g} s and is cut there")
+    return (*found, *assumptions(recordings))
+
+
+def _rows(one: Recording) -> dict[str, Stream]:
+    return {name: stream for name, stream in one.streams().items() if stream.rows}
+
+
+def _seconds(one: Recording) -> float:
+    return max((float(np.ptp(stream.t)) for stream in _rows(one).values()), default=0.0)
+
+
+def _still(one: Recording) -> bool:
+    """Whether a puck was seen that rests, or hardly anything was, and nothing else was recorded."""
+    streams = _rows(one)
+    if "mallet" in streams:
+        return False
+    if "frames" not in streams:
+        return True
+    place = _place(streams["frames"], "frames")
+    place = place[np.isfinite(place).all(axis=1)]
+    return not len(place) or bool(np.all(np.ptp(np.quantile(place, (0.02, 0.98), axis=0), axis=0) < INPUT.still))
+
+
+def _place(stream: Stream, name: str) -> np.ndarray:
+    return np.stack([stream[column] for column in POSITIONS[name]], axis=1)
+
+
+def _cut_off(one: Recording) -> Iterator[tuple[str, str]]:
+    """A stream that ends long before the others; the commands may, once the mallet has come to rest."""
+    streams = _rows(one)
+    ends = {name: float(stream.t[-1]) for name, stream in streams.items()}
+    if "commands" in ends and _rests_after(streams.get("mallet"), ends["commands"] + INPUT.stops_by):
+        del ends["commands"]
+    last = max(ends, key=lambda name: ends[name])
+    for name, end in ends.items():
+        if ends[last] - end > max(INPUT.stops_by, INPUT.stops_early * _seconds(one)):
+            yield (
+                f"{name}.csv stops at {end:.1f} s while {last}.csv goes on to {ends[last]:.1f} s",
+                f"find out why {name}.csv stops, or cut all streams of the recording at {end:.1f} s",
+            )
+
+
+def _rests_after(mallet: Stream | None, t: float) -> bool:
+    """Whether no mallet is seen to move from the time `t` on."""
+    if mallet is None:
+        return True
+    place = _place(mallet, "mallet")[mallet.t > t]
+    return not len(place) or bool(np.all(np.nan_to_num(np.ptp(place, axis=0)) < INPUT.still))
+
+
+def _clock_jumping(one: Recording) -> Iterator[tuple[str, str]]:
+    """A clock that leaps while what it times moves evenly on."""
+    for name, stream in _rows(one).items():
+        if name not in POSITIONS:
+            continue
+        found = clock_jumps(stream.t, _place(stream, name))
+        if found:
+            more = f", one of {len(found)} leaps" if len(found) > 1 else ""
+            yield (
+                f"the clock of {name}.csv leaps by {1e3 * found[0].size:.0f} ms at {found[0].t:.2f} s{more}",
+                f"record with a clock that runs evenly, or cut {name}.csv where it leaps",
+            )
+
+
+def _paused(one: Recording) -> Iterator[tuple[str, str]]:
+    """A stream without rows for a while beside others that have them: its clock may have leapt."""
+    streams = {name: stream for name, stream in _rows(one).items() if name != "commands"}
+    for name, stream in streams.items():
+        step = np.diff(stream.t)
+        if len(streams) > 1 and len(step) and step.max() > INPUT.pause:
+            at = int(step.argmax())
+            yield (
+                f"{name}.csv has no row for {step[at]:.1f} s from {stream.t[at]:.1f} s: it paused, or its clock leapt",
+                f"cut the recording at {stream.t[at]:.1f} s into two",
+            )

@@ -1,0 +1,1 @@
+"""A diagnosis as files: JSON, effects.toml, draws.toml."""

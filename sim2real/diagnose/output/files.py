@@ -1,0 +1,113 @@
+"""A diagnosis as files: diagnosis.json (puckpilot-diagnosis/1), report.html, and for the simulator effects.toml, its
+best numbers, and draws.toml, how far they may be off."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from puckpilot_env.files.whole_file import write_text_whole
+from sim2real.diagnose.output.draws_toml import draws_toml
+from sim2real.diagnose.output.effects_toml import effects_toml
+from sim2real.diagnose.pipeline import Diagnosis
+from sim2real.diagnose.result.context import PLAIN, ReportContext
+from sim2real.diagnose.result.result import Curve, Estimate, Finding, Proof, RegimeResult
+from sim2real.diagnose.result.untested import untested
+
+FORMAT = "puckpilot-diagnosis/1"
+NO_PIECES = Proof(0.0, 0.0, 0.0, 0)
+
+
+def as_dict(diagnosis: Diagnosis) -> dict[str, Any]:
+    """The diagnosis in the format's own words."""
+    proof = diagnosis.proof
+    baseline = {name: one for each in diagnosis.regime_results for name, one in each.baseline.items()}
+    words = {
+        "format": FORMAT,
+        "verdict": diagnosis.verdict,
+        "baseline": {"parameters": {name: _estimate(one) for name, one in baseline.items()}},
+        "findings": [_finding(one) for one in diagnosis.findings],
+        "regimes": _regimes(diagnosis),
+        "heldout": asdict(proof or NO_PIECES) if diagnosis.findings or proof else None,
+        "next_recording": diagnosis.next_recording,
+    }
+    if diagnosis.proof_remarks:
+        words["heldout_notes"] = diagnosis.proof_remarks
+    if diagnosis.reason:
+        words["reason"] = diagnosis.reason
+    if diagnosis.remarks:
+        words["notes"] = diagnosis.remarks
+    return words
+
+
+def _finding(one: Finding) -> dict[str, Any]:
+    words = {
+        "regime": one.regime,
+        "where": dict(one.where),
+        "mechanism": one.mechanism,
+        "also_possible": list(one.also_possible),
+        "depends_on": list(one.depends_on),
+        "formula": one.formula,
+        "parameters": {name: _estimate(value) for name, value in one.parameters.items()},
+        "p_value": one.p_value,
+        **({} if one.size_m is None else {"size_m": one.size_m}),
+        "heldout": {
+            "before": one.before,
+            "after": one.after,
+            "unit": "rms in units of the sensor's noise",
+            **{f"{name}_twin": _known(asdict(twin)) for name, twin in one.null_controls.items()},
+        },
+    }
+    return words if one.curve is None else {**words, "curve": _curve(one.curve)}
+
+
+def _regimes(diagnosis: Diagnosis) -> list[dict[str, Any]]:
+    """What each regime says; of those that were not tested, why not."""
+    missing = untested(diagnosis)
+    told = [_regime(one) for one in diagnosis.regime_results if one.regime not in missing]
+    return [*told, *({"regime": name, "verdict": "untested", "reason": why} for name, why in missing.items())]
+
+
+def _regime(one: RegimeResult) -> dict[str, Any]:
+    """What a regime says for itself."""
+    words = {
+        "regime": one.regime,
+        "verdict": one.verdict,
+        "baseline": {name: _estimate(value) for name, value in one.baseline.items()} or None,
+        "reason": one.undetermined or None,
+        "heldout": None if one.proof is None else asdict(one.proof),
+        "doubt": one.doubt or None,
+        "minor": one.minor or None,
+        "next_recording": one.next_recording or None,
+    }
+    return _known(words)
+
+
+def _known(words: dict[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in words.items() if value is not None}
+
+
+def _curve(one: Curve) -> dict[str, Any]:
+    """The law as a curve with its 95 % band."""
+    words = {"x_label": one.x_label, "y_label": one.y_label, **({"ticks": list(one.ticks)} if one.ticks else {})}
+    return {**words, **{name: getattr(one, name).tolist() for name in ("x", "y", "low", "high")}}
+
+
+def _estimate(one: Estimate) -> dict[str, Any]:
+    return {"value": one.value, "low": one.low, "high": one.high, "unit": one.unit}
+
+
+def write(diagnosis: Diagnosis, folder: Path, context: ReportContext = PLAIN) -> list[Path]:
+    """Write all files into `folder`, each whole or not at all; returns their places."""
+    from sim2real.diagnose.report.page import page
+
+    folder.mkdir(parents=True, exist_ok=True)
+    texts = {
+        "diagnosis.json": json.dumps(as_dict(diagnosis), indent=1, allow_nan=False) + "\n",
+        "report.html": page(diagnosis, context),
+        "effects.toml": effects_toml(diagnosis),
+        "draws.toml": draws_toml(diagnosis, context),
+    }
+    return [write_text_whole(folder / name, text) for name, text in texts.items()]

@@ -1,0 +1,3 @@
+"""The regimes of the physics, a folder each: sliding, wall, mallet, gantry, sensing; `contact` is what walls
+and mallet share.
+"""

@@ -1,0 +1,1 @@
+"""The gantry: what of the mallet's path its drive does not explain."""

@@ -1,0 +1,162 @@
+"""The data of the gantry: the mallet's path beside its drive inputs, and its residuals under their response."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from sim2real.diagnose.regimes.base import UnusableError
+from sim2real.diagnose.regimes.gantry.drive_inputs import DriveInputs, from_commands, from_drive
+from sim2real.diagnose.regimes.gantry.response import axis_residuals
+from sim2real.diagnose.regimes.gantry.tuned import GANTRY_DATA
+from sim2real.diagnose.regimes.gantry.windows import StreamWindows, cut_windows
+from sim2real.recording.folder import Recording
+from sim2real.segmentation.sensor_noise import Noise, estimate_noise
+
+START_COLUMNS = 3  # of a window and axis: rest, slow and fast mode, projected out of its residuals
+ARRAYS = ("t", "observed", "place", "velocity", "noise")  # of a recording, an entry for each sample
+
+
+@dataclass(frozen=True)
+class GantryRecording:
+    """A mallet's path beside its drive inputs, in the recording of that `name`.
+
+    `observed` (n, 2) [m]: positions at `t` (n,) [s], with standard deviations `noise` (n, 2) [m]; `place` (n, 2) [m],
+    `velocity` (n, 2) [m/s]: the path smoothed.
+    """
+
+    name: str
+    drive_inputs: DriveInputs
+    t: np.ndarray
+    observed: np.ndarray
+    place: np.ndarray
+    velocity: np.ndarray
+    noise: np.ndarray
+    windows: StreamWindows
+
+    def with_tick(self, tick: float) -> GantryRecording:
+        """The same with motors that obey a change at whole ticks [s] of their control loop."""
+        return replace(self, drive_inputs=replace(self.drive_inputs, tick=tick))
+
+    def first_windows(self, count: int) -> GantryRecording:
+        """The first `count` windows alone, each a cluster."""
+        begin, end = self.windows.begin[:count], self.windows.end[:count]
+        kept = {name: getattr(self, name)[: end[-1]] for name in ARRAYS}
+        return replace(self, windows=StreamWindows(begin, end, np.arange(len(begin))), **kept)
+
+    def thinned(self, samples: int) -> GantryRecording:
+        """The same with every k-th sample, so that about `samples` are left."""
+        k = max(1, len(self.t) // samples)
+        windows = StreamWindows(-(-self.windows.begin // k), -(-self.windows.end // k), self.windows.cluster)
+        return replace(self, windows=windows, **{name: getattr(self, name)[::k].copy() for name in ARRAYS})
+
+    def freedom(self) -> np.ndarray:
+        """Degrees of freedom (clusters,): residuals of each cluster less the columns of its windows' starts."""
+        sizes = 2 * (self.windows.end - self.windows.begin - START_COLUMNS)
+        return np.bincount(self.windows.cluster, sizes, self.windows.clusters)
+
+    def residuals(self, p: np.void, delay: float = 0.0, extra: np.ndarray | None = None) -> np.ndarray:
+        """Residuals (2 rows, 1 + k) of all windows, x before y, in units of the noise, starts projected out.
+
+        `delay` [s]: by which all changes come later. `extra` (n, 2, k) [m]: further columns of the path, treated alike.
+        """
+        extra = np.zeros((len(self.t), 2, 0)) if extra is None else extra
+        changes, volts = self.drive_inputs.at_motors(p)
+        uncertain = self.drive_inputs.uncertain_switches(p)
+        rows, found = self.windows.rows, []
+        for axis in range(2):
+            out = np.empty((len(self.t), 1 + extra.shape[2]))
+            columns = (self.observed[:, axis], 1.0 / self.noise[:, axis])
+            axis_residuals(
+                p, axis, changes + delay, volts[:, axis].copy(), uncertain, self.t, *(c.copy() for c in columns),
+                self.windows.begin, self.windows.end, np.ascontiguousarray(extra[:, axis]), out,
+            )  # fmt: skip
+            found.append(out[rows])
+        return np.concatenate(found)
+
+    def cluster_of_rows(self) -> np.ndarray:
+        """The cluster of each row of `residuals`."""
+        return np.tile(np.repeat(self.windows.cluster, self.windows.end - self.windows.begin), 2)
+
+
+def read_gantry(recording: Recording, supply: float, breaks: np.ndarray) -> GantryRecording:
+    """The gantry in `recording` under `supply` [V]; `breaks` (k,) [s]: times at which something else pushed the mallet.
+    Errors: UnusableError."""
+    if recording.mallet is None:
+        raise UnusableError("the mallet's path was not recorded (mallet.csv)")
+    drive_inputs = find_drive_inputs(recording, supply)
+    mallet = recording.mallet
+    p = np.column_stack([mallet["mallet_x"], mallet["mallet_y"]])
+    usable = np.isfinite(p).all(axis=1) & drive_inputs.known_at(mallet.t, GANTRY_DATA.longest_delay)
+    t, p = mallet.t[usable], p[usable]
+    unknown = np.unique(drive_inputs.unknown)
+    windows = cut_windows(t, unknown)
+    _check_enough(windows)
+    if p.std(axis=0).max() < GANTRY_DATA.least_travel:
+        raise UnusableError("the mallet hardly moves")
+    noise = encoder_noise(t, p)
+    spare = float(np.median(np.diff(t))) * GANTRY_DATA.spare_samples * GANTRY_DATA.fewest_samples
+    sparsest = int(GANTRY_DATA.window / spare)
+    stride = max(1, min(round(len(t) / GANTRY_DATA.most_samples), sparsest))
+    t, p = t[::stride].copy(), p[::stride].copy()
+    place, velocity = smoothed(t, p)
+    windows = cut_windows(t, np.concatenate([breaks, unknown]))
+    _check_enough(windows)
+    return GantryRecording(recording.name, drive_inputs, t, p, place, velocity, noise.std(velocity), windows)
+
+
+def _check_enough(windows: StreamWindows) -> None:
+    if len(windows.begin) < GANTRY_DATA.fewest_windows:
+        seconds, expected = (GANTRY_DATA.window * count for count in (len(windows.begin), GANTRY_DATA.fewest_windows))
+        raise UnusableError(f"mallet and orders overlap for {seconds:.1f} s, expected {expected:g} s or more")
+
+
+def find_drive_inputs(recording: Recording, supply: float) -> DriveInputs:
+    """The motors' drive inputs: of the plans, else of the motors' log. Errors: UnusableError."""
+    sources = (
+        ("commands", recording.commands, from_commands),
+        ("drive", recording.drive, lambda drive: from_drive(drive, supply)),
+    )
+    recorded = [(name, read(stream)) for name, stream, read in sources if stream is not None and stream.rows]
+    if not recorded:
+        raise UnusableError("neither the plans (commands.csv) nor the motors' log (drive.csv) was recorded")
+    name, drive_inputs = next(((name, one) for name, one in recorded if len(one.t)), recorded[0])
+    if not len(drive_inputs.t):
+        raise UnusableError(f"{name}.csv holds no complete row")
+    return drive_inputs
+
+
+def smoothed(t: np.ndarray, observed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Place [m] and velocity [m/s], each (n, 2), of positions `observed` (n, 2) [m] at `t` (n,) [s], averaged over
+    `GANTRY_DATA.smoothing` but not across holes."""
+    period = float(np.median(np.diff(t)))
+    edges = [0, *(np.flatnonzero(np.diff(t) > GANTRY_DATA.longest_hole * period) + 1), len(t)]
+    parts = [
+        _smoothed(t[a:b], observed[a:b], max(1, round(0.5 * GANTRY_DATA.smoothing / period)))
+        for a, b in pairwise(edges)
+    ]
+    place, velocity = (np.concatenate(each) for each in zip(*parts, strict=True))
+    return place, velocity
+
+
+def _smoothed(t: np.ndarray, observed: np.ndarray, half: int) -> tuple[np.ndarray, np.ndarray]:
+    padded = np.pad(observed, ((half, half), (0, 0)), mode="edge")
+    total = np.cumsum(np.vstack([np.zeros(2), padded]), axis=0)
+    place = (total[2 * half + 1 :] - total[: -2 * half - 1]) / (2 * half + 1)
+    return place, np.gradient(place, t, axis=0) if len(t) > 1 else np.zeros_like(place)
+
+
+def encoder_noise(t: np.ndarray, p: np.ndarray) -> Noise:
+    """Noise of the positions `p` (n, 2) [m] at `t` (n,) [s], at least that of rounding to the encoders' steps, which is
+    step / sqrt(12)."""
+    noise = estimate_noise(t, p)
+    return replace(noise, position=max(noise.position, smallest_step(p) / np.sqrt(12.0)))
+
+
+def smallest_step(p: np.ndarray) -> float:
+    """The step [m] to which positions (n, 2) are rounded: the smallest usual difference of neighbours; 0 if none."""
+    moves = np.abs(np.diff(p, axis=0)).ravel()
+    moves = moves[moves > GANTRY_DATA.same_step]
+    return float(np.quantile(moves, 0.01)) if len(moves) else 0.0

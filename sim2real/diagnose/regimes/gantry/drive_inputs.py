@@ -1,0 +1,103 @@
+"""Drive inputs of the motors: volts that are constant between changes, from plans or from the motors' log."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from puckpilot_env.kernel import kernel
+from puckpilot_env.physics import compose
+from puckpilot_env.physics.effects import clock_drift
+from sim2real.diagnose.regimes.gantry.tuned import GANTRY_DATA
+from sim2real.recording.folder import Stream
+
+
+@dataclass(frozen=True)
+class DriveInputs:
+    """Signed `volts` (m, 2) [V] of the axes, each pair held from `t` (m,) [s] on.
+
+    `load` (m,) [V]: |V_x| + |V_y|, which loads the supply; of a plan its two volts, however long each lasts. `switch`
+    (m,) bool: a switch within a plan, whose time is known to the digits written. `tick` [s]: period of the control
+    loop, at whose next tick the motors obey a change; 0: at once. `end` [s]: until when the inputs are known;
+    `unknown` (k, 2) [s]: begin and end of times before that at which they are not.
+    """
+
+    t: np.ndarray
+    volts: np.ndarray
+    load: np.ndarray
+    switch: np.ndarray
+    end: float
+    unknown: np.ndarray
+    tick: float = 0.0
+
+    def known_at(self, t: np.ndarray, delay: float) -> np.ndarray:
+        """Whether (n,) the inputs are known at the times `t` (n,) [s] and for `delay` [s] before."""
+        begins, ends = np.vstack([[-np.inf, -np.inf], self.unknown]).T
+        last = np.searchsorted(begins, t, side="right") - 1
+        return (t >= self.t[0]) & (t <= self.end) & (t >= ends[last] + delay)
+
+    def at_motors(self, p: np.void) -> tuple[np.ndarray, np.ndarray]:
+        """Times (m,) [s] of the encoders' clock and volts (m, 2) [V] at the motors under the parameters `p`."""
+        volts = np.empty_like(self.volts)
+        _deliver(p, self.volts, self.load, volts)
+        return self._at_ticks(self.t + p["command_delay"]) * clock_drift.pace(p), volts
+
+    def uncertain_switches(self, p: np.void) -> np.ndarray:
+        """Indices of the switches so near to a tick that their written time may belong to the tick before or after."""
+        if not self.tick:
+            return np.zeros(0, int)
+        ticks = (self.t + p["command_delay"]) / self.tick
+        return np.flatnonzero(self.switch & (np.abs(ticks - np.rint(ticks)) * self.tick < GANTRY_DATA.switch_error))
+
+    def _at_ticks(self, t: np.ndarray) -> np.ndarray:
+        return np.ceil((t - GANTRY_DATA.time_rounding) / self.tick) * self.tick if self.tick else t
+
+
+@kernel
+def _deliver(p, commanded, load, volts):
+    """Write to `volts` (m, 2) [V] what arrives at the motors of `commanded` (m, 2) [V] under `load` (m,) [V]."""
+    for i in range(commanded.shape[0]):
+        for k in range(2):
+            volts[i, k] = compose.delivered(p, commanded[i, k], load[i])
+
+
+def from_commands(commands: Stream) -> DriveInputs:
+    """Drive inputs of plans: +V until t1, -V until t2, then 0, each cut by the next plan."""
+    start = commands.t
+    switches = np.stack([commands[f"t_{axis}{k}"] for axis in "xy" for k in (1, 2)], axis=1)
+    moments = np.sort(np.maximum(np.column_stack([np.zeros(len(start)), switches]), 0.0), axis=1)
+    until = np.append(np.diff(start), np.inf)
+    whole = np.isfinite(switches).all(axis=1) & np.isfinite(commands["V_x"] + commands["V_y"])
+    changes = np.column_stack([np.ones(len(start), bool), np.diff(moments, axis=1) > 0.0])
+    used = changes & (moments < until[:, None]) & whole[:, None]
+    plan, which = np.nonzero(used)
+    moment = moments[used]
+    volts = np.empty((len(plan), 2))
+    for k, axis in enumerate("xy"):
+        full, t1, t2 = (commands[name][plan] for name in (f"V_{axis}", f"t_{axis}1", f"t_{axis}2"))
+        volts[:, k] = np.where(moment < t1, full, np.where(moment < t2, -full, 0.0))
+    load = np.abs(commands["V_x"][plan]) + np.abs(commands["V_y"][plan])
+    pause = float(np.median(np.diff(start))) if len(start) > 1 else float(np.max(switches[-1], initial=0.0))
+    end = float(start[-1]) + pause
+    return DriveInputs(start[plan] + moment, volts, load, which > 0, end, _unknown_times(whole, start, end))
+
+
+def from_drive(drive: Stream, supply: float) -> DriveInputs:
+    """Drive inputs of the motors' log under `supply` [V]: x follows left - right, y follows -(left + right)."""
+    left, right = drive["pwm_left"], drive["pwm_right"]
+    known = np.isfinite(left) & np.isfinite(right)
+    volts = supply * np.column_stack([left - right, -(left + right)])[known]
+    t = drive.t[known]
+    end = float(t[-1]) if len(t) else 0.0
+    unknown = _unknown_times(known, drive.t, end)
+    changes = np.append(True, np.any(np.diff(volts, axis=0) != 0.0, axis=1))[: len(t)]
+    t, volts = t[changes], volts[changes]
+    return DriveInputs(t, volts, np.abs(volts).sum(axis=1), np.zeros(len(t), bool), end, unknown)
+
+
+def _unknown_times(known: np.ndarray, start: np.ndarray, end: float) -> np.ndarray:
+    """Begin and end (k, 2) [s] of the rows that are not `known` (n,); each row lasts from its `start` (n,) [s] to the
+    next one's, the last one to `end` [s]."""
+    missing = np.flatnonzero(~known)
+    return np.column_stack([start[missing], np.append(start[1:], max(end, start[-1]))[missing]])

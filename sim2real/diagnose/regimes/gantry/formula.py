@@ -1,0 +1,111 @@
+"""The readable formula of an unlisted law of the gantry, extra volts on its axes, and the projection that shows it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sim2real.diagnose.engine.law import Law
+from sim2real.diagnose.engine.model_search import SearchResult
+from sim2real.diagnose.formula.search import Formula, FormulaProblem, find_formula
+from sim2real.diagnose.formula.shapes import Axis, Direction, Form, form, harmonic, profiles
+from sim2real.diagnose.regimes.gantry.basis_library import path_responses, signals
+from sim2real.diagnose.regimes.gantry.problem import GantryProblem
+from sim2real.diagnose.regimes.gantry.tuned import GANTRY_LAW
+
+AXES = {"both axes": (0, 1), "x": (0,), "y": (1,)}
+# By the last word of a law's name: the field of `Signals`, its symbol and unit in a formula, and its label
+COORDINATES = {
+    "place": (("place", "p", "m", "place along the axis [m]"),),
+    "speed": (("speed", "speed", "m/s", "speed of the axis [m/s]"),),
+    "volts": (
+        ("voltage_size", "volts", "V", "volts of the axis [V]"),
+        ("load", "volts_of_both", "V", "volts of both axes together [V]"),
+    ),
+    "time": (("t", "t", "s", "time [s]"),),
+    "heading": (("heading", "heading", "deg", "heading [°]"),),
+}
+# By the first word: the field of `Signals` to which the volts are proportional, the unit and name of their ratio, and
+# how the proportion is said
+DRIVERS = {
+    "force": ("ones", "V", "volts", "volts"),
+    "loss": ("velocity", "V s/m", "volts for each m/s of speed", "times the speed"),
+    "pull": ("voltage", "1", "volts for each volt", "times the volts"),
+}
+
+
+@dataclass(frozen=True)
+class GantryProjection:
+    """A `coordinate` (2 n,) of both axes, x before y, and the `driver` (2 n,) to which the volts are proportional;
+    `symbol`, `unit` and `label` of the coordinate, `ratio_label` of volts by driver."""
+
+    symbol: str
+    unit: str
+    label: str
+    ratio_label: str
+    coordinate: np.ndarray
+    driver: np.ndarray
+
+
+def is_readable(law: Law) -> bool:
+    """Whether a law of the gantry has a coordinate over which a formula can be written."""
+    return law.name.split()[-1] in COORDINATES
+
+
+def readable_formula(
+    problem: GantryProblem, found: SearchResult, law: Law, use: np.ndarray
+) -> tuple[Formula, GantryProjection]:
+    """The formula of an unlisted law, fitted to the clusters `use`, and the projection that shows it."""
+    kind, coordinate = law.name.split()[0], law.name.split()[-1]
+    _, unit, _, proportion = DRIVERS[kind]
+    views = [_projection(problem, kind, *one) for one in COORDINATES[coordinate]]
+    forms: dict[str, tuple[Form, GantryProjection]] = {}
+    for view in views:
+        axis = Axis(view.symbol, view.unit, view.coordinate, kind == "force")
+        orders = range(1, GANTRY_LAW.harmonics + 1)
+        shapes = [harmonic(k, unit) for k in orders] if coordinate == "heading" else None
+        for name, axes in AXES.items():
+            here = np.repeat([0 in axes, 1 in axes], len(view.coordinate) // 2)
+            words = f"{'' if kind == 'force' else f'{proportion}, '}on {name}"
+            direction = Direction("extra volts", "", words, (view.driver * here)[:, None])
+            made = [form(one, axis, [direction], unit) for one in shapes or profiles(axis, unit)]
+            forms |= {one.name: (one, view) for one in made}
+    formula_problem = _formula_problem(problem, found, use, {})
+    best = find_formula(formula_problem, [one for one, _ in forms.values()])
+    return _refitted(problem, found, use, best), forms[best.form.name][1]
+
+
+def _formula_problem(
+    problem: GantryProblem, found: SearchResult, use: np.ndarray, moved: Mapping[str, float]
+) -> FormulaProblem:
+    """What the fitted parameters leave, each `moved` from where it was found, and how extra volts change that."""
+    values = {name: value + moved.get(name, 0.0) for name, value in found.final.values.items()}
+    p = problem.record(values)
+    rest = problem.residuals(values, found.final.free, np.arange(problem.clusters))
+    priors = len(rest.r) - sum(2 * len(run.windows.rows) for run in problem.runs)
+
+    def respond(laws: np.ndarray) -> np.ndarray:
+        columns = path_responses(problem, p, np.stack(np.split(laws[:, 0], 2), axis=1))
+        return np.concatenate([columns, np.zeros((priors, columns.shape[1]))])
+
+    return FormulaProblem(rest.r, rest.jacobian, rest.cluster, use, respond)
+
+
+def _refitted(problem: GantryProblem, found: SearchResult, use: np.ndarray, first: Formula) -> Formula:
+    """The same form, linearised anew about the baseline's parameters beside it, which are far from those alone."""
+    best, moved = first, dict.fromkeys(found.final.free, 0.0)
+    for _ in range(GANTRY_LAW.formula_rounds):
+        moved = {name: moved[name] + float(by) for (name, by) in zip(moved, best.moved, strict=True)}
+        best = find_formula(_formula_problem(problem, found, use, moved), [best.form])
+    whole = np.array(list(moved.values())) + best.moved
+    return replace(best, moved=whole, gained=first.gained)
+
+
+def _projection(problem: GantryProblem, kind: str, name: str, symbol: str, unit: str, label: str) -> GantryProjection:
+    """The projection of laws of a `kind` over a field of `Signals`."""
+    driver_name, _, ratio_label, _ = DRIVERS[kind]
+    both = [signals(problem.runs, axis) for axis in range(2)]
+    coordinate, driver = (np.concatenate([getattr(one, field) for one in both]) for field in (name, driver_name))
+    return GantryProjection(symbol, unit, label, ratio_label, coordinate, driver)

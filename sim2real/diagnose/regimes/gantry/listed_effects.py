@@ -1,0 +1,152 @@
+"""Listed effects that the mallet's path may support, each fitted as it is, with the baseline beside it.
+
+The encoders are so exact that no effect is a small change: its column is the difference of the residuals between the
+best fit without it and the best fit with it. On top of the best effect every other is tried, while anything is left.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from puckpilot_env.parameters import BY_NAME
+from puckpilot_env.physics.effects import EFFECTS
+from sim2real.diagnose.engine import normal_equations
+from sim2real.diagnose.engine.least_squares import LeastSquaresFit, fit
+from sim2real.diagnose.engine.tuned import ENGINE
+from sim2real.diagnose.regimes.gantry.residuals import LOW_ORDER, GantryResiduals
+from sim2real.diagnose.regimes.gantry.tuned import GANTRY_FIT
+
+# Where fits of an effect start; of several, the most promising by their derivatives are followed up
+STARTS: dict[str, tuple[dict[str, float], ...]] = {
+    "voltage_sag": ({},),
+    "motor_deadband": ({},),
+    "command_delay": tuple({"command_delay": late} for late in (0.002, 0.01, 0.03)),
+    "belt_compliance": tuple({"belt_hz": hz, "belt_zeta": 0.15} for hz in (5.0, 8.0, 12.0, 18.0, 28.0, 42.0)),
+    "backlash": tuple({"backlash_gap": gap} for gap in (2e-4, 7e-4, 2e-3)),
+    "clock_drift": tuple({"encoder_clock": ppm} for ppm in (-1000.0, -300.0, 300.0, 1000.0)),
+}
+ALTERNATIVES = {"belt_compliance": "backlash", "backlash": "belt_compliance"}  # both let the mallet lag its motor
+ONCE = 1  # step of a fit that only estimates the covariance
+
+
+@dataclass(frozen=True)
+class StagedFit:
+    """A law fitted with the jerk's coefficients at their defaults, `low_order`, and from there with them free, `law`.
+
+    Free at once, these absorb whatever else delays or softens the path.
+    """
+
+    low_order: LeastSquaresFit
+    law: LeastSquaresFit
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An effect on top of those `beside` it: the best fit `law`, and its change `column` (n,) of the residuals."""
+
+    name: str
+    beside: tuple[str, ...]
+    law: LeastSquaresFit
+    column: np.ndarray
+
+    @property
+    def label(self) -> str:
+        """A name for the column, unlike any parameter's."""
+        return " beside ".join((f"+ {self.name}", *self.beside))
+
+
+def candidates(problem: GantryResiduals, values: Mapping[str, float]) -> list[Candidate]:
+    """The effects that fits from `values` support; none where the best of them leave much of the baseline's excess.
+
+    An effect whose fit ends at a bound of its range, or whose size is not significant, stands for something else.
+    """
+    thin = problem.thinned(GANTRY_FIT.samples)
+    freedom = float(thin.freedom.sum())
+    now = base = _fit_in_stages(thin, [values], ())
+    chosen: tuple[str, ...] = ()
+    found = []
+    while len(chosen) < GANTRY_FIT.most_effects and now.law.loss > GANTRY_FIT.little_left * freedom:
+        names = [name for name in STARTS if name not in chosen and ALTERNATIVES.get(name) not in chosen]
+        fits = {name: best_fit(thin, now, name) for name in names}
+        fits = {name: one for name, one in fits.items() if is_supported(thin, now.law, one.law, name)}
+        if not fits:
+            break
+        best = min(fits, key=lambda name: fits[name].law.loss)
+        share = GANTRY_FIT.later_share if chosen else GANTRY_FIT.first_share
+        if now.law.loss - fits[best].law.loss < share * (now.law.loss - freedom):
+            break
+        before = _residuals(problem, now.law)
+        found += [Candidate(name, chosen, one.law, _residuals(problem, one.law) - before) for name, one in fits.items()]
+        chosen, now = (*chosen, best), fits[best]
+    before, left = (_mean_square(problem, one.law) for one in (base, now))  # of all samples: backlash is in reversals
+    much = left > GANTRY_FIT.much_left and left - 1.0 > (1.0 - GANTRY_FIT.later_share) * (before - 1.0)
+    return [] if much else found
+
+
+def is_supported(problem: GantryResiduals, without: LeastSquaresFit, law: LeastSquaresFit, name: str) -> bool:
+    """Whether an effect's fit `law` lies inside its range, is significant, and gains more than chance would."""
+    rows = EFFECTS[name].row_names
+    if set(law.bound) & set(rows):
+        return False
+    sizes = [abs(law.values[row] - BY_NAME[row].default) > GANTRY_FIT.significance * _std(law, row) for row in rows]
+    by_starts = 4.0 * problem.windows if name == "belt_compliance" else 0.0  # of its ringing, two on each axis
+    noise = max(law.loss / float(problem.freedom.sum()), 1.0)
+    return any(sizes) and (without.loss - law.loss) / noise > ENGINE.fit_gain + 2.0 * len(rows) + by_starts
+
+
+def best_fit(problem: GantryResiduals, without: StagedFit, name: str) -> StagedFit:
+    """The best fit of an effect on top of others, all of whose parameters stay free."""
+    rows = (*(row for row in without.low_order.free if row not in problem.base), *EFFECTS[name].row_names)
+    starts = [{**without.low_order.values, **start} for start in STARTS[name]]
+    if len(starts) > GANTRY_FIT.followed:
+        starts.sort(key=lambda start: linearised_loss(problem, start, (*LOW_ORDER, *rows)))
+    return _fit_in_stages(problem, starts[: GANTRY_FIT.followed], rows)
+
+
+def _fit_in_stages(problem: GantryResiduals, starts: Sequence[Mapping[str, float]], rows: tuple[str, ...]) -> StagedFit:
+    """The best of the low-order fits from `starts`, and from there the fit of all parameters."""
+    low_order = [fit(problem, start, (*LOW_ORDER, *rows), problem.everything, GANTRY_FIT.rounds) for start in starts]
+    best = min(low_order, key=lambda one: one.loss)
+    if "command_delay" in rows:
+        best = _delay_in_steps(problem, best)
+    return StagedFit(best, fit(problem, best.values, (*problem.base, *rows), problem.everything, GANTRY_FIT.rounds))
+
+
+def _delay_in_steps(problem: GantryResiduals, law: LeastSquaresFit) -> LeastSquaresFit:
+    """The fit with the best delay near the one found: where motors obey a plan at ticks, a delay acts in steps."""
+    tick = max(run.drive_inputs.tick for run in problem.runs)
+    free = tuple(row for row in law.free if row != "command_delay")
+    delays = [max(law.values["command_delay"] + share * tick, 0.0) for share in GANTRY_FIT.delay_steps]
+    starts = [{**law.values, "command_delay": delay} for delay in delays]
+    if not tick:
+        return law
+    best = min(starts, key=lambda start: linearised_loss(problem, start, free))
+    values = fit(problem, best, free, problem.everything, GANTRY_FIT.rounds).values
+    return fit(problem, values, law.free, problem.everything, ONCE)
+
+
+def _std(law: LeastSquaresFit, row: str) -> float:
+    k = law.free.index(row)
+    return float(np.sqrt(law.covariance[k, k]))
+
+
+def _mean_square(problem: GantryResiduals, law: LeastSquaresFit) -> float:
+    """Mean square residual in units of the noise."""
+    left = problem.residuals(law.values, (), problem.everything).r
+    return float(left @ left) / float(problem.freedom.sum())
+
+
+def _residuals(problem: GantryResiduals, law: LeastSquaresFit) -> np.ndarray:
+    return problem.residuals(law.values, (), np.arange(problem.clusters)).r
+
+
+def linearised_loss(problem: GantryResiduals, start: Mapping[str, float], free: Sequence[str]) -> float:
+    """The loss of the best law with `free` parameters, by the derivatives at `start`."""
+    found = problem.residuals(start, free, problem.everything)
+    sums = normal_equations.make_equations(free, found.r, found.jacobian, found.cluster, problem.clusters)
+    columns = np.arange(len(free))
+    theta = normal_equations.solve(sums, columns, problem.everything)
+    return float(normal_equations.losses(sums, columns, theta, problem.everything).sum())

@@ -1,0 +1,127 @@
+"""Residuals of the mallet's paths: observed positions less those that the drive inputs predict under a law."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from puckpilot_env.parameters import BY_NAME
+from sim2real.diagnose.engine.problem import Residuals, Units, record_of
+from sim2real.diagnose.regimes.gantry.data import GantryRecording
+from sim2real.diagnose.regimes.gantry.tuned import GANTRY_FIT
+
+PRIOR_PARAMETERS = ("a1", "b1")  # coefficients of the jerk: nearly a delay of the path, so they have a prior
+LOW_ORDER = ("a2", "a3", "b2", "b3")  # the baseline's other parameters
+MIRRORED = {"b1": "a1", "b2": "a2", "b3": "a3"}  # x depends on the difference a - b, y on the sum a + b
+
+
+class GantryResiduals:
+    """The mallet's paths of some recordings. Parameters that `values` leave out are `common`, or at default."""
+
+    regime = "gantry"
+    base: tuple[str, ...] = ("a1", "a2", "a3", "b1", "b2", "b3")
+    first_fitted: tuple[str, ...] = LOW_ORDER
+
+    def __init__(
+        self,
+        runs: Sequence[GantryRecording],
+        common: Mapping[str, float],
+        basis_runs: Sequence[GantryRecording] = (),
+    ) -> None:
+        """`common`: what every law shares, e.g. the pulley's radius; `basis_runs`: the runs to which smooth laws were
+        fitted, where those are others.
+
+        Clusters are blocks of seconds, numbered through the runs in order.
+        """
+        self.runs, self.common = tuple(runs), dict(common)
+        self.basis_runs = tuple(basis_runs) or self.runs
+        self.first = np.cumsum([0, *(run.windows.clusters for run in runs)])
+        self.clusters = int(self.first[-1])
+        self.freedom = np.concatenate([run.freedom() for run in runs])
+        self.units = Units(np.arange(self.clusters), self.freedom)
+        self.noise_m = float(np.sqrt(np.mean(np.concatenate([run.noise for run in runs]) ** 2)))
+        self.place_error_m = 0.0  # no camera
+        sizes = [len(run.windows.rows) for run in runs]
+        self._sign = np.concatenate([np.repeat((-1.0, 1.0), size) for size in sizes])
+        of_rows = [a + run.cluster_of_rows() for a, run in zip(self.first, runs, strict=False)]
+        self.cluster = np.concatenate([*of_rows, np.repeat(np.arange(self.clusters), len(PRIOR_PARAMETERS))])
+
+    @property
+    def clusters_of_runs(self) -> list[np.ndarray]:
+        """The clusters of each run."""
+        return [np.arange(a, b) for a, b in pairwise(self.first.tolist())]
+
+    def of(self, runs: Sequence[GantryRecording]) -> GantryResiduals:
+        """The residuals of other runs."""
+        return GantryResiduals(runs, self.common)
+
+    def thinned(self, samples: int) -> GantryResiduals:
+        """The same with about so many samples of the encoders in all, for fast fits."""
+        share = samples / sum(len(run.t) for run in self.runs)
+        runs = [run.thinned(max(1, int(share * len(run.t)))) for run in self.runs]
+        return GantryResiduals(runs, self.common)
+
+    def residuals(self, values: Mapping[str, float], free: Sequence[str], clusters: np.ndarray) -> Residuals:
+        """See `Problem.residuals`. They are `GANTRY_FIT.impossible` where an axis would not be overdamped.
+
+        The last rows, two of each cluster, are the prior of PRIOR_PARAMETERS: with a delay of the plans, the path alone
+        hardly determines them.
+        """
+        p = self.record(values)
+        r = self._path(p)
+        jacobian = np.empty((len(r), len(free)))
+        for k, name in enumerate(free):
+            mirror = MIRRORED.get(name)
+            jacobian[:, k] = self._sign * jacobian[:, free.index(mirror)] if mirror in free else self._slope(p, name, r)
+        centre = np.array([self.defaults(name) for name in PRIOR_PARAMETERS])
+        weight = 1.0 / (GANTRY_FIT.prior_share * np.abs(centre)) / np.sqrt(self.clusters)
+        off = np.array([p[name] for name in PRIOR_PARAMETERS]) - centre
+        r = np.concatenate([r, np.tile(weight * off, self.clusters)])
+        is_free = np.array([[one == name for name in free] for one in PRIOR_PARAMETERS]).reshape(len(off), -1)
+        slopes = weight[:, None] * is_free
+        jacobian = np.concatenate([jacobian, np.tile(slopes, (self.clusters, 1))])
+        here = np.isin(self.cluster, clusters)
+        return Residuals(r[here], jacobian[here], self.cluster[here])
+
+    def _slope(self, p: np.void, name: str, r: np.ndarray) -> np.ndarray:
+        """Derivative (rows,) of the path's residuals by a parameter; `r` (rows,): the residuals at `p`."""
+        step = _step(name, float(p[name]))
+        moved, delay = p.copy(), 0.0
+        if name == "command_delay":
+            delay = step  # of the changes themselves, since a delay acts in steps where there are ticks
+        else:
+            moved[name] += step
+        return (self._path(moved, delay) - r) / step
+
+    def defaults(self, name: str) -> float:
+        """The value of a parameter before any fit."""
+        return float(self.common.get(name, BY_NAME[name].default))
+
+    @property
+    def windows(self) -> int:
+        """How many windows all runs have."""
+        return sum(len(run.windows.cluster) for run in self.runs)
+
+    @property
+    def everything(self) -> np.ndarray:
+        """The indices of all clusters."""
+        return np.arange(self.clusters)
+
+    def record(self, values: Mapping[str, float]) -> np.void:
+        """The simulator's record of all parameters under the law `values`."""
+        return record_of({**self.common, **values})
+
+    def _path(self, p: np.void, delay: float = 0.0) -> np.ndarray:
+        """Residuals (rows,) of the path, run by run, in units of the noise."""
+        r = np.concatenate([run.residuals(p, delay)[:, 0] for run in self.runs])
+        return np.where(np.isfinite(r), r, GANTRY_FIT.impossible)
+
+
+def _step(name: str, value: float) -> float:
+    """The difference step of a parameter at `value`, within its range."""
+    row = BY_NAME[name]
+    size = max(abs(value), abs(row.default), GANTRY_FIT.least_size * (row.high - row.low))
+    step = GANTRY_FIT.difference_step * size
+    return step if value + step <= row.high else -step

@@ -1,0 +1,51 @@
+"""Windows of the encoders' stream, each with a free start: so short that small errors of the model do not add up."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from sim2real.diagnose.regimes.gantry.tuned import GANTRY_DATA
+
+
+@dataclass(frozen=True)
+class StreamWindows:
+    """`begin`, `end` (w,): first sample of each window, and the one after its last; `cluster` (w,): the block of a few
+    windows to which it belongs."""
+
+    begin: np.ndarray
+    end: np.ndarray
+    cluster: np.ndarray
+
+    @cached_property
+    def rows(self) -> np.ndarray:
+        """The samples of all windows, in order."""
+        return np.concatenate([np.arange(a, b) for a, b in zip(self.begin, self.end, strict=True)])
+
+    @property
+    def clusters(self) -> int:
+        """How many clusters there are."""
+        return int(self.cluster[-1]) + 1 if len(self.cluster) else 0
+
+
+def cut_windows(t: np.ndarray, breaks: np.ndarray) -> StreamWindows:
+    """Windows of the samples at `t` (n,) [s]; none reaches across a hole in the stream or a time in `breaks` [s]."""
+    if len(t) < GANTRY_DATA.fewest_samples:
+        return StreamWindows(*(np.zeros(0, np.int64) for _ in range(3)))
+    period = float(np.median(np.diff(t)))
+    cut = np.diff(t) > GANTRY_DATA.longest_hole * period
+    cut[np.searchsorted(t, breaks[(breaks > t[0]) & (breaks <= t[-1])]) - 1] = True
+    edges = np.concatenate([[0], np.flatnonzero(cut) + 1, [len(t)]])
+    begin, end = [], []
+    for a, b in pairwise(edges.tolist()):
+        parts = max(1, round(float(t[b - 1] - t[a]) / GANTRY_DATA.window))
+        inner = np.searchsorted(t[a:b], np.linspace(t[a], t[b - 1], parts + 1)[1:-1]) + a
+        begin += [a, *inner]
+        end += [*inner, b]
+    kept = np.array(end) - np.array(begin) >= GANTRY_DATA.fewest_samples
+    begin, end = np.array(begin)[kept], np.array(end)[kept]
+    size = max(1, int(min(GANTRY_DATA.longest_block, (t[-1] - t[0]) / GANTRY_DATA.blocks) / GANTRY_DATA.window))
+    return StreamWindows(begin, end, np.arange(len(begin)) // size)

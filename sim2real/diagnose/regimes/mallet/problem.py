@@ -1,0 +1,111 @@
+"""Contacts with the mallet as a problem: the puck's velocity after each and the mallet's recoil, by `strike`.
+
+The puck alone determines (1 + e) / (1 + give); the mallet's recoil, give times the puck's change of velocity, separates
+the two. Walls are assumed to leave the puck's spin alone, so that it carries over from one contact to the next.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from puckpilot_env.kernel import kernel
+from puckpilot_env.parameters import BY_NAME
+from puckpilot_env.physics.contacts.rebound import strike
+from sim2real.diagnose.engine.problem import DesignMatrix
+from sim2real.diagnose.regimes.contact.problem import ContactProblem
+from sim2real.diagnose.regimes.contact.tuned import CONTACT
+from sim2real.diagnose.regimes.mallet.candidates import mallet_design_matrix
+from sim2real.diagnose.regimes.mallet.data import MalletContacts
+from sim2real.statistics.whitening import whitened
+
+
+@kernel
+def _predict_contacts(p, normal, t, place, spin_chain, mallet_velocity, before, pucks, after):
+    """Velocities after (n, 2) [m/s] of contacts in order of time; each chain begins without spin."""
+    puck = pucks[0]
+    for i in range(len(normal)):
+        if i == 0 or spin_chain[i] != spin_chain[i - 1]:
+            puck.spin = 0.0
+        else:
+            puck.spin *= np.exp(-p.spin_decay * (t[i] - t[i - 1]))
+        puck.x, puck.y = place[i, 0], place[i, 1]
+        puck.vx, puck.vy = before[i, 0], before[i, 1]
+        strike(puck, p, t[i], mallet_velocity[i, 0], mallet_velocity[i, 1], normal[i, 0], normal[i, 1])
+        after[i, 0], after[i, 1] = puck.vx, puck.vy
+
+
+class MalletProblem(ContactProblem[MalletContacts]):
+    """Contacts with the robot's mallet: the puck's velocity after each along the normal and the tangent, and the step
+    of the mallet's velocity."""
+
+    regime = "mallet"
+    base: tuple[str, ...] = ("mallet_restitution",)
+    first_fitted: tuple[str, ...] = base
+    each = 3
+    unit_name = "mallet contacts"
+
+    def __init__(self, data: MalletContacts, clusters: int, common: Mapping[str, float]) -> None:
+        """See `ContactProblem`."""
+        super().__init__(data, clusters, common)
+        self._set_noise(*self._noise(self._record({})))
+        covariance = data.velocity_covariance.sum(axis=1)
+        noise = np.trace(covariance, axis1=1, axis2=2)
+        self.noise_m = CONTACT.flight_time * float(np.sqrt(noise.mean() / 2)) if len(data) else 0.0
+
+    @property
+    def observed(self) -> np.ndarray:
+        """Velocity after along the normal and the tangent, and the mallet's step: (n, 3) [m/s]."""
+        return np.concatenate([self.data.components(self.data.velocity_after), self.data.mallet_step[:, None]], axis=1)
+
+    def predicted(self, values: Mapping[str, float]) -> np.ndarray:
+        """Velocity after along the normal and the tangent, and the mallet's step along the normal: (n, 3) [m/s]."""
+        return self._predicted(self._record(values), self.data.velocity_before, self.data.mallet_velocity)
+
+    def with_common_noise(self, values: Mapping[str, float], predicted: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        """See `ContactProblem.with_common_noise`: the noise along the tangent grows, where the spin is unknown, up to
+        the most that friction can do."""
+        d = self.data
+        e = values.get("mallet_restitution", BY_NAME["mallet_restitution"].default)
+        reach = values.get("mallet_mu", 0.0) * (1.0 + e) * d.closing_speed
+        growth = np.ones((len(d), 3, 1))
+        growth[:, 1, 0] = np.where(d.spin_unknown, np.hypot(1.0, reach * self._whitening[:, 1, 1]), 1.0)
+        growth = growth.reshape(-1, 1)
+        return whitened(self._common_errors / growth, rows / growth)
+
+    def with_recoil(self, values: Mapping[str, float], changes: np.ndarray) -> np.ndarray:
+        """See `ContactProblem.with_recoil`: the mallet recoils by the puck's change along the normal."""
+        recoiling = changes.copy()
+        recoiling[:, 2] = -values.get("mallet_give", 0.0) * changes[:, 0]
+        return recoiling
+
+    def columns(self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None) -> DesignMatrix:
+        """See `Problem.columns`."""
+        return mallet_design_matrix(self, values, free)
+
+    def _predicted(self, record: np.void, before: np.ndarray, mallet_velocity: np.ndarray) -> np.ndarray:
+        """See `predicted`, from velocities (n, 2) [m/s] of the puck and the mallet before."""
+        after = np.empty_like(before)
+        d = self.data
+        _predict_contacts(record, d.normal, d.t, d.place, d.spin_chain, mallet_velocity, before, self._pucks, after)
+        change = d.components(after - before)[:, :1]
+        return np.concatenate([d.components(after), -float(record["mallet_give"]) * change], axis=1)
+
+    def _noise(self, record: np.void) -> tuple[np.ndarray, np.ndarray]:
+        """Covariance (n, 3, 3) [m^2/s^2] of observed less predicted values at the law `record`; and the derivative
+        (n, 3, 2) of the prediction by the velocity before."""
+        d, step = self.data, CONTACT.velocity_step
+        before, mallet = d.velocity_before, d.mallet_velocity
+        now = self._predicted(record, before, mallet)
+        moved = [(self._predicted(record, before + step * d.axes[:, k], mallet) - now) / step for k in range(2)]
+        by_before = np.stack(moved, axis=2)
+        moved = [(self._predicted(record, before, mallet + step * d.axes[:, k]) - now) / step for k in range(2)]
+        by_mallet = np.concatenate([np.stack(moved, axis=2), np.zeros((len(d), 3, 1))], axis=2)
+        by_mallet[:, 2, 2] = -1.0
+        covariance = by_before @ d.velocity_covariance[:, 0] @ by_before.transpose(0, 2, 1)
+        covariance += by_mallet @ d.mallet_covariance @ by_mallet.transpose(0, 2, 1)
+        covariance[:, :2, :2] += d.velocity_covariance[:, 1]
+        size = np.linalg.norm(d.velocity_after - d.velocity_before, axis=1)
+        covariance[:, :2, :2] += np.eye(2) * ((d.normal_std * size) ** 2)[:, None, None]
+        return covariance, by_before

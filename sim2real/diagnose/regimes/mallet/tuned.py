@@ -1,0 +1,42 @@
+"""Tuned numbers of the mallet regime."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from sim2real.statistics.tuned import tuned
+
+
+@dataclass(frozen=True)
+class MalletNumbers:
+    """Tuned numbers of contacts with the mallet: which are clear, and at which sizes friction is looked for."""
+
+    least_closing_speed: float = tuned(
+        0.1,
+        "m/s",
+        "less takes a puck that leans on the mallet for a contact; more loses slow contacts",
+        "choice: twice that of the walls, since the mallet's velocity errs as well",
+    )
+    longest_delay: float = tuned(
+        0.012,
+        "s",
+        "time between the contact's estimate and the moment at which the motions before and after meet: less loses "
+        "contacts of slow cameras, more keeps gaps in which more than a contact happened",
+        "choice: about two frames of a camera",
+    )
+    farthest_rims: float = tuned(
+        0.006,
+        "m",
+        "distance between the rims at a contact: less loses contacts by the clocks' offset, more takes other contacts "
+        "for those of the mallet",
+        "choice: as far as a wall may be off its place (`segmentation.causes.NEAR`)",
+    )
+    frictions: tuple[float, ...] = tuned(
+        (0.05, 0.1, 0.2, 0.4),
+        "1",
+        "coarser or narrower grids miss a friction, which saturates and so has no derivative at 0",
+        "choice: steps of two over the coefficients of hard plastics",
+    )
+
+
+MALLET = MalletNumbers()

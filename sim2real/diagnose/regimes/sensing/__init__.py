@@ -1,0 +1,1 @@
+"""Camera and encoders: coordinate scale and warp, delay, repeated frames."""

@@ -1,0 +1,189 @@
+"""How late the camera stamps its frames against the encoders' clock, by contacts of the puck with the robot's mallet.
+
+At a contact the distance of their centres is the sum of their radii. Read too late, a moving mallet is elsewhere by its
+velocity times the delay, so each contact with a moving mallet measures the delay, and all of them its drift. A constant
+error of the radii or of the camera's map differs from a delay at contacts with slow and otherwise moving mallets.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim2real.diagnose.regimes.sensing.tuned import CLOCK
+from sim2real.segmentation.causes import Geometry
+from sim2real.segmentation.mallet_path import MalletPath
+from sim2real.segmentation.velocity_jumps import VelocityJump
+from sim2real.statistics.robust import ROBUST, t_weights, typical
+
+
+@dataclass(frozen=True)
+class TimedContacts:
+    """Contacts with the robot's mallet in one recording: `t` (n,) [s] on the camera's clock, `place` (n, 2) [m] of the
+    puck, the unit vector `impulse` (n, 2), `covariance` (n, 3, 3) [s, m] of time and place, and `launch` (n,); the
+    mallet's `encoders`, and the sum of both radii, `radii` [m]."""
+
+    t: np.ndarray
+    place: np.ndarray
+    impulse: np.ndarray
+    covariance: np.ndarray
+    launch: np.ndarray
+    encoders: MalletPath
+    radii: float
+
+    def gaps(self, delay: np.ndarray, rate: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Gaps (..., n) [m] between puck and mallet, and unit vectors (..., n, 2) from the mallet, for clocks (...)."""
+        away = self.place - self.encoders.at(encoder_time(self.t, delay[..., None], rate[..., None]))
+        distance = np.linalg.norm(away, axis=-1)
+        return distance - self.radii, away / distance[..., None]
+
+
+@dataclass(frozen=True)
+class Clock:
+    """The camera's clock: a frame stamped t shows the encoders' time t / (1 + rate) - delay. `covariance` (2, 2)."""
+
+    delay: float
+    rate: float
+    covariance: np.ndarray
+
+    def encoder_time(self, t: np.ndarray | float) -> np.ndarray | float:
+        """The encoders' time [s] of what a frame stamped `t` [s] shows."""
+        return encoder_time(t, self.delay, self.rate)
+
+
+EXACT = Clock(0.0, 0.0, np.zeros((2, 2)))
+
+
+def encoder_time(t, delay, rate):
+    """`Clock.encoder_time` of a clock with this `delay` [s] and `rate` [1]."""
+    return t / (1.0 + rate) - delay
+
+
+def timed_contacts(found: list[VelocityJump], encoders: MalletPath, g: Geometry) -> TimedContacts:
+    """The velocity jumps that may be contacts with the robot's mallet: no wall, post or opponent explains them."""
+    own = [s for s in found if s.contact.where in ("robot", "nothing near") and _within_reach(s, encoders, g)]
+    change = np.array([s.v_out - s.v_in for s in own]).reshape(-1, 2)
+    return TimedContacts(
+        np.array([s.t for s in own]),
+        np.array([s.place for s in own]).reshape(-1, 2),
+        change / np.maximum(np.linalg.norm(change, axis=1, keepdims=True), 1e-9),
+        np.array([s.covariance[:3, :3] for s in own]).reshape(-1, 3, 3),
+        np.array([s.launch for s in own], int),
+        encoders,
+        g.puck_radius + g.mallet_radius,
+    )
+
+
+def _within_reach(jump: VelocityJump, encoders: MalletPath, g: Geometry) -> bool:
+    """Whether the mallet was near enough at any time that a clock in the range of the search gives the jump."""
+    leeway = CLOCK.longest_delay + CLOCK.largest_rate * abs(jump.t)
+    place = encoders.at(np.arange(jump.t - leeway, jump.t + leeway, CLOCK.grid))
+    gap = np.linalg.norm(jump.place - place, axis=1) - g.puck_radius - g.mallet_radius
+    return bool((np.abs(gap) < 5 * CLOCK.gap_std).any())
+
+
+def search_clock(tables: list[TimedContacts]) -> tuple[float, float]:
+    """The likeliest delay [s] and rate [1] on a grid: most gaps vanish, with impulses along the line of centres."""
+    span, most = max(float(np.ptp(each.t)) for each in tables), CLOCK.largest_rate
+    rates = np.linspace(-most, most, 2 * max(1, round(most * span / (4 * CLOCK.grid))) + 1)
+    delays = np.arange(-CLOCK.longest_delay, CLOCK.longest_delay + CLOCK.grid / 2, CLOCK.grid)
+    delay, rate = np.meshgrid(delays, rates, indexing="ij")
+    log_likelihood = np.zeros(delay.shape)
+    for each in tables:
+        gap, away = each.gaps(delay, rate)
+        density = np.exp(-0.5 * (gap / CLOCK.gap_std) ** 2) / (CLOCK.gap_std * np.sqrt(2 * np.pi))
+        aligned = (away * each.impulse).sum(axis=-1) > CLOCK.least_alignment
+        density = np.where(np.isfinite(gap) & aligned, density, 0.0)
+        log_likelihood += np.log((1 - CLOCK.outlier_chance) * density + CLOCK.outlier_chance / CLOCK.outlier_range).sum(
+            axis=-1
+        )
+    best = np.unravel_index(int(log_likelihood.argmax()), log_likelihood.shape)
+    return float(delay[best]), float(rate[best])
+
+
+@dataclass(frozen=True)
+class ClockFit:
+    """A fitted clock. `residual`, `std` (n,) [m]: of the gaps of all contacts, nan where the encoders have a hole;
+    `launch` (n,); `touches` (n,): whether the gap is small enough for a contact; `in_fit` (n,): whether the launch is
+    in the fit; `dispersion`: the scatter of those that are both, in units of their errors; `freedom`: their degrees of
+    freedom; `nuisances` (6,): those of `CLOCK.nuisance_std`, as fitted."""
+
+    clock: Clock
+    residual: np.ndarray
+    std: np.ndarray
+    launch: np.ndarray
+    touches: np.ndarray
+    in_fit: np.ndarray
+    dispersion: float
+    freedom: int
+    nuisances: np.ndarray
+
+
+def linearise(each: TimedContacts, delay: float, rate: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Gaps (n,) [m], their Jacobian (n, 8) by delay, rate and the six nuisances, and their variances (n,) [m^2]."""
+    when = encoder_time(each.t, delay, rate)
+    gap, away = each.gaps(np.array(delay), np.array(rate))
+    velocity = (each.encoders.at(when + CLOCK.half_span) - each.encoders.at(when - CLOCK.half_span)) / (
+        2 * CLOCK.half_span
+    )
+    closing = (away * velocity).sum(axis=1)
+    x, y = each.place.T
+    columns = [closing, closing * each.t, -np.ones_like(x), away[:, 0], away[:, 1]]
+    columns += [away[:, 0] * x, away[:, 1] * y, away[:, 0] * y]
+    row = np.concatenate([-closing[:, None], away], axis=1)
+    variance = np.einsum("ni,nij,nj->n", row, each.covariance, row) + each.encoders.noise**2
+    return gap, np.stack(columns, axis=1), variance
+
+
+def fit_clock(
+    tables: list[TimedContacts], start: tuple[float, float], free: tuple[bool, bool], skip=()
+) -> ClockFit | None:
+    """Delay and rate, where `free`, and the nuisances by robust least squares from `start`; None with too few contacts.
+
+    `skip`: launches left out of the fit; their residuals are returned all the same.
+    """
+    theta = np.concatenate([np.where(free, start, 0.0), np.zeros(len(CLOCK.nuisance_std))])
+    prior = 1 / np.square(CLOCK.nuisance_std)
+    kept = np.flatnonzero([*free, *np.ones(len(CLOCK.nuisance_std), bool)])
+    launch = np.concatenate([each.launch for each in tables])
+    in_fit = ~np.isin(launch, skip)
+    for _ in range(12):
+        rows = [linearise(each, theta[0], theta[1]) for each in tables]
+        gap, jacobian, variance = (np.concatenate(part) for part in zip(*rows, strict=True))
+        residual = gap + jacobian[:, 2:] @ theta[2:]
+        touches = np.abs(residual) < CLOCK.largest_gap
+        used = touches & in_fit
+        if used.sum() < CLOCK.fewest_contacts:
+            return None
+        std = np.sqrt(variance)
+        weight = t_weights(residual[used] / std[used]) / variance[used]
+        rest = jacobian[used].T @ (weight * residual[used])
+        normal = (jacobian[used].T * weight) @ jacobian[used]
+        rest[2:] += prior * theta[2:]
+        normal[2:, 2:] += np.diag(prior)
+        inverse = np.linalg.inv(normal[np.ix_(kept, kept)])
+        step = inverse @ rest[kept]
+        theta[kept] -= step
+        if np.abs(step).max() < 1e-8:
+            break
+    freedom = int(used.sum()) - sum(free) - 1
+    dispersion = typical(residual[used] / std[used]) * np.sqrt(used.sum() / max(freedom, 1))
+    covariance = np.zeros((2, 2))
+    covariance[np.ix_(kept[: sum(free)], kept[: sum(free)])] = inverse[: sum(free), : sum(free)]
+    covariance *= dispersion**2 * (ROBUST.t_freedom + 3) / (ROBUST.t_freedom + 1)
+    clock = Clock(float(theta[0]), float(theta[1]), covariance)
+    return ClockFit(clock, residual, std, launch, touches, in_fit, float(dispersion), freedom, theta[2:])
+
+
+def gaps_of_others(
+    tables: list[TimedContacts], found: ClockFit
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Gaps [m] of other contacts as recorded and under a fitted clock, their errors [m], and their launches, each (n,);
+    nan where the mallet was not touched."""
+    rows = [linearise(each, found.clock.delay, found.clock.rate) for each in tables]
+    gap, jacobian, variance = (np.concatenate(part) for part in zip(*rows, strict=True))
+    after = gap + jacobian[:, 2:] @ found.nuisances
+    before = np.concatenate([each.gaps(np.array(0.0), np.array(0.0))[0] for each in tables])
+    after = np.where(np.abs(after) < CLOCK.largest_gap, after, np.nan)
+    return before, after, np.sqrt(variance), np.concatenate([each.launch for each in tables])

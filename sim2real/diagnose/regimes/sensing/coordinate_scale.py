@@ -1,0 +1,172 @@
+"""Whether the map from image to table is stretched or sheared, by the lines on which the puck turns round at the walls.
+
+A stretch moves the far lines outwards and leaves the near ones; a wrong radius of the puck moves all inwards alike; a
+shear slants the short walls. In glides a stretch is a change of drag and friction, so that only the lines are used.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Set
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from puckpilot_env.physics.effects import EFFECTS
+from sim2real.diagnose.regimes.sensing.contact_lines import ContactLine, contact_lines
+from sim2real.diagnose.regimes.sensing.held_out import held_out_errors
+from sim2real.diagnose.regimes.sensing.tuned import SCALE, SURE
+from sim2real.diagnose.result.result import Estimate, Finding, Proof, explained
+from sim2real.segmentation.causes import Geometry, nominal_lines, wall_axis
+from sim2real.segmentation.velocity_jumps import VelocityJump
+from sim2real.statistics.intervals import NORMAL_REACH
+
+NAMES = ("scale_x", "scale_y", "shear")
+
+
+@dataclass(frozen=True)
+class ScaleResult:
+    """`values` (3,) of NAMES, 0 where nothing is missing; or why the lines contradict the table's size, `undetermined`.
+    `selection`: the errors in launches left out of the fit."""
+
+    values: np.ndarray
+    findings: tuple[Finding, ...]
+    selection: Proof | None
+    undetermined: str = ""
+
+
+def identify_scale(found: list[VelocityJump], g: Geometry, calibrated: bool = False) -> ScaleResult:
+    """The camera's map by the velocity jumps `found` at the walls, cross-validated over launches.
+
+    Of a `calibrated` camera, only a map that explains nearly all is named: what looks like contacts with a wall may be
+    contacts with a mallet under the gantry.
+    """
+    values, covariance = fitted_map(found, g)
+    std = np.sqrt(np.diag(covariance))
+    wrong = wrong_size(values, std, g)
+    if wrong:
+        return ScaleResult(np.zeros(3), (), None, wrong)
+    p_values = 2 * stats.norm.sf(np.abs(values) / std)
+    chance = float(stats.chi2.sf(values @ np.linalg.solve(covariance, values), len(NAMES)))
+    if chance > SURE or not np.any(
+        (p_values < SCALE.significance) & (np.abs(values) > SCALE.least_scale) & (std < SCALE.known)
+    ):
+        return ScaleResult(np.zeros(3), (), None)
+    named = (p_values < SCALE.significance) & (std < SCALE.known)
+    kept = np.where(named, values, 0.0)
+    sizes = held_out_errors(*_left_out(found, g).T)
+    share = 0.0 if sizes is None else explained(sizes.before, sizes.after)
+    if sizes is None or share <= 0.0 or (share < SCALE.least_explained and (calibrated or chance > SCALE.beyond_doubt)):
+        return ScaleResult(np.zeros(3), (), None)
+    half = NORMAL_REACH * std
+    estimates = {
+        name: Estimate(float(values[k]), float(values[k] - half[k]), float(values[k] + half[k]), "1")
+        for k, name in enumerate(NAMES)
+        if named[k]
+    }
+    rows = EFFECTS["scale_error"].rows
+    finding = Finding(
+        regime="sensing",
+        mechanism="scale_error",
+        also_possible=(),
+        depends_on=("position",),
+        formula=EFFECTS["scale_error"].law,
+        parameters=estimates,
+        p_value=max(chance, 1e-300),
+        values={rows[name].name: one.value for name, one in estimates.items()},
+        ranges={rows[name].name: one for name, one in estimates.items()},
+    )
+    return ScaleResult(kept, (finding,), sizes.proof)
+
+
+def fitted_map(found: list[VelocityJump], g: Geometry) -> tuple[np.ndarray, np.ndarray]:
+    """Estimates (3,) of NAMES and their covariance (3, 3), which is large where the jumps do not determine them."""
+    return _solve(contact_lines(found, g), g)
+
+
+def wrong_size(values: np.ndarray, std: np.ndarray, g: Geometry) -> str:
+    """Why the table's size cannot be right: a large scale, or any where the size is a guess; "" where it may be."""
+    most = SCALE.most_warped_scale if _is_warped(values, std) else SCALE.most_scale
+    for axis, (name, size) in enumerate((("length", g.length), ("width", g.width))):
+        off, guessed = abs(values[axis]), name in g.assumed
+        surely = off > SCALE.least_scale + 3 * std[axis] if guessed else off > most
+        if (surely and std[axis] < SCALE.known) or (off > most + 2 * std[axis] and std[axis] < SCALE.roughly_known):
+            measured, how = (1 + values[axis]) * size, "guessed" if guessed else "stated"
+            return (
+                f"the {how} {name} of {size:.3f} m is {off:.1%} off the {measured:.3f} m seen: "
+                "measure the table and state its size, or calibrate the camera"
+            )
+    return ""
+
+
+def _is_warped(values: np.ndarray, std: np.ndarray) -> bool:
+    """Whether a map is significantly sheared, or stretched by different shares along both axes.
+
+    A wrong measurement of the table errs in one size, or in both alike.
+    """
+    x, y, _ = values
+    sure = np.abs(values) > SCALE.least_warp + 3 * std
+    return bool(sure[2] or (sure[0] and sure[1] and abs(x - y) > SCALE.least_scale + 3 * np.hypot(std[0], std[1])))
+
+
+def _design(walls: dict[str, ContactLine], g: Geometry) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The lines' displacements from nominal (2n,), the Jacobian (2n, 7) by NAMES, radius, offsets and turn, and their
+    covariance (2n, 2n)."""
+    nominal = nominal_lines(g)
+    moved, rows = [], []
+    covariance = np.zeros((2 * len(walls), 2 * len(walls)))
+    for k, (wall, line) in enumerate(walls.items()):
+        axis, inward = wall_axis(wall)
+        place, slant = np.zeros(7), np.zeros(7)
+        place[axis], place[3], place[4 + axis] = nominal[wall], inward, 1.0
+        slant[6] = (1.0, -1.0)[axis]
+        if axis == 0:
+            place[2], slant[2] = g.width / 2, 1.0
+        rows += [place, slant]
+        moved += [line.values[0] - nominal[wall], line.values[1]]
+        covariance[2 * k : 2 * k + 2, 2 * k : 2 * k + 2] = line.covariance + np.diag(
+            np.square([SCALE.wall_place_std, SCALE.wall_slant_std])
+        )
+    return np.array(moved), np.array(rows).reshape(-1, 7), covariance
+
+
+def _solve(walls: dict[str, ContactLine], g: Geometry) -> tuple[np.ndarray, np.ndarray]:
+    """Estimates (3,) of NAMES and their covariance (3, 3), with a good calibration's own errors as a prior."""
+    moved, jacobian, covariance = _design(walls, g)
+    weight = np.linalg.inv(covariance)
+    radius, offset, turn = (std**-2 for std in (SCALE.radius_std, SCALE.offset_std, SCALE.turn_std))
+    prior = np.diag([1.0, 1.0, 1.0, radius, offset, offset, turn])  # of a scale: standard deviation 100 %
+    inverse = np.linalg.inv(jacobian.T @ weight @ jacobian + prior)
+    return (inverse @ (jacobian.T @ (weight @ moved)))[:3], inverse[:3, :3]
+
+
+def distances_of_others(found: list[VelocityJump], values: np.ndarray, g: Geometry) -> np.ndarray:
+    """Distances (n, 4) of other contacts, under the map `values`: see `_distances`."""
+    return _distances(contact_lines(found, g), values, {s.launch for s in found}, g)
+
+
+def _left_out(found: list[VelocityJump], g: Geometry) -> np.ndarray:
+    """`_distances` (n, 4) of all contacts, each by a map fitted without its launch."""
+    launches = sorted({s.launch for s in found})
+    whole, rows = contact_lines(found, g), [np.zeros((0, 4))]
+    for fold in range(min(SCALE.folds, len(launches))):
+        skip = set(launches[fold :: SCALE.folds])
+        values, covariance = _solve(contact_lines(found, g, skip), g)
+        rows.append(_distances(whole, np.where(np.sqrt(np.diag(covariance)) < SCALE.known, values, 0.0), skip, g))
+    return np.concatenate(rows)
+
+
+def _distances(walls: dict[str, ContactLine], values: np.ndarray, launches: Set[int], g: Geometry) -> np.ndarray:
+    """Of the contacts in `launches`: distances [m] from their lines by the camera's own map and by the map `values`,
+    their errors [m], and their launches, as (n, 4)."""
+    rows = [np.zeros((0, 4))]
+    for wall, line in walls.items():
+        here = np.isin(line.launch, list(launches))
+        expected = np.full(int(here.sum()), nominal_lines(g)[wall])
+        axis, _ = wall_axis(wall)
+        moved = expected * (1 + values[axis])
+        if axis == 0:
+            moved = moved + values[2] * (g.width / 2 + line.along[here])
+        place = line.place[here]
+        rows.append(np.stack([place - expected, place - moved, line.std[here], line.launch[here]], axis=1))
+    return np.concatenate(rows)

@@ -1,0 +1,36 @@
+"""How large the sensing's errors are in launches left out of the fit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim2real.diagnose.result.result import Proof
+
+
+@dataclass(frozen=True)
+class HeldOutErrors:
+    """Rms of errors as recorded, `before`, and as corrected, `after`, in units of the noise; and in metres, `proof`."""
+
+    before: float
+    after: float
+    proof: Proof
+
+
+def held_out_errors(before: np.ndarray, after: np.ndarray, std: np.ndarray, launch: np.ndarray) -> HeldOutErrors | None:
+    """The rms of errors (n,) [m] with standard deviations `std` (n,) [m] that are known before and after correction.
+
+    `launch` (n,): the launch of each, the unit of the proof. None where no error is known both ways.
+    """
+    both = np.isfinite(before) & np.isfinite(after)
+    if not both.any():
+        return None
+    before, after, std = before[both], after[both], std[both]
+    proof = Proof(rms(before), rms(after), rms(std), len(np.unique(launch[both])))
+    return HeldOutErrors(rms(before / std), rms(after / std), proof)
+
+
+def rms(of: np.ndarray) -> float:
+    """The root of the mean square of numbers (n,)."""
+    return float(np.sqrt(np.mean(of**2)))

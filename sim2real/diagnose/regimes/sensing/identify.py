@@ -1,0 +1,149 @@
+"""What the sensing lacks, by all recordings of one table; and those recordings as an exact camera gives them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sim2real.diagnose.regimes.sensing.clock import (
+    EXACT,
+    Clock,
+    ClockFit,
+    TimedContacts,
+    gaps_of_others,
+    timed_contacts,
+)
+from sim2real.diagnose.regimes.sensing.clock_findings import ClockResult, identify_clock
+from sim2real.diagnose.regimes.sensing.coordinate_scale import ScaleResult, distances_of_others, identify_scale
+from sim2real.diagnose.regimes.sensing.held_out import HeldOutErrors, held_out_errors
+from sim2real.diagnose.regimes.sensing.repeated_frames import (
+    deviation_errors,
+    moving_frames,
+    repeated_frames_finding,
+)
+from sim2real.diagnose.result.pooled_proof import pooled
+from sim2real.diagnose.result.result import RegimeResult
+from sim2real.diagnose.sensor_noise.model import stated_map_error
+from sim2real.recording.folder import Recording, Stream
+from sim2real.segmentation.causes import geometry
+from sim2real.segmentation.mallet_path import robot_path
+from sim2real.segmentation.segments import Segments, segment
+from sim2real.segmentation.velocity_jumps import VelocityJump, velocity_jumps
+
+Launch = Sequence[np.ndarray]  # for each recording, the number (frames,) of each row's launch
+PLACES = (("puck_x", "puck_y"), ("opponent_x", "opponent_y"))  # columns of frames
+
+
+def corrected(recording: Recording, scale: np.ndarray, clock: Clock = EXACT) -> Recording:
+    """`recording` as a camera without the error `scale` (3,) of its map, by `coordinate_scale.NAMES`, and with an exact
+    clock in place of `clock` would have given it."""
+    if recording.frames is None:
+        return recording
+    columns = dict(recording.frames.columns)
+    for x, y in PLACES:
+        columns[y] = columns[y] / (1 + scale[1])
+        columns[x] = (columns[x] - scale[2] * columns[y]) / (1 + scale[0])
+    columns["t"] = np.asarray(clock.encoder_time(columns["t"]))
+    return replace(recording, frames=Stream(columns))
+
+
+@dataclass(frozen=True)
+class IdentifiedSensing:
+    """The result of the sensing, and the recordings and their segments as an exact camera would have given them.
+
+    `scale` (3,): the map's error by `coordinate_scale.NAMES`; `clock`: None where the camera's is exact.
+    """
+
+    regime_result: RegimeResult
+    recordings: tuple[Recording, ...]
+    segments: tuple[Segments, ...]
+    scale: np.ndarray
+    clock: ClockFit | None
+
+    def correct(self, recording: Recording) -> Recording:
+        """Another recording by the same camera, as an exact one would have given it."""
+        mapped = corrected(recording, self.scale) if self.scale.any() else recording
+        return mapped if self.clock is None else corrected(mapped, np.zeros(3), self.clock.clock)
+
+
+def identify_sensing(
+    recordings: Sequence[Recording], segments: Sequence[Segments], launch: Launch
+) -> IdentifiedSensing:
+    """The sensing of recordings of one table: the map first, then the clock, then the repeated frames."""
+    recordings, segments = list(recordings), list(segments)
+    found = _velocity_jumps(recordings, segments, launch)
+    calibrated = any(stated_map_error(one) for one in recordings)
+    scale = identify_scale([s for part in found for s in part], geometry(recordings[0]), calibrated)
+    if scale.findings:
+        recordings = [corrected(one, scale.values) for one in recordings]
+        segments = [segment(one) for one in recordings]
+        found = _velocity_jumps(recordings, segments, launch)
+    clock = identify_clock(_timed_contacts(recordings, found))
+    held, held_selection = repeated_frames_finding(
+        [moving_frames(*each) for each in zip(recordings, segments, launch, strict=True)]
+    )
+    if clock.fit is not None:
+        recordings = [corrected(one, np.zeros(3), clock.clock) for one in recordings]
+        segments = [segment(one) for one in recordings]
+    findings = sorted((*clock.findings, *scale.findings, *((held,) if held else ())), key=lambda one: one.p_value)
+    selection = pooled([one for one in (clock.selection, scale.selection, held_selection) if one is not None])
+    advice = _next_recording(recordings, clock, scale)
+    regime_result = RegimeResult("sensing", tuple(findings), {}, not findings, selection, scale.undetermined, advice)
+    return IdentifiedSensing(regime_result, tuple(recordings), tuple(segments), scale.values, clock.fit)
+
+
+def prove_sensing(
+    sensed: IdentifiedSensing, recordings: Sequence[Recording], segments: Sequence[Segments], launch: Launch
+) -> RegimeResult:
+    """The result with the errors in holdout `recordings` and their `segments`, before and after correction."""
+    g, recordings, segments = geometry(recordings[0]), list(recordings), list(segments)
+    found = _velocity_jumps(recordings, segments, launch)
+    errors = {
+        "scale_error": held_out_errors(*distances_of_others([s for part in found for s in part], sensed.scale, g).T)
+    }
+    if sensed.scale.any():
+        recordings = [corrected(one, sensed.scale) for one in recordings]
+        segments = [segment(one) for one in recordings]
+        found = _velocity_jumps(recordings, segments, launch)
+    contacts = [one for one in _timed_contacts(recordings, found) if len(one.t)]
+    if sensed.clock is not None and contacts:
+        errors |= dict.fromkeys(
+            ("camera_delay", "clock_drift"), held_out_errors(*gaps_of_others(contacts, sensed.clock))
+        )
+    errors["held_frames"] = deviation_errors(
+        [moving_frames(*each) for each in zip(recordings, segments, launch, strict=True)]
+    )
+    named = {one.mechanism: errors.get(one.mechanism) for one in sensed.regime_result.findings}
+    findings = tuple(_with(one, named[one.mechanism]) for one in sensed.regime_result.findings)
+    known = {id(one): one.proof for one in named.values() if one is not None}
+    return replace(sensed.regime_result, findings=findings, proof=pooled(list(known.values())))
+
+
+def _with(finding, sizes: HeldOutErrors | None):
+    return finding if sizes is None else replace(finding, before=sizes.before, after=sizes.after)
+
+
+def _velocity_jumps(
+    recordings: Sequence[Recording], segments: Sequence[Segments], launch: Launch
+) -> list[list[VelocityJump]]:
+    """The velocity jumps of each recording, with the number of the launch in which each happens."""
+    found = []
+    for one, part, of_row in zip(recordings, segments, launch, strict=True):
+        found.append([replace(s, launch=int(of_row[s.contact.frames[0]])) for s in velocity_jumps(one, part)])
+    return found
+
+
+def _timed_contacts(recordings: Sequence[Recording], found: Sequence[list[VelocityJump]]) -> list[TimedContacts]:
+    read = [(robot_path(one) if part else None, one, part) for one, part in zip(recordings, found, strict=True)]
+    return [timed_contacts(part, encoders, geometry(one)) for encoders, one, part in read if encoders is not None]
+
+
+def _next_recording(recordings: list[Recording], clock: ClockResult, scale: ScaleResult) -> str:
+    if scale.findings or scale.undetermined:
+        return "measure the table's length and width: a wrong stated size looks like a stretched map"
+    has_mallet = any(one.mallet is not None for one in recordings)
+    if not clock.determined and has_mallet and any(one.frames is not None and one.frames.rows for one in recordings):
+        return "to see the camera's delay, record a minute in which the robot strikes the puck with a moving mallet"
+    return ""

@@ -1,0 +1,113 @@
+"""How many frames repeat the position before them while the puck moves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from sim2real.diagnose.regimes.sensing.held_out import HeldOutErrors, rms
+from sim2real.diagnose.regimes.sensing.tuned import REPEATED_FRAMES, SURE
+from sim2real.diagnose.result.result import Estimate, Finding, Proof
+from sim2real.recording.folder import Recording
+from sim2real.segmentation.segments import Segments
+
+FORMULA = "a frame repeats the position before it, with this probability"
+
+
+@dataclass(frozen=True)
+class MovingFrames:
+    """Frames of a moving puck: whether each is `held` (n,) bool, its `launch` (n,), its `deviation` (n,) [m] from the
+    straight line between its neighbours, nan where a contact is between them, and the standard deviation of that by
+    noise, `std` (n,) [m]."""
+
+    held: np.ndarray
+    launch: np.ndarray
+    deviation: np.ndarray
+    std: np.ndarray
+
+
+def moving_frames(recording: Recording, segments: Segments, launch: np.ndarray) -> MovingFrames:
+    """The frames of a moving puck, with the exact repeats of a position from which it moves on afterwards.
+
+    `launch` (frames,): the number of each row's launch. Frames do not count in which the puck rests or comes to rest,
+    or is not detected, or is detected wrongly.
+    """
+    frames = recording.frames
+    nothing = MovingFrames(np.zeros(0, bool), np.zeros(0, int), np.zeros(0), np.zeros(0))
+    if frames is None or frames.rows < 3:
+        return nothing
+    p = np.stack([frames["puck_x"], frames["puck_y"]], axis=1)
+    fresh = np.flatnonzero(np.isfinite(p).all(axis=1) & ~segments.held & ~segments.wild)
+    if len(fresh) < 3:
+        return nothing
+    came, here, left = fresh[:-2], fresh[1:-1], fresh[2:]
+    total = np.concatenate([[0], np.cumsum(segments.held)])
+    repeated = total[left] - total[here]
+    arrived = np.linalg.norm(p[here] - p[came], axis=1) / (here - came)
+    went = np.linalg.norm(p[left] - p[here], axis=1)
+    moved = REPEATED_FRAMES.moved * segments.noise_std + REPEATED_FRAMES.rounding
+    counted = (arrived > moved) & (went > moved) & (left - here - 1 == repeated)
+    came, here, left, repeated = came[counted], here[counted], left[counted], repeated[counted]
+    held = np.concatenate([np.arange(a + 1, a + 1 + m) for a, m in zip(here, repeated, strict=True)] or [here[:0]])
+    first, last = np.repeat(here, repeated), np.repeat(left, repeated)
+    rows = np.concatenate([here, held])
+    deviation, std = _deviations(
+        frames.t, p, segments, rows, np.concatenate([came, first]), np.concatenate([left, last])
+    )
+    return MovingFrames(np.arange(len(rows)) >= len(here), launch[rows], deviation, std)
+
+
+def _deviations(t: np.ndarray, p: np.ndarray, segments: Segments, row, before, after) -> tuple[np.ndarray, np.ndarray]:
+    """Deviations (n,) [m] of the rows from the straight line between the rows `before` and `after`, nan where a contact
+    or a new launch is between these; and their standard deviations (n,) [m] by noise."""
+    share = ((t[row] - t[before]) / (t[after] - t[before]))[:, None]
+    deviation = np.linalg.norm(p[row] - (1 - share) * p[before] - share * p[after], axis=1)
+    speed = np.linalg.norm(p[after] - p[before], axis=1) / (t[after] - t[before])
+    std = np.hypot(segments.noise_std, segments.noise.std(speed)) * np.sqrt(
+        1 + (1 - share[:, 0]) ** 2 + share[:, 0] ** 2
+    )
+    breaks = np.sort(
+        [*(contact.frames[1] for contact in segments.contacts), *(start for start, _ in segments.launches)]
+    )
+    broken = np.searchsorted(breaks, after, side="right") > np.searchsorted(breaks, before, side="right")
+    return np.where(broken, np.nan, deviation), std
+
+
+def repeated_frames_finding(counts: list[MovingFrames]) -> tuple[Finding | None, Proof | None]:
+    """The finding `held_frames`, and the deviations of frames with the repeats and without them. None where repeats are
+    rare, or without effect."""
+    held = np.concatenate([each.held for each in counts])
+    n, repeated = len(held), int(held.sum())
+    chance = float(stats.binom.sf(repeated - 1, n, REPEATED_FRAMES.rare)) if n else 1.0
+    errors = deviation_errors(counts) if chance <= SURE else None
+    if errors is None or errors.after >= errors.before:
+        return None, None
+    interval = stats.binomtest(repeated, n).proportion_ci(0.95, "wilson")
+    share = Estimate(repeated / n, float(interval.low), float(interval.high), "1")
+    finding = Finding(
+        regime="sensing",
+        mechanism="held_frames",
+        also_possible=(),
+        depends_on=(),
+        formula=FORMULA,
+        parameters={"fraction": share},
+        p_value=max(chance, 1e-300),
+        values={"held_frames": share.value},
+        ranges={"held_frames": share},
+    )
+    return finding, errors.proof
+
+
+def deviation_errors(counts: list[MovingFrames]) -> HeldOutErrors | None:
+    """Rms deviations of all frames, and of those that are no repeats; None where none is known."""
+    held, launch, deviation, std = (
+        np.concatenate([getattr(each, name) for each in counts]) for name in ("held", "launch", "deviation", "std")
+    )
+    known = np.isfinite(deviation)
+    fresh = known & ~held
+    if not fresh.any():
+        return None
+    proof = Proof(rms(deviation[known]), rms(deviation[fresh]), rms(std[fresh]), len(np.unique(launch[known])))
+    return HeldOutErrors(rms(deviation[known] / std[known]), rms(deviation[fresh] / std[fresh]), proof)

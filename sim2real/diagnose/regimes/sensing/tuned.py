@@ -1,0 +1,228 @@
+"""Tuned numbers of the sensing regime."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from sim2real.statistics.tuned import tuned
+
+
+@dataclass(frozen=True)
+class ClockNumbers:
+    """Tuned numbers of the camera's clock, by contacts with the robot's mallet."""
+
+    longest_delay: float = tuned(
+        0.12,
+        "s",
+        "less misses slow cameras, more finds accidental ones",
+        "choice: 7 frames of a camera of 60 frames a second",
+    )
+    largest_rate: float = tuned(
+        0.001, "1", "less misses bad clocks, more finds accidental ones", "choice: ten times a bad quartz"
+    )
+    grid: float = tuned(
+        0.0015,
+        "s",
+        "coarser grids miss the likeliest clock, finer ones cost time",
+        "choice: a fast mallet moves by `gap_std` in it",
+    )
+    gap_std: float = tuned(
+        0.0025,
+        "m",
+        "standard deviation of a gap in the search: less misses contacts of a wrong map, more blurs the delay",
+        "choice: errors of the radii and the map together",
+    )
+    outlier_chance: float = tuned(
+        0.05,
+        "1",
+        "chance that a candidate is no contact with this mallet: less lets outliers decide",
+        "choice: one in twenty",
+    )
+    outlier_range: float = tuned(
+        0.1, "m", "range over which the gap of such a candidate spreads", "choice: about a mallet"
+    )
+    least_alignment: float = tuned(
+        0.8,
+        "1",
+        "cosine between impulse and line of centres: less takes other contacts, more loses those with friction",
+        "choice: 37 degrees",
+    )
+    nuisance_std: tuple[float, ...] = tuned(
+        (0.0015, 0.0015, 0.0015, 0.004, 0.004, 0.004),
+        "m, m, m, 1, 1, 1",
+        "prior of the radii, offsets x, y, scales x, y and shear: less biases the delay by a wrong map, more leaves it "
+        "undetermined",
+        "choice: what a calibration may leave",
+    )
+    half_span: float = tuned(
+        0.004,
+        "s",
+        "less makes the mallet's velocity noisy, more averages it over the contact",
+        "choice: a few samples of the encoders",
+    )
+    largest_gap: float = tuned(
+        0.02,
+        "m",
+        "less loses contacts before the fit converges, more takes near misses",
+        "choice: several times the errors of a map",
+    )
+    fewest_contacts: int = tuned(
+        4, "contacts", "fewer do not determine a clock", "choice: two more than it has numbers"
+    )
+    rejected: float = tuned(
+        1e-3,
+        "1",
+        "p-value below which delay or drift alone is not enough: more names both by accident",
+        "choice: once in a thousand",
+    )
+    least_delay: float = tuned(
+        0.0005, "s", "less names the jitter of time stamps", "choice: above the jitter of stamps"
+    )
+    better: float = tuned(
+        0.9,
+        "1",
+        "share of the recorded gaps below which the corrected ones must be in launches left out of the fit: more "
+        "accepts corrections that do nothing",
+        "choice: a tenth better",
+    )
+    folds: int = tuned(5, "1", "fewer leave too little to fit, more cost time", "choice: a fifth is left out")
+    most_deviations: float = tuned(
+        12.0,
+        "standard deviations",
+        "a contact counts no more than this: more lets one outlier decide",
+        "choice: beyond any error of a contact",
+    )
+
+
+@dataclass(frozen=True)
+class ContactLineNumbers:
+    """Tuned numbers of the lines on which the puck's centre turns round at the walls."""
+
+    farthest: float = tuned(
+        0.06,
+        "size of the table",
+        "less misses stretched maps, more takes other contacts",
+        "choice: above any size that is refused",
+    )
+    most_slant: float = tuned(0.05, "rad", "less misses sheared maps", "choice: above any shear that is named")
+    slants: int = tuned(21, "1", "fewer miss the band of a slanted wall", "choice: odd, so that 0 is one of them")
+    band: float = tuned(
+        0.006,
+        "m",
+        "narrower bands lose contacts by noise, wider ones take others",
+        "choice: as far as a wall may be off its place",
+    )
+    fewest_contacts: int = tuned(4, "contacts", "fewer do not determine a line", "choice: two more than it has numbers")
+    least_share: float = tuned(
+        0.4,
+        "1",
+        "of the candidates that lie in the band: less finds lines in other contacts",
+        "choice: hardly fewer than half",
+    )
+
+
+@dataclass(frozen=True)
+class ScaleNumbers:
+    """Tuned numbers of the camera's map, by those lines."""
+
+    radius_std: float = tuned(
+        0.001,
+        "m",
+        "prior of the puck's radius: less reads a wrong radius as a stretch",
+        "choice: what a good calibration may leave",
+    )
+    offset_std: float = tuned(
+        0.0005, "m", "prior of the map's offsets, likewise", "choice: what a good calibration may leave"
+    )
+    turn_std: float = tuned(
+        0.002, "rad", "prior of the map's rotation, likewise", "choice: what a good calibration may leave"
+    )
+    wall_place_std: float = tuned(
+        0.0003, "m", "how true a wall's place is: less trusts single walls too much", "choice: a good cushion"
+    )
+    wall_slant_std: float = tuned(0.0005, "rad", "how straight a wall is, likewise", "choice: a good cushion")
+    significance: float = tuned(
+        1e-3, "1", "p-value of one of the scales, where together they are significant", "choice: once in a thousand"
+    )
+    least_scale: float = tuned(0.001, "1", "less names errors that no player notices", "choice: 2 mm of a table")
+    most_scale: float = tuned(
+        0.022, "1", "a larger scale is taken for a wrong stated size", "choice: no calibrated camera errs by so much"
+    )
+    most_warped_scale: float = tuned(
+        0.05, "1", "the same of a map that no wrong size explains", "choice: twice `most_scale`"
+    )
+    least_warp: float = tuned(
+        0.005, "1", "a smaller shear, or other scale, may come with a wrong size", "choice: a crooked measurement"
+    )
+    least_explained: float = tuned(
+        0.75,
+        "1",
+        "share of the lines' excess that a map must explain unless `beyond_doubt`: less names hidden contacts",
+        "choice: a stretch explains nearly all",
+    )
+    beyond_doubt: float = tuned(
+        1e-12,
+        "1",
+        "p-value below which a few outliers may hide how much a map explains",
+        "choice: far below any accident",
+    )
+    known: float = tuned(
+        0.003,
+        "1",
+        "standard deviation above which the lines do not determine a scale",
+        "choice: a seventh of `most_scale`",
+    )
+    roughly_known: float = tuned(
+        0.01,
+        "1",
+        "standard deviation above which they do not even determine a wrong size",
+        "choice: half of `most_scale`",
+    )
+    folds: int = tuned(20, "1", "fewer leave a wall too few contacts", "choice: nearly one launch at a time")
+
+
+@dataclass(frozen=True)
+class RepeatedFrameNumbers:
+    """Tuned numbers of frames that repeat the position before them."""
+
+    moved: float = tuned(
+        4.0,
+        "standard deviations",
+        "less counts a resting puck, more loses slow ones",
+        "choice: noise alone hardly reaches it",
+    )
+    rounding: float = tuned(
+        5e-5, "m", "smaller steps repeat by the rounding of a file", "choice: half of the last digit of 0.1 mm"
+    )
+    rare: float = tuned(
+        0.002, "1", "a share that any camera may have: less names it", "choice: one frame in ten seconds"
+    )
+
+
+@dataclass(frozen=True)
+class SensingConsistencyNumbers:
+    """Tuned numbers of whether recordings are of one table and one camera."""
+
+    largest_scale: float = tuned(
+        0.01,
+        "1",
+        "difference of maps: less refuses cameras that were moved a little, more accepts other tables",
+        "choice: half of a wrong size",
+    )
+    largest_delay: float = tuned(
+        0.002, "s", "difference of clocks: less refuses one camera, more accepts two", "choice: a fraction of a frame"
+    )
+    significance: float = tuned(
+        5.0, "standard deviations", "less refuses recordings by noise", "choice: beyond any accident"
+    )
+    fewest_free: int = tuned(
+        5, "contacts", "beyond the numbers of a clock: fewer do not determine it", "choice: as many again"
+    )
+
+
+SURE = 1e-5  # p-value of exact sensors, below which an error of theirs is named
+CLOCK = ClockNumbers()
+CONTACT_LINES = ContactLineNumbers()
+SCALE = ScaleNumbers()
+REPEATED_FRAMES = RepeatedFrameNumbers()
+CONSISTENCY = SensingConsistencyNumbers()

@@ -1,0 +1,1 @@
+"""The sliding puck between two contacts."""

@@ -1,0 +1,89 @@
+"""A nonparametric force as parameters of the simulator's `unlisted_force`, so that players play on it too."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+
+import numpy as np
+
+from puckpilot_env.physics.effects import unlisted_force
+from puckpilot_env.physics.effects.unlisted_force import WAVES_X, WAVES_Y
+from sim2real.diagnose.regimes.sliding.basis_library import (
+    WAVES,
+    Motion,
+    cosine_sizes,
+    ripple_sizes,
+    time_knots,
+)
+from sim2real.diagnose.regimes.sliding.tuned import SLIDING
+from sim2real.statistics.piecewise import spline_basis
+
+ROWS = unlisted_force.EFFECT.row_names
+
+
+def _scaled(motion: Motion, theta: np.ndarray) -> np.ndarray:
+    return SLIDING.unit * theta
+
+
+def _over_place(motion: Motion, theta: np.ndarray) -> np.ndarray:
+    return SLIDING.unit * (theta.reshape(-1, WAVES_X * WAVES_Y) * cosine_sizes()).ravel()
+
+
+def _ripples(axis: int) -> Callable[[Motion, np.ndarray], np.ndarray]:
+    """Numbers for each direction, padded with zeros to as many as the simulator has."""
+
+    def numbers(motion: Motion, theta: np.ndarray) -> np.ndarray:
+        each = SLIDING.unit * theta.reshape(-1, SLIDING.ripples[axis]) * ripple_sizes(axis)
+        return np.pad(each, ((0, 0), (0, unlisted_force.RIPPLES - SLIDING.ripples[axis]))).ravel()
+
+    return numbers
+
+
+def _by_speed(motion: Motion, theta: np.ndarray) -> np.ndarray:
+    """Knots and values, the last ones repeated up to as many as the simulator has."""
+    knots = motion.speeds
+    more = (0, unlisted_force.SPEED_KNOTS - len(knots))
+    return np.concatenate(
+        [np.pad(knots, more, "edge"), np.pad(SLIDING.unit * spline_basis(knots) @ theta, more, "edge")]
+    )
+
+
+def _by_time(motion: Motion, theta: np.ndarray) -> np.ndarray:
+    """The first and last knot, and the values at all of them along each direction."""
+    knots = time_knots(motion)
+    values = SLIDING.unit * theta.reshape(-1, len(knots)) @ spline_basis(knots).T
+    return np.concatenate([knots[[0, -1]], values.ravel()])
+
+
+def _wave(period: float, motion: Motion, theta: np.ndarray) -> np.ndarray:
+    return np.array([period, *SLIDING.unit * theta])
+
+
+# family: kind of the simulator's force, and its numbers from the family's coefficients
+SWITCHES: Mapping[str, tuple[int, Callable[[Motion, np.ndarray], np.ndarray]]] = {
+    "push by position": (unlisted_force.PUSH_BY_PLACE, _over_place),
+    "brake by position": (unlisted_force.BRAKE_BY_PLACE, _over_place),
+    "push by place along the table": (unlisted_force.PUSH_BY_X, _ripples(0)),
+    "push by place across the table": (unlisted_force.PUSH_BY_Y, _ripples(1)),
+    "brake by place along the table": (unlisted_force.BRAKE_BY_X, _ripples(0)),
+    "brake by place across the table": (unlisted_force.BRAKE_BY_Y, _ripples(1)),
+    "brake by speed": (unlisted_force.BRAKE_BY_SPEED, _by_speed),
+    "side force by speed": (unlisted_force.SIDE_BY_SPEED, _by_speed),
+    "force by heading": (unlisted_force.BY_HEADING, _scaled),
+    "push by time": (unlisted_force.PUSH_BY_TIME, _by_time),
+    "brake by time": (unlisted_force.BRAKE_BY_TIME, _by_time),
+    **{name: (unlisted_force.BRAKE_BY_WAVE, partial(_wave, period)) for name, period in WAVES.items()},
+}
+
+
+def effect_parameters(family: str, motion: Motion, theta: np.ndarray) -> dict[str, float]:
+    """Parameters of `unlisted_force` by name for the coefficients `theta` of a family on the `motion` it was fitted to.
+
+    Empty for a family of which the simulator has none: forces by the time since a contact.
+    """
+    if family not in SWITCHES:
+        return {}
+    kind, numbers = SWITCHES[family]
+    found = numbers(motion, theta)
+    return dict(zip(ROWS, [float(kind), *map(float, found), *[0.0] * (len(ROWS) - 1 - len(found))], strict=True))

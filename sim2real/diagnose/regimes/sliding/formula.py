@@ -1,0 +1,97 @@
+"""The readable formula of an unlisted force on a gliding puck, and the projections that show it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from sim2real.diagnose.engine.law import Law
+from sim2real.diagnose.engine.model_search import SearchResult
+from sim2real.diagnose.formula.search import Formula, FormulaProblem, find_formula
+from sim2real.diagnose.formula.shapes import Axis, Direction, Form, Profile, form, harmonic, profiles
+from sim2real.diagnose.regimes.sliding import central_forces
+from sim2real.diagnose.regimes.sliding.basis_library import HARMONICS, Motion, force
+from sim2real.diagnose.regimes.sliding.problem import GlideProblem
+from sim2real.diagnose.regimes.sliding.views import COORDINATES, DIRECTIONS, Projection, around, view
+
+UNIT = "m/s^2"
+NAMES = {"x": ("x", "m"), "y": ("y", "m"), "speed": ("v", "m/s"), "heading": ("heading", "deg"), "time": ("t", "s"),
+         "history": ("t_since_hit", "s")}  # fmt: skip
+SYMBOLS = {"along": "along", "across": "left", "x": "x", "y": "y"}
+
+
+def readable_formula(
+    problem: GlideProblem, found: SearchResult, law: Law, use: np.ndarray
+) -> tuple[Formula, list[Projection]]:
+    """The formula of a family of forces that was found, fitted to the clusters `use`; and projections that show it."""
+    values = found.all_values
+    path, by_start = problem.linearized(values)
+    motion = problem.motion(path)
+
+    def respond(forces: np.ndarray) -> np.ndarray:
+        """Residuals (2n, k) that forces (n, 2, k) [m/s^2] explain."""
+        return -problem.profiled(path, by_start, problem.displacements(path, values, forces)[0])[1]
+
+    left = problem.residuals(values, found.final.free, np.arange(problem.clusters))
+    r = left.r
+    if found.effect_parameters():  # it is in the path, and the formula replaces it
+        r = r + respond(force(law.name, motion, found.coefficients)[:, :, None])[:, 0]
+    candidates = FormulaCandidates(motion, law)
+    best = find_formula(
+        FormulaProblem(r, left.jacobian, left.cluster, use, respond), candidates.single, candidates.joined
+    )
+    return best, candidates.views(best)
+
+
+class FormulaCandidates:
+    """The forms that a family's formula may have: `single` ones, along one direction each, and `joined` ones."""
+
+    def __init__(self, motion: Motion, law: Law) -> None:
+        kind = law.name.split()[0]
+        self._motion = motion
+        self._sides = {"push": ("x", "y"), "brake": ("along",), "side": ("across",)}.get(kind, ("along", "across"))
+        self._of: dict[str, tuple[Profile, str, tuple[str, ...]]] = {}
+        coordinates = ("x", "y") if law.family == "position" else (law.family,)
+        self.single = [self._form(one, name, (side,)) for name in coordinates for side in self._sides
+                       for one in self._profiles(name, side)]  # fmt: skip
+        if law.family == "position":
+            self.single += central_forces.pushes(motion) if kind == "push" else [central_forces.brake(motion)]
+
+    def joined(self, one: Form, shape: np.ndarray) -> Sequence[Form]:
+        """The shape of `one`, with its parameters `shape` (k,), along both directions of the family, if it has two."""
+        if one.name not in self._of or len(self._sides) == 1:
+            return []
+        profile, name, _ = self._of[one.name]
+        return [self._form(replace(profile, grid=shape[None]), name, self._sides)]
+
+    def views(self, best: Formula) -> list[Projection]:
+        """The projections that show a formula best."""
+        if best.form.name in self._of:
+            _, name, sides = self._of[best.form.name]
+            return [view(name, side) for side in sides]
+        return [
+            around(
+                best.values["x"], best.values["y"], central_forces.ROUND in best.form.name, best.form.name == "patch"
+            )
+        ]
+
+    def _axis(self, name: str, side: str) -> Axis:
+        symbol, unit = NAMES[name]
+        offset = side != "along" and name != "history"  # along the motion the baseline's friction is one
+        return Axis(symbol, unit, COORDINATES[name][1](self._motion), offset)
+
+    def _profiles(self, name: str, side: str) -> list[Profile]:
+        if name == "heading":
+            return [harmonic(order, UNIT) for order in range(1, HARMONICS + 1)]
+        return profiles(self._axis(name, side), UNIT)
+
+    def _form(self, profile: Profile, name: str, sides: tuple[str, ...]) -> Form:
+        """The form of a profile over the coordinate `name`, which is kept to find its projections by."""
+        directions = [
+            Direction("a", SYMBOLS[side], DIRECTIONS[side][0], DIRECTIONS[side][1](self._motion)) for side in sides
+        ]
+        made = form(profile, self._axis(name, sides[0]), directions, UNIT)
+        self._of[made.name] = (profile, name, sides)
+        return made

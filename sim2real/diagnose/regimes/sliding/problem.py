@@ -1,0 +1,106 @@
+"""The glides as a problem for the engine, and the states at their ends, between which the contacts are."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from puckpilot_env.parameters import BY_NAME
+from sim2real.diagnose.engine.least_squares import LeastSquaresFit
+from sim2real.diagnose.engine.problem import DesignMatrix
+from sim2real.diagnose.regimes.sliding.basis_library import force
+from sim2real.diagnose.regimes.sliding.candidates import glide_columns
+from sim2real.diagnose.regimes.sliding.residuals import GlideResiduals
+from sim2real.diagnose.regimes.sliding.trajectory import braking
+from sim2real.diagnose.regimes.sliding.tuned import SLIDING
+
+
+@dataclass(frozen=True)
+class States:
+    """The ends of glides, first and last frame.
+
+    `motion` (g, 2, 6): place [m], velocity [m/s], and the acceleration [m/s^2] beyond that by `friction` [m/s^2] and
+    `drag` [1/m]; `spread` (g, 2, 4, 4): covariance of place and velocity by the noise of the frames; `drift`
+    (g, 2, 4, k): changes of place and velocity by each independent standard deviation of the law and of the camera's
+    calibration, common to all glides.
+    """
+
+    motion: np.ndarray
+    spread: np.ndarray
+    drift: np.ndarray
+    friction: float
+    drag: float
+
+
+class GlideProblem(GlideResiduals):
+    """`GlideResiduals` with candidate laws, and states at the ends of glides."""
+
+    def columns(self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None) -> DesignMatrix:
+        """See `Problem.columns`."""
+        return glide_columns(self, values, free, use)
+
+    def distance_of_ends(self, values: Mapping[str, float], others: Mapping[str, float]) -> float:
+        """Distance [m], rms over the glides, of their ends under two laws from one start, fitted under the first."""
+        starts, path, _ = self._fit_starts(self._record(values))
+        other = self._trace(self._record(others), starts)
+        last = self.data.first[1:] - 1
+        return float(np.sqrt(np.mean(np.sum((path[last, :2] - other[last, :2]) ** 2, axis=1))))
+
+    def states(self, law: LeastSquaresFit, smooth: str = "", theta: np.ndarray | None = None) -> States:
+        """The states at the ends of all glides under a fitted law, and the family `smooth` on top of it with the
+        coefficients `theta`, if there are any."""
+        data, record = self.data, self._record(law.values)
+        _, path, by_start = self._fit_starts(record)
+        whitened = self.errors.white(by_start[:, :2])
+        if theta is not None:
+            added = force(smooth, self.motion(path), theta)
+            change = np.concatenate(self.displacements(path, law.values, added[:, :, None]), axis=1)[:, :, 0]
+            starts = self._start_changes(whitened, (data.place - path[:, :2] - change[:, :2])[:, :, None])[:, :, 0]
+            path = path + change + np.einsum("nai,ni->na", by_start, data.of_frame(starts))
+        ends = [data.first[:-1], data.first[1:] - 1]
+        inverse = np.linalg.inv(self._normal(whitened)) * self._excess(path, by_start[:, :2])[:, None, None]
+        by_modes = self._start_changes(whitened, self.errors.modes(path[:, :2]))
+        friction, drag = float(record["friction"]), float(record["drag"])
+        beyond = [
+            _beyond(data.t, path[:, 2:], at, step, friction, drag) for at, step in zip(ends, (1, -1), strict=True)
+        ]
+        return States(
+            np.stack([np.concatenate([path[at], more], axis=1) for at, more in zip(ends, beyond, strict=True)], axis=1),
+            np.stack([by_start[at] @ inverse @ by_start[at].transpose(0, 2, 1) for at in ends], axis=1),
+            np.concatenate(
+                [self._drift(law, ends), np.stack([by_start[at] @ by_modes for at in ends], axis=1)], axis=3
+            ),
+            friction,
+            drag,
+        )
+
+    def _excess(self, path: np.ndarray, by_start: np.ndarray) -> np.ndarray:
+        """Variance (g,) of each glide about its path, in units of what the sensor's noise and calibration explain; 1
+        where it is not significantly larger."""
+        rest = self.profiled(path, by_start, np.zeros((len(path), 2, 0)))[0]
+        left, freedom = np.add.reduceat(rest**2, 2 * self.data.first[:-1]), self.units.freedom
+        return np.where(
+            left > freedom + SLIDING.excess_stds * np.sqrt(2.0 * freedom), left / np.maximum(freedom, 1.0), 1.0
+        )
+
+    def _drift(self, law: LeastSquaresFit, ends: Sequence[np.ndarray]) -> np.ndarray:
+        """Changes (g, 2, 4, k) of the states at the frames `ends` by each of the law's `directions`."""
+        path = self._fit_starts(self._record(law.values)).path
+        drift = np.zeros((self.data.glides, 2, 4, len(law.free)))
+        for k, change in enumerate(law.directions.T):
+            shifted = {
+                name: BY_NAME[name].within(law.values[name] + step) for name, step in zip(law.free, change, strict=True)
+            }
+            other = self._fit_starts(self._record({**law.values, **shifted})).path
+            drift[:, :, :, k] = np.stack([other[at] - path[at] for at in ends], axis=1)
+        return drift
+
+
+def _beyond(t: np.ndarray, velocity: np.ndarray, at: np.ndarray, step: int, friction: float, drag: float) -> np.ndarray:
+    """Acceleration (k, 2) [m/s^2] at the frames `at` (k,), by the velocity at the frames `step` from them, less that
+    by friction and drag."""
+    beside = at + step
+    slope = (velocity[beside] - velocity[at]) / (t[beside] - t[at])[:, None]
+    return slope - braking(0.5 * (velocity[beside] + velocity[at]), friction, drag)

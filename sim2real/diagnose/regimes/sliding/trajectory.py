@@ -1,0 +1,113 @@
+"""Paths of glides under a law, by the simulator's own sliding; the accelerations of a law; the linear response of a
+path to small accelerations; and the motion beyond a glide's frames, to a contact that was not recorded."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from puckpilot_env.kernel import array_kernel, kernel
+from puckpilot_env.physics import compose
+from puckpilot_env.physics.sliding.slide import slide
+from sim2real.diagnose.engine.problem import record_of
+from sim2real.diagnose.regimes.sliding.basis_library import Motion
+from sim2real.diagnose.regimes.sliding.tuned import SLIDING
+
+X, Y, VX, VY, SPIN = range(5)
+
+
+@kernel
+def trace(p, first, t, starts, pucks, path):
+    """Write the motion of each glide at its frames.
+
+    `path` (n, 4): place [m] and velocity [m/s], from the `starts` (g, 5): place, velocity and spin [rad/s]; `first`
+    (g + 1,): the first frame of each glide, and n; `t` (n,) [s]; `p`: a record of parameters; `pucks`: an array of at
+    least one record of `advance.PUCK`, which is overwritten.
+    """
+    puck = pucks[0]
+    for g in range(len(first) - 1):
+        puck.x, puck.y, puck.vx, puck.vy = starts[g, X], starts[g, Y], starts[g, VX], starts[g, VY]
+        puck.spin = starts[g, SPIN]
+        for i in range(first[g], first[g + 1]):
+            if i > first[g]:
+                slide(puck, p, t[i - 1], t[i] - t[i - 1])
+            path[i, X], path[i, Y], path[i, VX], path[i, VY] = puck.x, puck.y, puck.vx, puck.vy
+
+
+def accelerations(values: Mapping[str, float], motion: Motion) -> np.ndarray:
+    """Accelerations (n, 2) [m/s^2] of a puck without spin by friction and all effects of a law, without drag."""
+    found = np.empty_like(motion.velocity)
+    size = {"length": float(motion.size[0]), "width": float(motion.size[1])}
+    _accelerations(record_of({**values, **size}), motion.t, motion.place, motion.velocity, found)
+    return found
+
+
+@kernel
+def _accelerations(p, t, place, velocity, found):
+    for i in range(len(t)):
+        x, y, vx, vy = place[i, 0], place[i, 1], velocity[i, 0], velocity[i, 1]
+        ax, ay = compose.acceleration(p, t[i], x, y, vx, vy, 0.0)
+        brake = max(compose.friction(p, t[i], x, y, vx, vy, p.friction), 0.0)
+        speed = max((vx * vx + vy * vy) ** 0.5, 1e-9)
+        found[i, 0], found[i, 1] = ax - brake * vx / speed, ay - brake * vy / speed
+
+
+@array_kernel
+def linear_response(first, t, path, friction, drag, force, moved, moving):
+    """Write the displacements `moved` (n, 2, k) [m] of a `path` (n, 4), and their rates `moving` (n, 2, k) [m/s], by
+    small accelerations `force` (n, 2, k) [m/s^2].
+
+    The linearized motion about the path, d'' = (da/dv) d' + force with the baseline's da/dv, from rest at each glide's
+    first frame, by the trapezoidal rule between frames.
+    """
+    k = force.shape[2]
+    dvx, dvy = np.zeros(k), np.zeros(k)
+    for g in range(len(first) - 1):
+        dvx[:] = 0.0
+        dvy[:] = 0.0
+        moved[first[g]] = 0.0
+        moving[first[g]] = 0.0
+        for i in range(first[g], first[g + 1] - 1):
+            h = t[i + 1] - t[i]
+            vx, vy = 0.5 * (path[i, VX] + path[i + 1, VX]), 0.5 * (path[i, VY] + path[i + 1, VY])
+            speed = np.sqrt(vx * vx + vy * vy) + 1e-9
+            ux, uy = vx / speed, vy / speed
+            across, along = friction / speed + drag * speed, 2.0 * drag * speed
+            axx = -across * (1.0 - ux * ux) - along * ux * ux
+            axy = (across - along) * ux * uy
+            ayy = -across * (1.0 - uy * uy) - along * uy * uy
+            limit = 1.0 / (1.0 + 0.5 * h * across)  # implicit where a slow puck's heading is hard to turn
+            for j in range(k):
+                fx, fy = 0.5 * (force[i, 0, j] + force[i + 1, 0, j]), 0.5 * (force[i, 1, j] + force[i + 1, 1, j])
+                ax = (axx * dvx[j] + axy * dvy[j] + fx) * limit
+                ay = (axy * dvx[j] + ayy * dvy[j] + fy) * limit
+                moved[i + 1, 0, j] = moved[i, 0, j] + h * (dvx[j] + 0.5 * h * ax)
+                moved[i + 1, 1, j] = moved[i, 1, j] + h * (dvy[j] + 0.5 * h * ay)
+                dvx[j] += h * ax
+                dvy[j] += h * ay
+                moving[i + 1, 0, j], moving[i + 1, 1, j] = dvx[j], dvy[j]
+
+
+def braking(velocity: np.ndarray, friction: float, drag: float) -> np.ndarray:
+    """Acceleration (…, 2) [m/s^2] of the baseline, a = -(friction + drag v^2) along the velocity (…, 2) [m/s], with
+    `friction` [m/s^2] and `drag` [1/m]."""
+    speed = np.linalg.norm(velocity, axis=-1, keepdims=True)
+    return -(friction + drag * speed**2) * velocity / np.maximum(speed, SLIDING.at_rest)
+
+
+def extrapolated(
+    place: np.ndarray, velocity: np.ndarray, beyond: np.ndarray, friction: float, drag: float, duration: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Place (2,) [m] and velocity (2,) [m/s] `duration` [s] later, or earlier where it is negative, under `braking`
+    and a constant acceleration `beyond` (2,) [m/s^2], by the Runge-Kutta method of fourth order."""
+    steps = max(int(np.ceil(abs(duration) / SLIDING.runge_kutta_step)), 1)
+    h = duration / steps
+    for _ in range(steps):
+        v, a = [velocity], [braking(velocity, friction, drag) + beyond]
+        for part in (0.5, 0.5, 1.0):
+            v.append(velocity + part * h * a[-1])
+            a.append(braking(v[-1], friction, drag) + beyond)
+        place = place + h / 6.0 * (v[0] + 2.0 * v[1] + 2.0 * v[2] + v[3])
+        velocity = velocity + h / 6.0 * (a[0] + 2.0 * a[1] + 2.0 * a[2] + a[3])
+    return place, velocity

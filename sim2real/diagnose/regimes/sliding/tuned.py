@@ -1,0 +1,163 @@
+"""The tuned numbers of the sliding puck's regime."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from sim2real.statistics.tuned import tuned
+
+
+@dataclass(frozen=True)
+class SlidingNumbers:
+    """Which glides are used, how starts are fitted, what candidates there are, and how figures are drawn."""
+
+    # data
+    smooth_order: int = tuned(
+        4, "1",
+        "polynomials of lower order leave the curve of a free glide, those of higher order follow unseen contacts",
+        "choice: a free glide is a polynomial of this order in time, to the sensor's noise",
+    )  # fmt: skip
+    smooth_chance: float = tuned(
+        1e-4,
+        "1",
+        "chance at which a true glide is refused; a smaller one lets contacts pass",
+        "choice: few per recording",
+    )
+    smooth_slack: float = tuned(
+        1.1, "1", "times the limit of the chi-square: noise that is a little underestimated would refuse glides",
+        "choice: five per cent of the noise",
+    )  # fmt: skip
+    fewest_frames: int = tuned(
+        12, "frames", "of a shorter glide the start explains most", "choice: the start takes four of 24 numbers"
+    )
+    clearance: float = tuned(
+        0.003, "m", "nearer to a wall, post or mallet a slow contact may hide; a larger distance costs frames",
+        "choice: beside glides of decimetres it costs few frames",
+    )  # fmt: skip
+    clearance_stds: float = tuned(
+        4.0,
+        "1",
+        "standard deviations of the noise that are added to it, for the same reason",
+        "choice: hardly by chance",
+    )
+    longest_cluster: float = tuned(
+        6.0, "s", "a longer launch counts as several: few long ones leave too few clusters to resample",
+        "choice: longer than a launch across the table",
+    )  # fmt: skip
+    slowest: float = tuned(
+        0.02, "m/s", "a slower puck is at rest and shows no force", "choice: friction stops it within a few millimetres"
+    )
+    contact_gap: float = tuned(
+        0.05, "s", "a glide that begins later than this after a contact is not known to begin there",
+        "choice: a few frames",
+    )  # fmt: skip
+    # start states
+    start_steps: int = tuned(
+        8, "1", "Gauss-Newton of the start states that does not end", "choice: twice what a usual law needs"
+    )
+    spin_decay: float = tuned(
+        0.3, "1/s", "the side force of a spin that decays slowly taken for a grain of friction", "choice: between the "
+        "decays of the independent table; with 0.5, one in four of its recordings with a slow decay was misread",
+    )  # fmt: skip
+    start_steps_near: int = tuned(
+        2, "1", "first steps with the common law's derivatives: without them a step with a law's own, which costs five "
+        "paths instead of one, is taken far from the solution", "choice: one for the law, one for curvature",
+    )  # fmt: skip
+    start_converged: float = tuned(
+        100.0, "1", "a step of the starts, in units of `start_step`, that ends their fit: a larger one leaves an error "
+        "that forces could explain", "tests/sim2real/diagnose/regimes/sliding/test_start_states.py",
+    )  # fmt: skip
+    start_step: tuple[float, float, float, float] = tuned(
+        (1e-6, 1e-6, 1e-5, 1e-5), "m, m/s",
+        "differences for derivatives by the start: smaller ones are rounding, larger ones bend",
+        "choice: far below the sensor's noise",
+    )  # fmt: skip
+    start_ridge: float = tuned(
+        1e-9, "1", "share of the trace added to normal equations: starts that no frame determines", "choice: rounding"
+    )
+    parameter_step: float = tuned(
+        1e-5, "1", "share of a parameter's range for derivatives: smaller ones are rounding, larger ones bend",
+        "choice: between rounding and curvature",
+    )  # fmt: skip
+    narrowest_range: float = tuned(1e-3, "1", "a range that is too narrow for such a share", "choice: in its own unit")
+    excess_stds: float = tuned(
+        3.0, "1",
+        "standard deviations of chi-square beyond which a glide's scatter enlarges its ends' covariance; fewer do so "
+        "by chance", "choice: one in a thousand by chance",
+    )  # fmt: skip
+    # candidates
+    unit: float = tuned(
+        0.1, "m/s^2", "a coefficient of 1, which the prior of nonparametric forces expects",
+        "choice: about the friction of an air table",
+    )  # fmt: skip
+    ripples: tuple[int, int] = tuned(
+        (14, 8), "1", "cosines along x alone and along y alone: fewer miss narrow forces, more fit noise",
+        "choice: waves of about the same length along both axes",
+    )  # fmt: skip
+    speed_knots: int = tuned(
+        8, "1", "knots of forces by speed: fewer miss their shape", "choice: penalized by stiffness"
+    )
+    history_knots: int = tuned(
+        6, "1", "knots of forces by the time since a contact: fewer miss their shape", "choice: denser soon after it"
+    )
+    wave_span: float = tuned(
+        240.0, "s",
+        "the periods of waves in time are this over whole numbers: with a longer span a minute hardly distinguishes "
+        "neighbours, with a shorter one a wave lies between them", "choice: four minutes",
+    )  # fmt: skip
+    wave_numbers: tuple[int, int] = tuned(
+        (6, 49), "1", "whole numbers from the first to below the last: 40 s, as long as a drift, to 5 s, a launch",
+        "choice: between a launch and a drift",
+    )  # fmt: skip
+    patch_radii: tuple[float, ...] = tuned(
+        (0.05, 0.1, 0.15, 0.2, 0.3), "m", "radii at which patches of other friction are looked for",
+        "choice: from the puck's to a third of the width",
+    )  # fmt: skip
+    patch_spacing: float = tuned(
+        0.7,
+        "1",
+        "distance of neighbouring discs in radii: a larger one leaves gaps between discs",
+        "choice: they overlap",
+    )
+    least_patch_spacing: float = tuned(
+        0.06, "m", "the same for the smallest discs, of which there would be too many", "choice: about the puck's width"
+    )
+    patches_kept: int = tuned(
+        2, "1", "places that are offered by either search: the best on the grid may not be the best fit", "choice: two"
+    )
+    patch_refinements: int = tuned(
+        2, "1", "rounds of looking nearby, each with half the step", "choice: a quarter step"
+    )
+    patch_growth: float = tuned(0.4, "1", "step of the radius in radii, in the same search", "choice: as the places'")
+    patch_chunk: int = tuned(
+        120,
+        "discs",
+        "discs at a time: their columns for all frames must fit into memory",
+        "choice: about 20 MB for a minute at 150 Hz",
+    )
+    central_sizes: tuple[float, ...] = tuned(
+        (0.1, 0.2, 0.35), "1", "sizes of forces about a point, in widths of the table, from which a fit starts",
+        "choice: nearly factors of two",
+    )  # fmt: skip
+    # extrapolation and figures
+    runge_kutta_step: float = tuned(
+        0.01, "s", "longest step of the extrapolation: a fast puck's drag changes within a few",
+        "tests/sim2real/diagnose/regimes/sliding/test_extrapolate.py",
+    )  # fmt: skip
+    at_rest: float = tuned(1e-6, "m/s", "a slower puck has no heading", "choice: far below the noise of a velocity")
+    window: float = tuned(
+        0.7, "s", "length of an acceleration window: the acceleration's noise falls with its 2.5th power, and a longer "
+        "one averages over places", "choice: noise of a window below the forces that matter",
+    )  # fmt: skip
+    short_window: float = tuned(
+        0.3, "s", "the same where what happens soon after a contact matters", "choice: less than half the usual one"
+    )
+    law_bins: int = tuned(
+        30,
+        "1",
+        "bins of a law's curve, which has no noise: fewer are coarse",
+        "choice: drawn as a line, it looks smooth",
+    )
+
+
+SLIDING = SlidingNumbers()

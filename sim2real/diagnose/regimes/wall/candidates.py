@@ -1,0 +1,53 @@
+"""What a contact with a wall may lack, as columns of its residuals: the listed effects, and smooth laws."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+
+from puckpilot_env.physics.effects import EFFECTS
+from sim2real.diagnose.engine.law import Law
+from sim2real.diagnose.engine.problem import DesignMatrix
+from sim2real.diagnose.regimes.contact.candidates import basis_name_of, contact_design_matrix
+from sim2real.diagnose.regimes.contact.problem import ContactProblem
+from sim2real.diagnose.regimes.wall.as_effect import effect_parameters
+from sim2real.diagnose.regimes.wall.basis_library import BASIS_LIBRARY, SINGLE_WAVES
+from sim2real.diagnose.regimes.wall.data import WallContacts
+from sim2real.diagnose.regimes.wall.tuned import WALL
+
+FRICTION = "wall_friction_spin"
+ONE_LAW_PER_PARAMETER = ("wall_to_wall_restitution", "speed_dependent_restitution")
+
+
+def wall_design_matrix(
+    problem: ContactProblem[WallContacts], values: Mapping[str, float], free: Sequence[str]
+) -> DesignMatrix:
+    """All columns of a wall problem at the law `values`; those of parameters are the base's and `free`."""
+    friction = (FRICTION, "wall_mu", WALL.frictions)
+    columns = contact_design_matrix(problem, values, free, _derivative_laws(), friction, BASIS_LIBRARY)
+    return replace(columns, families=[_with_effect(law, problem) for law in columns.families])
+
+
+def _with_effect(law: Law, problem: ContactProblem[WallContacts]) -> Law:
+    """The law with the effect that plays it; a single wave also with the number of lengths of which it is the best."""
+    law = replace(law, switch=partial(effect_parameters, law.name, problem.data), linear=True)
+    if basis_name_of(law) not in SINGLE_WAVES:
+        return law
+    return replace(law, searched=len(SINGLE_WAVES), variant_of=f"{law.name.split(' by ', 1)[0]} by a wave")
+
+
+def _derivative_laws() -> list[Law]:
+    """Listed effects whose columns are derivatives at the baseline.
+
+    Each wall's own restitution is a law, and so is each form of the fall with speed.
+    """
+    found = []
+    for name, effect in EFFECTS.items():
+        if effect.regime not in ("wall", "corner") or not effect.listed or name == FRICTION:
+            continue
+        if name in ONE_LAW_PER_PARAMETER:
+            found += [Law(name, (row,)) for row in effect.row_names]
+        else:
+            found.append(Law(name, effect.row_names))
+    return found

@@ -1,0 +1,83 @@
+"""Contacts with walls and posts as a regime."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from sim2real.diagnose.engine.model_search import SearchResult
+from sim2real.diagnose.engine.problem import Problem
+from sim2real.diagnose.regimes.base import Evidence, Known
+from sim2real.diagnose.regimes.contact.base import ContactRegime, glides_of, has_glides, holdout_motions, motions
+from sim2real.diagnose.regimes.formula_words import with_formula
+from sim2real.diagnose.regimes.wall import figures
+from sim2real.diagnose.regimes.wall.data import wall_contacts
+from sim2real.diagnose.regimes.wall.formula import readable_formula
+from sim2real.diagnose.regimes.wall.problem import WallProblem
+from sim2real.diagnose.regimes.wall.scatter import search_wall_model
+from sim2real.diagnose.result.result import Finding, Mismatch
+from sim2real.segmentation.causes import geometry
+
+
+class Wall(ContactRegime):
+    """How walls and posts throw the puck back."""
+
+    name = "wall"
+    lacks = "too few free slides to tell bounces by"
+    more_of = "bounces off all four walls, thirty or more, slow and fast, steep and flat"
+    shown_by = "bounces"
+
+    def problem(self, evidence: Evidence, known: Known) -> WallProblem | None:
+        """See `Regime.problem`."""
+        if not has_glides(known):
+            return None
+        every = [one for some in motions(evidence, known) for one in some]
+        contacts = wall_contacts(every, geometry(evidence.recordings[0]))
+        return WallProblem(contacts, glides_of(known).clusters, self.parameters(evidence, known))
+
+    def holdout_problem(self, evidence: Evidence, known: Known) -> WallProblem | None:
+        """See `Regime.holdout_problem`; outliers and scatter are judged by the bounces that were fitted."""
+        fitted, (found, launches) = known["wall"].problem, holdout_motions(evidence, known)
+        if not launches or not isinstance(fitted, WallProblem):
+            return None
+        every = [one for some in found for one in some]
+        contacts = wall_contacts(every, geometry(evidence.recordings[0]), fitted.data)
+        scatter = (float(fitted.scatter[0]), float(fitted.scatter[1]))
+        return WallProblem(contacts, launches, self.parameters(evidence, known), scatter)
+
+    def search(
+        self, problem: Problem, defaults: Mapping[str, float], use: np.ndarray, clear: bool
+    ) -> tuple[Problem, SearchResult]:
+        """See `Regime.search`; bounces may scatter by more than the sensor's noise."""
+        assert isinstance(problem, WallProblem)
+        return search_wall_model(problem, defaults, use, clear)
+
+    def mismatch(self, problem: Problem, found: SearchResult) -> Mismatch:
+        """See `Regime.mismatch`."""
+        assert isinstance(problem, WallProblem)
+        return figures.mismatch(problem, found)
+
+    def illustrated(self, problem: Problem, found: SearchResult, finding: Finding, use: np.ndarray) -> Finding:
+        """See `Regime.illustrated`."""
+        assert isinstance(problem, WallProblem)
+        if found.unlisted is None or finding.mechanism != "unlisted":
+            return replace(finding, curve=figures.listed_curve(problem, found, finding.mechanism))
+        formula, projection = readable_formula(problem, found, found.unlisted, use)
+        curve = figures.smooth_curve(problem, found, formula, projection)
+        return with_formula(finding, problem, found, formula, curve, use)
+
+    def note(self, problem: Problem) -> str:
+        """See `Regime.note`: how far bounces scatter beyond the sensors' errors."""
+        assert isinstance(problem, WallProblem)
+        if not problem.scatter.any():
+            return ""
+        along, across = 100.0 * problem.scatter
+        return (
+            f"no two bounces are alike: beyond what the sensors err, they scatter by {along:.2g} % of the closing "
+            f"speed along the normal and {across:.2g} % along the wall, which counts as noise here"
+        )
+
+
+REGIME = Wall()

@@ -1,0 +1,52 @@
+"""The covariance of all measured places of glides: noise of each frame, which may be autocorrelated, and the errors of
+the calibrations, which are common to all frames."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from sim2real.diagnose.sensor_noise.map_error import modes
+from sim2real.diagnose.sensor_noise.model import SensorNoise
+from sim2real.statistics.whitening import whitened
+
+
+class PositionCovariance:
+    """Whitens changes of the places of g segments, of which number i has the frames first[i] … first[i + 1] − 1."""
+
+    def __init__(
+        self, t: np.ndarray, std: np.ndarray, first: np.ndarray, noise: Sequence[SensorNoise], size: np.ndarray
+    ) -> None:
+        """`t` (n,) [s]; `std` (n, 2) [m] of the frames' noise; `noise`: the camera of each segment (g,); `size` (2,)
+        [m] of the table. Recordings that state the same size of their calibration's error share that error; others
+        have another calibration, since no two come to the same size."""
+        self._std, self._first, self._size = std, first, size
+        stated = np.array([one.map_error_std for one in noise])
+        self._map_error_std = np.repeat(stated, np.diff(first))
+        self._calibrations = sorted({one for one in stated.tolist() if one})
+        self._whiten = {
+            i: np.linalg.inv(np.linalg.cholesky(one.correlation(t[a:b])))
+            for i, ((a, b), one) in enumerate(zip(pairwise(first), noise, strict=True))
+            if one.autocorrelation.share
+        }
+
+    def white(self, values: np.ndarray) -> np.ndarray:
+        """Changes of the places (n, 2, …) [m], as rows in units of white noise, in the same shape."""
+        whitened = values / self._std.reshape(*self._std.shape, *[1] * (values.ndim - 2))
+        for i, whiten in self._whiten.items():
+            rows = slice(self._first[i], self._first[i + 1])
+            whitened[rows] = (whiten @ whitened[rows].reshape(len(whiten), -1)).reshape(whitened[rows].shape)
+        return whitened
+
+    def modes(self, place: np.ndarray) -> np.ndarray:
+        """Displacements (n, 2, m) [m] of places (n, 2) [m] by each independent standard deviation of the
+        calibrations' errors; m is 0 where no recording states one."""
+        each = [modes(place, self._size, np.where(self._map_error_std == std, std, 0.0)) for std in self._calibrations]
+        return np.concatenate([np.zeros((len(place), 2, 0)), *each], axis=2)
+
+    def allowing(self, shared: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        """Rows (2n, k) of white noise, made white again with the common errors `shared` (2n, m): the modes, whitened
+        and projected as the rows are."""
+        return whitened(shared, rows) if shared.shape[1] else rows

@@ -1,0 +1,1 @@
+"""Recordings of a table: read strictly, checked, written whole."""

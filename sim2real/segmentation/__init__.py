@@ -1,0 +1,1 @@
+"""From frames to segments: valid frames, noise, changepoints, contacts and their causes."""

@@ -1,0 +1,170 @@
+"""The motion of a recorded mallet at any time: the robot's by its encoders, the opponent's by the camera."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sim2real.recording.folder import Recording, Stream
+from sim2real.segmentation.sensor_noise import estimate_noise
+from sim2real.segmentation.tuned import SEGMENTATION
+
+DIFFUSE = (0.1, 10.0, 100.0)  # m, m/s, m/s^2: as good as unknown, of place, velocity and acceleration
+NO_SWITCHES = (np.zeros(0), np.zeros(0))
+
+
+@dataclass(frozen=True)
+class MalletPath:
+    """A sampled path: clock `t` (n,) [s], places `p` (n, 2) [m], white noise [m] of a coordinate.
+
+    The acceleration is a Wiener process of intensity `jerk` [m^2/s^5] that jumps at `switches` [s]: one entry an axis
+    each. The switches are the times at which the axis' voltage changes (empty where the commands are unknown).
+    """
+
+    t: np.ndarray
+    p: np.ndarray
+    noise: float
+    jerk: tuple[float, float]
+    switches: tuple[np.ndarray, np.ndarray]
+
+    def at(self, when: np.ndarray) -> np.ndarray:
+        """Places (..., 2) [m] at the times `when` (...) [s]; nan beyond the ends and in holes of the stream."""
+        right = np.clip(np.searchsorted(self.t, when), 1, len(self.t) - 1)
+        share = (when - self.t[right - 1]) / (self.t[right] - self.t[right - 1])
+        place = self.p[right - 1] + share[..., None] * (self.p[right] - self.p[right - 1])
+        hole = self.t[right] - self.t[right - 1] > SEGMENTATION.path_hole
+        return np.where((hole | (share < 0) | (share > 1))[..., None], np.nan, place)
+
+    def motion_at_contact(self, when: float) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+        """Velocity (2,) [m/s] just before `when` [s], its step (2,) there, their covariances (2, 2, 2), an axis each.
+
+        None where the stream has too few samples there.
+        """
+        fits = self._fits(when, step=True)
+        if fits is None:
+            return None
+        before, step = np.array([[fit[1], fit[3]] for fit, _ in fits]).T
+        return before, step, np.array([covariance[np.ix_([1, 3], [1, 3])] for _, covariance in fits])
+
+    def motion(self, when: float) -> tuple[np.ndarray, np.ndarray] | None:
+        """Place, velocity and acceleration (3, 2) at `when` [s] of a mallet that no contact disturbs, and their
+        covariances (2, 3, 3), an axis each, in SI units. None where the stream has too few samples there."""
+        fits = self._fits(when, step=False)
+        if fits is None:
+            return None
+        return np.array([fit for fit, _ in fits]).T, np.array([covariance for _, covariance in fits])
+
+    def likelihoods(self, axis: int, windows: np.ndarray) -> np.ndarray:
+        """Log likelihood (n,) of the samples around each of the times `windows` (n,) [s], with the path's place,
+        velocity and acceleration there unknown."""
+        found = np.zeros(len(windows))
+        for k, when in enumerate(windows):
+            here = self._around(float(when))
+            u, q = self.t[here] - when, self.p[here, axis] - self.p[here, axis].mean()
+            basis = np.stack([np.ones_like(u), u, u * u / 2], axis=1) * DIFFUSE
+            root = np.linalg.cholesky(self._covariance(u, axis, float(when)) + basis @ basis.T)
+            found[k] = -np.log(np.diag(root)).sum() - 0.5 * float((np.linalg.solve(root, q) ** 2).sum())
+        return found
+
+    def _fits(self, when: float, step: bool) -> list[tuple[np.ndarray, np.ndarray]] | None:
+        """For each axis place, velocity and acceleration at `when`, then a `step` of the velocity there if wanted,
+        (k,), and their covariance (k, k): generalised least squares under the random acceleration."""
+        here = self._around(when)
+        u, q = self.t[here] - when, self.p[here]
+        if min((u < 0).sum(), (u >= 0).sum()) < 3 or np.diff(u).max() > SEGMENTATION.path_hole:
+            return None
+        columns = [np.ones_like(u), u, u * u / 2, np.maximum(u, 0.0)]
+        basis = np.stack(columns if step else columns[:3], axis=1)
+        fits = []
+        for axis in (0, 1):
+            weight = np.linalg.inv(self._covariance(u, axis, when))
+            covariance = np.linalg.inv(basis.T @ weight @ basis)
+            fits.append((covariance @ (basis.T @ (weight @ q[:, axis])), covariance))
+        return fits
+
+    def _around(self, when: float) -> slice:
+        """The samples within the window around `when`, and at least so many on either side."""
+        near = int(np.searchsorted(self.t, when))
+        window, least = SEGMENTATION.path_window, SEGMENTATION.path_samples
+        first, last = np.searchsorted(self.t, [when - window, when + window])
+        return slice(max(0, min(int(first), near - least)), max(int(last), near + least))
+
+    def _covariance(self, u: np.ndarray, axis: int, when: float) -> np.ndarray:
+        """Covariance (n, n) [m^2] of places at `when + u` about a parabola, from noise, random jerk and switches."""
+        near = self.switches[axis] - when
+        near = near[(near > u[0]) & (near < u[-1])]
+        beyond = np.where(near < 0, near - u[:, None], u[:, None] - near)  # no switch bends the path at 0 itself
+        bends = SEGMENTATION.switch_step * np.maximum(beyond, 0.0) ** 2 / 2
+        return self.noise**2 * np.eye(len(u)) + self.jerk[axis] * wiener_covariance(u) + bends @ bends.T
+
+
+def robot_path(recording: Recording) -> MalletPath | None:
+    """The robot's mallet by its encoders; None where too few samples see it."""
+    return _path(recording.mallet, "mallet", _switches(recording))
+
+
+def opponent_path(recording: Recording) -> MalletPath | None:
+    """The opponent's mallet by the camera; None where too few frames see it."""
+    return _path(recording.frames, "opponent", NO_SWITCHES)
+
+
+def _path(stream: Stream | None, column: str, switches: tuple[np.ndarray, np.ndarray]) -> MalletPath | None:
+    if stream is None:
+        return None
+    p = np.stack([stream[f"{column}_x"], stream[f"{column}_y"]], axis=1)
+    seen = np.isfinite(p).all(axis=1)
+    t, p = stream.t[seen], p[seen]
+    if len(t) < 8 * SEGMENTATION.path_samples:
+        return None
+    noise = max(estimate_noise(t, p).position, SEGMENTATION.encoder_quantum)
+    largest = SEGMENTATION.jerks[-1]
+    return _tune(MalletPath(t, p, noise, (largest, largest), switches))
+
+
+def _switches(recording: Recording) -> tuple[np.ndarray, np.ndarray]:
+    """When each axis' voltage is switched, by the commands: at a plan's start and at its two times, if it lasts."""
+    if recording.commands is None or not recording.commands.rows:
+        return NO_SWITCHES
+    plans = recording.commands
+    until = np.append(plans.t[1:], np.inf)
+    times = []
+    for axis in "xy":
+        later = [plans.t + plans[f"t_{axis}{k}"] for k in (1, 2)]
+        times.append(np.sort(np.concatenate([plans.t, *(each[each < until] for each in later)])))
+    return times[0], times[1]
+
+
+def _tune(path: MalletPath) -> MalletPath:
+    """The path with the jerk and the lag of the switches of greatest likelihood where the mallet moves most."""
+    windows = _busy_times(path)
+    candidates = [NO_SWITCHES]
+    if len(path.switches[0]):
+        candidates += [(path.switches[0] + lag, path.switches[1] + lag) for lag in SEGMENTATION.switch_lags]
+    jerks = SEGMENTATION.jerks
+    paths = [[replace(path, jerk=(jerk, jerk), switches=switches) for jerk in jerks] for switches in candidates]
+    heights = np.array([[[each.likelihoods(axis, windows) for each in row] for row in paths] for axis in (0, 1)])
+    least = heights.max(axis=(1, 2), keepdims=True) - SEGMENTATION.contact_cost
+    heights = np.maximum(heights, least).sum(axis=3)
+    best = int(heights.max(axis=2).sum(axis=0).argmax())
+    x, y = heights[:, best].argmax(axis=1)
+    return replace(path, jerk=(jerks[x], jerks[y]), switches=candidates[best])
+
+
+def _busy_times(path: MalletPath) -> np.ndarray:
+    """Times (SEGMENTATION.tuning_windows,) [s] spread over the faster half of the path."""
+    window, count = SEGMENTATION.path_window, SEGMENTATION.tuning_windows
+    grid = np.linspace(path.t[0] + window, path.t[-1] - window, 20 * count)
+    speed = np.linalg.norm(path.at(grid + window) - path.at(grid - window), axis=1)
+    fast = grid[speed >= np.nanmedian(speed)] if np.isfinite(speed).any() else grid
+    return fast[np.linspace(0, len(fast) - 1, count).astype(int)]
+
+
+def wiener_covariance(u: np.ndarray) -> np.ndarray:
+    """Covariance (n, n) of places at the times `u` if the acceleration is a Wiener process of unit intensity, 0 at 0.
+
+    Thrice integrated white noise on either side of 0: integral of (a - s)^2 (b - s)^2 / 4 over 0 < s < a < b.
+    """
+    a = np.minimum(np.abs(u)[:, None], np.abs(u))
+    gap = np.abs(np.abs(u)[:, None] - np.abs(u))
+    return np.where(u[:, None] * u > 0, (a**5 / 5 + gap * a**4 / 2 + gap**2 * a**3 / 3) / 4, 0.0)

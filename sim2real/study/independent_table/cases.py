@@ -1,0 +1,169 @@
+"""Cases for a diagnosis: a table drawn at random, with something missing or nothing, and the truth about it.
+
+A case depends on the seed and its number alone, so more cases of one seed begin with the same ones.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from sim2real.study.independent_table.mechanisms import MECHANISMS, RIVALS, Mechanism, Rng
+from sim2real.study.independent_table.physics.law import Law
+from sim2real.study.independent_table.physics.unlisted import LAWS
+from sim2real.study.independent_table.recorder.camera import Camera
+from sim2real.study.independent_table.recorder.scene import Hand
+
+# kind: how many of every BLOCK cases
+KINDS = {"nothing": 5, "parameters": 3, "one": 7, "two": 2, "unlisted": 3}
+BLOCK = sum(KINDS.values())
+PLAIN_SCENARIOS = {"launches": 0.4, "posts": 0.1, "rally": 0.15, "match": 0.05, "gantry": 0.2, "drive": 0.1}
+# scenario: the mechanisms that two are drawn from, and how often
+PAIRS = {"launches": 0.5, "posts": 0.1, "rally": 0.2, "gantry": 0.2}
+LIFTED = {"rally": ("glide", "wall"), "posts": ("glide", "wall")}  # regimes that such a recording shows as well
+WEAKEST, STRONGEST = 0.5, 2.0
+FILM = Camera(noise=2e-5, jitter=0.0, dropped=0.005, memory=0.0125, place_error=1.8e-4, beam=0.05)
+
+
+@dataclass(frozen=True)
+class Case:
+    """What to simulate, and `truth`, the key."""
+
+    scenario: str
+    law: Law
+    camera: Camera
+    hand: Hand
+    encoder_noise: float
+    truth: dict[str, Any] = field(default_factory=dict)
+
+
+def draw_case(seed: int, number: int, kind: str | None = None, name: str | None = None, filmed: bool = False) -> Case:
+    """Case `number` of a seed. `kind` and `name` (a mechanism, or an unlisted law) narrow what it may be; `filmed`: its
+    camera is a calibrated one."""
+    if kind is not None and kind not in KINDS:
+        raise ValueError(f"unknown kind {kind!r}: expected one of {', '.join(KINDS)}")
+    if name is not None and name not in {**MECHANISMS, **LAWS}:
+        raise ValueError(f"unknown mechanism {name!r}: expected one of {', '.join([*MECHANISMS, *LAWS])}")
+    if name is not None:
+        kind, turn = "one" if name in MECHANISMS else "unlisted", number
+    elif kind is not None:
+        turn = number
+    else:
+        kind, turn = kind_of(seed, number)
+    rng = np.random.default_rng([seed, number, 1])
+    if kind == "two":
+        scenario, names = _pair(rng)
+    elif kind in ("one", "unlisted"):
+        names = [name or _dealt(list(MECHANISMS if kind == "one" else LAWS), seed, turn)]
+        scenario = str(rng.choice(_mechanism(names[0]).scenarios))
+    else:
+        scenario, names = _choice(rng, PLAIN_SCENARIOS), []
+    law = _table(rng)
+    if kind == "parameters" or (names and rng.uniform() < 0.5):
+        law = _other_parameters(rng, law)
+    calibrated = replace(FILM, calibration=int(rng.integers(2**31))) if filmed else None
+    return _with(rng, kind, scenario, law, names, calibrated)
+
+
+def kind_of(seed: int, number: int) -> tuple[str, int]:
+    """The kind of a case, and how many of that kind come before it."""
+    kinds = [kind for kind, count in KINDS.items() for _ in range(count)]
+    block, place = divmod(number, BLOCK)
+    order = np.random.default_rng([seed, block, 2]).permutation(BLOCK)
+    kind = kinds[order[place]]
+    return kind, block * KINDS[kind] + sum(kinds[k] == kind for k in order[:place])
+
+
+def _dealt(names: list[str], seed: int, turn: int) -> str:
+    """Every name once before any comes again, each round in another order."""
+    turned, place = divmod(turn, len(names))
+    return names[np.random.default_rng([seed, turned, len(names), 3]).permutation(len(names))[place]]
+
+
+def _choice(rng: Rng, weights: dict[str, float]) -> str:
+    return str(rng.choice(list(weights), p=list(weights.values())))
+
+
+def _mechanism(name: str) -> Mechanism:
+    return MECHANISMS[name] if name in MECHANISMS else LAWS[name][0]
+
+
+def _pair(rng: Rng) -> tuple[str, list[str]]:
+    """A scenario and two mechanisms that it shows and that do not undo each other."""
+    scenario = _choice(rng, PAIRS)
+    regimes = LIFTED.get(scenario, ())
+    able = [name for name, one in MECHANISMS.items() if scenario in one.scenarios or one.regime in regimes]
+    while True:
+        names = [str(name) for name in rng.choice(able, 2, replace=False)]
+        if not any(set(names) <= rivals for rivals in RIVALS):
+            return scenario, names
+
+
+def _table(rng: Rng) -> Law:
+    """Sizes of a table, its puck and mallets; all else as the simulator's own numbers."""
+    return Law(
+        length=_about(rng, 1.8, 2.4, 3),
+        width=_about(rng, 0.9, 1.2, 3),
+        goal_width=_about(rng, 0.28, 0.38, 3),
+        puck_radius=_about(rng, 0.028, 0.041, 4),
+        mallet_radius=_about(rng, 0.045, 0.055, 4),
+    )
+
+
+def _about(rng: Rng, low: float, high: float, digits: int) -> float:
+    return round(float(rng.uniform(low, high)), digits)
+
+
+def _other_parameters(rng: Rng, law: Law) -> Law:
+    """The same law with other numbers: friction, drag, restitutions, and the gantry's six."""
+    gantry = {name: getattr(law, name) * float(rng.uniform(0.85, 1.15)) for name in ("a1", "a2", "a3", "b1", "b2")}
+    return replace(
+        law,
+        friction=float(rng.uniform(0.06, 0.22)),
+        drag=float(rng.uniform(0.04, 0.25)),
+        wall_restitution=float(rng.uniform(0.6, 0.85)),
+        mallet_restitution=float(rng.uniform(0.55, 0.85)),
+        **gantry,
+    )
+
+
+def _camera(rng: Rng) -> Camera:
+    """A camera with its small faults. None repeats a position: that would be a mechanism."""
+    return Camera(
+        rate=float(round(rng.uniform(100.0, 150.0))),
+        noise=_about(rng, 0.0003, 0.001, 5),
+        jitter=float(rng.uniform(0.0, 0.0005)),
+        dropped=float(rng.uniform(0.0, 0.03)),
+        wild=float(rng.uniform(0.0, 0.005)),
+        wild_by=float(rng.uniform(0.02, 0.08)),
+    )
+
+
+def _with(rng: Rng, kind: str, scenario: str, law: Law, names: list[str], camera: Camera | None) -> Case:
+    """The case with its mechanisms put in, and the key written; with some camera, if none is given."""
+    camera = camera or _camera(rng)
+    hand = Hand(patience=4.0, at_posts=True) if scenario == "posts" else Hand()
+    values, where, shares = {}, {}, {}
+    for name in names:
+        share = float(np.exp(rng.uniform(np.log(WEAKEST), np.log(STRONGEST))))
+        change = _mechanism(name).draw(rng, share, law, scenario)
+        law, camera, hand = replace(law, **change.law), replace(camera, **change.camera), replace(hand, **change.hand)
+        values[name], where[name], shares[name] = change.values, change.where, share
+    unlisted = kind == "unlisted"
+    baseline = ("friction", "drag", "wall_restitution", "mallet_restitution", "a1", "a2", "a3", "b1", "b2")
+    truth = {
+        "kind": kind,
+        "scenario": scenario,
+        "verdict": {"nothing": "agrees", "parameters": "parameters_only"}.get(kind, "missing_physics"),
+        "mechanisms": ["unlisted"] if unlisted else names,
+        "regimes": [_mechanism(name).regime for name in names],
+        "depends": list(LAWS[names[0]][1]) if unlisted else None,
+        "law": names[0] if unlisted else None,
+        "values": {} if unlisted else values,
+        "where": {} if unlisted else where,
+        "shares": shares,
+        "baseline": {name: getattr(law, name) for name in baseline},
+    }
+    return Case(scenario, law, camera, hand, float(rng.uniform(0.00005, 0.00015)), truth)

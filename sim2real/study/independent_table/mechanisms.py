@@ -1,0 +1,196 @@
+"""The vocabulary of mechanisms, from the side of who hides them: what each changes, how large, and where it shows.
+
+A mechanism draws its own size: the `share` that it is given times what is typical, so that 0.5 is a weak one and 2 a
+strong one. What it says of itself, `values`, goes into the key by the names that a diagnosis may give its numbers:
+where the format leaves the choice (the ratio e_t / e_n, or e_n and e_t), by all of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from math import cos, pi, sin
+from typing import Any
+
+import numpy as np
+
+from sim2real.study.independent_table.physics.law import Law
+
+Rng = np.random.Generator
+
+
+@dataclass(frozen=True)
+class Change:
+    """What a mechanism does to the law, the camera and the hand, and its numbers as the key states them."""
+
+    law: dict[str, Any] = field(default_factory=dict)
+    camera: dict[str, float] = field(default_factory=dict)
+    hand: dict[str, float] = field(default_factory=dict)
+    values: dict[str, float] = field(default_factory=dict)
+    where: dict[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Mechanism:
+    """`draw(rng, share, law, scenario)` gives the change; `scenarios` are those that show it, likeliest first."""
+
+    regime: str
+    scenarios: tuple[str, ...]
+    draw: Callable[[Rng, float, Law, str], Change]
+
+
+PUCK, TABLE_AND_PUCK = ("launches",), ("launches", "posts")
+ROBOT, GANTRY = ("rally", "rally", "match"), ("gantry", "gantry", "drive")
+
+
+def _sign(rng: Rng) -> float:
+    return 1.0 if rng.uniform() < 0.5 else -1.0
+
+
+def _tilt(rng: Rng, share: float, law: Law, scenario: str) -> Change:
+    heading, size = rng.uniform(-pi, pi), 0.023 * share
+    values = {"tilt_x": size * cos(heading), "tilt_y": size * sin(heading)}
+    return Change(law=values, values=values)
+
+
+def _warp(rng: Rng, share: float, law: Law, scenario: str) -> Change:
+    one = rng.standard_normal(3)
+    xx, yy, xy = 0.05 * share * one / np.linalg.norm(one)
+    values = {"warp_xx": float(xx), "warp_yy": float(yy), "warp_xy": float(xy)}
+    return Change(law=values, values=values)
+
+
+def _linear_drag(rng: Rng, share: float, law: Law, scenario: str) -> Change:
+    return Change(law={"linear_drag": 0.08 * share}, values={"k": 0.08 * share})
+
+
+def _patch(rng: Rng, share: float, law: Law, scenario: str) -> Change:
+    radius, extra = rng.uniform(0.15, 0.3), 0.15 * share
+    x, y = rng.uniform(0.25, 0.75) * law.length, rng.uniform(0.3, 0.7) * law.width
+    changes = {"patch_x": x, "patch_y": y, "patch_radius": radius, "patch_friction": extra}
+    return Change(law=changes, values={"x": x, "y": y, "radius": radius, "extra": extra})
+
+
+def _air_drift(rng: Rng, share: float, law: Law, scenario: str) -> Change:
+    rate = 0.008 * share  # of a sign that leaves friction, however long the recording
+    return Change(law={"friction_drift": rate}, values={"rate": rate})
+
+
+def _anisotropy(rng: Rng, share: float, law: Law, scenario: str) -> Change:
+    """Friction along x over that along y; it points straight back, or is a vector of two components that turns."""
+    size = 0.25 * share * _sign(rng)
+    ratio = (1.0 + size) / (1.0 - size)
+    if rng.uniform() < 0.5:
+        return Change(law={"friction_anisotropy": size}, values={"ratio": ratio, "grain": size, "turning": 0.0})
+    return Change(law={"friction_ratio": ratio}, values={"ratio": ratio, "grain": size, "turning": size})
+
+
+def _side_force(rng: Rng, share: float, law: Law, scenario: str) -> Change:
+    size = 0.05 * share * _sign(rng)
+    if rng.uniform() < 0.7:
+        return Change(law={"side_force": size}, values={"coefficient": size})
+    return Change(law={"spin_side_force": size / 8.0, "spin_decay": 0.2}, hand={"spin": 12.0})
+
+
+def _speed_restitution(rng: Rng, share: float, law: Law, scenario: str) -> Change:
+    if rng.uniform() < 0.6:
+        slope = 0.06 * share
+        return Change(law={"restitution_slope": slope}, values={"e0": law.wall_restitution, "slope": slope})
+    power = 0.12 * share
+    return Change(law={"restitution_power": power}, values={"e0": law.wall_restitution, "exponent": power})
+
+
+def _tangential(rng: Rng, share: float, law: Law, scenario: str) -> Change:
+    step = 0.1 * share
+    e_t = law.wall_restitution + (step if law.wall_restitution + step < 0.98 else -step)
+    values = {"e_n": law.wall_restitution, "e_t": e_t, "ratio": e_t / law.wall_restitution}
+    return Change(law={"tangential_restitution": e_t}, values=values)
+
+
+def _wall_spin(rng: Rng, share: float, law: Law, scenario: str) -> Change:
+    mu, decay = 0.15 * share, rng.uniform(0.1, 1.0)
+    values = {"mu": mu, "kappa": law.spin_inertia, "decay": decay}
+    return Change(law={"wall_spin": True, "wall_mu": mu, "spin_decay": decay}, values=values)
+
+
+def _odd_wall(rng: Rng, share: float, law: Law, scenario: str) -> Change:
+    wall, delta = int(rng.integers(4)), 0.06 * share * _sign(rng)
+    name = ("x0", "x1", "y0", "y1")[wall]
+    changes = {"odd_wall": wall, "odd_wall_extra": delta}
+    return Change(law=changes, values={"delta": delta}, where={"walls": [name]})
+
+
+def _corner(rng: Rng, share: float, law: Law, scenario: str) -> Change:
+    e = max(0.05, law.wall_restitution - 0.2 * share)
+    return Change(law={"post_restitution": e}, values={"e": e, "extra": e - law.wall_restitution})
+
+
+def _mallet_speed(rng: Rng, share: float, law: Law, scenario: str) -> Change:
+    slope = 0.06 * share
+    values = {"e0": law.mallet_restitution, "slope": slope}
+    return Change(law={"mallet_restitution_slope": slope}, values=values)
+
+
+def _plain(name: str, typical: float, *labels: str) -> Callable[..., Change]:
+    """A mechanism of one number: the law's `name`, which a diagnosis may call by any of `labels`."""
+
+    def draw(rng: Rng, share: float, law: Law, scenario: str) -> Change:
+        value = typical * share
+        return Change(law={name: value}, values=dict.fromkeys(labels, value))
+
+    return draw
+
+
+def _belt(rng: Rng, share: float, law: Law, scenario: str) -> Change:
+    hz, zeta = 14.0 / share, rng.uniform(0.05, 0.3)  # the softer the stronger
+    return Change(law={"belt_hz": hz, "belt_zeta": zeta}, values={"hz": hz, "zeta": zeta})
+
+
+def _clock(rng: Rng, share: float, law: Law, scenario: str) -> Change:
+    drift = 4e-4 * share * _sign(rng)
+    clock, stream = ("encoder_clock", "mallet") if scenario == "gantry" else ("camera_clock", "frames")
+    return Change(law={clock: drift}, values={"ppm": 1e6 * drift}, where={"stream": stream})
+
+
+def _scale(rng: Rng, share: float, law: Law, scenario: str) -> Change:
+    one = rng.standard_normal(3)
+    x, y, shear = 0.015 * share * one / np.linalg.norm(one)
+    changes = {"camera_scale_x": float(x), "camera_scale_y": float(y), "camera_shear": float(shear)}
+    return Change(law=changes, values={"scale_x": float(x), "scale_y": float(y), "shear": float(shear)})
+
+
+def _held(rng: Rng, share: float, law: Law, scenario: str) -> Change:
+    return Change(camera={"held": 0.15 * share}, values={"fraction": 0.15 * share})
+
+
+MECHANISMS = {
+    "table_tilt": Mechanism("glide", PUCK, _tilt),
+    "table_warp": Mechanism("glide", PUCK, _warp),
+    "linear_drag": Mechanism("glide", PUCK, _linear_drag),
+    "friction_patch": Mechanism("glide", PUCK, _patch),
+    "air_drift": Mechanism("glide", PUCK, _air_drift),
+    "friction_anisotropy": Mechanism("glide", PUCK, _anisotropy),
+    "side_force": Mechanism("glide", PUCK, _side_force),
+    "speed_dependent_restitution": Mechanism("wall", PUCK, _speed_restitution),
+    "tangential_restitution": Mechanism("wall", PUCK, _tangential),
+    "wall_friction_spin": Mechanism("wall", PUCK, _wall_spin),
+    "wall_to_wall_restitution": Mechanism("wall", PUCK, _odd_wall),
+    "corner_restitution": Mechanism("corner", ("posts",), _corner),
+    "mallet_speed_restitution": Mechanism("mallet", ROBOT, _mallet_speed),
+    "mallet_friction": Mechanism("mallet", ROBOT, _plain("mallet_mu", 0.15, "mu")),
+    "mallet_give": Mechanism("mallet", ROBOT, _plain("mallet_give", 0.2, "mass_ratio", "ratio")),
+    "voltage_sag": Mechanism("gantry", GANTRY, _plain("voltage_sag", 0.02, "sag")),
+    "motor_deadband": Mechanism("gantry", GANTRY, _plain("deadband", 0.4, "V")),
+    "command_delay": Mechanism("gantry", ("gantry",), _plain("command_delay", 0.015, "delay_s")),
+    "belt_compliance": Mechanism("gantry", GANTRY, _belt),
+    "backlash": Mechanism("gantry", GANTRY, _plain("backlash", 0.001, "gap")),
+    "camera_delay": Mechanism("sensing", ROBOT, _plain("camera_delay", 0.018, "delay_s")),
+    "clock_drift": Mechanism("sensing", ("gantry", "rally"), _clock),
+    "scale_error": Mechanism("sensing", PUCK, _scale),
+    "held_frames": Mechanism("sensing", ("launches", "rally"), _held),
+}
+# Not both in one law: one would undo or hide the other.
+RIVALS = (
+    {"tangential_restitution", "wall_friction_spin"},
+    {"belt_compliance", "backlash"},
+)

@@ -1,0 +1,1 @@
+"""The physics of the independent table, in small fixed steps."""

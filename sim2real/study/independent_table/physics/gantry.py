@@ -1,0 +1,88 @@
+"""The mallet on its gantry: third order in each axis, one small Runge-Kutta step at constant voltage.
+
+A mallet's state is (x, x', x'', y, y', y''). Where something gives between motor and mallet (a belt, a gap), the motors
+have a state of their own in the next six columns, and the first six are the mallet's.
+"""
+
+from __future__ import annotations
+
+from math import pi, sin
+
+from numba import njit
+
+MOTOR = 6  # the first column of the motors, where they move apart from the mallet
+
+
+@njit(error_model="numpy")
+def loss(law, p, v):
+    """How much more of the voltage is lost to speed at position p and speed v than C7 v: 1 in the baseline."""
+    factor = 1.0 + law.cubic_loss * v * v
+    if law.rough != 0.0:
+        factor += law.rough * sin(2.0 * pi * p / law.rough_length)
+    return factor
+
+
+@njit(error_model="numpy")
+def advance_axis(law, c5, c6, c7, force, mallet, first, h, out):
+    """RK4 for C5 p''' + C6 p'' + C7 p' = force (Eq. 2-3 with their dots restored); state (p, p', p'') from `first`."""
+    p, v, a = mallet[first], mallet[first + 1], mallet[first + 2]
+    half = 0.5 * h
+    j1 = (force - c6 * a - c7 * v * loss(law, p, v)) / c5
+    v2, a2 = v + half * a, a + half * j1
+    j2 = (force - c6 * a2 - c7 * v2 * loss(law, p + half * v, v2)) / c5
+    v3, a3 = v + half * a2, a + half * j2
+    j3 = (force - c6 * a3 - c7 * v3 * loss(law, p + half * v2, v3)) / c5
+    v4, a4 = v + h * a3, a + h * j3
+    j4 = (force - c6 * a4 - c7 * v4 * loss(law, p + h * v3, v4)) / c5
+    out[first] = p + h * (v + 2.0 * v2 + 2.0 * v3 + v4) / 6.0
+    out[first + 1] = v + h * (a + 2.0 * a2 + 2.0 * a3 + a4) / 6.0
+    out[first + 2] = a + h * (j1 + 2.0 * j2 + 2.0 * j3 + j4) / 6.0
+
+
+@njit(error_model="numpy")
+def follow(law, mallet, first, h, out):
+    """One axis of the mallet after h seconds in which its motor went from `mallet` to `out`.
+
+    The belt: m'' = w^2 (p - m) + 2 zeta w (p' - m'), by RK4 along a parabola of the motor. The motor does not feel it.
+    The gap: the mallet is dragged when the motor reaches either end of it, and stands still between.
+    """
+    m, u = mallet[first], mallet[first + 1]
+    p, v, a = mallet[MOTOR + first], mallet[MOTOR + first + 1], mallet[MOTOR + first + 2]
+    if law.belt_hz > 0.0:
+        w = 2.0 * pi * law.belt_hz
+        k, c = w * w, 2.0 * law.belt_zeta * w
+        half = 0.5 * h
+        pm, vm = p + half * (v + 0.25 * h * a), v + half * a
+        pe, ve = out[MOTOR + first], out[MOTOR + first + 1]
+        b1 = k * (p - m) + c * (v - u)
+        u2 = u + half * b1
+        b2 = k * (pm - m - half * u) + c * (vm - u2)
+        u3 = u + half * b2
+        b3 = k * (pm - m - half * u2) + c * (vm - u3)
+        u4 = u + h * b3
+        b4 = k * (pe - m - h * u3) + c * (ve - u4)
+        out[first] = m + h * (u + 2.0 * u2 + 2.0 * u3 + u4) / 6.0
+        out[first + 1] = u + h * (b1 + 2.0 * b2 + 2.0 * b3 + b4) / 6.0
+        out[first + 2] = k * (pe - out[first]) + c * (ve - out[first + 1])
+        return
+    end, half_gap = out[MOTOR + first], 0.5 * law.backlash
+    out[first] = max(end - half_gap, min(end + half_gap, m))
+    dragged = out[first] != m
+    out[first + 1] = out[MOTOR + first + 1] if dragged else 0.0
+    out[first + 2] = out[MOTOR + first + 2] if dragged else 0.0
+
+
+@njit(error_model="numpy")
+def advance_mallets(law, mallets, volts, h, out):
+    """Every mallet through h seconds; `mallets` (k, 6 or 12), `volts` (k, 2) at the motors."""
+    half_radius = 0.5 * law.pulley_radius
+    apart = mallets.shape[1] > MOTOR
+    driven = MOTOR if apart else 0
+    for k in range(mallets.shape[0]):
+        c5, c6, c7 = law.a1 - law.b1, law.a2 - law.b2, law.a3 - law.b3
+        advance_axis(law, c5, c6, c7, half_radius * volts[k, 0], mallets[k], driven, h, out[k])
+        c5, c6, c7 = law.a1 + law.b1, law.a2 + law.b2, law.a3 + law.b3
+        advance_axis(law, c5, c6, c7, half_radius * volts[k, 1], mallets[k], driven + 3, h, out[k])
+        if apart:
+            follow(law, mallets[k], 0, h, out[k])
+            follow(law, mallets[k], 3, h, out[k])

@@ -1,0 +1,66 @@
+"""What a puck can touch: walls, posts, mallets, and the two goal lines, each as a gap that is negative when overlapped.
+
+Obstacles are numbered: walls 0..3 (x = 0, x = length, y = 0, y = width), posts 4..7 (x0 low y, x0 high y, xL low y,
+xL high y), goal lines 8..9, mallets from 10.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from numba import njit
+
+from sim2real.study.independent_table.physics.puck import X, Y
+
+POST, GOAL, MALLET = 4, 8, 10
+NAMES = ("x0", "xL", "y0", "yW", "x0y0", "x0yW", "xLy0", "xLyW", "x0", "xL", "0", "1")
+FAR = 1e3  # m, the gap to something that cannot be touched here
+
+
+@njit(error_model="numpy")
+def gap(law, which, puck, mallets):
+    """Distance [m] that the puck may still travel towards obstacle `which` before touching it."""
+    x, y = puck[X], puck[Y]
+    if which < 2:  # a short wall has no surface inside the mouth
+        if abs(y - 0.5 * law.width) < 0.5 * law.goal_width:
+            return FAR
+        return (x if which == 0 else law.length - x) - law.puck_radius
+    if which < POST:
+        return (y if which == 2 else law.width - y) - law.puck_radius
+    if which < GOAL:
+        post_x, post_y = post(law, which)
+        return sqrt((x - post_x) ** 2 + (y - post_y) ** 2) - law.puck_radius
+    if which < MALLET:
+        return x if which == GOAL else law.length - x
+    k = which - MALLET
+    return sqrt((x - mallets[k, 0]) ** 2 + (y - mallets[k, 3]) ** 2) - law.puck_radius - law.mallet_radius
+
+
+@njit(error_model="numpy")
+def normal(law, which, puck, mallets):
+    """Unit vector from the obstacle to the puck's centre at contact."""
+    if which == 0 or which == GOAL:
+        return 1.0, 0.0
+    if which == 1 or which == GOAL + 1:
+        return -1.0, 0.0
+    if which == 2:
+        return 0.0, 1.0
+    if which == 3:
+        return 0.0, -1.0
+    if which < GOAL:
+        from_x, from_y = post(law, which)
+    else:
+        from_x, from_y = mallets[which - MALLET, 0], mallets[which - MALLET, 3]
+    dx, dy = puck[X] - from_x, puck[Y] - from_y
+    distance = sqrt(dx * dx + dy * dy)
+    if distance == 0.0:  # centre on centre: any direction is as good
+        return 1.0, 0.0
+    return dx / distance, dy / distance
+
+
+@njit(error_model="numpy")
+def post(law, which):
+    """Corner point of the goal mouth, obstacle 4..7."""
+    x = 0.0 if which < POST + 2 else law.length
+    side = -0.5 if (which - POST) % 2 == 0 else 0.5
+    return x, 0.5 * law.width + side * law.goal_width

@@ -1,0 +1,72 @@
+"""What a camera says about a scene: when it looks, what it sees, and how it errs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim2real.study.independent_table.physics.law import Law
+from sim2real.study.independent_table.recorder import film
+from sim2real.study.independent_table.recorder.scene import FINE, Scene
+
+
+@dataclass(frozen=True)
+class Camera:
+    """Noise on each coordinate, a jittered clock, and fractions of frames held, dropped or wild; and what a calibrated
+    camera beside the table has besides (`sim2real.study.independent_table.recorder.film`)."""
+
+    rate: float = 120.0  # Hz
+    noise: float = 0.0005  # m
+    jitter: float = 0.0001  # s
+    held: float = 0.0  # of the frames repeat the last position
+    dropped: float = 0.0  # of the frames see no puck
+    wild: float = 0.0  # of the frames are wrong by centimetres
+    wild_by: float = 0.05  # m, the size of such an error
+    memory: float = 0.0  # s, for which film.SLOW of the noise's variance hangs together; 0: the noise is white
+    place_error: float = 0.0  # m, by which the calibration has all places wrong, and says so
+    calibration: int = 0  # its number: another one errs elsewhere
+    beam: float = 0.0  # m on either side of the robot's mallet, along the table, that its gantry hides
+
+
+def look_up(t: np.ndarray, path: np.ndarray) -> np.ndarray:
+    """Positions (m, 2) at times t (m,) on a path (n, 2) sampled every FINE seconds; NaN off its ends or beside NaN."""
+    at = t / FINE
+    left = np.clip(np.floor(at).astype(int), 0, len(path) - 2)
+    share = (at - left)[:, None]
+    seen = path[left] + share * (path[left + 1] - path[left])
+    seen[(at < 0.0) | (at > len(path) - 1)] = np.nan
+    return seen
+
+
+def see(law: Law, camera: Camera, scene: Scene, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Time stamps (m,), the puck (m, 2) and the opponent's mallet (m, 2; NaN where there is none) as seen."""
+    seconds = len(scene.t) * FINE
+    taken = np.arange(1, int(seconds * camera.rate)) / camera.rate
+    taken = taken + np.clip(camera.jitter * rng.standard_normal(len(taken)), -0.3 / camera.rate, 0.3 / camera.rate)
+    stamps = (taken + law.camera_delay) * (1.0 + law.camera_clock)
+    paths = [scene.puck, scene.mallets[1] if len(scene.mallets) > 1 else np.full_like(scene.puck, np.nan)]
+    puck, opponent = (distort(law, look_up(taken, path)) for path in paths)
+    if camera.place_error:
+        puck = puck + camera.place_error * film.field(puck / (law.length, law.width), camera.calibration)
+    puck = puck + camera.noise * film.noise(rng, taken, camera.memory)
+    opponent = opponent + camera.noise * rng.standard_normal(opponent.shape)
+    if camera.beam and len(scene.mallets):
+        puck[np.abs(puck[:, 0] - look_up(taken, scene.mallets[0])[:, 0]) < camera.beam] = np.nan
+    fate = rng.uniform(size=len(taken))
+    heading = rng.uniform(0.0, 2.0 * np.pi, len(taken))
+    wild = fate < camera.wild
+    puck[wild] += camera.wild_by * np.stack([np.cos(heading[wild]), np.sin(heading[wild])], axis=1)
+    fate -= camera.wild
+    puck[(fate >= 0.0) & (fate < camera.dropped)] = np.nan
+    fate -= camera.dropped
+    for i in np.flatnonzero((fate >= 0.0) & (fate < camera.held)):
+        if i > 0:
+            puck[i] = puck[i - 1]
+    return stamps, puck, opponent
+
+
+def distort(law: Law, seen: np.ndarray) -> np.ndarray:
+    """The map from the image to the table, stretched and sheared about the origin."""
+    x, y = seen[:, 0], seen[:, 1]
+    return np.stack([(1.0 + law.camera_scale_x) * x + law.camera_shear * y, (1.0 + law.camera_scale_y) * y], axis=1)

@@ -1,0 +1,39 @@
+"""Forces on a gliding puck that stand in no list of mechanisms: what a real table may have and nobody thought of."""
+
+from __future__ import annotations
+
+from math import atan2, cos, exp, pi, sin, sqrt
+
+from numba import njit
+
+
+@njit(error_model="numpy")
+def pull(law, t, x, y):
+    """Acceleration (ax, ay) [m/s^2] by place and time: a vortex, a washboard, a tilt that drifts."""
+    since = t - law.tilt_drift_from
+    ax, ay = law.tilt_drift_x * since, law.tilt_drift_y * since
+    if law.vortex != 0.0:
+        dx, dy = (x - law.vortex_x) / law.vortex_size, (y - law.vortex_y) / law.vortex_size
+        round_it = law.vortex * exp(0.5 - 0.5 * (dx * dx + dy * dy))  # r exp((1 - r^2) / 2) is 1 at most, at r = 1
+        ax -= round_it * dy
+        ay += round_it * dx
+    if law.washboard != 0.0:
+        ax += law.washboard * sin(2.0 * pi * x / law.washboard_length)
+    return ax, ay
+
+
+@njit(error_model="numpy")
+def rub(law, t, x, y, vx, vy, since, friction):
+    """Friction [m/s^2] by time, heading, place, speed and time since the last contact, where it was `friction`."""
+    if law.breathing != 0.0:
+        friction *= 1.0 + law.breathing * sin(2.0 * pi * t / law.breathing_period)
+    if (law.grain != 0.0 or law.nap != 0.0) and (vx != 0.0 or vy != 0.0):
+        heading = atan2(vy, vx)
+        friction *= 1.0 + law.grain * cos(4.0 * heading) + law.nap * cos(heading - law.nap_heading)
+    if law.stripe != 0.0 and abs(x - law.stripe_x) < 0.5 * law.stripe_width:
+        friction += law.stripe
+    if law.slow_friction != 0.0:
+        friction += law.slow_friction * exp(-sqrt(vx * vx + vy * vy) / law.slow_speed)
+    if law.fading != 0.0:
+        friction += law.fading * exp(-since / law.fading_time)
+    return friction

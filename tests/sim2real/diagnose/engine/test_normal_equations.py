@@ -1,0 +1,98 @@
+"""Sums by launch: the same least squares as numpy's on all rows at once."""
+
+import numpy as np
+import pytest
+from scipy.stats import t as student
+
+from sim2real.diagnose.engine import normal_equations
+
+
+def _problem(seed: int = 0):
+    rng = np.random.default_rng(seed)
+    jacobian = rng.normal(size=(200, 3)) * [1.0, 100.0, 0.01]
+    truth = np.array([0.5, -0.02, 30.0])
+    r = -jacobian @ truth + rng.normal(size=200)
+    return r, jacobian, rng.integers(0, 8, 200), truth
+
+
+def test_a_solution_is_that_of_least_squares_on_the_same_rows():
+    r, jacobian, cluster, _ = _problem()
+    equations = normal_equations.make_equations("abc", r, jacobian, cluster, 8)
+    some = np.array([0, 2, 5])
+    rows = np.isin(cluster, some)
+    expected = np.linalg.lstsq(jacobian[rows], -r[rows], rcond=None)[0]
+    assert np.allclose(normal_equations.solve(equations, np.arange(3), some), expected, rtol=1e-9)
+
+
+def test_a_matrix_on_which_numpy_does_not_converge_is_solved_all_the_same(monkeypatch: pytest.MonkeyPatch):
+    r, jacobian, cluster, _ = _problem()
+    equations = normal_equations.make_equations("abc", r, jacobian, cluster, 8)
+
+    def failing(matrix):
+        raise np.linalg.LinAlgError("Eigenvalues did not converge")
+
+    monkeypatch.setattr(np.linalg, "eigh", failing)
+    expected = np.linalg.lstsq(jacobian, -r, rcond=None)[0]
+    assert np.allclose(normal_equations.solve(equations, np.arange(3), np.arange(8)), expected, rtol=1e-9)
+
+
+def test_losses_are_the_sums_of_squares_of_each_cluster():
+    r, jacobian, cluster, truth = _problem(1)
+    equations = normal_equations.make_equations("abc", r, jacobian, cluster, 8)
+    found = normal_equations.losses(equations, np.arange(3), truth, np.arange(8))
+    by_hand = [np.sum((r + jacobian @ truth)[cluster == c] ** 2) for c in range(8)]
+    assert np.allclose(found, by_hand)
+
+
+def test_intervals_cover_what_made_the_data():
+    inside = []
+    for seed in range(200):
+        r, jacobian, cluster, truth = _problem(seed)
+        equations = normal_equations.make_equations("abc", r, jacobian, cluster, 8)
+        theta = normal_equations.solve(equations, np.arange(3), np.arange(8))
+        std = np.sqrt(np.diag(normal_equations.covariance(equations, np.arange(3), theta, np.arange(8))))
+        inside.append(np.abs(theta - truth) < 1.96 * std)
+    assert 0.92 <= np.mean(inside) <= 0.99
+
+
+def test_intervals_cover_where_launches_scatter_more_than_their_noise():
+    launches, inside = 24, []
+    for seed in range(300):
+        rng = np.random.default_rng(seed)
+        launch = np.repeat(np.arange(launches), 30)
+        jacobian = rng.normal(size=(len(launch), 2))
+        own = 0.5 + 0.3 * rng.normal(size=launches)  # the number is another in every launch; 0.5 in the mean
+        r = rng.normal(size=len(launch)) - own[launch] * jacobian[:, 0] - 0.2 * jacobian[:, 1]
+        equations = normal_equations.make_equations("ab", r, jacobian, launch, launches)
+        theta = normal_equations.solve(equations, np.arange(2), np.arange(launches))
+        std = np.sqrt(np.diag(normal_equations.covariance(equations, np.arange(2), theta, np.arange(launches))))
+        inside.append(abs(theta[0] - 0.5) < student.ppf(0.975, launches - 1) * std[0])
+    assert 0.92 <= np.mean(inside) <= 0.98
+
+
+def test_parts_gather_into_the_sums_of_larger_ones():
+    r, jacobian, cluster, _ = _problem(2)
+    fine = normal_equations.make_equations("abc", r, jacobian, cluster, 8)
+    into = np.array([0, 0, 1, 1, 2, 2, 0, 1])
+    found, expected = (
+        normal_equations.gathered(fine, into, 3),
+        normal_equations.make_equations("abc", r, jacobian, into[cluster], 3),
+    )
+    for name in ("g", "b", "s", "count"):
+        assert np.allclose(getattr(found, name), getattr(expected, name))
+
+
+def test_a_column_without_data_gets_nothing():
+    r, jacobian, cluster, _ = _problem()
+    jacobian[:, 1] = 0.0
+    equations = normal_equations.make_equations("abc", r, jacobian, cluster, 8)
+    assert normal_equations.solve(equations, np.arange(3), np.arange(8))[1] == 0.0
+
+
+def test_moved_residuals_are_those_of_the_same_law_counted_from_elsewhere():
+    r, jacobian, cluster, truth = _problem(4)
+    equations = normal_equations.make_equations("abc", r, jacobian, cluster, 8)
+    expected = normal_equations.make_equations("abc", r + jacobian[:, [0, 2]] @ truth[[0, 2]], jacobian, cluster, 8)
+    found = normal_equations.moved(equations, np.array([0, 2]), truth[[0, 2]])
+    for name in ("g", "b", "s", "count"):
+        assert np.allclose(getattr(found, name), getattr(expected, name)), name

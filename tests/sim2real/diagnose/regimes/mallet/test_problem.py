@@ -1,0 +1,69 @@
+"""Contacts with a mallet of known law, recorded by an independent table, explained by the engine."""
+
+import numpy as np
+import pytest
+
+from sim2real.diagnose.engine.least_squares import fit
+from sim2real.diagnose.engine.model_search import search_model
+from sim2real.diagnose.regimes.contact.motion import find_contact_motions
+from sim2real.diagnose.regimes.mallet.data import mallet_contacts
+from sim2real.diagnose.regimes.mallet.problem import MalletProblem
+from sim2real.diagnose.regimes.sliding.data import glide_data
+from sim2real.diagnose.regimes.sliding.problem import GlideProblem
+from sim2real.recording.folder import read_recording
+from sim2real.segmentation.causes import geometry, mallet_tracks
+from sim2real.segmentation.mallet_path import robot_path, wiener_covariance
+from sim2real.segmentation.segments import segment
+from sim2real.study.independent_table import Law
+from sim2real.study.independent_table.recorder.record import make_recording
+
+
+def explained(folder, law: Law, seed: int):
+    """What the engine finds of the mallet in 60 s of a rally."""
+    make_recording(folder, law, "rally", seed, 60.0)
+    recording = read_recording(folder)
+    segments, g = segment(recording), geometry(recording)
+    assert recording.frames is not None
+    sizes = {"length": g.length, "width": g.width, "puck_radius": g.puck_radius}
+    glides = GlideProblem(glide_data(segments, g, mallet_tracks(recording, recording.frames.t)), sizes)
+    braking = fit(glides, {"friction": 0.125, "drag": 0.125}, glides.base, np.arange(glides.clusters))
+    encoders = robot_path(recording)
+    assert encoders is not None
+    problem = MalletProblem(
+        mallet_contacts(find_contact_motions(segments, glides, glides.states(braking)), encoders, g),
+        glides.clusters,
+        sizes,
+    )
+    return search_model(problem, {"mallet_restitution": 0.7}, np.flatnonzero(problem.freedom > 0))
+
+
+@pytest.mark.slow
+def test_a_rigid_mallet_of_another_restitution_lacks_nothing(tmp_path):
+    found = explained(tmp_path, Law(mallet_restitution=0.6), 1)
+    assert found.listed == () and found.unlisted is None and not found.defaults
+    assert found.baseline.values["mallet_restitution"] == pytest.approx(0.6, abs=0.01)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("law", "seed", "mechanism", "name", "truth"),
+    [
+        (Law(mallet_give=0.05), 2, "mallet_give", "mallet_give", 0.05),
+        (Law(mallet_mu=0.15), 3, "mallet_friction", "mallet_mu", 0.15),
+        (Law(mallet_restitution_slope=0.06), 4, "mallet_speed_restitution", "mallet_restitution_slope", 0.06),
+    ],
+)
+def test_each_mechanism_is_named(tmp_path, law, seed, mechanism, name, truth):
+    found = explained(tmp_path, law, seed)
+    assert [one.name for one in found.listed] == [mechanism] and found.unlisted is None
+    assert found.law.estimate(name).low < truth < found.law.estimate(name).high
+
+
+def test_a_restless_acceleration_spreads_as_its_integral():
+    """Against sums of steps of a Wiener process, integrated twice."""
+    rng = np.random.default_rng(1)
+    step, n = 0.01, 100
+    acceleration = np.cumsum(rng.normal(0, np.sqrt(step), (4000, n)), axis=1)
+    place = np.cumsum(np.cumsum(acceleration, axis=1) * step, axis=1) * step
+    spread = wiener_covariance(np.array([0.5, 1.0]))
+    np.testing.assert_allclose(np.cov(place[:, [49, 99]].T), spread, rtol=0.15)

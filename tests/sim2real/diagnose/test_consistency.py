@@ -1,0 +1,151 @@
+"""Several recordings in one call: of one table they help each other, of two they name nothing."""
+
+import json
+from contextlib import nullcontext
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from puckpilot import main
+from sim2real.diagnose.consistency import check_consistency
+from sim2real.diagnose.input_checks import UndeterminedError
+from sim2real.diagnose.pipeline import diagnose
+from sim2real.diagnose.regimes.base import RecordingPart
+from sim2real.diagnose.regimes.sliding.data import glide_data, join
+from sim2real.diagnose.regimes.sliding.problem import GlideProblem
+from sim2real.diagnose.tuned import CONSISTENCY
+from sim2real.recording.folder import read_recording
+from sim2real.recording.table_parameters import parameters
+from sim2real.segmentation.causes import geometry
+from sim2real.segmentation.segments import segment
+from sim2real.study.independent_table.cases import draw_case
+from sim2real.study.independent_table.physics.law import Law
+from sim2real.study.independent_table.recorder.camera import Camera
+from sim2real.study.independent_table.recorder.record import make_recording
+
+CAMERA = Camera(noise=0.0006, rate=150.0)
+VORTEX = Law(vortex=0.06, vortex_x=1.0, vortex_y=0.5, vortex_size=0.3)
+LAWS = {
+    "plain": Law(),
+    "tilted": Law(tilt_x=0.02),
+    "tilted again": Law(tilt_x=0.02),
+    "tilted back": Law(tilt_x=-0.02),
+    "slick": Law(friction=0.09, wall_restitution=0.8),
+    "lively": Law(wall_restitution=0.8),
+    "patched": Law(patch_x=1.0, patch_y=0.5, patch_radius=0.2, patch_friction=0.15),
+    "whirling": VORTEX,
+    "whirling again": VORTEX,
+    "large": Law(length=2.06, width=1.03),
+}
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory):
+    """Makes the recording of a table of LAWS, once; each by another hand. All state a table of 2 m by 1 m."""
+    root = tmp_path_factory.mktemp("tables")
+
+    @cache
+    def make(name: str) -> Path:
+        folder = root / name.replace(" ", "_")
+        make_recording(folder, LAWS[name], "launches", list(LAWS).index(name), 40.0, camera=CAMERA, dt=2e-5)
+        meta = json.loads((folder / "meta.json").read_text())
+        meta["table"] |= {"length_m": 2.0, "width_m": 1.0}
+        (folder / "meta.json").write_text(json.dumps(meta))
+        return folder
+
+    return make
+
+
+def _diagnosis(recordings, heldout=()):
+    here, apart = ([read_recording(folder) for folder in folders] for folders in (recordings, heldout))
+    return diagnose(here, apart, {}, lambda stage, share: None)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "one, other",
+    [
+        ("plain", "tilted"),
+        ("tilted", "tilted back"),
+        ("plain", "slick"),
+        ("plain", "lively"),
+        ("patched", "plain"),
+        ("plain", "whirling"),
+        ("tilted", "whirling"),
+        ("plain", "large"),
+    ],
+)
+def test_two_tables_name_nothing(recorded, one, other):
+    found = _diagnosis([recorded(one), recorded(other)])
+    assert (found.verdict, found.findings) == ("undetermined", [])
+    assert found.reason and found.next_recording
+
+
+@pytest.mark.slow
+def test_a_held_out_recording_of_another_table_speaks_against_what_is_named(recorded):
+    found = _diagnosis([recorded("tilted")], [recorded("plain")])
+    assert [one.mechanism for one in found.findings] == ["table_tilt"]
+    assert any(said.startswith("glide: held-out data speak against") for said in found.proof_remarks)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name, mechanism", [("tilted", "table_tilt"), ("whirling", "unlisted")])
+def test_two_recordings_of_one_table_agree(recorded, name, mechanism):
+    found = _diagnosis([recorded(name), recorded(f"{name} again")])
+    assert [one.mechanism for one in found.findings] == [mechanism]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "number, missing", [(0, "side_force"), (1, "mallet_give"), (35, "wall_to_wall_restitution"), (38, "scale_error")]
+)
+def test_what_is_missing_in_both_is_no_other_table(tmp_path, number, missing):
+    """Half a minute and a quarter of one table each; what is missing may show more in the one, or be of each launch."""
+    case = draw_case(54, number, "one", None)
+    assert case.truth["mechanisms"] == [missing]
+    for seed, (name, seconds) in enumerate((("long", 30.0), ("short", 15.0))):
+        make_recording(
+            tmp_path / name, case.law, case.scenario, seed, seconds, case.camera,
+            encoder_noise=case.encoder_noise, hand=case.hand, dt=1e-4,
+        )  # fmt: skip
+    found = _diagnosis([tmp_path / "long"], [tmp_path / "short"])
+    assert "two tables" not in (found.reason or "")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name, agrees", [("plain", True), ("tilted", False)])
+def test_a_recording_too_small_for_a_law_is_held_against_the_other_s(recorded, tmp_path, name, agrees):
+    make_recording(tmp_path / "short", LAWS[name], "launches", 77, 8.0, camera=CAMERA, dt=1e-4)
+    recordings = [read_recording(folder) for folder in (recorded("plain"), tmp_path / "short")]
+    values = parameters(recordings[0])
+    cuts = [glide_data(segment(one), geometry(one), {}) for one in recordings]
+    problem = GlideProblem(join(cuts), values)
+    parts = [
+        RecordingPart(name, np.unique(problem.data.cluster[problem.data.recording == k]))
+        for k, name in enumerate(("long", "short"))
+    ]
+    assert len(parts[1].clusters) < CONSISTENCY.fewest_launches
+    with nullcontext() if agrees else pytest.raises(UndeterminedError, match="long and short disagree"):
+        check_consistency(problem, {name: values[name] for name in problem.base}, parts)
+
+
+@pytest.mark.slow
+def test_a_robot_s_recording_beside_one_without_keeps_its_account(tmp_path):
+    """Two recordings of one table, one of the robot alone and one of the puck alone; and the robot's as a proof."""
+    make_recording(tmp_path / "robot", Law(voltage_sag=0.02), "gantry", 3, 14.0, dt=1e-4)
+    make_recording(tmp_path / "puck", Law(), "launches", 4, 10.0, camera=CAMERA, dt=1e-4)
+    found = _diagnosis([tmp_path / "puck", tmp_path / "robot"])
+    assert [one.mechanism for one in found.findings] == ["voltage_sag"]
+    apart = _diagnosis([tmp_path / "puck"], [tmp_path / "robot"])
+    assert "gantry" not in {each.regime for each in apart.regime_results}  # what proves finds nothing
+
+
+def test_stated_sizes_of_two_tables_are_refused_in_one_line(recorded, tmp_path, capsys):
+    make_recording(tmp_path / "longer", Law(length=2.2), "launches", 3, 10.0, camera=CAMERA, dt=2e-5)
+    words = ["diagnose", str(recorded("plain")), str(tmp_path / "longer"), "--out", str(tmp_path / "out")]
+    assert main(words) == 2
+    error = capsys.readouterr().err
+    assert "plain states table.length_m 2, longer 2.2" in error and error.count("\n") == 1
+    assert not (tmp_path / "out").exists()
