@@ -19,7 +19,10 @@ from typing import NoReturn
 
 # name, of one word or two: (module with `add_arguments` and `run`, what it does)
 COMMANDS = {
-    "demo": ("sim2real.commands.demo", "a first look: players meet, a game is filmed, a recording is compared"),
+    "demo": (
+        "sim2real.commands.demo",
+        "a first look: players meet, a game is filmed, a recording is compared and diagnosed",
+    ),
     "envs": ("puckpilot_env.commands.envs", "list the environments, or show the page of one"),
     "check": ("puckpilot_env.commands.check", "does an environment keep its promises?"),
     "match": ("baselines.commands.match", "two players against each other, in paired games"),
@@ -30,7 +33,7 @@ COMMANDS = {
     "export": ("agents.commands.export", "write a policy as .npz or .onnx"),
     "bench": ("puckpilot_env.commands.bench", "how fast the simulator is here"),
     "bench vision": ("sim2real.commands.bench_vision", "how exact and how fast the vision is here"),
-    "compare": ("sim2real.compare", "where a recording of a table departs from the simulator"),
+    "compare": ("sim2real.commands.compare", "where a recording of a table departs from the simulator"),
     "diagnose": ("sim2real.commands.diagnose", "which physics the simulator lacks, with proof on untouched data"),
     "study": ("sim2real.commands.study", "how often a diagnosis is right, on cases with something hidden"),
     "calibrate camera": ("sim2real.commands.calibrate_camera", "a camera's intrinsics, from photographs of a board"),

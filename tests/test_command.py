@@ -5,13 +5,12 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
 import puckpilot
+from tests.places import ROOT
 
-ROOT = Path(puckpilot.__file__).parent
 OPTIONS = {
     "demo": ["--games", "--seed", "--out", "--json"],
     "envs": ["--json", "--write-pages"],
@@ -174,6 +173,7 @@ def test_unknown_ids_and_folders(words, capsys):
     assert refused(words, capsys).startswith(f"puckpilot {words[0]}: ")
 
 
+@pytest.mark.slow
 def test_bench_prints_its_figures_as_json(capsys):
     words = ["bench", "defence-v0", "--tables", "8", "--seconds", "0.2", "--json"]
     assert puckpilot.main([*words, "--against", "attack-v0"]) == 0

@@ -14,7 +14,10 @@ from typing import Any
 
 import pytest
 
-ROOT = Path(__file__).parents[1]
+from tests.places import ROOT
+
+pytestmark = pytest.mark.slow
+
 BLOCK = re.compile(
     r"^```python\n# (?P<path>\S+\.py)(?:, (?P<how>after|instead of) `(?P<mark>[^\n]+)`)?\n(?P<body>.*?)^```",
     re.M | re.S,
@@ -28,7 +31,7 @@ import puckpilot_env
 from baselines import Seat, make_player, player_names
 from puckpilot_env import Tables, all_variants, find_variant, parameters
 from puckpilot_env.kernel import kernel
-from puckpilot_env.page import write_page
+from puckpilot_env.documentation.page import write_page
 
 def speeds(**values):
     tables = Tables(VARIANT, 50, seed=1, parameters=values)

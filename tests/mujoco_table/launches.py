@@ -9,11 +9,11 @@ from pathlib import Path
 import mujoco  # its classes are found at run time: pyright does not see them
 import numpy as np
 
+from sim2real.study.independent_table import Law
+from sim2real.study.independent_table.recorder.camera import Camera, see
+from sim2real.study.independent_table.recorder.record import SCENARIOS, meta, write_frames
+from sim2real.study.independent_table.recorder.scene import FINE, HAND, Scene
 from tests.mujoco_table.model import STEP, Settings, xml
-from tests.reality import Law
-from tests.reality.camera import Camera, see
-from tests.reality.record import SCENARIOS, meta, write_frames
-from tests.reality.scene import FINE, HAND, Scene
 
 SLOW, PATIENCE, FASTEST = 0.08, 8.0, 3.0  # m/s, s, m/s
 RESTS = 0.05  # s, for which a puck is slow that is no longer going anywhere; a hit takes less
