@@ -97,9 +97,9 @@ def test_every_command_is_tested_here():
 def test_help_names_the_options(name, capsys):
     with pytest.raises(SystemExit) as stop:
         puckpilot.main([*name.split(), "--help"])
-    told = capsys.readouterr().out
-    assert stop.value.code == 0 and told.startswith(f"usage: puckpilot {name} ")
-    explained = told[told.index("options:") :]
+    expected = capsys.readouterr().out
+    assert stop.value.code == 0 and expected.startswith(f"usage: puckpilot {name} ")
+    explained = expected[expected.index("options:") :]
     for option in OPTIONS[name]:
         assert f"\n  {option}" in explained, option
 
@@ -107,21 +107,21 @@ def test_help_names_the_options(name, capsys):
 @pytest.mark.parametrize("word", ["-h", "--help"])
 def test_overview(word, capsys):
     assert puckpilot.main([word]) == 0
-    told = capsys.readouterr().out
+    expected = capsys.readouterr().out
     for name, (_, what) in puckpilot.COMMANDS.items():
-        assert name in told and what in told
+        assert name in expected and what in expected
 
 
 @pytest.mark.parametrize("more, code", [([], 2), (["-h"], 0), (["--help"], 0)])
 def test_a_word_of_several_commands_tells_them(more, code, capsys):
     assert puckpilot.main(["calibrate", *more]) == code
-    told = capsys.readouterr().out.splitlines()
-    assert told[0] == "usage: puckpilot calibrate KIND [options]"
-    assert [line.split()[:2] for line in told[2:]] == [["calibrate", kind] for kind in ("camera", "table", "gantry")]
+    expected = capsys.readouterr().out.splitlines()
+    assert expected[0] == "usage: puckpilot calibrate KIND [options]"
+    assert [line.split()[:2] for line in expected[2:]] == [["calibrate", kind] for kind in ("camera", "table", "gantry")]
 
 
 @pytest.mark.parametrize(
-    "words, told",
+    "words, expected",
     [
         (["calibrate", "tabel", "x"], "puckpilot: unknown command 'calibrate tabel'; did you mean 'calibrate table'?"),
         (["link", "/dev/ttyUSB0"], "puckpilot: unknown command 'link /dev/ttyUSB0'; known: link monitor, link test"),
@@ -156,8 +156,8 @@ def test_a_word_of_several_commands_tells_them(more, code, capsys):
         (["bench", "--seconds", "nan"], "puckpilot bench: --seconds is nan; expected a number above 0, at most 3600"),
     ],
 )
-def test_mistakes_get_one_line(words, told, capsys):
-    assert refused(words, capsys) == told
+def test_mistakes_get_one_line(words, expected, capsys):
+    assert refused(words, capsys) == expected
 
 
 @pytest.mark.parametrize("name", OPTIONS)

@@ -24,8 +24,8 @@ def test_the_programs_rebuild_byte_for_byte(tmp_path: Path):
     need_compiler()
     copy = tmp_path / "elsewhere"
     shutil.copytree(FOLDER, copy, ignore=shutil.ignore_patterns("build", "*.elf", "__pycache__"))
-    told = subprocess.run(["make", "-C", str(copy), "f103", "qemu"], capture_output=True, text=True, check=True)
-    assert "flash" in told.stdout
+    printed = subprocess.run(["make", "-C", str(copy), "f103", "qemu"], capture_output=True, text=True, check=True)
+    assert "flash" in printed.stdout
     for elf in (ELF, QEMU_ELF):
         assert (copy / elf.name).read_bytes() == elf.read_bytes()
 

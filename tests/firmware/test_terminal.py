@@ -36,8 +36,8 @@ class Host:
             self.send(Ping(7))
             select.select([self.port], [], [], 0.01)
             whole, zero, self.rest = (self.rest + os.read(self.port, 4096)).rpartition(b"\0")
-            told = [one for one in read(whole + zero) if isinstance(one, Telemetry) and one.state == state]
-            there = [one for one in told if one.place == pytest.approx(place, abs=1e-4)]
+            expected = [one for one in read(whole + zero) if isinstance(one, Telemetry) and one.state == state]
+            there = [one for one in expected if one.place == pytest.approx(place, abs=1e-4)]
             if there:
                 return there[0]
         raise AssertionError(f"not {state.name} at {place} in {PATIENCE} s")
@@ -62,8 +62,8 @@ def test_a_plan_is_followed_to_where_it_ends(tmp_path: Path) -> None:
         host.send(hello(), config(), Home(*START))
         host.until(State.IDLE, START)
         host.send(arm())
-        told = host.until(State.ARMED, START)
+        expected = host.until(State.ARMED, START)
         # No volts: it coasts to its rest, as the slow mode fades.
         rest, slow, none = (0.15, 0.25), (-0.05, -0.05), (0.0, 0.0)
-        host.send(Traj(1, told.time + 50_000, 2_000_000, none, (0, 0), (0, 0), rest, slow, none))
+        host.send(Traj(1, expected.time + 50_000, 2_000_000, none, (0, 0), (0, 0), rest, slow, none))
         assert host.until(State.ARMED, rest).sequence == 1

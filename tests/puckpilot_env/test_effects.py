@@ -227,6 +227,6 @@ def test_pucks_stay_on_the_table_with_every_effect_on() -> None:
 
 
 def test_a_scripted_player_is_told_the_refitted_baseline_but_no_effect() -> None:
-    told = Seat.from_tables(Tables("match-v0", 1, effects=SOME, parameters={"friction": 0.05})).parameters
-    assert told["friction"] == 0.05
-    assert all(told[row.name] == row.default for row in parameters.EFFECT_ROWS)
+    printed = Seat.from_tables(Tables("match-v0", 1, effects=SOME, parameters={"friction": 0.05})).parameters
+    assert printed["friction"] == 0.05
+    assert all(printed[row.name] == row.default for row in parameters.EFFECT_ROWS)

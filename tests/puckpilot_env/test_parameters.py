@@ -55,9 +55,9 @@ def test_ranges_are_enforced(name):
     for value in (below, above, math.nan, math.inf, -math.inf):
         with pytest.raises(ValueError) as refusal:
             parameters.checked(name, value)
-        told = str(refusal.value)
+        expected = str(refusal.value)
         what = "a whole number" if row.whole else "a number"
-        assert told.startswith(f"parameter '{name}' is {value!r}; expected {what} in [") and "\n" not in told
+        assert expected.startswith(f"parameter '{name}' is {value!r}; expected {what} in [") and "\n" not in expected
 
 
 @pytest.mark.parametrize("value", ["much", None, [1.0, 2.0], {}])
@@ -74,7 +74,7 @@ def test_unknown_names_come_with_a_suggestion():
 
 
 @pytest.mark.parametrize(
-    "values, told",
+    "values, expected",
     [
         ({"width": 0.5, "goal_width": 0.45}, "goal_width leaves no wall beside the mouth"),
         ({"goal_width": 0.1, "puck_radius": 0.045, "width": 0.5}, None),
@@ -95,19 +95,19 @@ def test_unknown_names_come_with_a_suggestion():
         ({"a1": 3e-4, "a2": 0.02}, "gantry axis x .* its fast mode is .* expected at most 0.005"),
     ],
 )
-def test_impossible_combinations(values, told):
+def test_impossible_combinations(values, expected):
     """Each number alone is in its range; together they make no table, or, without a message here, just one."""
-    if told is None:
+    if expected is None:
         parameters.make_records(1, values)
         return
-    with pytest.raises(ValueError, match=f"^{told}") as refusal:
+    with pytest.raises(ValueError, match=f"^{expected}") as refusal:
         parameters.make_records(3, values)
     assert "\n" not in str(refusal.value)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "effects, told",
+    "effects, expected",
     [
         ({"unlisted_force": {"kind": 1.0, "c00": 4.0, "c07": -2.0}}, "unlisted_force .* force is up to 6 m/s^2"),
         ({"unlisted_force": {"kind": 1.0, "c00": 4.0, "c24": 4.0}}, None),  # along x and along y
@@ -124,12 +124,12 @@ def test_impossible_combinations(values, told):
         ({"unlisted_force": {"c00": 9.0}, "unlisted_bounce": {"c00": 9.0}, "unlisted_blow": {"c00": 9.0}}, None),
     ],
 )
-def test_tables_of_numbers_that_make_no_law(effects, told):
+def test_tables_of_numbers_that_make_no_law(effects, expected):
     """Waves without a length, knots that fall, and forces that no puck on a table meets."""
-    if told is None:
+    if expected is None:
         Tables("match-v0", 1, effects=effects)
         return
-    with pytest.raises(ValueError, match=told.replace("^", r"\^")):
+    with pytest.raises(ValueError, match=expected.replace("^", r"\^")):
         Tables("match-v0", 1, effects=effects)
 
 

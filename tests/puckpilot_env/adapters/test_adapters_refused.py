@@ -24,15 +24,15 @@ MAKERS = {
 }
 
 
-def refused(told: str, call: Any, *args: Any, **options: Any) -> None:
-    with pytest.raises(ValueError, match=f"^{re.escape(told)}") as caught:
+def refused(expected: str, call: Any, *args: Any, **options: Any) -> None:
+    with pytest.raises(ValueError, match=f"^{re.escape(expected)}") as caught:
         call(*args, **options)
     assert "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize("kind", MAKERS)
 @pytest.mark.parametrize(
-    "options, told",
+    "options, expected",
     [
         ({"parameters": 3}, "parameters is 3; expected a dict"),
         ({"parameters": {"friction": 10**400}}, "parameter 'friction' is 1000"),
@@ -42,8 +42,8 @@ def refused(told: str, call: Any, *args: Any, **options: Any) -> None:
         ({"max_cycles": 1.5}, "max_cycles is 1.5; expected a whole number"),
     ],
 )
-def test_options_of_an_environment(kind: str, options: dict[str, Any], told: str) -> None:
-    refused(told, MAKERS[kind], **options)
+def test_options_of_an_environment(kind: str, options: dict[str, Any], expected: str) -> None:
+    refused(expected, MAKERS[kind], **options)
 
 
 @pytest.mark.parametrize("kind", MAKERS)
@@ -72,18 +72,18 @@ def test_numbers_of_numpy_are_seats() -> None:
 
 @pytest.mark.parametrize("opponent", [None, 3, [1], "goaly"])
 def test_opponents(opponent: Any) -> None:
-    told = "unknown player 'goaly'; did you mean 'goalie'?" if opponent == "goaly" else f"opponent is {opponent!r};"
-    refused(told, gymnasium.make, ID, opponent=opponent)
-    refused(told, gymnasium.make_vec, ID, num_envs=2, opponent=opponent)
+    expected = "unknown player 'goaly'; did you mean 'goalie'?" if opponent == "goaly" else f"opponent is {opponent!r};"
+    refused(expected, gymnasium.make, ID, opponent=opponent)
+    refused(expected, gymnasium.make_vec, ID, num_envs=2, opponent=opponent)
 
 
 @pytest.mark.parametrize("render_mode", ["human", 3, True, ["rgb_array"], np.zeros(2)])
 def test_ways_to_render(render_mode: Any) -> None:
-    told = f"render_mode is {render_mode!r}; expected None or 'rgb_array'"
-    refused(told, match_v0.parallel_env, render_mode=render_mode)
+    expected = f"render_mode is {render_mode!r}; expected None or 'rgb_array'"
+    refused(expected, match_v0.parallel_env, render_mode=render_mode)
     tables, single = Tables("match-v0", 2), Tables("match-v0", 1, autoreset=False)
-    refused(told, SingleEnv, single, object(), render_mode=render_mode)
-    refused(told, TablesVectorEnv, tables, object(), render_mode=render_mode)
+    refused(expected, SingleEnv, single, object(), render_mode=render_mode)
+    refused(expected, TablesVectorEnv, tables, object(), render_mode=render_mode)
 
 
 def test_what_is_no_batch_or_no_variant() -> None:
@@ -108,15 +108,15 @@ def test_actions_of_agents_that_are_not_there() -> None:
     env.reset(seed=1)
     before, action = env.state(), np.full(4, 0.4, np.float32)
     both = {"player_0": action, "player_1": action}
-    told = "actions has one for {}; expected them for player_0 and player_1 alone"
-    refused(told.format("'player_2'"), env.step, {**both, "player_2": action})
-    refused(told.format("0"), env.step, {0: action, **both})
+    expected = "actions has one for {}; expected them for player_0 and player_1 alone"
+    refused(expected.format("'player_2'"), env.step, {**both, "player_2": action})
+    refused(expected.format("0"), env.step, {0: action, **both})
     refused("no action for player_1; expected one for each of player_0, player_1", env.step, {"player_0": action})
     assert env.state().tobytes() == before.tobytes()
 
 
 @pytest.mark.parametrize(
-    "bad, told",
+    "bad, expected",
     [
         ([[0.4], [0.4, 1.0]], "is [[0.4], [0.4, 1.0]]; expected real numbers, as many in each row"),
         ([10**400, 0, 1, 1], "has numbers of dtype object; expected real numbers"),
@@ -124,14 +124,14 @@ def test_actions_of_agents_that_are_not_there() -> None:
         (None, "has numbers of dtype object; expected real numbers"),
     ],
 )
-def test_actions_that_are_no_numbers(bad: Any, told: str) -> None:
+def test_actions_that_are_no_numbers(bad: Any, expected: str) -> None:
     env: Any = match_v0.parallel_env()
     env.reset(seed=1)
     good = np.full(4, 0.4, np.float32)
-    refused(f"the action of player_1 {told}", env.step, {"player_0": good, "player_1": bad})
+    refused(f"the action of player_1 {expected}", env.step, {"player_0": good, "player_1": bad})
     seat: Any = gymnasium.make(ID, disable_env_checker=True)
     seat.reset(seed=1)
-    refused(f"the action {told}", seat.step, bad)
+    refused(f"the action {expected}", seat.step, bad)
 
 
 @pytest.mark.filterwarnings("error")

@@ -200,14 +200,14 @@ def test_an_opponent_object_is_told_what_it_has_to_know() -> None:
     envs = make_seats("attack-v0", 4, opponent, "alternate", max_cycles=9)
     envs.reset(seed=3)
     assert opponent.seeds == [3] and opponent.masks[0].all()
-    told = []
+    printed = []
     for actions in sample_actions(envs.action_space, 30):
         seen = envs.tables.observations[[0, 1, 2, 3], [1, 0, 1, 0]].copy()
         _, _, terminated, truncated, _ = envs.step(actions)
         np.testing.assert_array_equal(opponent.seen[-1], seen)
-        told += [terminated | truncated] if (terminated | truncated).any() else []
-    assert len(told) >= 3
-    np.testing.assert_array_equal(opponent.masks[1:], told)
+        printed += [terminated | truncated] if (terminated | truncated).any() else []
+    assert len(printed) >= 3
+    np.testing.assert_array_equal(opponent.masks[1:], printed)
     envs.reset()
     assert opponent.seeds == [3] and opponent.masks[-1].all()
 

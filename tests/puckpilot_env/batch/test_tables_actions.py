@@ -12,7 +12,7 @@ HIGHEST = np.finfo(np.float32).max
 
 
 @pytest.mark.parametrize(
-    "column, number, told",
+    "column, number, expected",
     [
         (0, np.nan, "action target_x of player_1 on table 2 is nan; expected a number in [0.0505, 0.9495] m"),
         (1, np.inf, "action target_y of player_1 on table 2 is inf; expected a number in [0.0505, 0.9495] m"),
@@ -21,7 +21,7 @@ HIGHEST = np.finfo(np.float32).max
     ],
 )
 @pytest.mark.parametrize("variant", ["match-randomized-v0", "defence-v0"])
-def test_bad_actions_change_nothing(variant, column, number, told):
+def test_bad_actions_change_nothing(variant, column, number, expected):
     tables = Tables(variant, 4, seed=1)
     script = actions_for(tables, 4)
     for actions in script:
@@ -30,7 +30,7 @@ def test_bad_actions_change_nothing(variant, column, number, told):
     script[-1, 2, 1, column] = number
     with pytest.raises(ValueError) as refusal:
         tables.step(script[-1])
-    assert str(refusal.value) == told
+    assert str(refusal.value) == expected
     assert_same(before, outputs(tables))
     assert frames.tobytes() == tables.snapshot().frames.tobytes()
 

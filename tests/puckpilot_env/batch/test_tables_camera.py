@@ -50,9 +50,9 @@ def test_the_told_camera_delay_is_that_of_the_first_observation():
         names = [column.name for column in tables.observation_columns]
         puck = tables.states["puck"]
         seen = tables.observations[:, 0, names.index("puck_x")]
-        told = drawn_info(tables, np.zeros(200, int))["camera_delay"]
-        np.testing.assert_allclose((puck["x"] - seen) / puck["vx"], told, atol=1e-5)
-        assert told.min() >= latency - 1e-9 and told.max() <= latency + 1 / 120
+        printed = drawn_info(tables, np.zeros(200, int))["camera_delay"]
+        np.testing.assert_allclose((puck["x"] - seen) / puck["vx"], printed, atol=1e-5)
+        assert printed.min() >= latency - 1e-9 and printed.max() <= latency + 1 / 120
 
 
 def test_a_held_frame_repeats_the_one_before():

@@ -14,7 +14,7 @@ from puckpilot_env.options.randomization import Draw
 
 
 @pytest.mark.parametrize(
-    "options, told",
+    "options, expected",
     [
         ({"tables": 0}, "tables is 0; expected a whole number from 1"),
         ({"threads": 0}, "threads is 0; expected a whole number from 1 to 256"),
@@ -61,8 +61,8 @@ from puckpilot_env.options.randomization import Draw
         ({"effects": {"table_tilt": {"tilt_x": 10**400}}}, "is 1000"),
     ],
 )
-def test_what_cannot_be_is_refused(options, told):
-    with pytest.raises(ValueError, match=re.escape(told)) as caught:
+def test_what_cannot_be_is_refused(options, expected):
+    with pytest.raises(ValueError, match=re.escape(expected)) as caught:
         Tables(**{"variant": "match-v0", "tables": 1, **options})
     assert "\n" not in str(caught.value) and re.search("; (expected|did you mean|known)", str(caught.value))
 
@@ -83,7 +83,7 @@ def test_numbers_of_numpy_are_taken(options):
 
 
 @pytest.mark.parametrize(
-    "draw, told",
+    "draw, expected",
     [
         (
             Draw("drag", "log-uniform", 0.0, 0.2, ""),
@@ -93,8 +93,8 @@ def test_numbers_of_numpy_are_taken(options):
         (Draw("drag", "normal", 0.1, 0.2, ""), "unknown distribution 'normal'"),
     ],
 )
-def test_draws_that_cannot_be_are_refused(draw, told):
-    with pytest.raises(ValueError, match=told):
+def test_draws_that_cannot_be_are_refused(draw, expected):
+    with pytest.raises(ValueError, match=expected):
         Tables(replace(find_variant("match-v0"), draws=(draw,)), 1)
 
 

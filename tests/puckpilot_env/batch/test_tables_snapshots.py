@@ -72,8 +72,8 @@ def test_a_snapshot_of_tables_of_another_size_is_refused_and_changes_nothing(nam
     other = Tables("match-randomized-v0", 2, seed=1, parameters={name: value})
     tables = Tables("match-randomized-v0", 2, seed=2)
     before = tables.snapshot()
-    told = rf"^the snapshot is of tables of {name} {value:g} m; expected {tables.nominal[name][0]:g} m, as these have$"
-    with pytest.raises(ValueError, match=told):
+    expected = rf"^the snapshot is of tables of {name} {value:g} m; expected {tables.nominal[name][0]:g} m, as these have$"
+    with pytest.raises(ValueError, match=expected):
         tables.restore(other.snapshot())
     after = tables.snapshot()
     assert all(
@@ -122,7 +122,7 @@ def test_orders_later_than_a_period_are_not_restored():
 
 
 @pytest.mark.parametrize(
-    "index, told",
+    "index, expected",
     [
         ([3], "tables is [3]; expected a slice, a mask or indices of 3 tables"),
         (-4, "tables is -4; expected a slice, a mask or indices of 3 tables"),
@@ -137,10 +137,10 @@ def test_orders_later_than_a_period_are_not_restored():
         (slice(0, 2, 0), "tables is slice(0, 2, 0); expected a slice of whole numbers"),
     ],
 )
-def test_an_index_of_no_table_is_refused(index, told):
+def test_an_index_of_no_table_is_refused(index, expected):
     tables = Tables("match-v0", 3)
     for call in (lambda: tables.snapshot(index), lambda: tables.restore(tables.snapshot([0]), index)):
-        with pytest.raises(ValueError, match=f"^{re.escape(told)}"):
+        with pytest.raises(ValueError, match=f"^{re.escape(expected)}"):
             call()
 
 

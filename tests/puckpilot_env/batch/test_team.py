@@ -133,7 +133,7 @@ def test_a_forked_process_plays_on_by_itself():
     low, high = tables.action_bounds
     script = np.random.default_rng(0).uniform(low, high, (5, 200, 2, 4)).astype(np.float32)
     tables.step(script[0])
-    told, child_end = multiprocessing.Pipe(duplex=False)
+    printed, child_end = multiprocessing.Pipe(duplex=False)
 
     def play() -> None:
         for actions in script[1:]:
@@ -144,7 +144,7 @@ def test_a_forked_process_plays_on_by_itself():
     child.start()
     for actions in script[1:]:
         tables.step(actions)
-    assert told.poll(60.0)
-    assert told.recv().tobytes() == tables.observations.tobytes()
+    assert printed.poll(60.0)
+    assert printed.recv().tobytes() == tables.observations.tobytes()
     child.join()
     tables.close()

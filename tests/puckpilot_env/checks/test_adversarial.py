@@ -67,7 +67,7 @@ def test_tables_are_drawn_over_their_whole_ranges():
 
 
 @pytest.mark.parametrize(
-    "field, value, told",
+    "field, value, expected",
     [
         ("x", np.nan, "a number is not finite"),
         ("y", 0.03, "the puck is outside, by [m] 0.0009"),
@@ -77,7 +77,7 @@ def test_tables_are_drawn_over_their_whole_ranges():
         ("spin", 200.0, "energy from nowhere, a speed of [m/s] too much"),
     ],
 )
-def test_broken_laws_are_told(field, value, told):
+def test_broken_laws_are_told(field, value, expected):
     tables = Tables("defence-v0", 2, seed=1)
     puck = tables.states["puck"]
     puck["x"], puck["y"], puck["vx"], puck["vy"] = 0.6, 0.5, 0.5, 0.0
@@ -86,7 +86,7 @@ def test_broken_laws_are_told(field, value, told):
     assert not any(where.any() for where, _, _ in invariants.broken(tables, before))
     puck[field][1] = value
     found = [f"{what} {amount[1]:.3g}" for where, what, amount in invariants.broken(tables, before) if where[1]]
-    assert found and found[0].startswith(told)
+    assert found and found[0].startswith(expected)
     assert not any(where[0] for where, _, _ in invariants.broken(tables, before))
 
 
@@ -166,10 +166,10 @@ def test_the_command_fails_where_something_broke_or_took_long(monkeypatch, capsy
     parser = argparse.ArgumentParser()
     check.add_arguments(parser)
     assert check.run(parser.parse_args(["--adversarial", "2000", "--seed", "4", "match-v0"])) == code
-    told = capsys.readouterr().out
-    assert ("it broke: table 1, step 2 of puckpilot check --adversarial 1 --seed 4 puckpilot/match-v0" in told) == broke
-    assert f"2,000 steps, {int(broke)} broke something" in told
-    assert ("failed: the slowest step takes too long\n" in told) == (slowest > 1.0)
+    expected = capsys.readouterr().out
+    assert ("it broke: table 1, step 2 of puckpilot check --adversarial 1 --seed 4 puckpilot/match-v0" in expected) == broke
+    assert f"2,000 steps, {int(broke)} broke something" in expected
+    assert ("failed: the slowest step takes too long\n" in expected) == (slowest > 1.0)
 
 
 def test_the_command_refuses_no_steps():

@@ -192,9 +192,9 @@ def test_command_in_json_and_exit_codes(capsys):
     ],
 )
 def test_command_says_what_it_could_not_do(name, words):
-    with pytest.raises(ValueError, match=words.replace("?", r"\?")) as told:
+    with pytest.raises(ValueError, match=words.replace("?", r"\?")) as output:
         command(name, "--steps", "60")
-    assert "\n" not in str(told.value)
+    assert "\n" not in str(output.value)
 
 
 def test_too_few_steps():

@@ -80,9 +80,9 @@ def _begin_film(place: Path) -> subprocess.Popen[str]:
 def test_a_film_that_is_stopped_leaves_nothing(tmp_path: Path, number: signal.Signals) -> None:
     film = _begin_film(tmp_path / "a.mp4")
     film.send_signal(number)
-    told = film.communicate(timeout=240)[1]
+    printed = film.communicate(timeout=240)[1]
     assert film.returncode == 128 + number
-    assert told.splitlines()[-1] == "puckpilot match: stopped" and "Traceback" not in told
+    assert printed.splitlines()[-1] == "puckpilot match: stopped" and "Traceback" not in printed
     assert not list(tmp_path.iterdir())
 
 

@@ -171,8 +171,8 @@ def test_fouls_outlast_an_automatic_reset_and_are_told():
     park(tables)
     stay(tables)
     assert tables.terminated[0] and tables.states["fouls"][0].tolist() == [0, 0]
-    told = outcome_info(tables, np.array([1]))
-    assert told["fouls"].tolist() == [[3, 2]]
+    printed = outcome_info(tables, np.array([1]))
+    assert printed["fouls"].tolist() == [[3, 2]]
 
 
 @pytest.mark.parametrize("passive", ["still", "goalie"])

@@ -44,14 +44,14 @@ def write(folder: Path, text: str) -> Path:
 
 def test_a_file_comes_to_rows_and_parameters(tmp_path: Path) -> None:
     for given in (write(tmp_path, GOOD), str(write(tmp_path, GOOD)), tomllib.loads(GOOD)):
-        told = read_draws(given)
-        assert told.parameters == {"length": 2.362}
-        assert told.draws == (
+        expected = read_draws(given)
+        assert expected.parameters == {"length": 2.362}
+        assert expected.draws == (
             Draw("friction", "log-uniform", 0.08, 0.1, ""),
             Draw("tilt_x", "uniform", -0.01, 0.02, ""),
         )
-        assert [draw.source for draw in told.draws] == ["our table", ""]
-        assert read_draws(told.as_dict()) == told
+        assert [draw.source for draw in expected.draws] == ["our table", ""]
+        assert read_draws(expected.as_dict()) == expected
     assert read_draws({"friction": {"low": 0, "high": 1}}).draws == (Draw("friction", "uniform", 0.0, 1.0, ""),)
     assert read_draws(None) == read_draws({}) == read_draws({"format": "puckpilot-draws/1"})
 
@@ -64,7 +64,7 @@ def test_a_file_is_told_in_lines(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "old, new, told",
+    "old, new, expected",
     [
         ("puckpilot-draws/1", "puckpilot-effects/1", "format is 'puckpilot-effects/1'; expected the line"),
         ('format = "puckpilot-draws/1"', "", "there is no line with its format; expected the line"),
@@ -96,12 +96,12 @@ def test_a_file_is_told_in_lines(tmp_path: Path) -> None:
         ("high = 0.02", "high = ", "line"),
     ],
 )
-def test_what_cannot_be_is_refused_in_one_line(tmp_path: Path, old: str, new: str, told: str) -> None:
+def test_what_cannot_be_is_refused_in_one_line(tmp_path: Path, old: str, new: str, expected: str) -> None:
     assert old in GOOD
     path = write(tmp_path, GOOD.replace(old, new, 1))
     with pytest.raises(ValueError) as refusal:
         read_draws(path)
-    assert str(refusal.value).startswith(f"{path}: ") and told in str(refusal.value)
+    assert str(refusal.value).startswith(f"{path}: ") and expected in str(refusal.value)
     assert "\n" not in str(refusal.value)
     with pytest.raises(ValueError):
         Tables("match-v0", 1, draws=path)
@@ -174,8 +174,8 @@ def test_nominal_numbers_lie_in_the_range() -> None:
     nominal = Tables("match-v0", 1, draws=draws).nominal[0]
     assert nominal["friction"] == pytest.approx(0.02) and nominal["drag"] == 0.125
     assert nominal["wall_restitution"] == pytest.approx(0.85)
-    told = {"format": "puckpilot-draws/1", "parameters": {"wall_restitution": 0.82}, "draws": draws}
-    assert Tables("match-v0", 1, draws=told).nominal["wall_restitution"] == 0.82
+    expected = {"format": "puckpilot-draws/1", "parameters": {"wall_restitution": 0.82}, "draws": draws}
+    assert Tables("match-v0", 1, draws=expected).nominal["wall_restitution"] == 0.82
 
 
 def test_frames_are_kept_for_the_latest_camera() -> None:
@@ -193,7 +193,7 @@ def ranges(**each: tuple[float, float]) -> dict[str, dict[str, float]]:
 
 
 @pytest.mark.parametrize(
-    "draws, told",
+    "draws, expected",
     [  # with all numbers low, and with all high, the first three are fine
         (ranges(width=(0.56, 0.64), mallet_radius=(0.05, 0.1)), "the table is too small: .*; drawn are width 0.56, "),
         (ranges(a2=(0.0055, 0.02), a3=(0.05, 2.0)), "gantry axis y is not overdamped: .*; drawn are a2 0.0055, a3 2$"),
@@ -203,9 +203,9 @@ def ranges(**each: tuple[float, float]) -> dict[str, dict[str, float]]:
         (ranges(width=(0.5, 0.6)), "the draw of 'width' is from 0.5 to 0.6; expected within 0.05 m of the nominal 0.6"),
     ],
 )  # fmt: skip
-def test_what_makes_no_table_together_is_refused(draws: dict[str, dict[str, float]], told: str) -> None:
+def test_what_makes_no_table_together_is_refused(draws: dict[str, dict[str, float]], expected: str) -> None:
     content = {"format": "puckpilot-draws/1", "parameters": {"width": 0.6, "goal_width": 0.2}, "draws": draws}
-    with pytest.raises(ValueError, match=f"^{told}") as refusal:
+    with pytest.raises(ValueError, match=f"^{expected}") as refusal:
         Tables("match-v0", 1, period=0.05, draws=content)
     assert "\n" not in str(refusal.value)
 

@@ -58,7 +58,7 @@ def test_a_file_is_told_in_lines(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "old, new, told",
+    "old, new, expected",
     [
         ("puckpilot-effects/1", "puckpilot-effects/2", "format is 'puckpilot-effects/2'; expected"),
         ('format = "puckpilot-effects/1"', "", "there is no line with its format; expected the line"),
@@ -79,12 +79,12 @@ def test_a_file_is_told_in_lines(tmp_path: Path) -> None:
         ("mu = 0.11", "mu = ", "line"),
     ],
 )
-def test_what_cannot_be_is_refused_in_one_line(tmp_path: Path, old: str, new: str, told: str) -> None:
+def test_what_cannot_be_is_refused_in_one_line(tmp_path: Path, old: str, new: str, expected: str) -> None:
     assert old in GOOD
     path = write(tmp_path, GOOD.replace(old, new))
     with pytest.raises(ValueError) as refusal:
         effect_values(path)
-    assert str(refusal.value).startswith(f"{path}: ") and told in str(refusal.value)
+    assert str(refusal.value).startswith(f"{path}: ") and expected in str(refusal.value)
     assert "\n" not in str(refusal.value)
 
 

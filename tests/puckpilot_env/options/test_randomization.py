@@ -126,7 +126,7 @@ def test_what_is_given_is_not_drawn():
 
 
 @pytest.mark.parametrize(
-    "draw, told",
+    "draw, expected",
     [
         (Draw("frictoin", "uniform", 0.1, 0.2, ""), r"unknown parameter 'frictoin'; did you mean 'friction'\?"),
         (
@@ -139,10 +139,10 @@ def test_what_is_given_is_not_drawn():
         (Draw("friction", "uniform", 0.1, 5.1, ""), r"parameter 'friction' is 5.1; expected a number in \[0, 5\]"),
     ],
 )
-def test_impossible_draws(draw, told):
-    with pytest.raises(ValueError, match=f"^{told}"):
+def test_impossible_draws(draw, expected):
+    with pytest.raises(ValueError, match=f"^{expected}"):
         as_rows((draw,))
-    with pytest.raises(ValueError, match=f"^{told}"):
+    with pytest.raises(ValueError, match=f"^{expected}"):
         Tables(replace(find_variant("match-v0"), draws=(draw,)), 1)
 
 

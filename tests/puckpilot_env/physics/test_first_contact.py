@@ -109,14 +109,14 @@ def ask_on_scenes(units, p, law, area, table, requests, answers):
 
 def check(answers: np.ndarray, least: int) -> None:
     """Of `answers` (n, 3), at least `least` are hits."""
-    told, scanned, nearest = answers[~np.isnan(answers[:, 0])].T
+    printed, scanned, nearest = answers[~np.isnan(answers[:, 0])].T
     apart = nearest > 1e-9  # else they touch from the start, or graze, and the scan cannot tell
     hits = np.isfinite(scanned) & apart
     assert hits.sum() >= least
-    assert (told[hits] - scanned[hits]).max() <= 1e-7, "a contact was reported late or missed"
+    assert (printed[hits] - scanned[hits]).max() <= 1e-7, "a contact was reported late or missed"
     clearly = hits & (nearest > CLEAR)
-    assert (told[clearly] - scanned[clearly]).min() >= -1e-6, "a contact was reported early"
-    assert np.isinf(told[~np.isfinite(scanned) & (nearest > CLEAR)]).all(), "a contact was reported that is none"
+    assert (printed[clearly] - scanned[clearly]).min() >= -1e-6, "a contact was reported early"
+    assert np.isinf(printed[~np.isfinite(scanned) & (nearest > CLEAR)]).all(), "a contact was reported that is none"
 
 
 @pytest.mark.slow

@@ -98,8 +98,8 @@ def test_missing_rows_are_told(tmp_path, capsys):
     columns = {name: whole.frames[name][kept] for name in ("t", "puck_x", "puck_y", "opponent_x", "opponent_y")}
     write_recording(tmp_path / "gap", Recording("gap", META, Stream(columns)))
     assert command(str(tmp_path / "gap"), "--out", str(tmp_path / "o")) == 0
-    told = [line for line in capsys.readouterr().out.splitlines() if line.startswith("note: ")]
-    assert "note: gap: frames.csv has 1 pause of more than 0.5 s and is cut there" in told
+    printed = [line for line in capsys.readouterr().out.splitlines() if line.startswith("note: ")]
+    assert "note: gap: frames.csv has 1 pause of more than 0.5 s and is cut there" in printed
 
 
 def test_prints_one_json_object_and_draws(tmp_path, capsys):
@@ -126,8 +126,8 @@ def test_a_gantry_alone_is_nothing_to_compare_and_no_crash(tmp_path, capsys):
     t = np.arange(5) / 100
     write_recording(tmp_path / "g", Recording("g", META, mallet=Stream({"t": t, "mallet_x": t, "mallet_y": t})))
     assert command(str(tmp_path / "g"), "--out", str(tmp_path)) == 0
-    told = capsys.readouterr().out
-    assert "where they part most: nowhere that can be told" in told and "puckpilot diagnose says" in told
+    printed = capsys.readouterr().out
+    assert "where they part most: nowhere that can be told" in printed and "puckpilot diagnose says" in printed
 
 
 def test_numbers_that_tell_little_are_said_to(tmp_path):

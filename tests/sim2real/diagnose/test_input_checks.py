@@ -80,10 +80,10 @@ def _diagnosed(out: Path, capsys, *words: Path | str) -> dict:
     return json.loads(capsys.readouterr().out)
 
 
-def _undetermined(told: dict, *said: str) -> None:
-    assert (told["verdict"], told["findings"]) == ("undetermined", [])
-    assert all(word in told["reason"] for word in said), told["reason"]
-    assert told["next_recording"]
+def _undetermined(expected: dict, *said: str) -> None:
+    assert (expected["verdict"], expected["findings"]) == ("undetermined", [])
+    assert all(word in expected["reason"] for word in said), expected["reason"]
+    assert expected["next_recording"]
 
 
 @pytest.mark.parametrize(
@@ -154,9 +154,9 @@ def test_a_file_that_breaks_a_rule_gets_one_line(tilted, tmp_path, capsys, file,
 def test_pauses_are_noted(tilted, tmp_path, capsys):
     """A camera that was off for a while: what it saw before and after is diagnosed."""
     paused = _change(tilted, tmp_path / "paused", "frames.csv", lambda lines: lines[:2000] + lines[2300:])
-    told = _diagnosed(tmp_path / "out", capsys, paused)
-    assert told["notes"] == ["paused: frames.csv has 1 pause of more than 0.5 s and is cut there"]
-    assert [one["mechanism"] for one in told["findings"]] == ["table_tilt"]
+    expected = _diagnosed(tmp_path / "out", capsys, paused)
+    assert expected["notes"] == ["paused: frames.csv has 1 pause of more than 0.5 s and is cut there"]
+    assert [one["mechanism"] for one in expected["findings"]] == ["table_tilt"]
 
 
 def test_the_recordings_as_they_are_can_be_used(tilted, rally):

@@ -84,13 +84,13 @@ def test_the_command_writes_files_that_others_read(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    "words, told",
+    "words, expected",
     [(["/no/such/place"], "no/such"), (["."], "meta.json")],
 )
-def test_what_is_no_recording_gets_one_line(words, told, tmp_path, capsys):
+def test_what_is_no_recording_gets_one_line(words, expected, tmp_path, capsys):
     assert main(["diagnose", *words, "--out", str(tmp_path / "out")]) == 2
     error = capsys.readouterr().err
-    assert told in error and error.count("\n") == 1
+    assert expected in error and error.count("\n") == 1
     assert not (tmp_path / "out").exists()
 
 
@@ -145,8 +145,8 @@ def test_labelled_practice(name):
         assert list(found.findings[0].depends_on) == truth["depends"]
 
 
-@pytest.mark.parametrize("proved, odd, told", [(True, 0.1, True), (False, 0.1, False), (False, 0.0, True)])
-def test_what_rests_on_a_rough_law_and_leaves_much_is_not_told(proved, odd, told):
+@pytest.mark.parametrize("proved, odd, expected", [(True, 0.1, True), (False, 0.1, False), (False, 0.0, True)])
+def test_what_rests_on_a_rough_law_and_leaves_much_is_not_told(proved, odd, expected):
     """Nor are its numbers: the refitted baseline's are, and what that leaves. `odd`: a push that is another one
     in every launch, which no law explains."""
     pushes = odd * np.random.default_rng(1).normal(size=LAUNCHES)
@@ -154,9 +154,9 @@ def test_what_rests_on_a_rough_law_and_leaves_much_is_not_told(proved, odd, told
     said = identify_regime(LinearRegime(proved), problem, NO_EVIDENCE, {})
     stands, found = said.final, said.regime_result
     assert stands is not None and found.selection is not None and found.mismatch is not None
-    assert bool(found.findings) == told == (not found.undetermined) == bool(stands.model.laws)
-    assert (found.selection.after_m < 0.9 * found.selection.before_m) == told and not found.misfit
-    assert (found.mismatch.after.mean() < 0.9 * found.mismatch.before.mean()) == told
+    assert bool(found.findings) == expected == (not found.undetermined) == bool(stands.model.laws)
+    assert (found.selection.after_m < 0.9 * found.selection.before_m) == expected and not found.misfit
+    assert (found.mismatch.after.mean() < 0.9 * found.mismatch.before.mean()) == expected
 
 
 @pytest.mark.slow

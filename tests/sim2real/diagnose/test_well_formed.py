@@ -41,10 +41,10 @@ RIGHT = {
     ],
 )
 def test_one_fault_is_found(place: tuple[Any, ...], value: Any):
-    told = json.loads(json.dumps(RIGHT))
-    assert faults(told) == []
-    part = told
+    printed = json.loads(json.dumps(RIGHT))
+    assert faults(printed) == []
+    part = printed
     for step in place[:-1]:
         part = part[step]
     part[place[-1]] = value
-    assert faults(told)
+    assert faults(printed)

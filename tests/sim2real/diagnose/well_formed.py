@@ -18,23 +18,23 @@ MECHANISMS = {
 SIZES = ("before_m", "after_m", "floor_m", "pieces")
 
 
-def faults(told: dict[str, Any]) -> list[str]:
+def faults(printed: dict[str, Any]) -> list[str]:
     """What is wrong with a diagnosis, a line each."""
-    found = told.get("findings")
-    if told.get("format") != "puckpilot-diagnosis/1" or not isinstance(found, list):
+    found = printed.get("findings")
+    if printed.get("format") != "puckpilot-diagnosis/1" or not isinstance(found, list):
         return ["no diagnosis of this format"]
-    wrong = [] if told.get("verdict") in VERDICTS else [f"verdict {told.get('verdict')!r}"]
-    if (told.get("verdict") == "missing_physics") != bool(found):
+    wrong = [] if printed.get("verdict") in VERDICTS else [f"verdict {printed.get('verdict')!r}"]
+    if (printed.get("verdict") == "missing_physics") != bool(found):
         wrong.append("verdict and findings disagree")
-    numbers = dict(told.get("baseline", {}).get("parameters", {}))
+    numbers = dict(printed.get("baseline", {}).get("parameters", {}))
     for one in found:
         wrong += _faults(one)
         numbers |= one.get("parameters", {})
     wrong += [f"{name} is no value between low and high, with a unit" for name, n in numbers.items() if not _whole(n)]
-    proof = told.get("heldout")
+    proof = printed.get("heldout")
     if found and not (proof and all(isinstance(proof.get(name), int | float) for name in SIZES)):
         wrong.append("findings without a held-out proof")
-    return wrong if isinstance(told.get("next_recording"), str) else [*wrong, "no next_recording"]
+    return wrong if isinstance(printed.get("next_recording"), str) else [*wrong, "no next_recording"]
 
 
 def _faults(one: dict[str, Any]) -> Iterator[str]:

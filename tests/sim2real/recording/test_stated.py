@@ -55,17 +55,17 @@ def test_sizes_are_compared_past_a_recording_that_states_none():
 
 
 @pytest.mark.parametrize(
-    "section, key, name, told",
+    "section, key, name, expected",
     [
         ("table", "length_m", "length", f"{BY_NAME['length'].default:g} m"),
         ("puck", "radius_m", "puck_radius", f"{BY_NAME['puck_radius'].default:g} m"),
         ("table", "goal_width_m", "goal_width", "left out"),
     ],
 )
-def test_what_nobody_states_is_said(section, key, name, told):
+def test_what_nobody_states_is_said(section, key, name, expected):
     one = Recording("a", {**META, section: {**META[section], key: None}}, FRAMES)
     (said,) = assumptions(together([one], {}))
-    assert f"{section}.{key} is not stated" in said and told in said
+    assert f"{section}.{key} is not stated" in said and expected in said
     assert geometry(one).assumed == {name}
 
 

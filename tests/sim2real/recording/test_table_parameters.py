@@ -22,7 +22,7 @@ def test_a_baseline_is_lines_of_numbers_or_a_diagnosis_s_file_without_effects(tm
 
 
 @pytest.mark.parametrize(
-    "text, told",
+    "text, expected",
     [
         (
             WRITTEN + "[effects.table_tilt]\ntilt_x = 0.02\n",
@@ -38,8 +38,8 @@ def test_a_baseline_is_lines_of_numbers_or_a_diagnosis_s_file_without_effects(tm
         ("a = " + "[" * 100_000, "nest too deep"),
     ],
 )
-def test_what_is_no_baseline_is_refused_with_what_to_do(tmp_path, text, told):
-    with pytest.raises(ValueError, match=told) as refusal:
+def test_what_is_no_baseline_is_refused_with_what_to_do(tmp_path, text, expected):
+    with pytest.raises(ValueError, match=expected) as refusal:
         read_baseline(_file(tmp_path, text))
     assert "\n" not in str(refusal.value)
 

@@ -31,8 +31,8 @@ def test_few_pieces_make_no_picture():
 def test_errors_cover_the_noise_and_the_scatter():
     rng = np.random.default_rng(0)
     x, y = rng.uniform(0.0, 1.0, 4000), rng.normal(0.0, 3.0, 4000)
-    told = [binned(x, y, np.full(4000, std), bins=1).error[0] for std in (3.0, 0.1)]
-    assert told == pytest.approx([3.0 / np.sqrt(4000)] * 2, rel=0.05)
+    printed = [binned(x, y, np.full(4000, std), bins=1).error[0] for std in (3.0, 0.1)]
+    assert printed == pytest.approx([3.0 / np.sqrt(4000)] * 2, rel=0.05)
 
 
 def test_the_band_is_that_of_the_coefficients():

@@ -45,9 +45,9 @@ def test_a_study_asks_blindly_scores_and_goes_on_where_it_stopped(tmp_path: Path
     tool, log = script(tmp_path, stop=True)
     words = ["--cases", "3", "--out", str(out), "--tool", tool]
     assert call(*words, "--json") == 1  # two cases without a diagnosis
-    told = json.loads(capsys.readouterr().out)
-    assert [case["verdict"] for case in told["cases"]] == ["agrees", "failed", "failed"]
-    assert told["cases"][1]["error"] == "cannot"
+    expected = json.loads(capsys.readouterr().out)
+    assert [case["verdict"] for case in expected["cases"]] == ["agrees", "failed", "failed"]
+    assert expected["cases"][1]["error"] == "cannot"
     seen = [json.loads(line) for line in log.read_text().splitlines()]
     for recording, files in seen:
         assert "case_" not in recording and str(out) not in recording
@@ -91,8 +91,8 @@ def test_a_study_of_one_kind_counts_silence_as_right(tmp_path: Path, capsys: pyt
 )
 def test_silence_is_no_mistaken_name(said: str, title: str):
     counts = Confusion(("table_tilt",), (said, "table_tilt"), ((2, 3),))
-    told = study._confusion(SimpleNamespace(confusion=counts))  # pyright: ignore[reportArgumentType] - all it reads
-    assert told.title.startswith(title)
+    expected = study._confusion(SimpleNamespace(confusion=counts))  # pyright: ignore[reportArgumentType] - all it reads
+    assert expected.title.startswith(title)
 
 
 def test_what_cannot_be_studied_is_said_in_one_line(tmp_path: Path):

@@ -96,8 +96,8 @@ def test_a_law_shows_beside_numbers_that_each_launch_has_of_its_own() -> None:
     found = search_model(problem, SHIPPED, USE)
     said = select(problem, found)
     assert {law.name for law in said.found.model.laws} == {"table_tilt", "side force by spin"} and not said.rejected
-    told = regime_result(LinearRegime(), problem, said, SHIPPED)
-    assert {one.mechanism for one in told.findings} == {"table_tilt", "side_force"}
+    expected = regime_result(LinearRegime(), problem, said, SHIPPED)
+    assert {one.mechanism for one in expected.findings} == {"table_tilt", "side_force"}
     size = 50.0 * np.hypot(TILT["tilt_x"], TILT["tilt_y"])
     left = {True: said.found, False: said.without["table_tilt"]}
     rms = {tilted: left_of(problem, one) for tilted, one in left.items()}

@@ -63,14 +63,14 @@ def test_a_law_that_launches_no_fit_saw_speak_against_is_rejected():
 def test_a_law_that_hardly_helps_launches_it_was_not_fitted_to_is_rejected():
     """Of a tilt that half of the launches have and the others nine tenths of turned round, a fit to all takes a
     twentieth, which explains hardly anything; where they have half of it, a fit to all takes most."""
-    for there, told in ((-0.9, []), (0.5, ["table_tilt"])):
+    for there, expected in ((-0.9, []), (0.5, ["table_tilt"])):
         share = np.where(np.isin(np.arange(LAUNCHES), OTHERS), there, 1.0)
         found = _account({name: 4.0 * value * share for name, value in TILT.items()})
-        assert [one.mechanism for one in found.findings] == told and found.misfit is not bool(told)
+        assert [one.mechanism for one in found.findings] == expected and found.misfit is not bool(expected)
 
 
-@pytest.mark.parametrize("against, told", [(0, True), (1, True), (10, False)])
-def test_a_likeness_may_fail_in_one_launch_but_not_in_half_of_them(against, told):
+@pytest.mark.parametrize("against, expected", [(0, True), (1, True), (10, False)])
+def test_a_likeness_may_fail_in_one_launch_but_not_in_half_of_them(against, expected):
     """Of twenty launches so many are pushed the other way, far beyond the noise."""
     signs = np.ones(LAUNCHES)
     signs[OTHERS[:against]] = -1.0
@@ -78,8 +78,8 @@ def test_a_likeness_may_fail_in_one_launch_but_not_in_half_of_them(against, told
     found = regime_result(
         LinearRegime(), problem, select(problem, search_model(problem, SHIPPED, np.arange(LAUNCHES))), SHIPPED
     )
-    assert [one.mechanism for one in found.findings] == (["unlisted"] if told else [])
-    assert found.misfit is not told
+    assert [one.mechanism for one in found.findings] == (["unlisted"] if expected else [])
+    assert found.misfit is not expected
 
 
 def test_a_likeness_that_no_launch_needs_is_not_told():
@@ -99,14 +99,14 @@ def test_launches_that_do_not_feel_a_law_say_nothing_against_it():
 
 
 @pytest.mark.parametrize(
-    "after, told", [(1.0, []), (2.9, []), (30.0, ["wall: 30 mm stay unexplained, 30 times the noise"])]
+    "after, expected", [(1.0, []), (2.9, []), (30.0, ["wall: 30 mm stay unexplained, 30 times the noise"])]
 )
-def test_what_stays_unexplained_is_told(after, told):
+def test_what_stays_unexplained_is_told(after, expected):
     wall = RegimeResult(
         "wall", (), {}, False, Proof(0.05, 1e-3 * after, 1e-3, 9), proof=Proof(0.05, 1e-3 * after, 1e-3, 9)
     )
     remarks = Diagnosis((wall,)).remarks
-    assert len(remarks) == len(told) and all(one.startswith(start) for one, start in zip(remarks, told, strict=True))
+    assert len(remarks) == len(expected) and all(one.startswith(start) for one, start in zip(remarks, expected, strict=True))
 
 
 def test_what_no_law_explains_is_no_agreement():

@@ -110,24 +110,24 @@ def test_with_the_effects_beside_it_what_has_no_name_is_on_too(found: Diagnosis,
 
 
 def test_what_says_nothing_of_a_number_leaves_it_to_the_variant(found: Diagnosis, tmp_path: Path) -> None:
-    told = read_draws(written(tmp_path, found))
-    assert [draw.parameter for draw in told.draws] == [*RANGES, "gantry_spread"]
-    assert "mallet_restitution" not in told.parameters  # its regime could not tell
+    expected = read_draws(written(tmp_path, found))
+    assert [draw.parameter for draw in expected.draws] == [*RANGES, "gantry_spread"]
+    assert "mallet_restitution" not in expected.parameters  # its regime could not tell
     drawn = Tables("match-randomized-v0", COUNT, draws=tmp_path / "draws.toml").params["mallet_restitution"]
     assert drawn.min() < 0.5 and drawn.max() > 0.85
-    assert told.draws[0].source == '95 % interval, fitted to the glide of monday and a "late" evening'
+    assert expected.draws[0].source == '95 % interval, fitted to the glide of monday and a "late" evening'
 
 
 def test_parameters_are_those_of_effects_toml(found: Diagnosis, tmp_path: Path) -> None:
-    told = read_draws(written(tmp_path, found)).parameters
+    expected = read_draws(written(tmp_path, found)).parameters
     effects = effect_values(tmp_path / "effects.toml")
-    assert told == {name: value for name, value in effects.items() if not name.startswith("unlisted")}
+    assert expected == {name: value for name, value in effects.items() if not name.startswith("unlisted")}
 
 
 def test_gantries_spread_as_far_as_their_coefficients_are_unsure(tmp_path: Path) -> None:
     """The widest share of C6 and C7: of y, where C6 = a2 + b2 has the halves of both and is the least."""
-    told = read_draws(written(tmp_path, Diagnosis((RegimeResult("gantry", (), gantry(0.01), False, None),))))
-    (spread,) = told.draws
+    expected = read_draws(written(tmp_path, Diagnosis((RegimeResult("gantry", (), gantry(0.01), False, None),))))
+    (spread,) = expected.draws
     assert (spread.parameter, spread.low) == ("gantry_spread", 0.0)
     assert spread.high == pytest.approx(0.01 * (0.0057 + 0.0027) / (0.0057 - 0.0027), rel=1e-9)
     wide = read_draws(written(tmp_path, Diagnosis((RegimeResult("gantry", (), gantry(0.9), False, None),))))
@@ -136,8 +136,8 @@ def test_gantries_spread_as_far_as_their_coefficients_are_unsure(tmp_path: Path)
 
 
 def test_a_diagnosis_that_tells_nothing_draws_nothing(tmp_path: Path) -> None:
-    told = read_draws(written(tmp_path, Diagnosis((), reason="too short")))
-    assert (told.parameters, told.draws) == ({}, ())
+    expected = read_draws(written(tmp_path, Diagnosis((), reason="too short")))
+    assert (expected.parameters, expected.draws) == ({}, ())
 
 
 @pytest.mark.slow

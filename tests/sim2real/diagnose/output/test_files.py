@@ -95,8 +95,8 @@ def test_numbers_that_make_no_table_together_are_left_out_and_named(tmp_path):
     far = {"a1": Estimate(1e-3, 1e-3, 1e-3, "V s^3"), "friction": Estimate(0.09, 0.09, 0.09, "m/s^2")}
     file = tmp_path / "effects.toml"
     for wrong, numbers in ((sizes, {}), ({}, far), (sizes, far)):
-        told = {"friction": far["friction"], **numbers}
-        file.write_text(effects_toml(Diagnosis((RegimeResult("glide", (), told, False, None),), sizes=wrong)))
+        printed = {"friction": far["friction"], **numbers}
+        file.write_text(effects_toml(Diagnosis((RegimeResult("glide", (), printed, False, None),), sizes=wrong)))
         assert effect_values(file) == {"friction": 0.09}
         Tables("match-v0", 1, effects=file)
         assert ("# not in the simulator: length 1.05, width 0.55: the table is too small" in file.read_text()) == bool(
@@ -148,8 +148,8 @@ def test_what_was_not_tested_is_no_agreement():
     alone = as_dict(
         Diagnosis((RegimeResult("sensing", (), {}, True, None), RegimeResult("gantry", (), {}, True, None)))
     )
-    told = {one["regime"]: one["verdict"] for one in alone["regimes"]}
-    assert told == {"gantry": "agrees", **dict.fromkeys(("sensing", "glide", "wall", "mallet"), "untested")}
+    printed = {one["regime"]: one["verdict"] for one in alone["regimes"]}
+    assert printed == {"gantry": "agrees", **dict.fromkeys(("sensing", "glide", "wall", "mallet"), "untested")}
     assert "no camera frame shows a puck" in alone["regimes"][1]["reason"]
 
 

@@ -18,7 +18,7 @@ def test_what_has_no_words_gets_none():
 
 
 @pytest.mark.parametrize(
-    "value, half, told",
+    "value, half, expected",
     [
         (0.05315012, 1.5e-6, ("0.0531501", "0.0531486", "0.0531516")),
         (0.02, 0.001, ("0.02", "0.019", "0.021")),
@@ -26,8 +26,8 @@ def test_what_has_no_words_gets_none():
         (3.0, 0.0, ("3", "3", "3")),
     ],
 )
-def test_digits_tell_a_value_from_its_bounds(value, half, told):
-    assert digits_of(Estimate(value, value - half, value + half, "1")) == told
+def test_digits_tell_a_value_from_its_bounds(value, half, expected):
+    assert digits_of(Estimate(value, value - half, value + half, "1")) == expected
 
 
 def test_units_and_counts():

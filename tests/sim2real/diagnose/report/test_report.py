@@ -189,9 +189,9 @@ def test_what_was_not_recorded_is_not_tested():
 
 
 def test_numbers_stand_beside_those_that_they_replace():
-    for baseline, told in (({}, "parameter shipped fitted"), ({"friction": 0.31}, "parameter your baseline fitted")):
+    for baseline, expected in (({}, "parameter shipped fitted"), ({"friction": 0.31}, "parameter your baseline fitted")):
         read = Reader(page(DIAGNOSES["parameters_only"], ReportContext(("a",), baseline)))
-        assert told in read.text
+        assert expected in read.text
         shown = baseline.get("friction", 0.125)
         assert f"friction {shown} 0.1251 0.125 … 0.1252 m/s²" in read.text
     read = Reader(page(DIAGNOSES["agrees"], ReportContext(("a",), {"friction": 0.31})))

@@ -36,10 +36,10 @@ def test_the_interval_of_what_is_made_of_two_numbers_has_the_spread_of_both(mech
 
 def test_a_ratio_of_headings_is_left_out_where_it_may_be_endless():
     law = Law("friction_anisotropy", ("friction_anisotropy", "friction_turning"))
-    for grain, std, told in ((0.25, 0.05, True), (-0.9, 0.2, True), (0.9, 0.2, False), (1.0, 0.0, False)):
+    for grain, std, expected in ((0.25, 0.05, True), (-0.9, 0.2, True), (0.9, 0.2, False), (1.0, 0.0, False)):
         numbers = labelled(law, fitted({"friction_anisotropy": grain}, [[std**2]]))
-        assert ("ratio" in numbers) == told and numbers["grain"].value == grain
-        if told:
+        assert ("ratio" in numbers) == expected and numbers["grain"].value == grain
+        if expected:
             one = numbers["ratio"]
             assert one.value == pytest.approx((1.0 + grain) / (1.0 - grain))
             assert 0.0 <= one.low < one.value < one.high
