@@ -117,7 +117,9 @@ def test_a_word_of_several_commands_tells_them(more, code, capsys):
     assert puckpilot.main(["calibrate", *more]) == code
     expected = capsys.readouterr().out.splitlines()
     assert expected[0] == "usage: puckpilot calibrate KIND [options]"
-    assert [line.split()[:2] for line in expected[2:]] == [["calibrate", kind] for kind in ("camera", "table", "gantry")]
+    assert [line.split()[:2] for line in expected[2:]] == [
+        ["calibrate", kind] for kind in ("camera", "table", "gantry")
+    ]
 
 
 @pytest.mark.parametrize(

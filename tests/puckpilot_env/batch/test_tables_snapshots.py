@@ -72,7 +72,9 @@ def test_a_snapshot_of_tables_of_another_size_is_refused_and_changes_nothing(nam
     other = Tables("match-randomized-v0", 2, seed=1, parameters={name: value})
     tables = Tables("match-randomized-v0", 2, seed=2)
     before = tables.snapshot()
-    expected = rf"^the snapshot is of tables of {name} {value:g} m; expected {tables.nominal[name][0]:g} m, as these have$"
+    expected = (
+        rf"^the snapshot is of tables of {name} {value:g} m; expected {tables.nominal[name][0]:g} m, as these have$"
+    )
     with pytest.raises(ValueError, match=expected):
         tables.restore(other.snapshot())
     after = tables.snapshot()

@@ -167,7 +167,9 @@ def test_the_command_fails_where_something_broke_or_took_long(monkeypatch, capsy
     check.add_arguments(parser)
     assert check.run(parser.parse_args(["--adversarial", "2000", "--seed", "4", "match-v0"])) == code
     expected = capsys.readouterr().out
-    assert ("it broke: table 1, step 2 of puckpilot check --adversarial 1 --seed 4 puckpilot/match-v0" in expected) == broke
+    assert (
+        "it broke: table 1, step 2 of puckpilot check --adversarial 1 --seed 4 puckpilot/match-v0" in expected
+    ) == broke
     assert f"2,000 steps, {int(broke)} broke something" in expected
     assert ("failed: the slowest step takes too long\n" in expected) == (slowest > 1.0)
 

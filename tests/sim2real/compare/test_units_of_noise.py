@@ -29,7 +29,7 @@ def compared(recording: Recording, **values: float) -> dict[str, Any]:
 
 def made(folder: Path, law: Law, scenario: str, camera: Camera, seconds: float = 40.0) -> Recording:
     """A recording of the independent table."""
-    make_recording(folder / "made", law, scenario, 5, seconds, camera, encoder_rate=200.0)
+    make_recording(folder / "made", law, scenario, 5, seconds, camera, encoder_rate=200.0, dt=5e-5)
     return read_recording(folder / "made")
 
 

@@ -32,7 +32,7 @@ def quiet(stage: str, share: float) -> None:
 
 def recorded(folder: Path, law: Law, seed: int) -> Recording:
     """Play on a table, by a camera that is late by LATE."""
-    make_recording(folder, law, "rally", seed, SECONDS)
+    make_recording(folder, law, "rally", seed, SECONDS, dt=5e-5)
     one = read_recording(folder).from_zero()
     assert one.frames is not None
     return replace(one, frames=Stream({**one.frames.columns, "t": one.frames.t + LATE}))

@@ -22,7 +22,7 @@ SECONDS = 45.0
 
 
 def diagnosed(folder: Path, law: Law, scenario: str, seed: int, stated: bool = True) -> Diagnosis:
-    make_recording(folder / "film", law, scenario, seed, SECONDS, replace(FILM, calibration=seed))
+    make_recording(folder / "film", law, scenario, seed, SECONDS, replace(FILM, calibration=seed), dt=5e-5)
     recording = read_recording(folder / "film")
     if not stated:
         camera = {**recording.meta["camera"], "place_std_m": None}
@@ -64,7 +64,7 @@ def test_what_untouched_recordings_err_by_tells_the_fit_nothing(tmp_path: Path) 
     """The same recording, with one or another for the proof alone: the same numbers."""
     names = ("fitted", "proof", "another")
     for seed, name in enumerate(names, 1):
-        make_recording(tmp_path / name, Law(), "launches", seed, 15.0, replace(FILM, calibration=7))
+        make_recording(tmp_path / name, Law(), "launches", seed, 15.0, replace(FILM, calibration=7), dt=5e-5)
     fitted, *proofs = (read_recording(tmp_path / name) for name in names)
     baselines = []
     for proof in proofs:

@@ -25,7 +25,7 @@ SECONDS = 60.0
 
 
 def _diagnosis(folder: Path, law: Law, seconds: float = SECONDS, seed: int = 5, scenario: str = "launches"):
-    make_recording(folder, law, scenario, seed, seconds, camera=NOISE)
+    make_recording(folder, law, scenario, seed, seconds, camera=NOISE, dt=5e-5)
     return diagnose([read_recording(folder)], [], {}, lambda stage, share: None)
 
 
@@ -73,7 +73,7 @@ def test_too_little_data_is_undetermined_and_says_so(tmp_path):
 
 @pytest.mark.slow
 def test_the_command_writes_files_that_others_read(tmp_path, capsys):
-    make_recording(tmp_path / "table", Law(tilt_x=0.02), "launches", 3, SECONDS, camera=NOISE)
+    make_recording(tmp_path / "table", Law(tilt_x=0.02), "launches", 3, SECONDS, camera=NOISE, dt=5e-5)
     assert main(["diagnose", str(tmp_path / "table"), "--out", str(tmp_path / "out"), "--json"]) == 0
     printed = json.loads(capsys.readouterr().out)
     assert printed == json.loads((tmp_path / "out" / "diagnosis.json").read_text())

@@ -44,7 +44,7 @@ def test_of_few_launches_the_last_is_taken_and_of_one_none():
 
 
 def test_each_frame_is_in_one_part_and_a_path_goes_with_its_launches(tmp_path):
-    make_recording(tmp_path / "one", Law(), "rally", 3, 30.0)
+    make_recording(tmp_path / "one", Law(), "rally", 3, 30.0, dt=5e-5)
     recording = read_recording(tmp_path / "one")
     divided = split_data([recording], [])
     (rest,), (proof,), (path,), (path_proof,) = (
@@ -65,7 +65,7 @@ def test_each_frame_is_in_one_part_and_a_path_goes_with_its_launches(tmp_path):
 
 def test_launches_are_counted_through_all_recordings(tmp_path):
     for k in range(2):
-        make_recording(tmp_path / f"{k}", Law(), "launches", k, 30.0)
+        make_recording(tmp_path / f"{k}", Law(), "launches", k, 30.0, dt=5e-5)
     recordings = [read_recording(tmp_path / f"{k}") for k in range(2)]
     first, second = (np.unique(rows) for rows in launches_of(recordings, [segment(one) for one in recordings]))
     assert second[0] == first[-1] + 1 and len(first) > 3

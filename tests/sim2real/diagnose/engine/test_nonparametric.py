@@ -25,7 +25,7 @@ FAMILY = "force by heading"
 def grainy(tmp_path_factory):
     """The glides of a table whose friction doubles and vanishes with the heading, and the baseline's best fit."""
     folder = tmp_path_factory.mktemp("grainy")
-    make_recording(folder / "table", Law(grain=0.9), "launches", 3, 60.0)
+    make_recording(folder / "table", Law(grain=0.9), "launches", 3, 60.0, dt=5e-5)
     recording = read_recording(folder / "table")
     values = parameters(recording)
     problem = GlideProblem(glides_of(recording, segment(recording)), values)

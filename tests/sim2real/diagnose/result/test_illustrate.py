@@ -19,7 +19,7 @@ CAMERA = Camera(noise=0.0006, rate=120.0)
 
 
 def _diagnosis(folder, law: Law, seconds: float = 80.0) -> Diagnosis:
-    make_recording(folder, law, "launches", 7, seconds, camera=CAMERA)
+    make_recording(folder, law, "launches", 7, seconds, camera=CAMERA, dt=5e-5)
     return diagnose([read_recording(folder)], [], {}, lambda stage, share: None)
 
 
@@ -87,7 +87,7 @@ def test_walls_that_tire_get_a_slope(tmp_path):
 @pytest.mark.slow
 def test_a_mallet_that_tires_gets_a_slope(tmp_path):
     law = Law(mallet_warming=-0.004, mallet_restitution=0.85)
-    make_recording(tmp_path / "table", law, "rally", 7, 80.0, camera=Camera(noise=0.0006, rate=150.0))
+    make_recording(tmp_path / "table", law, "rally", 7, 80.0, camera=Camera(noise=0.0006, rate=150.0), dt=5e-5)
     found = diagnose([read_recording(tmp_path / "table")], [], {}, lambda stage, share: None)
     one = found.findings[0]
     assert (one.regime, one.mechanism, one.depends_on) == ("mallet", "unlisted", ("time",))
@@ -103,7 +103,7 @@ SPEED_LOSS = 2.0 * Law().a3 / Law().pulley_radius  # V s/m, of either axis
 
 @pytest.mark.slow
 def test_a_gantry_rough_by_place_gets_a_wave_in_volts(tmp_path):
-    make_recording(tmp_path / "table", Law(rough=0.3, rough_length=0.4), "gantry", 7, 60.0)
+    make_recording(tmp_path / "table", Law(rough=0.3, rough_length=0.4), "gantry", 7, 60.0, dt=5e-5)
     found = diagnose([read_recording(tmp_path / "table")], [], {}, lambda stage, share: None)
     one = found.findings[0]
     assert (one.regime, one.depends_on) == ("gantry", ("position",))
@@ -124,7 +124,7 @@ def test_a_gantry_rough_by_place_gets_a_wave_in_volts(tmp_path):
 
 @pytest.mark.slow
 def test_a_gantry_that_loses_more_at_speed_gets_a_square(tmp_path):
-    make_recording(tmp_path / "table", Law(cubic_loss=0.1), "gantry", 7, 60.0)
+    make_recording(tmp_path / "table", Law(cubic_loss=0.1), "gantry", 7, 60.0, dt=5e-5)
     found = diagnose([read_recording(tmp_path / "table")], [], {}, lambda stage, share: None)
     one, curve = found.findings[0], _curve(found)
     fast = curve.x > 0.5
@@ -157,7 +157,10 @@ def test_launches_are_shown_under_the_law_that_was_found_smooth_part_and_all():
     wanted = identify_regime(LinearRegime(), problem, NO_EVIDENCE, {}).regime_result
     assert [one.mechanism for one in wanted.findings] == ["unlisted"]
     assert wanted.mismatch is not None and wanted.selection is not None
-    for shown, left in ((wanted.mismatch.before, wanted.selection.before_m), (wanted.mismatch.after, wanted.selection.after_m)):
+    for shown, left in (
+        (wanted.mismatch.before, wanted.selection.before_m),
+        (wanted.mismatch.after, wanted.selection.after_m),
+    ):
         assert np.sqrt(np.mean(shown**2)) == pytest.approx(left / problem.noise_m, rel=0.02)  # by fits to others
     assert wanted.mismatch.after.mean() < 1.1 < wanted.mismatch.before.mean()
 

@@ -20,7 +20,7 @@ from sim2real.study.independent_table.recorder.record import make_recording
 
 def explained(folder, law: Law, seed: int):
     """What the engine finds of the mallet in 60 s of a rally."""
-    make_recording(folder, law, "rally", seed, 60.0)
+    make_recording(folder, law, "rally", seed, 60.0, dt=5e-5)
     recording = read_recording(folder)
     segments, g = segment(recording), geometry(recording)
     assert recording.frames is not None

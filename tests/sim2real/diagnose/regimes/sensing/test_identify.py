@@ -16,7 +16,7 @@ from sim2real.study.independent_table.recorder.record import make_recording
 
 
 def recorded(folder, law: Law, scenario: str, seed: int, seconds: float, camera: Camera | None = None) -> Recording:
-    make_recording(folder, law, scenario, seed, seconds, camera)
+    make_recording(folder, law, scenario, seed, seconds, camera, dt=5e-5)
     return read_recording(folder)
 
 
