@@ -1,5 +1,5 @@
-"""A diagnosis as files: diagnosis.json (puckpilot-diagnosis/1), report.html, and for the simulator effects.toml, its
-best numbers, and draws.toml, how far they may be off."""
+"""The files of a diagnosis: diagnosis.json (puckpilot-diagnosis/1), report.html, effects.toml with parameters for the
+simulator, and draws.toml with their distribution."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ NO_PIECES = Proof(0.0, 0.0, 0.0, 0)
 
 
 def as_dict(diagnosis: Diagnosis) -> dict[str, Any]:
-    """The diagnosis in the format's own words."""
+    """Return the diagnosis in the format puckpilot-diagnosis/1."""
     proof = diagnosis.proof
     baseline = {name: one for each in diagnosis.regime_results for name, one in each.baseline.items()}
     words = {
@@ -57,21 +57,21 @@ def _finding(one: Finding) -> dict[str, Any]:
             "before": one.before,
             "after": one.after,
             "unit": "rms in units of the sensor's noise",
-            **{f"{name}_twin": _known(asdict(twin)) for name, twin in one.null_controls.items()},
+            **{f"{name}_twin": _without_none(asdict(control)) for name, control in one.null_controls.items()},
         },
     }
     return words if one.curve is None else {**words, "curve": _curve(one.curve)}
 
 
 def _regimes(diagnosis: Diagnosis) -> list[dict[str, Any]]:
-    """What each regime says; of those that were not tested, why not."""
+    """Return the result of each regime, and for regimes that were not tested the reason."""
     missing = untested(diagnosis)
-    told = [_regime(one) for one in diagnosis.regime_results if one.regime not in missing]
-    return [*told, *({"regime": name, "verdict": "untested", "reason": why} for name, why in missing.items())]
+    tested = [_regime(one) for one in diagnosis.regime_results if one.regime not in missing]
+    return [*tested, *({"regime": name, "verdict": "untested", "reason": why} for name, why in missing.items())]
 
 
 def _regime(one: RegimeResult) -> dict[str, Any]:
-    """What a regime says for itself."""
+    """Return the result of one regime."""
     words = {
         "regime": one.regime,
         "verdict": one.verdict,
@@ -82,15 +82,15 @@ def _regime(one: RegimeResult) -> dict[str, Any]:
         "minor": one.minor or None,
         "next_recording": one.next_recording or None,
     }
-    return _known(words)
+    return _without_none(words)
 
 
-def _known(words: dict[str, Any]) -> dict[str, Any]:
+def _without_none(words: dict[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in words.items() if value is not None}
 
 
 def _curve(one: Curve) -> dict[str, Any]:
-    """The law as a curve with its 95 % band."""
+    """Return the law as a curve with its 95 % band."""
     words = {"x_label": one.x_label, "y_label": one.y_label, **({"ticks": list(one.ticks)} if one.ticks else {})}
     return {**words, **{name: getattr(one, name).tolist() for name in ("x", "y", "low", "high")}}
 
@@ -100,7 +100,7 @@ def _estimate(one: Estimate) -> dict[str, Any]:
 
 
 def write(diagnosis: Diagnosis, folder: Path, context: ReportContext = PLAIN) -> list[Path]:
-    """Write all files into `folder`, each whole or not at all; returns their places."""
+    """Write all files into `folder`, each atomically, and return their paths."""
     from sim2real.diagnose.report.page import page
 
     folder.mkdir(parents=True, exist_ok=True)
