@@ -24,7 +24,7 @@ def as_dict(diagnosis: Diagnosis) -> dict[str, Any]:
     """Return the diagnosis in the format puckpilot-diagnosis/1."""
     proof = diagnosis.proof
     baseline = {name: one for each in diagnosis.regime_results for name, one in each.baseline.items()}
-    words = {
+    entries = {
         "format": FORMAT,
         "verdict": diagnosis.verdict,
         "baseline": {"parameters": {name: _estimate(one) for name, one in baseline.items()}},
@@ -34,16 +34,16 @@ def as_dict(diagnosis: Diagnosis) -> dict[str, Any]:
         "next_recording": diagnosis.next_recording,
     }
     if diagnosis.proof_remarks:
-        words["heldout_notes"] = diagnosis.proof_remarks
+        entries["heldout_notes"] = diagnosis.proof_remarks
     if diagnosis.reason:
-        words["reason"] = diagnosis.reason
+        entries["reason"] = diagnosis.reason
     if diagnosis.remarks:
-        words["notes"] = diagnosis.remarks
-    return words
+        entries["notes"] = diagnosis.remarks
+    return entries
 
 
 def _finding(one: Finding) -> dict[str, Any]:
-    words = {
+    entries = {
         "regime": one.regime,
         "where": dict(one.where),
         "mechanism": one.mechanism,
@@ -60,7 +60,7 @@ def _finding(one: Finding) -> dict[str, Any]:
             **{f"{name}_twin": _without_none(asdict(control)) for name, control in one.null_controls.items()},
         },
     }
-    return words if one.curve is None else {**words, "curve": _curve(one.curve)}
+    return entries if one.curve is None else {**entries, "curve": _curve(one.curve)}
 
 
 def _regimes(diagnosis: Diagnosis) -> list[dict[str, Any]]:
@@ -72,7 +72,7 @@ def _regimes(diagnosis: Diagnosis) -> list[dict[str, Any]]:
 
 def _regime(one: RegimeResult) -> dict[str, Any]:
     """Return the result of one regime."""
-    words = {
+    entries = {
         "regime": one.regime,
         "verdict": one.verdict,
         "baseline": {name: _estimate(value) for name, value in one.baseline.items()} or None,
@@ -82,17 +82,17 @@ def _regime(one: RegimeResult) -> dict[str, Any]:
         "minor": one.minor or None,
         "next_recording": one.next_recording or None,
     }
-    return _without_none(words)
+    return _without_none(entries)
 
 
-def _without_none(words: dict[str, Any]) -> dict[str, Any]:
-    return {key: value for key, value in words.items() if value is not None}
+def _without_none(entries: dict[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in entries.items() if value is not None}
 
 
 def _curve(one: Curve) -> dict[str, Any]:
     """Return the law as a curve with its 95 % band."""
-    words = {"x_label": one.x_label, "y_label": one.y_label, **({"ticks": list(one.ticks)} if one.ticks else {})}
-    return {**words, **{name: getattr(one, name).tolist() for name in ("x", "y", "low", "high")}}
+    entries = {"x_label": one.x_label, "y_label": one.y_label, **({"ticks": list(one.ticks)} if one.ticks else {})}
+    return {**entries, **{name: getattr(one, name).tolist() for name in ("x", "y", "low", "high")}}
 
 
 def _estimate(one: Estimate) -> dict[str, Any]:

@@ -46,10 +46,10 @@ def _explained(diagnosis: Diagnosis, context: ReportContext) -> str:
     times = {each.regime: each.times_noise for each in diagnosis.regime_results}
     more = [f"the {regime} {residual_words(many)}" for regime, many in times.items() if many and many > TO_THE_NOISE]
     if diagnosis.verdict == "parameters_only":
-        said = f"The simulator's laws explain {context.these} with parameters other than {context.reference}"
+        verdict = f"The simulator's laws explain {context.these} with parameters other than {context.reference}"
     else:
-        said = f"{context.simulator} explains {context.these}{'' if more else ' to the noise of the sensors'}"
-    return f"{said}, but {' and '.join(more)}." if more else f"{said}."
+        verdict = f"{context.simulator} explains {context.these}{'' if more else ' to the noise of the sensors'}"
+    return f"{verdict}, but {' and '.join(more)}." if more else f"{verdict}."
 
 
 def _lacking(findings: Sequence[Finding]) -> str:

@@ -87,7 +87,7 @@ def test_two_tables_are_undetermined(recorded, one, other):
 def test_a_holdout_of_another_table_contradicts_the_findings(recorded):
     found = _diagnosis([recorded("tilted")], [recorded("plain")])
     assert [one.mechanism for one in found.findings] == ["table_tilt"]
-    assert any(said.startswith("glide: the holdout contradicts the findings") for said in found.proof_remarks)
+    assert any(remark.startswith("glide: the holdout contradicts the findings") for remark in found.proof_remarks)
 
 
 @pytest.mark.slow

@@ -109,7 +109,7 @@ def test_a_holdout_of_another_table_changes_only_the_proof(split, found, another
     other = diagnose_split(split._replace(holdout=[another], gantry_holdout=[another]), {}, quiet)
     assert words(other) == words(found)
     assert other.proof is not None and other.proof.after_m > 3.0 * other.proof.floor_m
-    assert any("glide: the holdout contradicts the findings" in said for said in other.proof_remarks)
+    assert any("glide: the holdout contradicts the findings" in remark for remark in other.proof_remarks)
 
 
 def test_a_held_out_recording_changes_only_the_proof(recording, another) -> None:
@@ -117,4 +117,4 @@ def test_a_held_out_recording_changes_only_the_proof(recording, another) -> None
     assert len({words(replace(one, notes=())) for one in every}) == 1
     assert every[0].findings and every[0].proof is not None
     for unusable in every[1:]:
-        assert any("the holdout does not test the findings" in said for said in unusable.proof_remarks)
+        assert any("the holdout does not test the findings" in remark for remark in unusable.proof_remarks)

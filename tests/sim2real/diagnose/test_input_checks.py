@@ -80,14 +80,14 @@ def _diagnosed(out: Path, capsys, *words: Path | str) -> dict:
     return json.loads(capsys.readouterr().out)
 
 
-def _undetermined(expected: dict, *said: str) -> None:
+def _undetermined(expected: dict, *message: str) -> None:
     assert (expected["verdict"], expected["findings"]) == ("undetermined", [])
-    assert all(word in expected["reason"] for word in said), expected["reason"]
+    assert all(word in expected["reason"] for word in message), expected["reason"]
     assert expected["next_recording"]
 
 
 @pytest.mark.parametrize(
-    "file, change, said",
+    "file, change, message",
     [
         ("frames.csv", lambda lines: lines[: 3 * 150], ["too little data"]),
         ("frames.csv", lambda lines: lines[:1], ["too little data"]),
@@ -101,13 +101,13 @@ def _undetermined(expected: dict, *said: str) -> None:
     ],
     ids=["3 s", "header", "still", "frozen", "leaps", "small leaps", "too long", "too narrow", "too large"],
 )
-def test_unusable_frames_are_undetermined(tilted, tmp_path, capsys, file, change, said):
+def test_unusable_frames_are_undetermined(tilted, tmp_path, capsys, file, change, message):
     broken = _change(tilted, tmp_path / "broken", file, change)
-    _undetermined(_diagnosed(tmp_path / "out", capsys, broken), *said)
+    _undetermined(_diagnosed(tmp_path / "out", capsys, broken), *message)
 
 
 @pytest.mark.parametrize(
-    "file, change, said",
+    "file, change, message",
     [
         ("frames.csv", lambda lines: lines[: len(lines) // 2], ["frames.csv stops at 1", "mallet.csv goes on"]),
         ("mallet.csv", lambda lines: lines[: len(lines) // 2], ["mallet.csv stops at 15.0 s", "frames.csv goes on"]),
@@ -117,9 +117,9 @@ def test_unusable_frames_are_undetermined(tilted, tmp_path, capsys, file, change
     ],
     ids=["no camera", "no encoders", "no commands", "leap", "pause"],
 )
-def test_streams_that_contradict_each_other_are_undetermined(rally, tmp_path, capsys, file, change, said):
+def test_streams_that_contradict_each_other_are_undetermined(rally, tmp_path, capsys, file, change, message):
     broken = _change(rally, tmp_path / "broken", file, change)
-    _undetermined(_diagnosed(tmp_path / "out", capsys, broken), *said)
+    _undetermined(_diagnosed(tmp_path / "out", capsys, broken), *message)
 
 
 def test_commands_may_end_when_the_mallet_rests(rally, tmp_path):
@@ -135,7 +135,7 @@ def test_commands_may_end_when_the_mallet_rests(rally, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "file, change, said",
+    "file, change, message",
     [
         ("frames.csv", lambda lines: [*lines[:900], lines[900][:12]], "frames.csv:901: has 2 cells, expected 5"),
         ("frames.csv", _restamp(lambda t: t - 2.0 * (t > 15.0)), "the clock runs back"),
@@ -143,11 +143,11 @@ def test_commands_may_end_when_the_mallet_rests(rally, tmp_path):
     ],
     ids=["half a row", "back in time", "half the meta data"],
 )
-def test_a_file_that_breaks_a_rule_gets_one_line(tilted, tmp_path, capsys, file, change, said):
+def test_a_file_that_breaks_a_rule_gets_one_line(tilted, tmp_path, capsys, file, change, message):
     broken = _change(tilted, tmp_path / "broken", file, change)
     assert main(["diagnose", str(broken), "--out", str(tmp_path / "out")]) == 2
     error = capsys.readouterr().err
-    assert said in error and error.count("\n") == 1
+    assert message in error and error.count("\n") == 1
     assert not (tmp_path / "out").exists()
 
 

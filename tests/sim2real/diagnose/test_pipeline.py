@@ -151,8 +151,8 @@ def test_a_law_is_not_reported_on_premises_with_a_misfit_if_large_residuals_rema
     launch, which no law explains."""
     pushes = odd * np.random.default_rng(1).normal(size=LAUNCHES)
     problem = LinearProblem({"tilt_x": 0.06, "tilt_y": -0.08, "spin": pushes})
-    said = identify_regime(LinearRegime(proved), problem, NO_EVIDENCE, {})
-    final, found = said.final, said.regime_result
+    identified = identify_regime(LinearRegime(proved), problem, NO_EVIDENCE, {})
+    final, found = identified.final, identified.regime_result
     assert final is not None and found.selection is not None and found.mismatch is not None
     assert bool(found.findings) == expected == (not found.undetermined) == bool(final.model.laws)
     assert (found.selection.after_m < 0.9 * found.selection.before_m) == expected and not found.misfit

@@ -30,10 +30,10 @@ def in_others(value: float, there: float) -> np.ndarray:
 
 
 def test_laws_of_all_launches_are_accepted_unchanged() -> None:
-    problem, said = proved({**TILT, "linear_drag": DRAG})
-    assert {law.name for law in said.found.model.laws} == {"table_tilt", "linear_drag"} == set(said.without)
-    assert said.rejected == ()
-    assert said.found.law.values == search_model(problem, DEFAULTS, USE).law.values
+    problem, selected = proved({**TILT, "linear_drag": DRAG})
+    assert {law.name for law in selected.found.model.laws} == {"table_tilt", "linear_drag"} == set(selected.without)
+    assert selected.rejected == ()
+    assert selected.found.law.values == search_model(problem, DEFAULTS, USE).law.values
 
 
 @pytest.mark.parametrize("smooth", [False, True])
@@ -41,21 +41,21 @@ def test_one_outlying_launch_rejects_nothing(smooth: bool) -> None:
     """One of the other launches has ten times the opposite effect: a larger sum of squares than all others."""
     odd = np.ones(LAUNCHES)
     odd[OTHERS[0]] = -10.0
-    problem, said = proved({name: value * odd for name, value in TILT.items()}, smooth)
+    problem, selected = proved({name: value * odd for name, value in TILT.items()}, smooth)
     without, left = (
         float(np.sum(problem.residuals(values, (), OTHERS).r ** 2)) for values in (DEFAULTS, {**DEFAULTS, **TILT})
     )
-    assert left > without and said.rejected == () and len(said.found.model.laws) == 1
+    assert left > without and selected.rejected == () and len(selected.found.model.laws) == 1
 
 
 def test_only_the_absent_law_is_rejected_and_the_other_is_refitted() -> None:
     """The fitted launches have the opposite drag of the others; all have the tilt."""
     truth = {name: 5.0 * value for name, value in TILT.items()} | {"linear_drag": in_others(DRAG, -1.0)}
-    problem, said = proved(truth)
-    assert [law.name for law in said.rejected] == ["linear_drag"]
-    assert [law.name for law in said.found.model.laws] == ["table_tilt"]
-    values = said.found.law.values
-    assert values["linear_drag"] == 0.0 and "linear_drag" not in said.found.law.free
+    problem, selected = proved(truth)
+    assert [law.name for law in selected.rejected] == ["linear_drag"]
+    assert [law.name for law in selected.found.model.laws] == ["table_tilt"]
+    values = selected.found.law.values
+    assert values["linear_drag"] == 0.0 and "linear_drag" not in selected.found.law.free
     rows = problem.residuals(values, ("friction", "drag", "tilt_x", "tilt_y"), USE)
     assert np.abs(rows.jacobian.T @ rows.r).max() < 1e-4 * np.abs(rows.jacobian.T @ rows.jacobian).max()
 
@@ -63,10 +63,10 @@ def test_only_the_absent_law_is_rejected_and_the_other_is_refitted() -> None:
 def test_if_a_law_is_rejected_and_most_residual_remains_the_others_are_dropped() -> None:
     """Beside a drag that differs by launch, the tilt explains little of the residuals."""
     truth = {name: 3.0 * value for name, value in TILT.items()} | {"linear_drag": in_others(2.0 * DRAG, -1.0)}
-    _, said = proved(truth)
-    assert [law.name for law in said.rejected] == ["linear_drag"]
-    assert [law.name for law in said.others] == ["table_tilt"]
-    assert said.found.law is said.found.baseline and said.without == {}
+    _, selected = proved(truth)
+    assert [law.name for law in selected.rejected] == ["linear_drag"]
+    assert [law.name for law in selected.others] == ["table_tilt"]
+    assert selected.found.law is selected.found.baseline and selected.without == {}
 
 
 def test_a_law_without_sensitivity_is_accepted_only_if_all_else_is_clear() -> None:
@@ -78,13 +78,13 @@ def test_a_law_without_sensitivity_is_accepted_only_if_all_else_is_clear() -> No
 
 
 def test_the_model_without_a_law_is_refitted() -> None:
-    _problem, said = proved({**TILT, "linear_drag": DRAG})
-    rest = said.without["table_tilt"]
+    _problem, selected = proved({**TILT, "linear_drag": DRAG})
+    rest = selected.without["table_tilt"]
     assert [law.name for law in rest.model.laws] == ["linear_drag"]
     assert rest.law.values["linear_drag"] == pytest.approx(DRAG, abs=0.01)
     assert [rest.law.values[name] for name in TILT] == [0.0, 0.0]
     assert (
-        without_laws(said.found).law.values
+        without_laws(selected.found).law.values
         == search_model(LinearProblem({**TILT, "linear_drag": DRAG}), DEFAULTS, USE).baseline.values
     )
 
@@ -94,12 +94,15 @@ def test_a_law_is_found_beside_coefficients_of_each_launch() -> None:
     spins = 2.0 * np.random.default_rng(3).normal(size=LAUNCHES)
     problem = LinearProblem({**TILT, "spin": spins}, spinning=True)
     found = search_model(problem, DEFAULTS, USE)
-    said = select(problem, found)
-    assert {law.name for law in said.found.model.laws} == {"table_tilt", "side force by spin"} and not said.rejected
-    expected = regime_result(LinearRegime(), problem, said, DEFAULTS)
+    selected = select(problem, found)
+    assert {law.name for law in selected.found.model.laws} == {
+        "table_tilt",
+        "side force by spin",
+    } and not selected.rejected
+    expected = regime_result(LinearRegime(), problem, selected, DEFAULTS)
     assert {one.mechanism for one in expected.findings} == {"table_tilt", "side_force"}
     size = 50.0 * np.hypot(TILT["tilt_x"], TILT["tilt_y"])
-    left = {True: said.found, False: said.without["table_tilt"]}
+    left = {True: selected.found, False: selected.without["table_tilt"]}
     rms = {tilted: rms_residual(problem, one) for tilted, one in left.items()}
     assert rms[True] == pytest.approx(1.0, abs=0.1)
     assert rms[False] == pytest.approx(np.hypot(1.0, size), rel=0.1)

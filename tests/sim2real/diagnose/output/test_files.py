@@ -59,9 +59,9 @@ def test_two_findings_of_one_effect_make_one_table(tmp_path):
 def test_comments_explain_the_coefficients(tmp_path):
     force = {"unlisted_kind": 6.0, **{f"unlisted_{k:02}": 0.01 for k in range(14)}}
     _taken(tmp_path, dataclasses.replace(PLAIN, regime="glide", mechanism="unlisted", values=force))
-    said = (tmp_path / "effects.toml").read_text().splitlines()
-    at = said.index("[effects.unlisted_force]")
-    assert said[at - 1].startswith("# an unlisted force: brake by x alone, by y alone; coefficients c00")
+    lines = (tmp_path / "effects.toml").read_text().splitlines()
+    at = lines.index("[effects.unlisted_force]")
+    assert lines[at - 1].startswith("# an unlisted force: brake by x alone, by y alone; coefficients c00")
 
 
 def test_a_finding_that_the_simulator_cannot_represent_is_named(tmp_path):

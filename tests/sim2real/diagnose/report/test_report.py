@@ -228,10 +228,10 @@ def test_the_least_p_value_is_printed_as_a_bound():
 
 
 @pytest.mark.parametrize(
-    "loss, said", [(5.0, "equivalent"), (20.0, "slightly"), (400.0, "strongly"), (2.6e4, "very strongly")]
+    "loss, expected", [(5.0, "equivalent"), (20.0, "slightly"), (400.0, "strongly"), (2.6e4, "very strongly")]
 )
-def test_how_much_worse_an_alternative_is(loss, said):
-    assert how_much(loss) == said
+def test_how_much_worse_an_alternative_is(loss, expected):
+    assert how_much(loss) == expected
 
 
 def test_ambiguity_is_reported():

@@ -24,7 +24,7 @@ def _found(*findings: Finding) -> Diagnosis:
 
 
 @pytest.mark.parametrize(
-    "findings, said",
+    "findings, expected",
     [
         ((TILT,), "The simulator lacks table_tilt (the table is not level)."),
         (
@@ -47,8 +47,8 @@ def _found(*findings: Finding) -> Diagnosis:
         ),
     ],
 )
-def test_missing_laws_are_listed_in_words(findings, said):
-    assert sentence(_found(*findings)) == said
+def test_missing_laws_are_listed_in_words(findings, expected):
+    assert sentence(_found(*findings)) == expected
 
 
 def test_agreement_to_the_noise_requires_residuals_of_noise():
