@@ -1,1 +1,1 @@
-"""Explaining a recording: pieces, prediction, location, names, refit, report; a file a stage."""
+"""Diagnosis of recordings: split, identification by regime, proof on the holdout, result, output files, report."""

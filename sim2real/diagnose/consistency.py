@@ -1,7 +1,7 @@
-"""Whether recordings of one call are of one table: one set of numbers for both, or better one for each (Chow, 1960)?
+"""Test whether the recordings of one call are of one table: common parameters against separate ones (Chow, 1960).
 
-Asked of every law that the recordings ask for, alone or together, so that physics that is missing in both, or that
-happened in one by chance, is not taken for another table.
+The test uses every model that the recordings support, alone or together. Physics that is missing in both recordings, or
+that affected one by chance, is therefore not taken for another table.
 """
 
 from __future__ import annotations
@@ -24,30 +24,31 @@ from sim2real.statistics.robust import group_loss
 
 
 def check_consistency(problem: Problem, defaults: Mapping[str, float], parts: Sequence[RecordingPart]) -> None:
-    """Raise `UndeterminedError` if what recordings ask for cannot be one table.
+    """Raise `UndeterminedError` if the `parts`, the recordings, cannot be of one table.
 
-    `defaults`: the simulator's own numbers, by name.
+    `defaults`: the simulator's default parameters by name.
     """
     live = np.flatnonzero(problem.freedom > 0)
     parts = [RecordingPart(part.name, np.intersect1d(part.clusters, live)) for part in parts]
     parts = [part for part in parts if len(part.clusters)]
     if len(parts) < 2:
         return
-    asking = [part.clusters for part in parts if _enough(problem, part.clusters)]
-    if len(asking) < len(parts):
+    training_sets = [part.clusters for part in parts if _enough(problem, part.clusters)]
+    if len(training_sets) < len(parts):
         together = np.concatenate([part.clusters for part in parts])
-        asking += [together] if _enough(problem, together) else []
-    for clusters in asking:
+        training_sets += [together] if _enough(problem, together) else []
+    for clusters in training_sets:
         found = search_model(problem, defaults, clusters)
         for one, other in combinations(parts, 2):
-            why = _apart_smoothly(problem, found, one, other) if found.unlisted else _apart(problem, found, one, other)
+            compare = _compare_smooth_terms if found.unlisted else _compare_parameters
+            why = compare(problem, found, one, other)
             if why:
                 raise two_tables(one.name, other.name, why)
         for part in parts:
-            why = _strange(problem, found, clusters, part)
+            why = _does_not_transfer(problem, found, clusters, part)
             if why:
-                asker = next((one.name for one in parts if np.array_equal(one.clusters, clusters)), "the others")
-                raise two_tables(asker, part.name, why)
+                first = next((one.name for one in parts if np.array_equal(one.clusters, clusters)), "the others")
+                raise two_tables(first, part.name, why)
 
 
 def _enough(problem: Problem, clusters: np.ndarray) -> bool:
@@ -56,78 +57,89 @@ def _enough(problem: Problem, clusters: np.ndarray) -> bool:
     )
 
 
-def _apart(problem: Problem, found: SearchResult, one: RecordingPart, other: RecordingPart) -> str | None:
-    """What a law's numbers in two recordings differ by, if they surely do."""
+def _compare_parameters(problem: Problem, found: SearchResult, one: RecordingPart, other: RecordingPart) -> str | None:
+    """Return how the parameters of a model differ between two recordings, None if not significantly."""
     free = found.law.free
     both = fit(problem, found.law.values, free, np.concatenate([one.clusters, other.clusters]))
     each = [fit(problem, both.values, free, part.clusters) for part in (one, other)]
-    left = sum(some.loss for some in each)
+    separate = sum(some.loss for some in each)
     freedom = sum(problem.freedom[part.clusters].sum() for part in (one, other)) - 2 * len(free)
-    if both.loss - left < CONSISTENCY.harm * max(left / max(freedom, 1.0), 1.0):
+    if both.loss - separate < CONSISTENCY.harm * max(separate / max(freedom, 1.0), 1.0):
         return None
-    return _numbers_apart(*each)
+    return _largest_difference(*each)
 
 
-def _numbers_apart(one: LeastSquaresFit, other: LeastSquaresFit) -> str | None:
-    """The number that two fits disagree on most, if they surely do."""
-    worst, told = CONSISTENCY.deviations, None
+def _largest_difference(one: LeastSquaresFit, other: LeastSquaresFit) -> str | None:
+    """Return the parameter on which two fits disagree most, None if they do not differ significantly."""
+    largest, reason = CONSISTENCY.deviations, None
     for k, name in enumerate(one.free):
         a, b = float(one.values[name]), float(other.values[name])
-        apart = abs(a - b) / max(float(np.sqrt(one.covariance[k, k] + other.covariance[k, k])), 1e-12)
-        if apart > worst and abs(a - b) > CONSISTENCY.relative * max(abs(a), abs(b)):
-            worst, told = apart, f"{name} is {a:.3g} in the one and {b:.3g} in the other"
-    return told
+        deviations = abs(a - b) / max(float(np.sqrt(one.covariance[k, k] + other.covariance[k, k])), 1e-12)
+        if deviations > largest and abs(a - b) > CONSISTENCY.relative * max(abs(a), abs(b)):
+            largest, reason = deviations, f"{name} is {a:.3g} in the first and {b:.3g} in the second"
+    return reason
 
 
-def _apart_smoothly(problem: Problem, found: SearchResult, one: RecordingPart, other: RecordingPart) -> str | None:
-    """The same for a smooth law beside the others: its coefficients have no meaning by themselves."""
+def _compare_smooth_terms(
+    problem: Problem, found: SearchResult, one: RecordingPart, other: RecordingPart
+) -> str | None:
+    """Return that no common smooth term fits two recordings, None if one does.
+
+    It compares losses, since single coefficients of a smooth term have no meaning.
+    """
     both = _losses(problem, found, np.concatenate([one.clusters, other.clusters]))
     each = _losses(problem, found, one.clusters) + _losses(problem, found, other.clusters)
     for part in (one, other):
         shared, own = both[part.clusters].sum(), each[part.clusters].sum()
         if shared - own > CONSISTENCY.harm * found.dispersion and shared > CONSISTENCY.worse_unlisted * own:
-            return f"what the {problem.regime} of the one asks for makes the other's worse"
+            return f"no common {problem.regime} correction fits both"
     return None
 
 
-def _strange(problem: Problem, found: SearchResult, clusters: np.ndarray, part: RecordingPart) -> str | None:
-    """What a recording shows of another table, if the law that explains `clusters` does worse there than none, or
-    explains them to the noise but has no numbers that do so there."""
+def _does_not_transfer(problem: Problem, found: SearchResult, clusters: np.ndarray, part: RecordingPart) -> str | None:
+    """Return why the model of `clusters` is not one of the recording `part`, None if it may be.
+
+    It is not if it fits `part` worse than the baseline does, or if it explains `clusters` to the noise and not `part`,
+    even with parameters refitted there.
+    """
     if _harms(problem, found, part.clusters):
-        return f"what the {problem.regime} of the one asks for makes the other's worse"
-    quiet = _own_loss(problem, found, clusters) < CONSISTENCY.explained * problem.freedom[clusters].sum()
+        return f"the {problem.regime} correction that the first supports increases the residuals of the second"
+    explained = _own_loss(problem, found, clusters) < CONSISTENCY.explained * problem.freedom[clusters].sum()
     if (
-        quiet
+        explained
         and _own_loss(problem, found, part.clusters)
         > CONSISTENCY.unexplained * problem.freedom[part.clusters].sum() + CONSISTENCY.harm
     ):
-        return f"the {problem.regime} of the one foretells the other's badly"
+        return f"the {problem.regime} model of the first does not fit the second"
     return None
 
 
 def _harms(problem: Problem, found: SearchResult, clusters: np.ndarray) -> bool:
-    """Whether the listed laws found elsewhere leave more of `clusters` than none, the baseline's numbers refitted."""
+    """Return whether listed laws found elsewhere increase the loss of `clusters`, with the baseline refitted."""
     if not found.listed:
         return False
-    none = {**found.law.values, **{row: BY_NAME[row].default for law in found.listed for row in law.rows}}
-    worse, plain = (fit(problem, values, problem.base, clusters).loss for values in (found.law.values, none))
-    return worse > CONSISTENCY.worse * plain and worse - plain > CONSISTENCY.harm * found.dispersion
+    without_laws = {**found.law.values, **{row: BY_NAME[row].default for law in found.listed for row in law.rows}}
+    with_them, baseline = (
+        fit(problem, values, problem.base, clusters).loss for values in (found.law.values, without_laws)
+    )
+    harm = with_them - baseline
+    return with_them > CONSISTENCY.worse * baseline and harm > CONSISTENCY.harm * found.dispersion
 
 
 def _own_loss(problem: Problem, found: SearchResult, clusters: np.ndarray) -> float:
-    """Soft loss that a law leaves of `clusters` with numbers of their own."""
+    """Return the robust loss of `clusters` under a model whose parameters are fitted to them."""
     if found.unlisted:
         return float(_losses(problem, found, clusters).sum())
     return fit(problem, found.law.values, found.law.free, clusters).loss
 
 
 def _losses(problem: Problem, found: SearchResult, clusters: np.ndarray) -> np.ndarray:
-    """Soft losses (all clusters,) of `clusters` under a smooth law fitted to them; zeros elsewhere."""
+    """Return the robust losses (all clusters,) of `clusters` under a smooth term fitted to them; zeros elsewhere."""
     assert found.unlisted is not None
     spread = found.model.spreads[found.model.laws.index(found.unlisted)]
     equations, units = found.columns.equations, problem.units.of(clusters)
     index, ridge = Model(found.law.free, (found.unlisted,), (spread,)).columns(equations)
     freedom = problem.units.freedom[units]
     theta = normal_equations.solve_robustly(equations, index, units, freedom, ridge)
-    left = group_loss(normal_equations.losses(equations, index, theta, units), freedom)
-    return np.bincount(problem.units.cluster[units], left, problem.clusters)
+    of_units = group_loss(normal_equations.losses(equations, index, theta, units), freedom)
+    return np.bincount(problem.units.cluster[units], of_units, problem.clusters)

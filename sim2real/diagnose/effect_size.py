@@ -1,4 +1,4 @@
-"""How much a law matters in millimetres, whatever its p-value: a discovery too small to be seen on a table is none."""
+"""The size of an effect in metres, whatever its p-value: an effect too small to be seen on a table is not reported."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ from sim2real.diagnose.regimes.base import Regime
 
 
 def effect_size(regime: Regime, problem: Problem, found: SearchResult, other: SearchResult) -> float:
-    """By how much [m] laws differ in what they predict, rms over all that was recorded: see `Regime.size`.
+    """Return the rms difference [m] between the predictions of two models over all data: see `Regime.size`.
 
-    Of a law that the simulator has no place for: what it explains of the residuals, starts fitted anew.
+    For a law that the simulator cannot represent, it is the rms of the residuals that the law explains, with initial
+    states refitted.
     """
     if all(one.unlisted is None or one.effect_parameters() for one in (found, other)):
         return regime.size(problem, found, other)

@@ -1,5 +1,4 @@
-"""What recordings lack, regime by regime, the glides first, since contacts are known by them. The holdout is not seen
-here."""
+"""Identify missing physics regime by regime on the training data, the glides first, since contacts depend on them."""
 
 from __future__ import annotations
 
@@ -24,7 +23,7 @@ SENSING_DONE = 0.2  # of the progress bar
 
 @dataclass(frozen=True)
 class Identification:
-    """What all regimes lack: the sensing, the others by name, and what the sensors were like."""
+    """The identified sensing, the summaries of the sensors, and the other identified regimes by name."""
 
     sensed: IdentifiedSensing
     sensor_summaries: tuple[SensorSummary, ...]
@@ -39,10 +38,13 @@ class Identification:
 def identify(
     recordings: Sequence[Recording], paths: Sequence[Recording], values: Mapping[str, float], progress: Progress
 ) -> Identification:
-    """What the recordings lack: of the puck by the frames of `recordings`, of the gantry by the mallet's path in
-    `paths`, the same recordings. `values`: the simulator's parameters by name.
+    """Identify what the simulator lacks.
 
-    UndeterminedError where nothing can be said.
+    `recordings`: the puck is identified from their frames; `paths`: the same recordings, the gantry is identified from
+    their mallet paths; `values`: the simulator's parameters by name; `progress`: called with a stage and the share
+    done.
+
+    Errors: UndeterminedError, where the recordings allow no conclusion.
     """
     progress("segments", 0.05)
     segments = [segment(one) for one in recordings]
@@ -63,7 +65,7 @@ def identify(
 def _regimes(
     evidence: Evidence, known: Mapping[str, IdentifiedRegime], progress: Progress
 ) -> Iterator[IdentifiedRegime]:
-    """The regimes of which anything was recorded, each by those `known` before it."""
+    """Yield each regime that has data, identified with the regimes `known` before it."""
     for k, (name, regime) in enumerate(REGIMES.items()):
         progress(name, SENSING_DONE + (1.0 - SENSING_DONE) * k / len(REGIMES))
         try:

@@ -1,4 +1,4 @@
-"""One regime: what it lacks, what stands of it where each launch is predicted by the others, and in words."""
+"""Identification of one regime: search for laws, cross-validation over launches, effect sizes, and the result."""
 
 from __future__ import annotations
 
@@ -9,35 +9,35 @@ import numpy as np
 from sim2real.diagnose.consistency import check_consistency
 from sim2real.diagnose.effect_size import effect_size
 from sim2real.diagnose.engine.cross_validation import Selection, select
-from sim2real.diagnose.engine.model_search import bare, without
+from sim2real.diagnose.engine.model_search import without, without_laws
 from sim2real.diagnose.engine.problem import Problem
 from sim2real.diagnose.regimes.base import TOO_LITTLE, Evidence, IdentifiedRegime, Known, Regime
 from sim2real.diagnose.result.regime_result import regime_result
 from sim2real.diagnose.result.result import RegimeResult
 from sim2real.diagnose.tuned import IDENTIFICATION
 
-TOO_ROUGH = "it rests on the glides, whose law is not known well enough"
+INACCURATE_PREMISES = "it depends on the model of the glides, which does not fit well enough"
 
 
 def identify_regime(regime: Regime, problem: Problem, evidence: Evidence, known: Known) -> IdentifiedRegime:
-    """What a regime lacks, by its `problem` and the regimes `known` before it.
+    """Identify what a regime lacks from its `problem`, given the regimes `known` before it.
 
-    If these leave a misfit, nothing is named where much stays unexplained.
+    If those have a misfit and large residuals remain here too, no law is named.
     """
     live = np.flatnonzero(problem.freedom > 0)
     if len(live) < IDENTIFICATION.fewest_launches or problem.freedom[live].sum() < IDENTIFICATION.fewest_residuals:
         return IdentifiedRegime(problem, RegimeResult(regime.name, (), {}, False, None, TOO_LITTLE, regime.more))
-    clear, stands = regime.premises(evidence, known)
+    clear, premises_hold = regime.premises(evidence, known)
     values = regime.parameters(evidence, known)
     defaults = {name: values[name] for name in problem.base}
     check_consistency(problem, defaults, regime.parts(problem, evidence, known))
     problem, found = regime.search(problem, defaults, live, clear)
-    chosen = _that_matter(regime, problem, select(problem, found, stands))
+    chosen = _drop_small_laws(regime, problem, select(problem, found, premises_hold))
     result = regime_result(regime, problem, chosen, defaults)
-    if not stands and (result.unexplained or result.misfit):
-        chosen = Selection(chosen.cross_validation, bare(chosen.found), {})
+    if not premises_hold and (result.unexplained or result.misfit):
+        chosen = Selection(chosen.cross_validation, without_laws(chosen.found), {})
         result = regime_result(regime, problem, chosen, defaults)
-        result = replace(result, undetermined=TOO_ROUGH, misfit=False)
+        result = replace(result, undetermined=INACCURATE_PREMISES, misfit=False)
     elif (result.misfit or result.unexplained) and not result.next_recording:
         result = replace(result, next_recording=regime.more)
     result = replace(result, doubt="; ".join(filter(None, (result.doubt, regime.note(problem)))))
@@ -46,7 +46,7 @@ def identify_regime(regime: Regime, problem: Problem, evidence: Evidence, known:
 
 
 def _illustrated(regime: Regime, one: IdentifiedRegime) -> IdentifiedRegime:
-    """The same with the findings' curves, formulas and sizes [m], and where recording and simulator differ."""
+    """Return the regime with the findings' curves, formulas and sizes [m], and with its mismatch."""
     problem, found = one.problem, one.final
     assert problem is not None and found is not None
     sizes = [effect_size(regime, problem, found, one.without[name]) for name in one.laws]
@@ -58,8 +58,8 @@ def _illustrated(regime: Regime, one: IdentifiedRegime) -> IdentifiedRegime:
     return replace(one, regime_result=replace(one.regime_result, findings=findings, mismatch=mismatch))
 
 
-def _that_matter(regime: Regime, problem: Problem, chosen: Selection) -> Selection:
-    """The laws without those of which nobody would notice anything, the smallest first."""
+def _drop_small_laws(regime: Regime, problem: Problem, chosen: Selection) -> Selection:
+    """Remove the laws whose effect is smaller than the regime reports, the smallest first."""
     while chosen.found.model.laws:
         sizes = {
             one.name: effect_size(regime, problem, chosen.found, chosen.without[one.name])

@@ -1,4 +1,4 @@
-"""Whether recordings can be believed at all: reasons for which a diagnosis names nothing, each with a remedy."""
+"""Checks of the recordings before a diagnosis: each failure is a reason to name nothing, with a remedy."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from sim2real.segmentation.clock_jumps import clock_jumps
 
 
 class UndeterminedError(Exception):
-    """Why nothing can be said of the recordings, in one clause, and what to do about it, in one sentence."""
+    """Recordings that allow no conclusion: the `reason` in one clause, and the `remedy` in one sentence."""
 
     def __init__(self, reason: str, remedy: str) -> None:
         super().__init__(reason)
@@ -22,17 +22,19 @@ class UndeterminedError(Exception):
 
 
 def two_tables(one: str, other: str, why: str) -> UndeterminedError:
-    """What to raise where the recordings of these names cannot be of one table."""
-    return UndeterminedError(f"{one} and {other} disagree as two tables do: {why}", "diagnose each recording by itself")
+    """Return the error for two recordings, by name, that cannot be of one table; `why`: how they differ."""
+    return UndeterminedError(f"{one} and {other} are not of one table: {why}", "diagnose each recording separately")
 
 
 def check_usable(recordings: Sequence[Recording]) -> None:
-    """Raise `UndeterminedError` for recordings that are too short, still, cut off, or of clocks that leap."""
+    """Raise `UndeterminedError` for recordings that are too short, without motion, cut off, or with clock jumps."""
     seconds = sum(_seconds(one) for one in recordings)
     if seconds < INPUT.least_seconds:
-        raise UndeterminedError(f"too little data, {seconds:.1f} s in all", "record a minute or more in one go")
+        raise UndeterminedError(
+            f"too little data: {seconds:.1f} s in total", "record at least one minute without a pause"
+        )
     if all(_still(one) for one in recordings):
-        raise UndeterminedError("the puck never moves", "launch the puck some twenty times, in all directions")
+        raise UndeterminedError("the puck never moves", "launch the puck about twenty times, in all directions")
     for one in recordings:
         for check in (_cut_off, _clock_jumping, _paused):
             for reason, remedy in check(one):
@@ -40,8 +42,8 @@ def check_usable(recordings: Sequence[Recording]) -> None:
 
 
 def notes(recordings: Sequence[Recording]) -> tuple[str, ...]:
-    """What should be known of the recordings, a sentence each: blunders, pauses at which they were cut, and numbers
-    that none of them states."""
+    """Return remarks on the recordings, a sentence each: outliers, pauses at which they were cut, and values that none
+    of them states."""
     found = [f"{one.name}: {note}" for one in recordings for note in one.notes]
     for one in recordings:
         for name, stream in _rows(one).items():
@@ -61,7 +63,7 @@ def _seconds(one: Recording) -> float:
 
 
 def _still(one: Recording) -> bool:
-    """Whether a puck was seen that rests, or hardly anything was, and nothing else was recorded."""
+    """Return whether a recording without a mallet shows no puck, or a puck that rests."""
     streams = _rows(one)
     if "mallet" in streams:
         return False
@@ -77,7 +79,7 @@ def _place(stream: Stream, name: str) -> np.ndarray:
 
 
 def _cut_off(one: Recording) -> Iterator[tuple[str, str]]:
-    """A stream that ends long before the others; the commands may, once the mallet has come to rest."""
+    """Yield streams that end long before the others; commands may end once the mallet rests."""
     streams = _rows(one)
     ends = {name: float(stream.t[-1]) for name, stream in streams.items()}
     if "commands" in ends and _rests_after(streams.get("mallet"), ends["commands"] + INPUT.stops_by):
@@ -92,7 +94,7 @@ def _cut_off(one: Recording) -> Iterator[tuple[str, str]]:
 
 
 def _rests_after(mallet: Stream | None, t: float) -> bool:
-    """Whether no mallet is seen to move from the time `t` on."""
+    """Return whether no mallet moves after the time `t` [s]."""
     if mallet is None:
         return True
     place = _place(mallet, "mallet")[mallet.t > t]
@@ -100,27 +102,27 @@ def _rests_after(mallet: Stream | None, t: float) -> bool:
 
 
 def _clock_jumping(one: Recording) -> Iterator[tuple[str, str]]:
-    """A clock that leaps while what it times moves evenly on."""
+    """Yield clocks that jump while the recorded motion continues steadily."""
     for name, stream in _rows(one).items():
         if name not in POSITIONS:
             continue
         found = clock_jumps(stream.t, _place(stream, name))
         if found:
-            more = f", one of {len(found)} leaps" if len(found) > 1 else ""
+            more = f", one of {len(found)} jumps" if len(found) > 1 else ""
             yield (
-                f"the clock of {name}.csv leaps by {1e3 * found[0].size:.0f} ms at {found[0].t:.2f} s{more}",
-                f"record with a clock that runs evenly, or cut {name}.csv where it leaps",
+                f"the clock of {name}.csv jumps by {1e3 * found[0].size:.0f} ms at {found[0].t:.2f} s{more}",
+                f"record with a steady clock, or cut {name}.csv at the jump",
             )
 
 
 def _paused(one: Recording) -> Iterator[tuple[str, str]]:
-    """A stream without rows for a while beside others that have them: its clock may have leapt."""
+    """Yield streams with a gap while others have rows: their clock may have jumped."""
     streams = {name: stream for name, stream in _rows(one).items() if name != "commands"}
     for name, stream in streams.items():
         step = np.diff(stream.t)
         if len(streams) > 1 and len(step) and step.max() > INPUT.pause:
             at = int(step.argmax())
             yield (
-                f"{name}.csv has no row for {step[at]:.1f} s from {stream.t[at]:.1f} s: it paused, or its clock leapt",
+                f"{name}.csv has no row for {step[at]:.1f} s from {stream.t[at]:.1f} s: it paused, or its clock jumped",
                 f"cut the recording at {stream.t[at]:.1f} s into two",
             )

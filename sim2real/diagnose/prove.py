@@ -1,4 +1,4 @@
-"""How far off what was identified is on the holdout, of which these figures alone depend."""
+"""Residuals of the identified models on the holdout; no other number of a diagnosis depends on it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from sim2real.diagnose.engine import normal_equations
 from sim2real.diagnose.engine.law import Model
-from sim2real.diagnose.engine.model_search import SearchResult, bare
+from sim2real.diagnose.engine.model_search import SearchResult, without_laws
 from sim2real.diagnose.engine.problem import Problem
 from sim2real.diagnose.identify import Identification
 from sim2real.diagnose.regimes.base import Evidence, IdentifiedRegime
@@ -22,47 +22,52 @@ from sim2real.segmentation.segments import segment
 
 
 def prove(
-    whole: Identification, recordings: Sequence[Recording], paths: Sequence[Recording], values: Mapping[str, float]
+    identified: Identification, recordings: Sequence[Recording], paths: Sequence[Recording], values: Mapping[str, float]
 ) -> tuple[RegimeResult, ...]:
-    """The results of all regimes with their proof: of the puck by the frames of `recordings`, of the gantry by the
-    mallet's path in `paths`; without one where these show nothing of a regime. `values` as in `identify`."""
-    seen = [segment(one) for one in recordings]
-    sensing = prove_sensing(whole.sensed, recordings, seen, launches_of(recordings, seen))
-    undone = [whole.sensed.correct(one) for one in recordings]
-    segments = [segment(one) for one in undone]
-    glides = [glides_of(*one) for one in zip(undone, segments, strict=True)]
-    evidence = Evidence(undone, segments, glides, paths, values)
-    problems = {name: REGIMES[name].holdout_problem(evidence, whole.regimes) for name in whole.regimes}
-    return (sensing, *(_proved(one, problems[name]) for name, one in whole.regimes.items()))
+    """Return the results of all regimes with their proof on the holdout, none where it has no data of a regime.
+
+    `recordings`: the puck is tested on their frames; `paths`: the gantry is tested on their mallet paths; `values` as
+    in `identify`.
+    """
+    as_recorded = [segment(one) for one in recordings]
+    sensing = prove_sensing(identified.sensed, recordings, as_recorded, launches_of(recordings, as_recorded))
+    corrected = [identified.sensed.correct(one) for one in recordings]
+    segments = [segment(one) for one in corrected]
+    glides = [glides_of(*one) for one in zip(corrected, segments, strict=True)]
+    evidence = Evidence(corrected, segments, glides, paths, values)
+    problems = {name: REGIMES[name].holdout_problem(evidence, identified.regimes) for name in identified.regimes}
+    return (sensing, *(_proved(one, problems[name]) for name, one in identified.regimes.items()))
 
 
 def _proved(one: IdentifiedRegime, problem: Problem | None) -> RegimeResult:
-    """The account with what the final laws, none of them, and all but each leave of other data."""
+    """Return the result with holdout residuals of the final model, the baseline, and the model without each law."""
     live = np.zeros(0, int) if problem is None else np.flatnonzero(problem.freedom > 0)
     if problem is None or one.final is None or not len(live):
         return one.regime_result
-    before, after = (left_of(problem, each) for each in (bare(one.final), one.final))
+    before, after = (rms_residual(problem, each) for each in (without_laws(one.final), one.final))
     proof = Proof(problem.noise_m * before, problem.noise_m * after, problem.noise_m, len(live))
     findings = tuple(
-        replace(each, before=left_of(problem, one.without[name]), after=after)
+        replace(each, before=rms_residual(problem, one.without[name]), after=after)
         for each, name in zip(one.regime_result.findings, one.laws, strict=True)
     )
     return replace(one.regime_result, findings=findings, proof=proof)
 
 
-def left_of(problem: Problem, found: SearchResult) -> float:
-    """Rms residual, in units of the noise, that laws leave of all that a problem shows."""
+def rms_residual(problem: Problem, found: SearchResult) -> float:
+    """Return the rms residual of a model over all data of a problem, in units of the noise."""
     live = np.flatnonzero(problem.freedom > 0)
     if found.unlisted is None or found.effect_parameters():
         squares = float(np.sum(problem.residuals(found.all_values, (), live).r ** 2))
     else:
-        squares = _left_by_family(problem, found, problem.units.of(live))
+        squares = _squares_with_term(problem, found, problem.units.of(live))
     return float(np.sqrt(squares / max(float(problem.freedom[live].sum()), 1.0)))
 
 
-def _left_by_family(problem: Problem, found: SearchResult, units: np.ndarray) -> float:
-    """Sum of squares that laws leave of units with a family that the simulator has no place for. Numbers that each
-    launch has of its own are estimated from every second unit, and tried on those between."""
+def _squares_with_term(problem: Problem, found: SearchResult, units: np.ndarray) -> float:
+    """Return the sum of squares of units under a smooth term that the simulator cannot represent.
+
+    Coefficients that each launch has of its own are fitted to every second unit and tested on the others.
+    """
     assert found.unlisted is not None
     columns = problem.columns(found.law.values, found.law.free, None)
     family = next(one for one in columns.families if one.name == found.unlisted.name)
@@ -72,9 +77,9 @@ def _left_by_family(problem: Problem, found: SearchResult, units: np.ndarray) ->
         return float(normal_equations.losses(equations, index, found.theta, units).sum())
     stepped = normal_equations.moved(equations, equations.columns(found.law.free), found.theta[:n])
     total, odd = 0.0, np.arange(len(units)) % 2 == 1
-    for tried in (odd, ~odd):
-        own = normal_equations.solve(stepped, equations.columns(family.columns), units[~tried])
+    for tested in (odd, ~odd):
+        own = normal_equations.solve(stepped, equations.columns(family.columns), units[~tested])
         total += float(
-            normal_equations.losses(equations, index, np.concatenate([found.theta[:n], own]), units[tried]).sum()
+            normal_equations.losses(equations, index, np.concatenate([found.theta[:n], own]), units[tested]).sum()
         )
     return total

@@ -1,4 +1,4 @@
-"""Alternatives to a selected law: its nominal p-value, and what else could stand in its place."""
+"""The nominal p-value of a selected law, and the alternatives that could replace it."""
 
 from __future__ import annotations
 
@@ -12,9 +12,11 @@ from sim2real.diagnose.result.result import Alternative
 
 
 def nominal_p(selection: ForwardSelection, model: Model, law: Law, screen: DesignMatrix) -> float:
-    """Nominal p-value of a law of the model: a likelihood-ratio test with as many degrees of freedom as it has columns,
-    times the number of laws tried in the design matrix `screen` (Bonferroni). Since selection and test share data, it
-    is not calibrated; whether a law is named does not rest on it."""
+    """Return the nominal p-value of a law of the model.
+
+    It is that of a likelihood-ratio test with one degree of freedom per column, times the number of laws tried in the
+    design matrix `screen` (Bonferroni). It is not calibrated, since selection and test share data; no decision uses it.
+    """
     gained = selection.fitted_loss(model.minus(law)) - selection.fitted_loss(model)
     tried = sum(one.searched for one in (*screen.listed, *screen.families))
     return float(min(max(tried * chi2.sf(gained, len(law.columns)), 1e-300), 1.0))
@@ -23,9 +25,11 @@ def nominal_p(selection: ForwardSelection, model: Model, law: Law, screen: Desig
 def compare(
     selection: ForwardSelection, model: Model, law: Law, screen: DesignMatrix
 ) -> tuple[tuple[str, ...], tuple[Alternative, ...]]:
-    """Compare `law` with every other law of the design matrix `screen` in its place in the model: the names of listed
-    laws that the data do not discriminate from it, and all alternatives with how much greater the cross-validation loss
-    is, the nearest first."""
+    """Compare `law` with every other law of the design matrix `screen` in its place in the model.
+
+    Returns the names of listed laws that the data do not discriminate from it, and all alternatives with the increase
+    of the cross-validation loss, in ascending order.
+    """
     without = model.minus(law)
     best = selection.cv_loss(model)
     also, alternatives = [], {}
@@ -37,26 +41,29 @@ def compare(
         if loss < ENGINE.ambiguity and not other.family and not law.family and selection.passes(gain):
             also.append(other.name)
         if other.name not in alternatives or loss < alternatives[other.name].loss:
-            whole = float(selection.cv_loss(without).sum() - best.sum())
+            total = float(selection.cv_loss(without).sum() - best.sum())
             more = len(other.columns) - len(law.columns)
-            any_shape = bool(other.family) and not law.family
-            alternatives[other.name] = Alternative(other.name, loss, _why(gain, loss, whole, more, any_shape))
+            nonparametric = bool(other.family) and not law.family
+            alternatives[other.name] = Alternative(other.name, loss, _reason(gain, loss, total, more, nonparametric))
     ordered = sorted(alternatives.values(), key=lambda one: one.loss)
     return tuple(dict.fromkeys(also)), tuple(ordered)
 
 
-def _why(gain: Gain, loss: float, whole: float, more: int, any_shape: bool) -> str:
-    """Why an alternative with this `gain` lost by `loss` of the `whole` that the selected law gains; it has `more`
-    columns, and may be a smooth term of `any_shape` where the selected law is a listed one."""
+def _reason(gain: Gain, loss: float, total: float, more: int, nonparametric: bool) -> str:
+    """Return why an alternative with this `gain` was not chosen.
+
+    `loss`: increase of the cross-validation loss; `total`: gain of the selected law; `more`: additional columns of the
+    alternative; `nonparametric`: whether it is a smooth term and the selected law is a listed one.
+    """
     if gain.total <= 0.0:
-        return "predicts held-out pieces no better than the baseline"
-    if any_shape and loss < -ENGINE.ambiguity:
-        return "predicts better, being of any shape: the named law does not explain all"
-    if any_shape and loss < ENGINE.ambiguity:
-        return "as good, but of any shape: the named law says more"
+        return "no better than the baseline in cross-validation"
+    if nonparametric and loss < -ENGINE.ambiguity:
+        return "predicts better, but is nonparametric: the named law does not explain all"
+    if nonparametric and loss < ENGINE.ambiguity:
+        return "equivalent, but nonparametric: the named law is more specific"
     if loss < ENGINE.ambiguity:
-        return "as good: this recording cannot tell the two apart"
-    share = max(1.0 - loss / whole, 0.0)
+        return "equivalent: these data do not discriminate the two"
+    share = max(1.0 - loss / total, 0.0)
     if share > ENGINE.nearly_as_good:
-        return f"nearly as good, {f'with {more} more parameters' if more > 0 else 'but surely a little worse'}"
-    return f"explains {100 * share:.0f} % of what the winner does"
+        return f"nearly as good, {f'with {more} more parameters' if more > 0 else 'but significantly worse'}"
+    return f"explains {100 * share:.0f} % of what the selected model explains"

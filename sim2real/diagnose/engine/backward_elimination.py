@@ -1,4 +1,4 @@
-"""Joint nonlinear fits: backward elimination of laws without size, outlying launches, and whether a misfit remains."""
+"""Joint nonlinear fits: backward elimination of negligible laws, outlying launches, tests for a remaining misfit."""
 
 from __future__ import annotations
 
@@ -19,8 +19,10 @@ from sim2real.statistics.robust import group_threshold
 def refit(
     problem: Problem, baseline: LeastSquaresFit, listed: Sequence[Law], screen: DesignMatrix, use: np.ndarray
 ) -> LeastSquaresFit:
-    """Fit the baseline and the `listed` laws together to the clusters `use`, one law more each time; a nonlinear one
-    from the best of its starts in the design matrix `screen`."""
+    """Fit the baseline and the `listed` laws jointly to the clusters `use`, adding one law at a time.
+
+    A nonlinear law starts from the best of its starts in the design matrix `screen`.
+    """
     best = baseline
     for law in listed:
         free = tuple(dict.fromkeys((*best.free, *law.rows)))
@@ -36,8 +38,10 @@ def refit(
 def eliminated(
     problem: Problem, baseline: LeastSquaresFit, model: Model, screen: DesignMatrix, use: np.ndarray
 ) -> tuple[Model, LeastSquaresFit]:
-    """Return the model without the listed laws that have no size in the joint fit, the smallest taken out first, and
-    the joint fit of those that remain."""
+    """Remove the listed laws whose size in the joint fit is not significant, the smallest first.
+
+    Returns the remaining model and its joint fit.
+    """
     while True:
         listed = [law for law in model.laws if not law.family]
         fitted = refit(problem, baseline, listed, screen, use)
@@ -48,37 +52,45 @@ def eliminated(
 
 
 def _size(problem: Problem, fitted: LeastSquaresFit, law: Law, use: np.ndarray) -> float:
-    """Significance of a law in a joint fit, a chi-square: the smaller of its Wald statistic d' C^-1 d, with d its
-    parameters less their defaults, and of what the loss grows by with these at default. Of a law with a `start`, such
-    as a friction that always grips, what the loss grows by when all else is refitted: its parameters may be
-    undetermined though the law is certain."""
+    """Return the significance of a law in a joint fit, a chi-square statistic.
+
+    It is the smaller of the Wald statistic d' C^-1 d, with d the parameters minus their defaults, and the increase of
+    the loss with these parameters at default. For a law with a `start`, such as friction that always grips, it is the
+    increase of the loss after a refit of all else: its parameters may be undetermined although the law is significant.
+    """
     rows = [name for name in law.rows if name in fitted.free]
-    off = {name: BY_NAME[name].default for name in rows}
+    defaults = {name: BY_NAME[name].default for name in rows}
     if law.start:
         others = [name for name in fitted.free if name not in rows]
-        return fit(problem, {**fitted.values, **off}, others, use).loss - fitted.loss
-    without, _ = robust_loss(problem, problem.residuals({**fitted.values, **off}, (), use))
+        return fit(problem, {**fitted.values, **defaults}, others, use).loss - fitted.loss
+    without, _ = robust_loss(problem, problem.residuals({**fitted.values, **defaults}, (), use))
     at = [fitted.free.index(name) for name in rows]
-    away = np.array([fitted.values[name] - off[name] for name in rows])
-    wald = float(away @ np.linalg.pinv(fitted.covariance[np.ix_(at, at)], hermitian=True) @ away)
+    deviation = np.array([fitted.values[name] - defaults[name] for name in rows])
+    wald = float(deviation @ np.linalg.pinv(fitted.covariance[np.ix_(at, at)], hermitian=True) @ deviation)
     return min(wald, without - fitted.loss)
 
 
 def has_misfit(problem: Problem, baseline: LeastSquaresFit, law: LeastSquaresFit, use: np.ndarray) -> bool:
-    """Whether something must be missing still. The baseline alone has a misfit where a typical launch (a typical unit,
-    where single ones may be outliers) or many launches are far beyond noise; listed laws have one where a typical
-    launch is beyond noise, and by no small part of what the baseline leaves. A calibrated camera's noise may be larger
-    by TO_THE_NOISE: where a puck's outline crosses a line, it errs more."""
-    noisy = TO_THE_NOISE**2 if problem.place_error_m else 1.0
+    """Return whether the residuals show that a law is still missing.
+
+    The baseline alone has a misfit if the residuals of a typical launch (a typical unit, if single units may be
+    outliers) or of many launches are far beyond noise. Listed laws have one if a typical launch is beyond noise, by a
+    large share of the baseline's misfit. The noise of a calibrated camera may be larger by TO_THE_NOISE, since places
+    have larger errors where the puck's outline crosses a line.
+    """
+    noise_factor = TO_THE_NOISE**2 if problem.place_error_m else 1.0
     before, after = (_typical(problem, one, use) - 1.0 for one in (baseline, law))
     if law is baseline:
-        return after > ENGINE.misfit or _beyond_noise(problem, law, use, noisy).mean() > ENGINE.misfit_launches
+        return after > ENGINE.misfit or _beyond_noise(problem, law, use, noise_factor).mean() > ENGINE.misfit_launches
     return after > ENGINE.misfit_beside_laws and after > min(ENGINE.misfit_left * before, ENGINE.misfit)
 
 
 def explains_nearly_all(problem: Problem, baseline: LeastSquaresFit, law: LeastSquaresFit, use: np.ndarray) -> bool:
-    """Whether what listed laws leave is not worth a law of its own: it is little of what the baseline leaves beyond
-    noise, little beside the noise, and not in launches beyond noise but one, which may have met an accident."""
+    """Return whether the remaining residuals of listed laws are too small to require another law.
+
+    They are if their excess over the noise is a small share of the baseline's and of the noise, and if at most one
+    launch, which may be an outlier, is beyond noise.
+    """
     noise = float(problem.freedom[use].sum())
     enough = min(ENGINE.negligible_share * (baseline.loss - noise), ENGINE.negligible_noise * noise)
     return law is not baseline and law.loss - noise < enough and _beyond_noise(problem, law, use).sum() <= 1
@@ -87,23 +99,28 @@ def explains_nearly_all(problem: Problem, baseline: LeastSquaresFit, law: LeastS
 def defaults_accepted(
     problem: Problem, defaults: Mapping[str, float], baseline: LeastSquaresFit, use: np.ndarray, dispersion: float
 ) -> bool:
-    """Whether a likelihood-ratio test accepts the simulator's default parameters: what the loss grows by without the
-    refit, divided by the dispersion, is a chi-square of as many degrees of freedom as the baseline has parameters."""
+    """Return whether a likelihood-ratio test accepts the simulator's default parameters.
+
+    The statistic is the loss of the defaults minus that of the refit, divided by the dispersion: a chi-square with one
+    degree of freedom per parameter of the baseline.
+    """
     loss, _ = robust_loss(problem, problem.residuals(defaults, (), use))
-    worse = (loss - baseline.loss) / dispersion
-    return bool(chi2.sf(max(worse, 0.0), len(problem.base)) > ENGINE.default_p)
+    statistic = (loss - baseline.loss) / dispersion
+    return bool(chi2.sf(max(statistic, 0.0), len(problem.base)) > ENGINE.default_p)
 
 
 def without_leverage(
     problem: Problem, baseline: LeastSquaresFit, use: np.ndarray
 ) -> tuple[np.ndarray, LeastSquaresFit]:
-    """Return the clusters `use` without a few outliers of high leverage, and the baseline fitted to them. Such a
-    launch leaves far more than the others, and when it is deleted, the misfit of a typical launch vanishes."""
+    """Return the clusters `use` without a few outliers of high leverage, and the baseline fitted to the rest.
+
+    Such a launch has far larger residuals than the others, and its deletion removes the misfit of a typical launch.
+    """
     kept = use
     for _ in range(max(int(ENGINE.outlying_share * len(use)), 1)):
-        left = reduced_chi_squares(problem, baseline, kept)
-        typical, worst = float(np.median(left)), int(np.argmax(left))
-        if typical < ENGINE.leverage_median or left[worst] < ENGINE.leverage_excess * typical:
+        misfits = reduced_chi_squares(problem, baseline, kept)
+        typical, worst = float(np.median(misfits)), int(np.argmax(misfits))
+        if typical < ENGINE.leverage_median or misfits[worst] < ENGINE.leverage_excess * typical:
             break
         fewer = np.delete(kept, worst)
         without = fit(problem, baseline.values, problem.base, fewer)
@@ -114,29 +131,31 @@ def without_leverage(
 
 
 def without_outliers(problem: Problem, law: LeastSquaresFit, use: np.ndarray) -> np.ndarray:
-    """Return the clusters `use` without the few that the final law does not explain: something else happened there."""
-    left = reduced_chi_squares(problem, law, use)
-    outlying = left > ENGINE.outlying_excess * max(float(np.median(left)), 1.0)
+    """Return the clusters `use` without the few outliers that the final law does not explain."""
+    misfits = reduced_chi_squares(problem, law, use)
+    outlying = misfits > ENGINE.outlying_excess * max(float(np.median(misfits)), 1.0)
     return use[~outlying] if outlying.sum() <= ENGINE.outlying_share * len(use) else use
 
 
 def reduced_chi_squares(problem: Problem, law: LeastSquaresFit, use: np.ndarray) -> np.ndarray:
-    """Sum of squares over degrees of freedom (use,) that a law leaves of each cluster, in units of the noise."""
+    """Return the reduced chi-square (use,) of each cluster under a law, in units of the noise."""
     found = problem.residuals(law.values, (), use)
     return np.bincount(found.cluster, found.r**2, problem.clusters)[use] / np.maximum(problem.freedom[use], 1.0)
 
 
-def _beyond_noise(problem: Problem, law: LeastSquaresFit, use: np.ndarray, noisy: float = 1.0) -> np.ndarray:
-    """The launches (n,) bool of which a law leaves more than noise, `noisy` times as large in variance, hardly ever
-    does."""
+def _beyond_noise(problem: Problem, law: LeastSquaresFit, use: np.ndarray, noise_factor: float = 1.0) -> np.ndarray:
+    """Return which launches (n,) bool have residuals beyond noise of `noise_factor` times the variance."""
     known = problem.freedom[use] > 0.0
     freedom = problem.freedom[use][known]
-    return reduced_chi_squares(problem, law, use)[known] * freedom > noisy * group_threshold(freedom)
+    return reduced_chi_squares(problem, law, use)[known] * freedom > noise_factor * group_threshold(freedom)
 
 
 def _typical(problem: Problem, law: LeastSquaresFit, use: np.ndarray) -> float:
-    """Median reduced chi-square over launches or, where single units may be outliers, the median over units of the sum
-    of squares in units of its own median under noise."""
+    """Return the median reduced chi-square over launches.
+
+    If single units may be outliers, it is the median over units of the sum of squares divided by its median under
+    noise.
+    """
     found = problem.residuals(law.values, (), use)
     if found.unit is None:
         return float(np.median(reduced_chi_squares(problem, law, use)))

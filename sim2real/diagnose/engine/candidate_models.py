@@ -1,4 +1,4 @@
-"""Candidate models: listed laws, a smooth term in their place, or both; the simplest that predicts well is taken."""
+"""Candidate models: listed laws, a smooth term in their place, or both; the simplest that predicts well is selected."""
 
 from __future__ import annotations
 
@@ -18,8 +18,10 @@ from sim2real.diagnose.engine.tuned import ENGINE
 
 @dataclass(frozen=True)
 class CandidateModel:
-    """A `model` as it was chosen, the fit of its listed laws, and the `smooth` term on top of it, if any. `cv_loss`:
-    cross-validation loss, linearized about the fit itself."""
+    """A `model`, the fit of its listed laws, and the `smooth` term added to them, if any.
+
+    `cv_loss`: cross-validation loss, linearized about the fit itself.
+    """
 
     model: Model
     law: LeastSquaresFit
@@ -28,7 +30,7 @@ class CandidateModel:
 
     @property
     def cost(self) -> int:
-        """How much the model says: a listed law is a name, a smooth term a name and a shape."""
+        """The complexity of the model: a listed law counts as one, a smooth term, which has a shape as well, as two."""
         return len(self.model.laws) + (self.smooth is not None)
 
 
@@ -41,9 +43,11 @@ def best_candidate(
     screen: DesignMatrix,
     use: np.ndarray,
 ) -> CandidateModel:
-    """Return the simplest of the candidates that predict well: the `listed` laws, fitted as `law`; smooth terms by
-    themselves, also with listed laws that show only beside them; and the listed laws, or fewer of them, with a smooth
-    term for what they leave. Smooth terms are tried only where listed laws leave a misfit or a significant remainder.
+    """Return the simplest of the candidates that predict well.
+
+    Candidates are the `listed` laws, fitted as `law`; smooth terms alone, also with listed laws that are significant
+    only beside them; and all or fewer of the listed laws with a smooth term for their remaining residuals. Smooth terms
+    are tried only if the listed laws have a misfit or a significant remainder.
 
     `baseline`: fit without laws; `selection`: of the listed laws, in the design matrix `screen` about the baseline.
     """
@@ -54,62 +58,70 @@ def best_candidate(
     if law is not baseline:
         columns = identifiable(problem.columns(law.values, law.free, None), problem, use, law.free)
     refitted = ForwardSelection(columns.equations, problem.units, use, selection.dispersion, selection.least)
-    rest = _remainder(selection, listed, refitted, law, columns)
-    if rest is None and not has_misfit(problem, baseline, law, use):
+    remainder = _remainder(selection, listed, refitted, law, columns)
+    if remainder is None and not has_misfit(problem, baseline, law, use):
         return only_listed
     candidates = [replace(only_listed, cv_loss=float(refitted.cv_loss(Model(law.free)).sum()))]
     baseline_loss = float(selection.cv_loss(Model(problem.base)).sum())
     gains = _promising_terms(selection, Model(problem.base), screen)
-    if rest is not None and not listed.laws and rest.law.name not in {gain.law.name for gain in gains}:
-        gains.append(rest)
+    if remainder is not None and not listed.laws and remainder.law.name not in {gain.law.name for gain in gains}:
+        gains.append(remainder)
     alone = []
     for gain in gains:
-        least = baseline_loss - gain.fitted  # a bound on what the term leaves, as far as the screen is right
+        least = (
+            baseline_loss - gain.fitted
+        )  # a lower bound of the term's loss, as far as the linearization of the screen holds
         if least < min(one.cv_loss for one in (*candidates, *alone)):
             alone.append(_with_term(problem, Model(problem.base), baseline, gain, selection, use))
     if not listed_suffice(candidates[0], alone, baseline_loss):
         candidates += alone
         candidates += _term_with_laws(problem, baseline, gains, alone, selection, screen, use)
-    if rest is not None and listed.laws:
-        candidates.append(_with_term(problem, listed, law, rest, selection, use))
-        fewer = selection.eliminate_backward(listed.plus(rest.law, rest.spread)).minus(rest.law)
+    if remainder is not None and listed.laws:
+        candidates.append(_with_term(problem, listed, law, remainder, selection, use))
+        fewer = selection.eliminate_backward(listed.plus(remainder.law, remainder.spread)).minus(remainder.law)
         if len(fewer.laws) < len(listed.laws) and fewer.laws:
             fewer, fitted = eliminated(problem, baseline, fewer, screen, use)
-            candidates.append(_with_term(problem, fewer, fitted, rest, selection, use))
+            candidates.append(_with_term(problem, fewer, fitted, remainder, selection, use))
     return simplest(candidates, baseline_loss)
 
 
 def simplest(candidates: Sequence[CandidateModel], baseline_loss: float) -> CandidateModel:
-    """Return the candidate of least cost among those whose cross-validation loss is near the least: within the least
-    gain of a law, or a share of what the best explains of the `baseline_loss`."""
+    """Return the candidate of least cost among those whose cross-validation loss is near the least.
+
+    Near is within the least gain of a law, or a share of the reduction of the `baseline_loss` by the best candidate.
+    """
     best = min(one.cv_loss for one in candidates)
     slack = max(ENGINE.cv_gain, ENGINE.share_of_explained * (baseline_loss - best))
     return min((one for one in candidates if one.cv_loss < best + slack), key=lambda one: (one.cost, one.cv_loss))
 
 
 def listed_suffice(listed: CandidateModel, alone: Sequence[CandidateModel], baseline_loss: float) -> bool:
-    """Whether few listed laws explain most of what the best smooth term alone does, so that they do not stand in for
-    what it describes."""
+    """Return whether few listed laws explain most of what the best smooth term alone explains.
+
+    If not, they may only approximate another law that the smooth term describes.
+    """
     best = min((one.cv_loss for one in alone), default=np.inf)
     explained = baseline_loss - listed.cv_loss
     return 0 < len(listed.model.laws) <= ENGINE.few_listed and explained > ENGINE.sufficient * (baseline_loss - best)
 
 
 def identifiable(columns: DesignMatrix, problem: Problem, use: np.ndarray, base: Sequence[str] = ()) -> DesignMatrix:
-    """Return the design matrix without smooth terms of too many coefficients for the degrees of freedom of the clusters
-    `use`; of variants that differ in a size alone, the one that fits best beside the parameters `base`, the problem's
-    if none are given, remains."""
+    """Return the design matrix without smooth terms that have too many coefficients for the data of the clusters `use`.
+
+    Of variants that differ only in a size, the one that fits best beside the parameters `base` remains; by default
+    `base` is the problem's.
+    """
     most = float(problem.freedom[use].sum()) / ENGINE.residuals_per_coefficient
     selection = ForwardSelection(columns.equations, problem.units, use)
     found: dict[str, Law] = {}
-    left: dict[str, float] = {}
+    least: dict[str, float] = {}
     for law in columns.families:
         key = law.variant_of or law.name
         loss = 0.0
         if law.variant_of:
             loss = selection.fitted_loss(Model(tuple(base) or problem.base, (law,), (ENGINE.spreads[-1],)))
-        if len(law.columns) <= most and loss < left.get(key, np.inf):
-            found[key], left[key] = law, loss
+        if len(law.columns) <= most and loss < least.get(key, np.inf):
+            found[key], least[key] = law, loss
     return replace(columns, families=list(found.values()))
 
 
@@ -122,7 +134,10 @@ def _term_with_laws(
     screen: DesignMatrix,
     use: np.ndarray,
 ) -> list[CandidateModel]:
-    """The best smooth term of those `alone` with listed laws that show only beside it; none where it leaves little."""
+    """Return the best smooth term of those `alone` with listed laws that are significant only beside it.
+
+    The list is empty if the term alone explains nearly everything.
+    """
     best = min(alone, key=lambda one: one.cv_loss, default=None)
     baseline_loss = float(selection.cv_loss(Model(problem.base)).sum())
     if (
@@ -136,7 +151,7 @@ def _term_with_laws(
     grown = selection.eliminate_backward(selection.grow(term, screen.listed, ENGINE.joint_laws))
     if gain.law not in grown.laws or len(grown.laws) == 1:
         return []
-    listed = grown.minus(gain.law)  # which may have no size without the term, so that none is eliminated here
+    listed = grown.minus(gain.law)  # no elimination here: a law may be negligible without the term
     fitted = refit(problem, baseline, listed.laws, screen, use)
     return [_with_term(problem, listed, fitted, gain, selection, use)]
 
@@ -149,14 +164,16 @@ def _with_term(
     selection: ForwardSelection,
     use: np.ndarray,
 ) -> CandidateModel:
-    """The listed laws, fitted as `law`, with the smooth term of a gain on top."""
+    """Return the listed laws, fitted as `law`, with the smooth term of a gain added."""
     smooth = fit_nonparametric(problem, law, gain.law, use, selection.dispersion)
     return CandidateModel(listed.plus(smooth.family, smooth.spread), smooth.law, smooth, smooth.cv_loss)
 
 
 def _promising_terms(selection: ForwardSelection, base: Model, screen: DesignMatrix) -> list[Gain]:
-    """The smooth terms that may explain most by themselves, about the baseline's path: those that fit best by AIC, and
-    those that predict best."""
+    """Return the smooth terms that explain most by themselves, linearized about the baseline's trajectory.
+
+    These are the terms that fit best by AIC and those that predict best.
+    """
     gains = [gain for gain in (selection.gain(base, law) for law in screen.families) if selection.fits(gain)]
     predicting = sorted(gains, key=lambda gain: -gain.total)[: ENGINE.fitted_terms]
     fitting = sorted(gains, key=lambda gain: 2.0 * len(gain.law.columns) - gain.fitted)[: ENGINE.fitted_terms]
@@ -170,10 +187,13 @@ def _remainder(
     law: LeastSquaresFit,
     columns: DesignMatrix,
 ) -> Gain | None:
-    """The smooth term that predicts most of what the listed laws leave once they are refitted (`law`, with its design
-    matrix `columns`), if it passes and is worth a law of its own."""
+    """Return the smooth term that best predicts the remaining residuals of the refitted listed laws.
+
+    `law`: the refitted listed laws, `columns`: the design matrix about them. None if no term passes with a large enough
+    gain.
+    """
     gains = sorted((refitted.gain(Model(law.free), one) for one in columns.families), key=lambda gain: -gain.total)
     explained = float((selection.cv_loss(Model(model.base)) - selection.cv_loss(model)).sum())
     excess = refitted.fitted_loss(Model(law.free)) - refitted.noise_loss if model.laws else 0.0
-    worth = max(ENGINE.remainder * explained, ENGINE.remainder_of_excess * excess)
-    return next((gain for gain in gains if refitted.passes(gain) and gain.total > worth), None)
+    least = max(ENGINE.remainder * explained, ENGINE.remainder_of_excess * excess)
+    return next((gain for gain in gains if refitted.passes(gain) and gain.total > least), None)

@@ -1,4 +1,4 @@
-"""Experiment design: which pieces to record next to discriminate between two laws."""
+"""Experiment design: which kind of segments to record next to discriminate between two laws."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ from sim2real.diagnose.engine.tuned import ENGINE
 def information(
     equations: NormalEquations, units: np.ndarray, law: Sequence[str], theta: np.ndarray, others: Sequence[str]
 ) -> np.ndarray:
-    """How much each unit (units,) discriminates a law from its alternatives: the squared distance |A theta - C phi|² of
-    its residuals under coefficients `theta` of the columns A (`law`) from those under the columns C (`others`), with
-    phi the least squares over all units together.
+    """Return how much each unit (units,) discriminates a law from its alternatives.
+
+    It is the squared distance |A theta - C phi|² between the predictions with coefficients `theta` of the columns A
+    (`law`) and with the columns C (`others`), where phi is the least-squares solution over all units together.
 
     The sum over units is the criterion of T-optimal design (Atkinson and Fedorov, Biometrika 62, 1975). It equals
     theta' I theta with the Fisher information I = A'A - A'C (C'C)^-1 C'A of theta beside the nuisance parameters phi.
@@ -29,11 +30,11 @@ def information(
     return np.maximum(alone - 2.0 * shared + np.einsum("i,uij,j->u", phi, outer, phi), 0.0)
 
 
-def most_informative(of_units: np.ndarray, kinds: Mapping[str, np.ndarray], pieces: str) -> str:
-    """Say how many more units of which kind are needed; "" where no kind is more informative than the average.
+def most_informative(of_units: np.ndarray, kinds: Mapping[str, np.ndarray], unit_name: str) -> str:
+    """Return how many more units of which kind are needed, in words; "" if no kind is the most informative.
 
-    `of_units` (u,): the `information` of each unit. `kinds`: by name, which units (u,) bool are of a kind. `pieces`:
-    what units are called.
+    `of_units` (u,): the `information` of each unit; `kinds`: by name, which units (u,) bool are of a kind; `unit_name`:
+    what units are called, in the plural.
     """
     means = {name: float(of_units[own].mean()) for name, own in kinds.items() if own.sum() >= ENGINE.fewest_of_kind}
     average = float(of_units.mean()) if len(of_units) else 0.0
@@ -44,4 +45,4 @@ def most_informative(of_units: np.ndarray, kinds: Mapping[str, np.ndarray], piec
         return ""
     more = max(int(np.ceil((ENGINE.discriminating - of_units.sum()) / means[best])), ENGINE.fewest_of_kind)
     ratio = means[best] / average
-    return f"about {more} more {best} {pieces}, each of which is {ratio:.1f} times as informative as the average one"
+    return f"about {more} more {best} {unit_name}, each {ratio:.1f} times as informative as the average one"

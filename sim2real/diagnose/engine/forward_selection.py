@@ -1,7 +1,7 @@
-"""Model selection: laws added forward by cross-validation loss, then eliminated backward where they are not needed.
+"""Model selection: forward selection of laws by cross-validation loss, then backward elimination.
 
-A loss is the sum of the units' `group_loss` divided by the dispersion, in units of the noise: a few units that no law
-explains outweigh the rest in no comparison.
+A loss is the sum of the units' `group_loss` divided by the dispersion, in units of the noise. It is robust: a few units
+that no law explains do not dominate a comparison.
 """
 
 from __future__ import annotations
@@ -23,8 +23,11 @@ from sim2real.statistics.robust import group_loss
 
 @dataclass(frozen=True)
 class Gain:
-    """What a law adds to the model `beside` it: how much lower the `fitted` loss is, and the cross-validation loss of
-    each launch (launches,); `spread`: the prior standard deviation of its coefficients."""
+    """The reduction of the loss when a law is added to the model `beside` it.
+
+    `fitted`: reduction of the fitted loss; `cv_loss` (launches,): of the cross-validation loss of each launch;
+    `spread`: prior standard deviation of the law's coefficients.
+    """
 
     beside: Model
     law: Law
@@ -34,21 +37,20 @@ class Gain:
 
     @property
     def total(self) -> float:
-        """Of all launches."""
+        """The reduction of the cross-validation loss of all launches."""
         return float(self.cv_loss.sum())
 
     @property
     def without_best(self) -> float:
-        """Of all launches but the one that gains most: no single one may carry a discovery."""
+        """The same without the launch that gains most, so that no single launch decides."""
         return self.total - float(self.cv_loss.max())
 
 
 class ForwardSelection:
     """Compares models on the units of the clusters `use`.
 
-    `dispersion`: variance of the noise in units of the sensor's, at least 1; see `estimated_dispersion`. `least`: how
-    much lower a law must make the loss to be named, as where the sensor has systematic errors. Each loss of a model is
-    computed once.
+    `dispersion`: variance of the noise in units of the sensor's, at least 1; see `estimated_dispersion`. `least`:
+    reduction of the fitted loss that a law must exceed, for sensors with systematic errors. Losses are cached by model.
     """
 
     def __init__(
@@ -67,20 +69,23 @@ class ForwardSelection:
 
     @property
     def noise_loss(self) -> float:
-        """Loss that noise alone leaves: the degrees of freedom."""
+        """The expected loss of noise alone: the degrees of freedom."""
         return float(self._freedom.sum()) / self.dispersion
 
     def fitted_loss(self, model: Model) -> float:
-        """Loss that a model leaves when fitted to all units."""
+        """Return the loss of a model fitted to all units."""
         return self._once("fitted", model, self._fitted_loss)
 
     def cv_loss(self, model: Model) -> np.ndarray:
-        """Cross-validation loss (launches,): each unit is predicted by the model fitted to the units of other folds, of
-        the same launch or another, since no other launch may meet what a single one met, such as a patch."""
+        """Return the cross-validation loss (launches,) over units.
+
+        Each unit is predicted by the model fitted to the units of other folds, of any launch: a local effect, such as a
+        patch, may occur in a single launch.
+        """
         return self._once("units", model, self._cv_loss)
 
     def launch_cv_loss(self, model: Model) -> np.ndarray:
-        """Cross-validation loss (launches,): each launch is predicted by the model fitted to all other launches."""
+        """Return the leave-one-launch-out cross-validation loss (launches,)."""
         return self._once("launches", model, self._launch_cv_loss)
 
     def _once(self, what: str, model: Model, work: Callable[[Model], Any]) -> Any:
@@ -92,8 +97,8 @@ class ForwardSelection:
     def _fitted_loss(self, model: Model) -> float:
         columns, ridge = model.columns(self.equations)
         theta = normal_equations.solve_robustly(self.equations, columns, self.use, self._freedom, ridge)
-        left = normal_equations.losses(self.equations, columns, theta, self.use)
-        return float(group_loss(left, self._freedom).sum()) / self.dispersion
+        squares = normal_equations.losses(self.equations, columns, theta, self.use)
+        return float(group_loss(squares, self._freedom).sum()) / self.dispersion
 
     def _cv_loss(self, model: Model) -> np.ndarray:
         folds = np.arange(len(self.use)) % ENGINE.unit_folds
@@ -103,16 +108,16 @@ class ForwardSelection:
         return self._held_out(model, [self._launch == launch for launch in range(self._launches)])
 
     def _held_out(self, model: Model, folds: Sequence[np.ndarray]) -> np.ndarray:
-        """Loss (launches,), the units of each of the `folds` (units,) bool predicted by those outside it."""
+        """Return the loss (launches,) with the units of each of the `folds` (units,) bool predicted from the others."""
         columns, ridge = model.columns(self.equations)
-        left = np.zeros(len(self.use))
+        squares = np.zeros(len(self.use))
         for out in folds:
             theta = normal_equations.solve_robustly(self.equations, columns, self.use[~out], self._freedom[~out], ridge)
-            left[out] = normal_equations.losses(self.equations, columns, theta, self.use[out])
-        return np.bincount(self._launch, group_loss(left, self._freedom)) / self.dispersion
+            squares[out] = normal_equations.losses(self.equations, columns, theta, self.use[out])
+        return np.bincount(self._launch, group_loss(squares, self._freedom)) / self.dispersion
 
     def gain(self, model: Model, law: Law) -> Gain:
-        """What `law` adds to `model`; a smooth term with the spread that predicts best."""
+        """Return the gain of adding `law` to `model`; a smooth term gets the spread that predicts best."""
         before, fitted = self.cv_loss(model), self.fitted_loss(model)
         best: Gain | None = None
         for spread in ENGINE.spreads if law.family else (np.inf,):
@@ -124,22 +129,27 @@ class ForwardSelection:
         return best
 
     def gains(self, model: Model, laws: Sequence[Law]) -> list[Gain]:
-        """What each of the `laws` that a model lacks adds to it, best first."""
+        """Return the gain of each of the `laws` that are not in the model, the best first."""
         taken = {law.name for law in model.laws}
         return sorted((self.gain(model, law) for law in laws if law.name not in taken), key=lambda one: -one.total)
 
     def fits(self, gain: Gain) -> bool:
-        """Whether a law lowers the fitted loss by more than chance (a fixed threshold, AIC's 2 for each coefficient,
-        and 2 log of the places searched), and by `least`."""
+        """Return whether a law lowers the fitted loss by more than chance and by more than `least`.
+
+        Chance is a fixed threshold, plus AIC's 2 for each coefficient, plus 2 log of the number of places searched.
+        """
         chance = ENGINE.fit_gain + 2.0 * len(gain.law.columns) + 2.0 * float(np.log(gain.law.searched))
         return gain.fitted > max(chance, self.least)
 
     def passes(self, gain: Gain) -> bool:
-        """Whether a law fits and predicts better than chance, and not by few launches alone: the gain stays positive in
-        nearly all bootstrap samples of launches, or two launches gain far more than chance from each other's."""
+        """Return whether a law fits and predicts better than chance, supported by more than a few launches.
+
+        The gain must be positive in nearly all bootstrap samples of launches, or two launches must each gain far more
+        than chance when predicted from the other launches.
+        """
         if not self.fits(gain) or gain.total <= ENGINE.cv_gain or gain.without_best <= ENGINE.cv_gain_elsewhere:
             return False
-        if self._surely_positive(gain.cv_loss):
+        if self._significantly_positive(gain.cv_loss):
             return True
         two = np.argsort(gain.cv_loss)[-2:]
         if float(gain.cv_loss[two].min()) <= ENGINE.fit_gain:
@@ -149,27 +159,32 @@ class ForwardSelection:
         return bool(between.min() > ENGINE.fit_gain)
 
     def inconclusive(self, gain: Gain) -> bool:
-        """Whether a law fits far better than chance, and yet does not pass: few launches support it."""
+        """Return whether a law fits better than chance but does not pass, since few launches support it."""
         return self.fits(gain) and not self.passes(gain)
 
     def confirmed(self, model: Model) -> bool:
-        """Whether launches confirm a model to each other, each predicted by all others: its gain over the baseline is
-        most of what the baseline leaves beyond noise, is no small part of the noise, and is positive in nearly all
-        bootstrap samples of launches."""
+        """Return whether leave-one-launch-out cross-validation confirms a model.
+
+        Its gain over the baseline must be most of the baseline's excess over the noise, a minimum share of the noise,
+        and positive in nearly all bootstrap samples of launches.
+        """
         baseline = self.launch_cv_loss(Model(model.base))
         gained = baseline - self.launch_cv_loss(model)
         enough = max(
             ENGINE.proving_share * (float(baseline.sum()) - self.noise_loss), ENGINE.share_of_noise * self.noise_loss
         )
-        return self._surely_positive(gained) and float(gained.sum()) > enough
+        return self._significantly_positive(gained) and float(gained.sum()) > enough
 
-    def _surely_positive(self, gained: np.ndarray) -> bool:
-        """Whether the sum of what launches gain (launches,) is positive in nearly all bootstrap samples of them."""
+    def _significantly_positive(self, gained: np.ndarray) -> bool:
+        """Return whether the sum of the gains (launches,) is positive in nearly all bootstrap samples of launches."""
         return float(np.quantile(self._resampled @ gained, ENGINE.bootstrap_quantile)) > 0.0
 
     def same_sign_in_halves(self, model: Model, law: Law) -> bool:
-        """Whether odd and even launches give the law coefficients of the same sign, or one half does not determine it:
-        the inner product of both by the Fisher information is positive."""
+        """Return whether odd and even launches give the law coefficients of the same sign.
+
+        The sign is that of the inner product of both by the Fisher information. True also if one half does not
+        determine the coefficients.
+        """
         columns, ridge = model.plus(law, 1.0).columns(self.equations)
         at = np.isin(columns, self.equations.columns(law.columns))
         halves, sizes = [], []
@@ -184,10 +199,10 @@ class ForwardSelection:
         return undetermined or float(halves[0] @ weight @ halves[1]) > 0.0
 
     def add_forward(self, model: Model, laws: Sequence[Law], most: int) -> Model:
-        """Forward selection up to `most` laws, significant or not: `eliminate_backward` decides on all together.
+        """Select up to `most` laws forward, significant or not; `eliminate_backward` tests them together.
 
-        It starts from the best pair of laws instead where that ends with a much lower loss, since either alone may
-        explain little of what both do.
+        The selection starts from the best pair of laws if that ends with a much lower loss, since either law alone may
+        explain little of what both explain.
         """
         single = self.grow(model, laws, most)
         pairs = [
@@ -203,8 +218,7 @@ class ForwardSelection:
         return paired if better > ENGINE.cv_gain else single
 
     def grow(self, model: Model, laws: Sequence[Law], most: int) -> Model:
-        """Add the law with the greatest cross-validation gain, again and again, until the model has `most` or no law
-        gains enough."""
+        """Add the law with the greatest cross-validation gain until the model has `most` laws or no gain is enough."""
         while len(model.laws) < most:
             gains = self.gains(model, laws)
             if not gains or gains[0].total < ENGINE.cv_gain:
@@ -213,20 +227,20 @@ class ForwardSelection:
         return model
 
     def eliminate_backward(self, model: Model) -> Model:
-        """Take out laws that are needless or not significant beside the others, the one with the least gain first."""
+        """Remove laws that are negligible or not significant beside the others, the least gain first."""
         explained = float((self.cv_loss(Model(model.base)) - self.cv_loss(model)).sum())
         enough = min(ENGINE.share_of_explained * explained, ENGINE.share_of_noise * self.noise_loss)
         while model.laws:
             gains = [self.gain(model.minus(law), law) for law in model.laws]
-            worth = enough if len(gains) > 1 else 0.0
-            failing = [one for one in gains if one.total < worth or not self.significant(model, one)]
+            least = enough if len(gains) > 1 else 0.0
+            failing = [one for one in gains if one.total < least or not self.significant(model, one)]
             if not failing:
                 break
             model = model.minus(min(failing, key=lambda one: one.total).law)
         return model
 
     def significant(self, model: Model, gain: Gain) -> bool:
-        """Whether a law of the model passes, and has the same sign in both halves of the launches if it is listed."""
+        """Return whether a law passes and, if it is listed, has the same sign in both halves of the launches."""
         rest = model.minus(gain.law)
         return self.passes(gain) and (bool(gain.law.family) or self.same_sign_in_halves(rest, gain.law))
 
@@ -234,8 +248,11 @@ class ForwardSelection:
 def estimated_dispersion(
     equations: NormalEquations, units: Units, base: tuple[str, ...], laws: Sequence[Law], use: np.ndarray
 ) -> float:
-    """Estimate the variance of the noise in units of the sensor's, at least 1: the median over launches of the reduced
-    chi-square that a fit of all `laws` together leaves, its degrees of freedom by the trace of the hat matrix."""
+    """Estimate the variance of the noise in units of the sensor's, at least 1.
+
+    It is the median over launches of the reduced chi-square of a joint fit of all `laws`, with degrees of freedom from
+    the trace of the hat matrix.
+    """
     richest = Model(base, tuple(laws), (1.0,) * len(laws))
     columns, ridge = richest.columns(equations)
     parts = units.of(use)
@@ -243,15 +260,18 @@ def estimated_dispersion(
     fitted = _fitted_freedom(equations.g[np.ix_(parts, columns, columns)], ridge + ENGINE.dispersion_ridge)
     launch = units.cluster[parts]
     launches = int(units.cluster.max(initial=0)) + 1
-    left = np.bincount(launch, normal_equations.losses(equations, columns, theta, parts), launches)
+    squares = np.bincount(launch, normal_equations.losses(equations, columns, theta, parts), launches)
     free = np.bincount(launch, units.freedom[parts] - fitted, launches)
     known = free > 1.0
-    return float(max(np.median(left[known] / free[known]), 1.0)) if known.any() else 1.0
+    return float(max(np.median(squares[known] / free[known]), 1.0)) if known.any() else 1.0
 
 
 def _fitted_freedom(g: np.ndarray, ridge: np.ndarray) -> np.ndarray:
-    """Degrees of freedom (units,) of each unit that a ridge fit of all columns to all units uses up, with normal
-    matrices `g` (units, k, k): its part of the trace of the hat matrix, tr(G_u (sum G + ridge)^-1)."""
+    """Return the degrees of freedom (units,) of each unit that a ridge fit of all columns to all units uses.
+
+    `g` (units, k, k): normal matrices. Each unit has its share of the trace of the hat matrix, tr(G_u (sum G +
+    ridge)^-1).
+    """
     normal = g.sum(axis=0) + np.diag(ridge)
     size = np.sqrt(np.maximum(np.diag(normal), 0.0))
     inverse = np.linalg.pinv(normal / size[:, None] / size, hermitian=True) / size[:, None] / size

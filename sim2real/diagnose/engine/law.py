@@ -1,4 +1,4 @@
-"""Laws that may be missing, each some columns of the design matrix, and models made of them."""
+"""Laws that may be missing, each a set of columns of the design matrix, and models composed of them."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ def no_parameters(theta: np.ndarray) -> Mapping[str, float]:
 class Law:
     """Columns of the design matrix that enter or leave a model together.
 
-    `name`: a mechanism of the simulator (a listed law), or a smooth term of the basis library (a family); `family` is
-    what a smooth term depends on, "" for a listed law. `start`: parameters of a nonlinear law at which its columns were
-    taken. `switch`: the simulator's parameters by name for coefficients (k,) of a smooth term. `mechanism`: what a
-    finding calls a smooth term. `linear`: whether residuals are linear in its coefficients however large they are.
-    `each_launch`: whether every launch has coefficients of its own, of which others say nothing. `searched`: how many
-    places or sizes the columns are the best of. `variant_of`: a name that smooth terms share which differ in a size
-    alone, and of which the best is taken.
+    `name`: a mechanism of the simulator (a listed law), or a smooth term of the basis library (a family); `family`: the
+    quantity on which a smooth term depends, "" for a listed law. `start`: parameters of a nonlinear law at which its
+    columns were linearized. `switch`: maps coefficients (k,) of a smooth term to the simulator's parameters by name.
+    `mechanism`: the name of a smooth term in a finding. `linear`: whether residuals are linear in its coefficients at
+    any size. `each_launch`: whether each launch has coefficients of its own. `searched`: number of places or sizes from
+    which the columns were chosen. `variant_of`: common name of smooth terms that differ only in a size; the best of
+    them is used.
     """
 
     name: str
@@ -44,26 +44,28 @@ class Law:
 
     @property
     def rows(self) -> tuple[str, ...]:
-        """The parameters that a nonlinear fit of a listed law frees: all of its effect's where a search found its
-        `start`, such as a place, else those of its columns."""
+        """The free parameters of a listed law in a nonlinear fit.
+
+        They are all parameters of its effect if it has a `start`, else those of its columns.
+        """
         return EFFECTS[self.name].row_names if self.start else self.columns
 
 
 @dataclass(frozen=True)
 class Model:
-    """The baseline's columns `base` and those of `laws` added to it; `spreads`: the prior standard deviation of each
-    law's coefficients, which counts for smooth terms alone."""
+    """The baseline's columns `base` and added `laws`; `spreads`: prior standard deviation of each law's coefficients,
+    used for smooth terms alone."""
 
     base: tuple[str, ...]
     laws: tuple[Law, ...] = ()
     spreads: tuple[float, ...] = ()
 
     def plus(self, law: Law, spread: float) -> Model:
-        """The model with one more law."""
+        """Return the model with one more law."""
         return Model(self.base, (*self.laws, law), (*self.spreads, spread))
 
     def minus(self, law: Law) -> Model:
-        """The model without one of its laws."""
+        """Return the model without one of its laws."""
         kept = [(one, spread) for one, spread in zip(self.laws, self.spreads, strict=True) if one is not law]
         return Model(self.base, tuple(one for one, _ in kept), tuple(spread for _, spread in kept))
 
@@ -78,8 +80,11 @@ class Model:
         return (self.base, tuple(law.columns for law in self.laws), self.spreads)
 
     def columns(self, equations: NormalEquations) -> tuple[np.ndarray, np.ndarray]:
-        """Indices (k,) of all columns, and the ridge (k,) of each: 1 / spread² for a smooth term, a fixed one for a
-        nonlinear law, whose coefficients are 1 where its columns were taken, and 0 for all other parameters."""
+        """Return the indices (k,) of all columns and the ridge (k,) of each.
+
+        The ridge is 1 / spread² for a smooth term, fixed for a nonlinear law, whose coefficients are 1 at its start,
+        and 0 for all other parameters.
+        """
         names, ridge = list(self.base), [0.0] * len(self.base)
         for law, spread in zip(self.laws, self.spreads, strict=True):
             fresh = [name for name in law.columns if name not in names]

@@ -1,7 +1,7 @@
-"""Nonlinear least squares of a law's parameters within their bounds, robust where single units may be outliers.
+"""Nonlinear least squares of a law's parameters within their bounds, robust if single units may be outliers.
 
-The method is Levenberg and Marquardt's (Marquardt, J. SIAM 11, 1963); weights are renewed each round. Intervals hold
-where launches scatter by more than the sensor's noise.
+The method is Levenberg-Marquardt (Marquardt, J. SIAM 11, 1963) with weights updated each round. Intervals remain valid
+if launches scatter by more than the sensor's noise.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ from sim2real.statistics.robust import group_loss, group_weights
 class LeastSquaresFit:
     """A fitted law: all its `values` by name, the names of the `free` parameters (k) and their `covariance` (k, k).
 
-    `loss`: of the fit, see `robust_loss`; `count`: of residuals, and `clusters`: of launches, that it was fitted to;
-    `bound`: parameters that ended at a bound of their range.
+    `loss`: see `robust_loss`; `count` and `clusters`: numbers of residuals and launches that were fitted; `bound`:
+    parameters that ended at a bound of their range.
     """
 
     values: Mapping[str, float]
@@ -39,27 +39,28 @@ class LeastSquaresFit:
 
     @property
     def directions(self) -> np.ndarray:
-        """Independent changes of the free parameters, each of one standard deviation: the columns (k, k) of a square
-        root of the covariance."""
+        """A square root (k, k) of the covariance: each column is an independent change of one standard deviation."""
         value, vector = np.linalg.eigh(self.covariance) if self.free else (np.zeros(0), np.zeros((0, 0)))
         return vector * np.sqrt(np.maximum(value, 0.0))
 
     def estimate(self, name: str) -> Estimate:
-        """A free parameter with its 95 % interval, cut off where the parameter's range ends."""
+        """Return a free parameter with its 95 % interval, clipped to the parameter's range."""
         value, half = float(self.values[name]), self.reach({name: 1.0})
         row = BY_NAME[name]
         low, high = max(value - half, min(row.low, value)), min(value + half, max(row.high, value))
         return Estimate(value, low, high, row.unit)
 
     def reach(self, slopes: Mapping[str, float]) -> float:
-        """Half the 95 % interval of a number with the gradient `slopes` by the parameters, 0 by those not named:
-        t sqrt(g'Cg), with Student's t of the launches less 1 degrees of freedom."""
+        """Return half the 95 % interval of a quantity with the gradient `slopes` by the parameters, 0 for others.
+
+        It is t sqrt(g'Cg), with Student's t for the number of launches minus 1 degrees of freedom.
+        """
         by = np.array([slopes.get(name, 0.0) for name in self.free])
         return float(np.sqrt(by @ self.covariance @ by) * reach_of_launches(self.clusters))
 
 
 def given(values: Mapping[str, float]) -> LeastSquaresFit:
-    """Return a law of known parameters: nothing in it is fitted."""
+    """Return a law with fixed parameters, none of them fitted."""
     return LeastSquaresFit(dict(values), (), np.zeros((0, 0)), 0.0, 0, 0, ())
 
 
@@ -70,9 +71,9 @@ def fit(
     clusters: np.ndarray,
     rounds: int = ENGINE.fit_rounds,
 ) -> LeastSquaresFit:
-    """Fit the parameters `free` to the residuals of `clusters`, starting from `values`; the others stay.
+    """Fit the parameters `free` to the residuals of `clusters`, starting from `values`; the others are fixed.
 
-    A step that leads uphill is halved a few times, then damped more. The covariance is that of the last normal
+    A step that increases the loss is halved a few times, then damped more. The covariance is that of the last normal
     equations, see `normal_equations.covariance`; a parameter without data gets its range as standard deviation.
     """
     free = tuple(free)
@@ -114,19 +115,22 @@ def fit(
 
 
 def robust_loss(problem: Fittable, found: Residuals) -> tuple[float, np.ndarray]:
-    """Loss of residuals, and the factor (n,) of each in a weighted least-squares fit: their sum of squares and ones, or
-    where single units may be outliers, the sum of the units' `group_loss` and the roots of their weights."""
+    """Return the loss of residuals and the factor (n,) of each in a weighted least-squares fit.
+
+    These are the sum of squares and ones or, if single units may be outliers, the sum of the units' `group_loss` and
+    the square roots of their weights.
+    """
     if found.unit is None:
         return float(found.r @ found.r), np.ones(len(found.r))
     freedom = problem.units.freedom
-    left = np.bincount(found.unit, found.r**2, len(freedom))
-    return float(group_loss(left, freedom).sum()), np.sqrt(group_weights(left, freedom))[found.unit]
+    squares = np.bincount(found.unit, found.r**2, len(freedom))
+    return float(group_loss(squares, freedom).sum()), np.sqrt(group_weights(squares, freedom))[found.unit]
 
 
 def _step(
     equations: NormalEquations, damping: float, at: np.ndarray, low: np.ndarray, high: np.ndarray, clusters: np.ndarray
 ) -> np.ndarray:
-    """Step (k,) of the parameters that no bound holds: (G + damping diag G) step = -b."""
+    """Return the step (k,) of the parameters that are not held at a bound: (G + damping diag G) step = -b."""
     g, b = equations.g[clusters].sum(axis=0), equations.b[clusters].sum(axis=0)
     held = ((at <= low) & (b > 0.0)) | ((at >= high) & (b < 0.0))
     step = np.zeros(len(at))

@@ -1,4 +1,4 @@
-"""The search of a regime for missing laws: refit the baseline, select laws, fit them jointly, and see what remains."""
+"""The search for missing laws of a regime: refit the baseline, select laws, fit them jointly, test the remainder."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ from sim2real.diagnose.engine.tuned import ENGINE
 
 @dataclass(frozen=True, kw_only=True)
 class SearchResult:
-    """What a search found.
+    """The result of a search.
 
     `baseline`: fit without laws. `model`: the laws, as `forward_selection` chose them in the design matrix `screen`.
-    `law`: joint fit of the baseline and the listed laws, or their parameters about which `smooth`, the smooth term on
-    top, was linearized. `theta_covariance`: of `theta`. `clusters`: those that the model was fitted to. `defaults`:
-    whether the default parameters agree with the data. `dispersion`: variance of the noise in units of the sensor's.
-    `inconclusive`: a law that too few launches support. `misfit`: whether something is missing that no law explains.
+    `law`: joint fit of the baseline and the listed laws; with a smooth term `smooth` added, the parameters about which
+    that was linearized. `theta_covariance`: of `theta`. `clusters`: those that were fitted. `defaults`: whether the
+    default parameters agree with the data. `dispersion`: variance of the noise in units of the sensor's.
+    `inconclusive`: a law that too few launches support. `misfit`: whether residuals remain that no law explains.
     """
 
     baseline: LeastSquaresFit
@@ -57,12 +57,12 @@ class SearchResult:
 
     @property
     def unlisted(self) -> Law | None:
-        """The smooth term on top of them, if any."""
+        """The smooth term added to them, if any."""
         return self.smooth.family if self.smooth else None
 
     @property
     def theta(self) -> np.ndarray:
-        """Steps (n,) of the law's free parameters, then the smooth term's coefficients (k,); empty without one."""
+        """Steps (n,) of the law's free parameters and coefficients (k,) of the smooth term; empty without one."""
         return self.smooth.theta if self.smooth else np.zeros(0)
 
     @property
@@ -72,7 +72,7 @@ class SearchResult:
 
     @property
     def final(self) -> LeastSquaresFit:
-        """The fit of the baseline and the listed laws, beside the smooth term where there is one."""
+        """The fit of the baseline and the listed laws, jointly with the smooth term if there is one."""
         if self.unlisted is None:
             return self.law
         values = dict(self.law.values)
@@ -83,47 +83,49 @@ class SearchResult:
 
     @property
     def coefficients(self) -> np.ndarray:
-        """Of the smooth term (k,)."""
+        """The coefficients (k,) of the smooth term."""
         return self.theta[len(self.law.free) :]
 
     @property
     def all_values(self) -> Mapping[str, float]:
-        """All parameters by name, those of the smooth term too where the simulator can represent it."""
+        """All parameters by name, with those of the smooth term if the simulator can represent it."""
         return {**self.final.values, **self.effect_parameters()}
 
     def gained(self, parts: np.ndarray) -> float:
-        """What the smooth term explains of units: how much lower their penalized least squares are with it."""
+        """Return the reduction of the sum of squares of units by the smooth term, fitted with its ridge penalty."""
         assert self.unlisted is not None
         spread = self.model.spreads[self.model.laws.index(self.unlisted)]
-        left = []
+        squares = []
         for model in (Model(self.law.free), Model(self.law.free, (self.unlisted,), (spread,))):
             columns, ridge = model.columns(self.columns.equations)
             theta = normal_equations.solve(self.columns.equations, columns, parts, ridge)
-            left.append(float(normal_equations.losses(self.columns.equations, columns, theta, parts).sum()))
-        return left[0] - left[1]
+            squares.append(float(normal_equations.losses(self.columns.equations, columns, theta, parts).sum()))
+        return squares[0] - squares[1]
 
     def losses(self, theta: np.ndarray, parts: np.ndarray) -> np.ndarray:
-        """Sums of squares (parts,) that `theta`, see there, leaves of units."""
+        """Return the sums of squares (parts,) of units under `theta`, as in the property."""
         assert self.unlisted is not None
         index, _ = Model(self.law.free, (self.unlisted,), (1.0,)).columns(self.columns.equations)
         return normal_equations.losses(self.columns.equations, index, theta, parts)
 
     def final_losses(self, parts: np.ndarray) -> np.ndarray:
-        """Sums of squares (parts,) that the law with its smooth term leaves of units. Coefficients that each launch has
-        of its own are fitted to every second unit and tested on those between."""
+        """Return the sums of squares (parts,) of units under the law with its smooth term.
+
+        Coefficients that each launch has of its own are fitted to every second unit and tested on the others.
+        """
         assert self.unlisted is not None
         if not self.unlisted.each_launch:
             return self.losses(self.theta, parts)
         equations, n = self.columns.equations, len(self.law.free)
         stepped = normal_equations.moved(equations, equations.columns(self.law.free), self.theta[:n])
-        left, odd = np.zeros(len(parts)), np.arange(len(parts)) % 2 == 1
+        squares, odd = np.zeros(len(parts)), np.arange(len(parts)) % 2 == 1
         for tested in (odd, ~odd):
             own = normal_equations.solve(stepped, equations.columns(self.unlisted.columns), parts[~tested])
-            left[tested] = self.losses(np.concatenate([self.theta[:n], own]), parts[tested])
-        return left
+            squares[tested] = self.losses(np.concatenate([self.theta[:n], own]), parts[tested])
+        return squares
 
     def effect_parameters(self) -> Mapping[str, float]:
-        """The simulator's parameters of the smooth term; empty where it cannot represent it."""
+        """Return the simulator's parameters of the smooth term; empty if it cannot represent the term."""
         if self.unlisted is None:
             return {}
         law = next(one for one in self.columns.families if one.name == self.unlisted.name)
@@ -139,9 +141,8 @@ def search_model(
 ) -> SearchResult:
     """Search the clusters `use` of a problem for missing laws, starting from the default parameters `defaults`.
 
-    `clear`: whether the regimes that this one rests on are explained, so that a misfit means physics of its own and a
-    smooth term may be tried. `dispersion`: variance of the noise in units of the sensor's, where it is known; otherwise
-    the richest model estimates it.
+    `clear`: whether the regimes that this one depends on are explained, so that a misfit is its own and smooth terms
+    may be tried. `dispersion`: variance of the noise in units of the sensor's; if None, the richest model estimates it.
     """
     first = given(defaults)
     if problem.first_fitted != problem.base:
@@ -178,7 +179,7 @@ def search_model(
 
 
 def without(problem: Problem, found: SearchResult, law: Law) -> SearchResult:
-    """Return the same without one of its laws: the rest of the model, fitted anew to the same clusters."""
+    """Return the result without one of its laws: the remaining model refitted to the same clusters."""
     model = found.model.minus(law)
     fitted, smooth = found.baseline, None
     if any(not one.family for one in model.laws):
@@ -192,8 +193,8 @@ def without(problem: Problem, found: SearchResult, law: Law) -> SearchResult:
     return replace(found, model=model, law=fitted, smooth=smooth, theta_covariance=spread)
 
 
-def bare(found: SearchResult) -> SearchResult:
-    """Return the same without laws: the baseline."""
+def without_laws(found: SearchResult) -> SearchResult:
+    """Return the result without laws: the baseline."""
     model = Model(found.model.base)
     none = np.zeros((0, 0))
     return replace(found, model=model, law=found.baseline, smooth=None, theta_covariance=none, inconclusive=None)
@@ -204,14 +205,17 @@ def _covariance(problem: Problem, smooth: NonparametricFit | None, use: np.ndarr
 
 
 def _least_gain(problem: Problem) -> float:
-    """How much a law must lower the loss where a calibrated camera's map has errors: by the square of twice their size
-    in units of the noise. Where the outline of a puck crosses a line of the table, some places err by half of that."""
+    """Return the reduction of the loss that a law must exceed where a calibrated camera's map has errors.
+
+    It is the square of twice their size in units of the noise. Where the puck's outline crosses a line of the table,
+    some positions are wrong by half of that.
+    """
     if not problem.place_error_m:
         return 0.0
     return (ENGINE.calibration_errors * problem.place_error_m / problem.noise_m) ** 2
 
 
 def _inconclusive(selection: ForwardSelection, gains: Sequence[Gain]) -> Law | None:
-    """The law that fits best of those that only few launches support."""
+    """Return the law that fits best among those that too few launches support."""
     some = [gain for gain in gains if selection.inconclusive(gain)]
     return max(some, key=lambda gain: gain.fitted).law if some else None

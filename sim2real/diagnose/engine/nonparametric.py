@@ -1,4 +1,4 @@
-"""Nonparametric fits: a smooth term of the basis library on top of a law, linearized about the path of both.
+"""Nonparametric fits: a smooth term of the basis library added to a law, linearized about the trajectory of both.
 
 Ridge regression on basis functions: the coefficients have a normal prior about 0, whose standard deviation (`spread`)
 cross-validation chooses.
@@ -23,11 +23,11 @@ from sim2real.statistics.robust import group_loss
 
 @dataclass(frozen=True)
 class NonparametricFit:
-    """A smooth term `family` fitted on top of `law`.
+    """A smooth term `family` added to `law`.
 
     `theta` (n + k,): steps of the law's n free parameters, then the term's k coefficients. `columns`: the design matrix
-    that they belong to, whose residuals are those without the term wherever it was linearized. `spread`: the prior
-    standard deviation of the coefficients; `cv_loss`: the cross-validation loss.
+    of `theta`, whose residuals are those without the term wherever it was linearized. `spread`: the prior standard
+    deviation of the coefficients; `cv_loss`: the cross-validation loss.
     """
 
     law: LeastSquaresFit
@@ -43,7 +43,7 @@ class NonparametricFit:
         return Model(self.law.free, (self.family,), (self.spread,))
 
     def covariance(self, problem: Problem, use: np.ndarray) -> np.ndarray:
-        """Of `theta` (n + k, n + k), from the clusters `use` that it was fitted to."""
+        """Return the covariance (n + k, n + k) of `theta`, from the clusters `use` that were fitted."""
         launches = normal_equations.gathered(self.columns.equations, problem.units.cluster, problem.clusters)
         return normal_equations.covariance(launches, self.model.columns(self.columns.equations)[0], self.theta, use)
 
@@ -51,11 +51,11 @@ class NonparametricFit:
 def fit_nonparametric(
     problem: Problem, law: LeastSquaresFit, family: Law, use: np.ndarray, dispersion: float
 ) -> NonparametricFit:
-    """Fit `family` on top of `law` to the clusters `use`; `dispersion`: variance of the noise in units of the sensor's.
+    """Fit `family` added to `law` to the clusters `use`; `dispersion`: variance of the noise in units of the sensor's.
 
-    Where the simulator can represent a term that is not linear, Gauss-Newton takes the design matrix anew about the
-    path with it, until no step leads downhill; else it is taken once, about the path without it. A term of which every
-    step leads uphill predicts nothing: its `cv_loss` is infinite.
+    If the simulator can represent a nonlinear term, Gauss-Newton linearizes anew about the trajectory with it until no
+    step lowers the loss; otherwise the term is linearized once, about the trajectory without it. If no step of a term
+    lowers the loss, its `cv_loss` is infinite.
     """
     search = _Search(problem, use, dispersion)
     here = search.linearized(law, family, np.zeros(len(family.columns)))
@@ -76,8 +76,10 @@ def fit_nonparametric(
 
 @dataclass(frozen=True)
 class _Linearization:
-    """The design matrix about the path of a law with `coefficients` (k,) of a smooth term, its residuals those without
-    the term."""
+    """The design matrix about the trajectory of a law with `coefficients` (k,) of a smooth term.
+
+    Its residuals are those without the term.
+    """
 
     law: LeastSquaresFit
     family: Law
@@ -86,7 +88,7 @@ class _Linearization:
 
 
 class _Search:
-    """Steps of Gauss-Newton on the clusters `use`."""
+    """Gauss-Newton steps on the clusters `use`."""
 
     def __init__(self, problem: Problem, use: np.ndarray, dispersion: float) -> None:
         self._problem, self._use, self._dispersion = problem, use, dispersion
@@ -94,7 +96,7 @@ class _Search:
         self._freedom = problem.units.freedom[self._units] * dispersion
 
     def linearized(self, law: LeastSquaresFit, family: Law, coefficients: np.ndarray) -> _Linearization:
-        """About the path of the law with these coefficients of the term."""
+        """Return the linearization about the trajectory of the law with these coefficients of the term."""
         values: Mapping[str, float] = {**law.values, **(family.switch(coefficients) if coefficients.any() else {})}
         columns = self._problem.columns(values, law.free, None)
         family = next(one for one in columns.families if one.name == family.name)
@@ -103,13 +105,13 @@ class _Search:
         return _Linearization(law, family, coefficients, replace(columns, equations=without))
 
     def loss(self, here: _Linearization, spread: float) -> float:
-        """Robust loss at a linearization plus the penalty sum(coefficients²) / spread²."""
+        """Return the robust loss at a linearization plus the penalty sum(coefficients²) / spread²."""
         index = here.columns.equations.columns(here.family.columns)
-        left = normal_equations.losses(here.columns.equations, index, here.coefficients, self._units)
-        return float(group_loss(left, self._freedom).sum() + np.sum(here.coefficients**2) / spread**2)
+        squares = normal_equations.losses(here.columns.equations, index, here.coefficients, self._units)
+        return float(group_loss(squares, self._freedom).sum() + np.sum(here.coefficients**2) / spread**2)
 
     def solved(self, here: _Linearization) -> NonparametricFit:
-        """The robust least squares there, with the spread of the least cross-validation loss."""
+        """Return the robust least-squares fit at a linearization, with the spread of least cross-validation loss."""
         equations = here.columns.equations
         selection = ForwardSelection(equations, self._problem.units, self._use, self._dispersion)
         models = [Model(here.law.free, (here.family,), (spread,)) for spread in ENGINE.spreads]
@@ -120,14 +122,14 @@ class _Search:
         return NonparametricFit(here.law, here.family, ENGINE.spreads[best], here.columns, theta, cv_loss[best])
 
     def downhill(self, here: _Linearization, step: NonparametricFit) -> _Linearization | None:
-        """Where a step leads, or the longest part of it that lowers the loss; None where none does."""
+        """Return the linearization after a step, shortened until it lowers the loss; None if no step does."""
         n = len(here.law.free)
         now = self.loss(here, step.spread)
-        for part in 0.5 ** np.arange(ENGINE.term_halvings):
+        for length in 0.5 ** np.arange(ENGINE.term_halvings):
             values = dict(here.law.values)
-            for name, change in zip(here.law.free, part * step.theta[:n], strict=True):
+            for name, change in zip(here.law.free, length * step.theta[:n], strict=True):
                 values[name] = BY_NAME[name].within(values[name] + change)
-            coefficients = here.coefficients + part * (step.theta[n:] - here.coefficients)
+            coefficients = here.coefficients + length * (step.theta[n:] - here.coefficients)
             there = self.linearized(replace(here.law, values=values), here.family, coefficients)
             if self.loss(there, step.spread) < now:
                 return there

@@ -1,9 +1,9 @@
-"""Normal equations of each cluster: fits and held-out losses of any columns to any clusters are sums of small matrices.
+"""Normal equations of each cluster: any fit and any held-out loss is computed from sums of small matrices.
 
 Residuals are `r + J theta` in units of the sensor's noise, so that least squares is maximum likelihood and G = J'J is
-the Fisher information. With G, b = J'r and s = r'r of each cluster, the sum of squares that theta leaves of it is
-s + 2 b'theta + theta'G theta, and least squares on some clusters solves (sum G) theta = -sum b, whatever the length of
-the recording. Clusters here are launches, or the units within them.
+the Fisher information. With G, b = J'r and s = r'r of a cluster, its sum of squares under theta is s + 2 b'theta +
+theta'G theta, and least squares on some clusters solves (sum G) theta = -sum b. The cost does not depend on the length
+of the recording. Clusters are launches, or the units within them.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def make_equations(
 
 
 def gathered(equations: NormalEquations, into: np.ndarray, count: int) -> NormalEquations:
-    """Sum small clusters to large ones: cluster i joins number `into[i]` (c,) of `count`."""
+    """Sum small clusters into larger ones: cluster i is added to number `into[i]` (c,) of `count`."""
     shapes = {"g": equations.g, "b": equations.b, "s": equations.s, "count": equations.count}
     sums = {name: np.zeros((count, *part.shape[1:])) for name, part in shapes.items()}
     for name, part in shapes.items():
@@ -67,7 +67,7 @@ def gathered(equations: NormalEquations, into: np.ndarray, count: int) -> Normal
 
 
 def moved(equations: NormalEquations, columns: np.ndarray, theta: np.ndarray) -> NormalEquations:
-    """The equations of the residuals `r + J theta`, with the same derivatives: b + G theta, s + 2 b'theta +
+    """Return the equations of the residuals `r + J theta` with the same derivatives: b + G theta, s + 2 b'theta +
     theta'G theta."""
     g = np.einsum("cij,j->ci", equations.g[:, :, columns], theta)
     more = 2.0 * equations.b[:, columns] @ theta + g[:, columns] @ theta
@@ -77,8 +77,10 @@ def moved(equations: NormalEquations, columns: np.ndarray, theta: np.ndarray) ->
 def solve(
     equations: NormalEquations, columns: np.ndarray, clusters: np.ndarray, ridge: np.ndarray | float = 0.0
 ) -> np.ndarray:
-    """Ridge regression: the theta (k,) of `columns` that minimizes the sum of squares of `clusters` plus
-    sum(ridge theta²); columns without data get 0."""
+    """Return the ridge regression theta (k,) of `columns`; columns without data get 0.
+
+    It minimizes the sum of squares of `clusters` plus sum(ridge theta²).
+    """
     g = equations.g[np.ix_(clusters, columns, columns)].sum(axis=0)
     b = equations.b[np.ix_(clusters, columns)].sum(axis=0)
     return solve_normal(g + np.diag(np.broadcast_to(ridge, len(columns)).astype(float)), -b)
@@ -91,24 +93,28 @@ def solve_robustly(
     freedom: np.ndarray,
     ridge: np.ndarray | float = 0.0,
 ) -> np.ndarray:
-    """Like `solve`, for the sum of the clusters' `group_loss` with degrees of `freedom` (clusters,), by iteratively
-    reweighted least squares."""
+    """Return the theta (k,) that minimizes the sum of the clusters' `group_loss` plus the ridge penalty.
+
+    `freedom` (clusters,): degrees of freedom. The method is iteratively reweighted least squares; otherwise as `solve`.
+    """
     g, b = equations.g[np.ix_(clusters, columns, columns)], equations.b[np.ix_(clusters, columns)]
     penalty = np.diag(np.broadcast_to(ridge, len(columns)).astype(float))
     weight, theta = np.ones(len(clusters)), np.zeros(len(columns))
     for _ in range(ENGINE.reweighting_rounds):
         theta = solve_normal(np.tensordot(weight, g, 1) + penalty, -(weight @ b))
-        left = equations.s[clusters] + 2.0 * b @ theta + np.einsum("i,cij,j->c", theta, g, theta)
-        fresh = group_weights(left, freedom)
-        if np.all(np.abs(fresh - weight) < ENGINE.reweighting_change * weight):
+        squares = equations.s[clusters] + 2.0 * b @ theta + np.einsum("i,cij,j->c", theta, g, theta)
+        updated = group_weights(squares, freedom)
+        if np.all(np.abs(updated - weight) < ENGINE.reweighting_change * weight):
             break
-        weight = fresh
+        weight = updated
     return theta
 
 
 def solve_normal(g: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """The theta (k,) of g theta = b for a symmetric `g` (k, k) >= 0, by the pseudo-inverse of `g` scaled to unit
-    diagonal; directions without data get 0."""
+    """Solve g theta = b for a symmetric positive semidefinite `g` (k, k); directions without data get 0.
+
+    The solution is that of the pseudo-inverse of `g` scaled to unit diagonal.
+    """
     scale = np.sqrt(np.maximum(np.diag(g), 0.0))
     good = scale > 0.0
     theta = np.zeros(len(b))
@@ -122,8 +128,10 @@ def solve_normal(g: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def _eigen(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Eigenvalues, ascending, and vectors of a symmetric matrix. numpy's divide and conquer is fast, but was seen to
-    fail on a finite one (OpenBLAS 0.3.31); QR then does not."""
+    """Return the eigenvalues, ascending, and eigenvectors of a symmetric matrix.
+
+    numpy's divide-and-conquer method is fast, but failed on a finite matrix (OpenBLAS 0.3.31); QR is the fallback.
+    """
     try:
         return np.linalg.eigh(matrix)
     except np.linalg.LinAlgError:
@@ -131,25 +139,25 @@ def _eigen(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def losses(equations: NormalEquations, columns: np.ndarray, theta: np.ndarray, clusters: np.ndarray) -> np.ndarray:
-    """Sums of squares (clusters,) that `theta` leaves: s + 2 b'theta + theta'G theta."""
+    """Return the sums of squares (clusters,) under `theta`: s + 2 b'theta + theta'G theta."""
     g = equations.g[np.ix_(clusters, columns, columns)]
     b = equations.b[np.ix_(clusters, columns)]
     return equations.s[clusters] + 2.0 * b @ theta + np.einsum("i,cij,j->c", theta, g, theta)
 
 
 def covariance(equations: NormalEquations, columns: np.ndarray, theta: np.ndarray, clusters: np.ndarray) -> np.ndarray:
-    """Covariance (k, k) of a least-squares `theta`: of two estimates the larger standard deviations, with the
-    correlations of the first.
+    """Return the covariance (k, k) of a least-squares `theta`.
 
-    By the model: inverse Fisher information G^-1 times the dispersion, at least 1. By the scatter between clusters: the
-    cluster-robust sandwich G^-1 (sum of u u') G^-1 c / (c - 1) of the scores u = b + G theta of c clusters (CR1: Liang
-    and Zeger, Biometrika 73, 1986), where there are more than two clusters beyond the columns.
+    It has the larger standard deviations of two estimates and the correlations of the first. The first is model-based:
+    the inverse Fisher information G^-1 times the dispersion, at least 1. The second is the cluster-robust sandwich
+    G^-1 (sum of u u') G^-1 c / (c - 1) of the scores u = b + G theta of c clusters (CR1: Liang and Zeger, Biometrika
+    73, 1986), used if c exceeds the number of columns by more than two.
     """
     g = equations.g[np.ix_(clusters, columns, columns)]
-    whole = g.sum(axis=0)
-    size = np.sqrt(np.maximum(np.diag(whole), 0.0))
+    total = g.sum(axis=0)
+    size = np.sqrt(np.maximum(np.diag(total), 0.0))
     size[size == 0.0] = 1.0  # scaled, since parameters differ by many powers of ten
-    inverse = np.linalg.pinv(whole / size[:, None] / size, hermitian=True) / size[:, None] / size
+    inverse = np.linalg.pinv(total / size[:, None] / size, hermitian=True) / size[:, None] / size
     count, c = equations.count[clusters].sum(), len(clusters)
     dispersion = max(losses(equations, columns, theta, clusters).sum() / max(count - len(columns), 1.0), 1.0)
     model = inverse * dispersion

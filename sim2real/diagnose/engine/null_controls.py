@@ -1,4 +1,4 @@
-"""Null controls: the selected laws, and a search for laws, on data in which by construction there is none."""
+"""Null controls: the selected laws, and a search for laws, on data that contain no law by construction."""
 
 from __future__ import annotations
 
@@ -21,21 +21,20 @@ NULL, PERMUTED = "null", "permutation"
 def null_controls(
     equations: NormalEquations, units: Units, model: Model, listed: Sequence[Law], use: np.ndarray, test: np.ndarray
 ) -> dict[str, NullControl]:
-    """Fit `model` to null data of the clusters `use` and predict null data of the clusters `test`; by the kind of
-    data, the rms residual before and after the laws are added.
+    """Fit `model` to null data of the clusters `use` and predict null data of the clusters `test`.
 
-    NULL: the sensor's white noise about the baseline. A search among the `listed` laws, and those of the model (a wave
-    at the length that was found), should find nothing in it. PERMUTED: the residuals of the baseline, the signs of
-    each unit's drawn together at random (a randomization test). They are as smooth as what is missing, so that a
-    search would take some of them for other laws; none is made.
+    Returns, by the kind of data, the rms residual before and after the laws are added. NULL: white sensor noise about
+    the baseline; a search among the `listed` laws and those of the model (a wave at the length found) should find
+    nothing in it. PERMUTED: the baseline's residuals with a random sign for each unit (a randomization test). No search
+    is made there, since these residuals are as smooth as the missing law and would resemble other laws.
     """
     laws = list({law.columns: law for law in (*model.laws, *listed)}.values())
     every = Model(model.base, tuple(laws), (1.0,) * len(laws))
     inner = _only(equations, every.columns(equations)[0])
-    rest = _without(inner, inner.columns(model.base), units, use)
+    residual = _without(inner, inner.columns(model.base), units, use)
     drawn: Mapping[str, Callable[[np.random.Generator], NormalEquations]] = {
         NULL: lambda rng: _noise(inner, units, rng),
-        PERMUTED: lambda rng: _flipped(rest, rng),
+        PERMUTED: lambda rng: _flipped(residual, rng),
     }
     rng, found = np.random.default_rng(0), {}
     for name, draw in drawn.items():
@@ -49,7 +48,7 @@ def null_controls(
 
 
 def _finds_laws(equations: NormalEquations, units: Units, model: Model, laws: Sequence[Law], use: np.ndarray) -> bool:
-    """Whether a search, as `model_search` makes it, finds that laws are missing."""
+    """Return whether a search as in `model_search` selects any law."""
     dispersion = estimated_dispersion(equations, units, model.base, laws, use)
     selection = ForwardSelection(equations, units, use, dispersion)
     grown = selection.add_forward(Model(model.base), laws, len(model.laws))
@@ -57,38 +56,40 @@ def _finds_laws(equations: NormalEquations, units: Units, model: Model, laws: Se
 
 
 def _rms(equations: NormalEquations, units: Units, model: Model, use: np.ndarray, test: np.ndarray) -> Iterator[float]:
-    """Rms residual of `test` under the baseline, and under the model, both fitted to `use`."""
+    """Yield the rms residual of `test` under the baseline and under the model, both fitted to `use`."""
     fitted, tested = units.of(use), units.of(test)
     for one in (Model(model.base), model):
         columns, ridge = one.columns(equations)
         theta = normal_equations.solve_robustly(equations, columns, fitted, units.freedom[fitted], ridge)
-        left = normal_equations.losses(equations, columns, theta, tested).sum()
-        yield float(np.sqrt(max(left, 0.0) / max(units.freedom[tested].sum(), 1.0)))
+        squares = normal_equations.losses(equations, columns, theta, tested).sum()
+        yield float(np.sqrt(max(squares, 0.0) / max(units.freedom[tested].sum(), 1.0)))
 
 
 def _only(equations: NormalEquations, columns: np.ndarray) -> NormalEquations:
-    """The equations of these columns alone."""
+    """Return the equations of these columns alone."""
     names = tuple(equations.names[k] for k in columns)
     return replace(equations, names=names, g=equations.g[:, columns][:, :, columns], b=equations.b[:, columns])
 
 
 def _without(equations: NormalEquations, base: np.ndarray, units: Units, use: np.ndarray) -> NormalEquations:
-    """The equations of the residuals that the baseline, fitted to the clusters `use`, leaves of all units."""
+    """Return the equations of the residuals of all units under the baseline fitted to the clusters `use`."""
     fitted = units.of(use)
     theta = np.zeros(len(equations.names))
     theta[base] = normal_equations.solve_robustly(equations, base, fitted, units.freedom[fitted])
-    left = normal_equations.losses(equations, np.arange(len(theta)), theta, np.arange(equations.clusters))
-    return replace(equations, b=equations.b + equations.g @ theta, s=left)
+    squares = normal_equations.losses(equations, np.arange(len(theta)), theta, np.arange(equations.clusters))
+    return replace(equations, b=equations.b + equations.g @ theta, s=squares)
 
 
 def _flipped(equations: NormalEquations, rng: np.random.Generator) -> NormalEquations:
-    """The equations with the sign of each unit's residuals drawn at random."""
+    """Return the equations with a random sign of each unit's residuals."""
     return replace(equations, b=rng.choice((-1.0, 1.0), (equations.clusters, 1)) * equations.b)
 
 
 def _noise(equations: NormalEquations, units: Units, rng: np.random.Generator) -> NormalEquations:
-    """Equations of white noise e instead of the residuals: b = J'e has the covariance J'J, s = e'e is a chi-square of
-    which J sees a part."""
+    """Return the equations of white noise e instead of the residuals.
+
+    b = J'e has the covariance J'J; s = e'e is a chi-square, the sum of the parts inside and outside the range of J.
+    """
     value, vector = np.linalg.eigh(equations.g)
     visible = value > ENGINE.rank_tolerance * np.maximum(value[:, -1:], 1e-300)
     e = np.where(visible, rng.normal(size=value.shape), 0.0)

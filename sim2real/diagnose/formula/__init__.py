@@ -1,1 +1,1 @@
-"""Formulas of one line for what no listed law explains: `shapes` are functional forms, `search` finds the best."""
+"""One-line formulas for effects that no listed law explains: `shapes` has functional forms, `search` selects one."""

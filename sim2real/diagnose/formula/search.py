@@ -1,9 +1,9 @@
-"""The search for a formula: the functional form that best explains what the final law leaves of a recording.
+"""The search for a formula: the functional form that best explains the remaining residuals of the final law.
 
-Each form is fitted beside the baseline's parameters, which least squares profiles out: columns and residuals are
-projected orthogonally to the baseline's columns. Amplitudes are linear least squares; nonlinear parameters (the shape)
-are searched on a grid. The forms of least BIC get a fine fit; of all that explain nearly as much as any, the one of
-fewest parameters is taken, since no formula explains a strong effect to the last digit.
+Each form is fitted jointly with the baseline's parameters, which are profiled out: columns and residuals are projected
+orthogonally to the baseline's columns. Amplitudes are fitted by linear least squares, nonlinear parameters (the shape)
+on a grid. The forms of least BIC get a fine fit. Among the forms that explain nearly as much as the best, the one with
+fewest parameters is selected, since no formula explains a strong effect exactly.
 """
 
 from __future__ import annotations
@@ -23,10 +23,11 @@ from sim2real.statistics.intervals import reach_of_launches
 
 @dataclass(frozen=True)
 class FormulaProblem:
-    """What a law leaves of a recording: residuals `r` (m,) in units of the noise, their derivatives `base` (m, b) by
-    the parameters that were fitted, and the `cluster` (m,) of each. `respond` maps k laws (n, c, k), values of c
-    components at n instants or contacts, to the columns (m, k) that they add to what is predicted. `use`: the clusters
-    to fit.
+    """The remaining residuals of a law.
+
+    `r` (m,): residuals in units of the noise; `base` (m, b): their derivatives by the fitted parameters; `cluster`
+    (m,): the launch of each; `use`: the clusters to fit. `respond`: maps k laws (n, c, k), values of c components at n
+    instants or contacts, to the columns (m, k) that they add to the prediction.
     """
 
     r: np.ndarray
@@ -39,7 +40,7 @@ class FormulaProblem:
 @dataclass(frozen=True)
 class Formula:
     """A law in one line: its `form`, the line (`words`), its `values` by name and their 95 % intervals (`parameters`).
-    `moved` (b,): change of the baseline's parameters beside it; `gained`: how much lower the sum of squares is."""
+    `moved` (b,): change of the baseline's parameters in the joint fit; `gained`: reduction of the sum of squares."""
 
     form: Form
     words: str
@@ -51,8 +52,8 @@ class Formula:
 
 @dataclass(frozen=True)
 class Fitted:
-    """A form at its best `shape` (q,), the nonlinear parameters, and `amplitude` (k,). `gained`: how much lower the sum
-    of squares is; `bic`: BIC less that of no law, (q + k) log(m) - gained for m residuals."""
+    """A form at its best `shape` (q,), the nonlinear parameters, and `amplitude` (k,). `gained`: reduction of
+    the sum of squares; `bic`: BIC minus that of no law, (q + k) log(m) - gained for m residuals."""
 
     form: Form
     shape: np.ndarray
@@ -62,7 +63,7 @@ class Fitted:
 
     @property
     def numbers(self) -> int:
-        """How many parameters it has."""
+        """The number of parameters."""
         return len(self.shape) + len(self.amplitude)
 
 
@@ -76,7 +77,7 @@ class FormulaSearch:
         self._r = self._projected(rest.r[self._rows][:, None])[:, 0]
 
     def coarse(self, form: Form) -> Fitted:
-        """The form at the best shape of its grid."""
+        """Return the form at the best shape of its grid."""
         per = form.basis(form.grid[0]).shape[2]
         many = max(FORMULA.columns_at_once // per, 1)
         best: Fitted | None = None
@@ -90,7 +91,7 @@ class FormulaSearch:
         return best
 
     def fine(self, found: Fitted) -> Fitted:
-        """The same form with its shape fitted by the method of Nelder and Mead, near the grid."""
+        """Return the form with its shape fitted by the Nelder-Mead method, near the grid."""
         if not len(found.shape):
             return found
         form, scale = found.form, np.abs(found.shape) + 1e-6
@@ -111,7 +112,7 @@ class FormulaSearch:
         return better if better.gained > found.gained else found
 
     def formula(self, found: Fitted) -> Formula:
-        """A fitted form with its parameters and their 95 % intervals, by Student's t of the launches."""
+        """Return a fitted form with parameters and 95 % intervals, with Student's t for the number of launches."""
         named = found.form.named(found.shape, found.amplitude)
         values = {name: value for name, (value, _) in named.items()}
         covariance, moved = self._covariance(found.form, named)
@@ -123,8 +124,11 @@ class FormulaSearch:
         return Formula(found.form, found.form.words(values), values, estimates, moved, found.gained)
 
     def _covariance(self, form: Form, named: Named) -> tuple[np.ndarray, np.ndarray]:
-        """Covariance of the named parameters, see `normal_equations.covariance`, and changes of the baseline's: of the
-        linear least squares of both about the fitted form, derivatives by differences."""
+        """Return the covariance of the named parameters and the changes of the baseline's parameters.
+
+        Both are from a joint linear least-squares fit about the fitted form, with derivatives by finite differences;
+        see `normal_equations.covariance`.
+        """
         rest, values = self.rest, {name: value for name, (value, _) in named.items()}
         here, slopes = form.field(values), []
         for name, value in values.items():
@@ -132,24 +136,24 @@ class FormulaSearch:
             slopes.append((form.field({**values, name: value + step}) - here) / step)
         both = rest.respond(np.stack([here, *slopes], axis=2))
         jacobian = np.concatenate([-both[:, 1:], rest.base], axis=1)[self._rows]
-        left = (rest.r - both[:, 0])[self._rows]
-        theta = -np.linalg.lstsq(jacobian, left, rcond=None)[0]
+        residuals = (rest.r - both[:, 0])[self._rows]
+        theta = -np.linalg.lstsq(jacobian, residuals, rcond=None)[0]
         clusters = np.unique(rest.cluster[self._rows], return_inverse=True)[1]
         count, k = int(clusters.max()) + 1, jacobian.shape[1]
         names = [str(i) for i in range(k)]
-        equations = normal_equations.make_equations(names, left, jacobian, clusters, count)
+        equations = normal_equations.make_equations(names, residuals, jacobian, clusters, count)
         covariance = normal_equations.covariance(equations, np.arange(k), theta, np.arange(count))
         return covariance[: len(values), : len(values)], theta[len(values) :]
 
     def _columns(self, laws: np.ndarray) -> np.ndarray:
-        """Columns of laws with the baseline profiled out; zeros where it can do nearly all that a law does."""
-        whole = self.rest.respond(laws)[self._rows]
-        own = self._projected(whole)
-        own[:, np.linalg.norm(own, axis=0) < FORMULA.own_share * np.linalg.norm(whole, axis=0)] = 0.0
+        """Return columns of laws with the baseline profiled out, zeros where it can fit nearly all of a law."""
+        columns = self.rest.respond(laws)[self._rows]
+        own = self._projected(columns)
+        own[:, np.linalg.norm(own, axis=0) < FORMULA.own_share * np.linalg.norm(columns, axis=0)] = 0.0
         return own
 
     def _projected(self, columns: np.ndarray) -> np.ndarray:
-        """Columns less their projection on the baseline's columns."""
+        """Return columns minus their projection onto the baseline's columns."""
         return columns - self._baseline @ (self._baseline.T @ columns)
 
     def _fitted(self, form: Form, shape: np.ndarray, columns: np.ndarray) -> Fitted:
@@ -170,10 +174,10 @@ def find_formula(
     forms: Sequence[Form],
     joined: Callable[[Form, np.ndarray], Sequence[Form]] = no_more,
 ) -> Formula:
-    """Find the form that best explains the residuals `rest`: of those that gain nearly as much as any, the one of
-    fewest parameters, then of least BIC.
+    """Find the formula that best explains the residuals `rest`.
 
-    `forms`: to try; `joined`: further forms to try from a fitted one, at its shape.
+    Among the forms that gain nearly as much as the best, it has the fewest parameters, then the least BIC. `forms`:
+    candidates; `joined`: returns further candidates for a fitted form at its shape.
     """
     search = FormulaSearch(rest)
     found = [search.coarse(form) for form in forms]

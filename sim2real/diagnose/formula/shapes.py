@@ -1,4 +1,4 @@
-"""Functional forms: what a formula of one line can say.
+"""Functional forms of one-line formulas.
 
 A profile is a scalar function of one coordinate. A form is a law with c components at n instants or contacts, such as
 an acceleration in the plane: a profile along one or more directions. Both are linear in their amplitudes; their other
@@ -17,7 +17,7 @@ from sim2real.diagnose.formula.tuned import FORMULA
 
 Named = dict[str, tuple[float, str]]  # name: value and unit
 PARAMETERS = ("slope", "size", "decay", "middle", "width", "wave", "shift", "toward", "offset")
-COMMON = ("decay", "middle", "width", "wave")  # of all directions: the nonlinear ones
+COMMON = ("decay", "middle", "width", "wave")  # nonlinear parameters, common to all directions
 
 
 @dataclass(frozen=True)
@@ -33,8 +33,10 @@ class Axis:
 
 @dataclass(frozen=True)
 class Direction:
-    """Along what a law acts: `vectors` (n, c), what one unit of it does at each instant or contact. `law`: the letter
-    of the law in a formula; `symbol`: its index; `words`: the direction at the end of a formula."""
+    """The direction of a law: `vectors` (n, c) of one unit of it at each instant or contact.
+
+    `law`: the letter of the law in a formula; `symbol`: its index; `words`: the direction at the end of a formula.
+    """
 
     law: str
     symbol: str
@@ -77,8 +79,10 @@ class Profile:
 
 
 def profiles(axis: Axis, unit: str) -> list[Profile]:
-    """Return the functions of a coordinate that a formula may be made of, with sizes in `unit`: powers, a decay, a
-    bump, a stripe and a sine."""
+    """Return the functions of a coordinate for formulas, with sizes in `unit`.
+
+    They are powers, a decay, a bump, a stripe and a sine.
+    """
     u = axis.values[np.isfinite(axis.values)]
     low, high = float(u.min()), float(u.max())
     return [*_powers(axis, unit), *_local(axis, unit, low, high), _sine(axis, unit, high - low)]
@@ -125,7 +129,7 @@ def _local(axis: Axis, unit: str, low: float, high: float) -> list[Profile]:
 
 
 def _less(name: str, value: float, unit: str = "") -> str:
-    """A coordinate less a number, in brackets."""
+    """Return a coordinate minus a number, in brackets."""
     return f"({name} {'-' if value >= 0.0 else '+'} {abs(value):.4g}{unit})"
 
 
@@ -134,7 +138,7 @@ def _placed(n: np.ndarray, a: np.ndarray, unit: str, of: str) -> Named:
 
 
 def _box(u: np.ndarray, middle: float, width: float) -> np.ndarray:
-    """1 within the stripe and 0 outside (n,), the edges soft, so that their places can be fitted."""
+    """Return 1 inside the stripe and 0 outside (n,), with smooth edges, so that their positions can be fitted."""
     edge = FORMULA.soft_edge * width + 1e-9
     return 0.5 * (np.tanh((u - middle + 0.5 * width) / edge) - np.tanh((u - middle - 0.5 * width) / edge))
 
@@ -176,8 +180,11 @@ def _times(order: int, bracket: str) -> str:
 
 
 def form(profile: Profile, axis: Axis, directions: Sequence[Direction], unit: str) -> Form:
-    """Return a profile of a coordinate as a law along directions, each with its own amplitudes, sizes in `unit`, and an
-    offset where the coordinate has one; 0 where the coordinate is unknown."""
+    """Return a profile of a coordinate as a law along directions, with sizes in `unit`.
+
+    Each direction has its own amplitudes and, if the coordinate has one, an offset. The law is 0 where the coordinate
+    is unknown.
+    """
     known = np.isfinite(axis.values)
     u = np.where(known, axis.values, 0.0)
 
@@ -225,5 +232,5 @@ def _sentence(profile: Profile, axis: Axis, one: Direction, own: Mapping[str, fl
     symbol = f"{one.law}_{one.symbol}" if several else one.law
     law = profile.words(axis.name, own)
     signed = f"- {law[1:]}" if law.startswith("-") else f"+ {law}"
-    whole = f"({own['offset']:.4g} {signed})" if "offset" in own else law
-    return " ".join(part for part in (symbol, "=", whole, "" if unit == "1" else unit, one.words) if part)
+    right_side = f"({own['offset']:.4g} {signed})" if "offset" in own else law
+    return " ".join(part for part in (symbol, "=", right_side, "" if unit == "1" else unit, one.words) if part)

@@ -11,7 +11,7 @@ from sim2real.statistics.tuned import tuned
 
 @dataclass(frozen=True)
 class FormulaNumbers:
-    """Grids of nonlinear parameters, and when a form is good enough."""
+    """Grids of nonlinear parameters, and criteria for the choice of a form."""
 
     # shapes
     periods: tuple[float, ...] = tuned(
@@ -29,19 +29,20 @@ class FormulaNumbers:
         (0.06, 0.12, 0.25), "of the range", "a bump too narrow or too wide to be found", "choice: factors of two"
     )
     soft_edge: float = tuned(
-        0.02, "of a stripe's width", "edges at which a fit has no slope, or that are no edges", "choice: hardly visible"
+        0.02,
+        "of a stripe's width",
+        "edges without a derivative for the fit, or blurred edges",
+        "choice: hardly visible",
     )
     # search
     columns_at_once: int = tuned(60, "columns", "memory, or time", "choice: more would save little")
     refined: int = tuned(5, "forms", "time of fine fits, or the best form missed on the grid", "choice: a few")
     nearly_all: float = tuned(
-        0.98, "of the best form's gain", "many numbers for the last digit of a strong effect", "choice: a fiftieth"
+        0.98, "of the best form's gain", "many parameters for the last digit of a strong effect", "choice: a fiftieth"
     )
-    own_share: float = tuned(
-        0.03, "of a column's norm", "a form that is the baseline by another name", "choice: a small share"
-    )
+    own_share: float = tuned(0.03, "of a column's norm", "a form that the baseline can fit", "choice: a small share")
     beyond_grid: float = tuned(
-        0.1, "of the grid's range", "shapes that no data show, or an optimum cut off", "choice: a tenth"
+        0.1, "of the grid's range", "shapes beyond the data, or an optimum cut off", "choice: a tenth"
     )
     simplex_steps: int = tuned(60, "evaluations", "time", "choice: ample for two parameters")
     simplex_size: float = tuned(

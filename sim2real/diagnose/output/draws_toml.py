@@ -1,4 +1,4 @@
-"""What was found as a distribution to train on: the text of a draws.toml, from the intervals of what was measured."""
+"""The text of a draws.toml: a distribution of parameters for training, from the intervals of a diagnosis."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from puckpilot_env.options.draws_file import FORMAT
 from puckpilot_env.options.effects_file import NOT_SWITCHED
 from puckpilot_env.parameters import BY_NAME, TABLE, make_records
 from puckpilot_env.physics.effects import EFFECTS
-from sim2real.diagnose.output.effects_toml import GANTRY, found_numbers, told
+from sim2real.diagnose.output.effects_toml import GANTRY, accepted_regimes, found_numbers
 from sim2real.diagnose.pipeline import Diagnosis
 from sim2real.diagnose.result.context import PLAIN, ReportContext
 from sim2real.diagnose.result.result import Estimate
@@ -18,16 +18,16 @@ SPREAD = "gantry_spread"
 
 
 def draws_toml(diagnosis: Diagnosis, context: ReportContext = PLAIN) -> str:
-    """The numbers of effects.toml as nominal ones, and each that was fitted drawn from its 95 % interval, within what
-    the simulator takes.
+    """Return a draws.toml with the parameters of effects.toml as nominal values.
 
-    What a diagnosis knows without an interval is not drawn. Nor are the gantry's coefficients, of which players may be
-    shown their own gantry's shares: as widely as the intervals of C6 and C7 reach, gantries differ from each other
-    instead. Laws without a name cannot be drawn; effects.toml holds them.
+    Each fitted parameter is drawn from its 95 % interval, clipped to the simulator's range. Parameters without an
+    interval are not drawn. Neither are the gantry's coefficients, since players may observe their own gantry's ratio to
+    the nominal one: instead the gantry spread is as wide as the intervals of C6 and C7. Unlisted laws cannot be drawn;
+    effects.toml has them.
     """
-    near, _ = found_numbers(diagnosis)
-    nominal = {name: near[name] for name in (row.name for row in TABLE) if name in near and name not in UNLISTED}
-    by = {name: (one, each.regime) for each in told(diagnosis) for name, one in each.baseline.items()}
+    values, _ = found_numbers(diagnosis)
+    nominal = {name: values[name] for name in (row.name for row in TABLE) if name in values and name not in UNLISTED}
+    by = {name: (one, each.regime) for each in accepted_regimes(diagnosis) for name, one in each.baseline.items()}
     by |= {name: (one, found.regime) for found in diagnosis.findings for name, one in found.ranges.items()}
     lines = [f'format = "{FORMAT}"', "", "[parameters]", *(f"{name} = {value!r}" for name, value in nominal.items())]
     where = f" of {' and '.join(context.recordings)}" if context.recordings else ""
@@ -57,8 +57,10 @@ def _rows(name: str, low: float, high: float, source: str) -> list[str]:
 
 
 def _spread(by: Mapping[str, Estimate], nominal: Mapping[str, float]) -> float:
-    """By what share C6 and C7 of both axes may be off at most, or as much of it as leaves every gantry overdamped; 0
-    where they were not fitted, or it is nothing."""
+    """Return the largest relative error of C6 and C7 of both axes, reduced until every gantry is overdamped.
+
+    It is 0 if they were not fitted or their error is negligible.
+    """
     if any(name not in by or name not in nominal for name in GANTRY):
         return 0.0
     shares = []
@@ -76,11 +78,11 @@ def _spread(by: Mapping[str, Estimate], nominal: Mapping[str, float]) -> float:
 
 
 def _comments(diagnosis: Diagnosis) -> list[str]:
-    """What cannot be drawn, a line each."""
+    """Return comments on what cannot be drawn, a line each."""
     unlisted = [one for one in diagnosis.findings if one.mechanism == "unlisted" and UNLISTED.intersection(one.values)]
     lines = [
-        f"# not drawn: what has no name in the {one.regime} and depends on {' and '.join(one.depends_on)}; "
-        "effects.toml has it: give both, --effects effects.toml --draws draws.toml"
+        f"# not drawn: the unlisted {one.regime} law that depends on {' and '.join(one.depends_on)}; "
+        "it is in effects.toml: use --effects effects.toml --draws draws.toml"
         for one in unlisted
     ]
     names = [one.mechanism for one in diagnosis.findings if one.mechanism in EFFECTS]

@@ -1,5 +1,5 @@
-"""A diagnosis as files: diagnosis.json (puckpilot-diagnosis/1), report.html, and for the simulator effects.toml, its
-best numbers, and draws.toml, how far they may be off."""
+"""The files of a diagnosis: diagnosis.json (puckpilot-diagnosis/1), report.html, effects.toml with parameters for the
+simulator, and draws.toml with their distribution."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ NO_PIECES = Proof(0.0, 0.0, 0.0, 0)
 
 
 def as_dict(diagnosis: Diagnosis) -> dict[str, Any]:
-    """The diagnosis in the format's own words."""
+    """Return the diagnosis in the format puckpilot-diagnosis/1."""
     proof = diagnosis.proof
     baseline = {name: one for each in diagnosis.regime_results for name, one in each.baseline.items()}
-    words = {
+    entries = {
         "format": FORMAT,
         "verdict": diagnosis.verdict,
         "baseline": {"parameters": {name: _estimate(one) for name, one in baseline.items()}},
@@ -34,16 +34,16 @@ def as_dict(diagnosis: Diagnosis) -> dict[str, Any]:
         "next_recording": diagnosis.next_recording,
     }
     if diagnosis.proof_remarks:
-        words["heldout_notes"] = diagnosis.proof_remarks
+        entries["heldout_notes"] = diagnosis.proof_remarks
     if diagnosis.reason:
-        words["reason"] = diagnosis.reason
+        entries["reason"] = diagnosis.reason
     if diagnosis.remarks:
-        words["notes"] = diagnosis.remarks
-    return words
+        entries["notes"] = diagnosis.remarks
+    return entries
 
 
 def _finding(one: Finding) -> dict[str, Any]:
-    words = {
+    entries = {
         "regime": one.regime,
         "where": dict(one.where),
         "mechanism": one.mechanism,
@@ -57,22 +57,22 @@ def _finding(one: Finding) -> dict[str, Any]:
             "before": one.before,
             "after": one.after,
             "unit": "rms in units of the sensor's noise",
-            **{f"{name}_twin": _known(asdict(twin)) for name, twin in one.null_controls.items()},
+            **{f"{name}_twin": _without_none(asdict(control)) for name, control in one.null_controls.items()},
         },
     }
-    return words if one.curve is None else {**words, "curve": _curve(one.curve)}
+    return entries if one.curve is None else {**entries, "curve": _curve(one.curve)}
 
 
 def _regimes(diagnosis: Diagnosis) -> list[dict[str, Any]]:
-    """What each regime says; of those that were not tested, why not."""
+    """Return the result of each regime, and for regimes that were not tested the reason."""
     missing = untested(diagnosis)
-    told = [_regime(one) for one in diagnosis.regime_results if one.regime not in missing]
-    return [*told, *({"regime": name, "verdict": "untested", "reason": why} for name, why in missing.items())]
+    tested = [_regime(one) for one in diagnosis.regime_results if one.regime not in missing]
+    return [*tested, *({"regime": name, "verdict": "untested", "reason": why} for name, why in missing.items())]
 
 
 def _regime(one: RegimeResult) -> dict[str, Any]:
-    """What a regime says for itself."""
-    words = {
+    """Return the result of one regime."""
+    entries = {
         "regime": one.regime,
         "verdict": one.verdict,
         "baseline": {name: _estimate(value) for name, value in one.baseline.items()} or None,
@@ -82,17 +82,17 @@ def _regime(one: RegimeResult) -> dict[str, Any]:
         "minor": one.minor or None,
         "next_recording": one.next_recording or None,
     }
-    return _known(words)
+    return _without_none(entries)
 
 
-def _known(words: dict[str, Any]) -> dict[str, Any]:
-    return {key: value for key, value in words.items() if value is not None}
+def _without_none(entries: dict[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in entries.items() if value is not None}
 
 
 def _curve(one: Curve) -> dict[str, Any]:
-    """The law as a curve with its 95 % band."""
-    words = {"x_label": one.x_label, "y_label": one.y_label, **({"ticks": list(one.ticks)} if one.ticks else {})}
-    return {**words, **{name: getattr(one, name).tolist() for name in ("x", "y", "low", "high")}}
+    """Return the law as a curve with its 95 % band."""
+    entries = {"x_label": one.x_label, "y_label": one.y_label, **({"ticks": list(one.ticks)} if one.ticks else {})}
+    return {**entries, **{name: getattr(one, name).tolist() for name in ("x", "y", "low", "high")}}
 
 
 def _estimate(one: Estimate) -> dict[str, Any]:
@@ -100,7 +100,7 @@ def _estimate(one: Estimate) -> dict[str, Any]:
 
 
 def write(diagnosis: Diagnosis, folder: Path, context: ReportContext = PLAIN) -> list[Path]:
-    """Write all files into `folder`, each whole or not at all; returns their places."""
+    """Write all files into `folder`, each atomically, and return their paths."""
     from sim2real.diagnose.report.page import page
 
     folder.mkdir(parents=True, exist_ok=True)

@@ -1,1 +1,1 @@
-"""The diagnosis as one self-contained page: words, tables and pictures, without a network."""
+"""The report of a diagnosis: one self-contained HTML page with text, tables and figures."""

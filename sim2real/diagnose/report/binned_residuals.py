@@ -1,4 +1,4 @@
-"""What laws do not predict, averaged in bins along a coordinate and in cells of the table."""
+"""Residuals averaged in bins along a coordinate and in cells of the table."""
 
 from __future__ import annotations
 
@@ -9,39 +9,41 @@ import numpy as np
 from sim2real.diagnose.result.result import Mismatch
 from sim2real.statistics.binned import Binned, binned
 
-STANDARD_ERRORS = 2.0  # that an error bar shows, and from which an arrow is coloured
+STANDARD_ERRORS = 2.0  # of an error bar, and beyond which an arrow is significant
 CELLS = 10  # of the map, along the table
-ARROWS_IN_FULL = 0.9  # share of the arrows that are drawn in full, the longest of them a cell long
-LONGEST_ARROW = 2.0  # cells, at which longer ones are cut
-FEWEST_IN_CELL = 3  # pieces
-SAME = 0.02  # of the noise, by which before and after may differ and be one
+ARROWS_IN_FULL = 0.9  # share of the arrows that are not cut; the longest of them is one cell long
+LONGEST_ARROW = 2.0  # cells; longer ones are cut
+FEWEST_IN_CELL = 3  # segments
+SAME = 0.02  # of the noise, up to which before and after count as equal
 BEFORE, AFTER, REFITTED = "before", "after", "refitted"
 
 
 @dataclass(frozen=True)
 class MapArrows:
-    """Arrows on the table: `places` and `vectors` (k, 2) [m], of which a cell's length stands for `scale` in the
-    mismatch's unit; `sure` (k,): whether each is more than noise."""
+    """Arrows on the table at `places` (k, 2) [m] with `vectors` (k, 2) [m].
+
+    `significant` (k,) bool: which exceed the noise; `scale`: the size in the mismatch's unit of an arrow of one cell.
+    """
 
     places: np.ndarray
     vectors: np.ndarray
-    sure: np.ndarray
+    significant: np.ndarray
     scale: float
 
 
 def along(mismatch: Mismatch, coordinate: str, component: int) -> dict[str, Binned]:
-    """A component in bins along a coordinate: before and after, or one series where nothing was found."""
+    """Return the bins of a component along a coordinate: before and after, or one series if nothing was found."""
     x, std = mismatch.by[coordinate], mismatch.std[:, component]
     return {name: binned(x, values[:, component], std) for name, values in _series(mismatch).items()}
 
 
 def unchanged(mismatch: Mismatch) -> bool:
-    """Whether nothing was found, so that before and after are one."""
+    """Return whether nothing was found, so that before and after are equal."""
     return bool(np.all(np.abs(mismatch.after - mismatch.before) < SAME * mismatch.std))
 
 
 def map_arrows(mismatch: Mismatch) -> dict[str, MapArrows]:
-    """Mean residual vectors by cell of the table, before and after, to one scale; none leaves the table."""
+    """Return mean residual vectors by cell, before and after, with a common scale, clipped to the table."""
     assert mismatch.size is not None
     size = mismatch.size
     found = {name: cell_means(mismatch, values) for name, values in _series(mismatch).items()}
@@ -52,15 +54,18 @@ def map_arrows(mismatch: Mismatch) -> dict[str, MapArrows]:
         name: MapArrows(
             places,
             np.array([_within(*each, size) for each in zip(places, means / scale * cell, strict=True)]).reshape(-1, 2),
-            sure,
+            significant,
             scale,
         )
-        for name, (places, means, sure) in found.items()
+        for name, (places, means, significant) in found.items()
     }
 
 
 def cell_means(mismatch: Mismatch, values: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Weighted means of the vectors `values` (n, c) by cell: places (k, 2) [m], vectors (k, 2), sure or not (k,)."""
+    """Return weighted means of the vectors `values` (n, c) by cell.
+
+    These are places (k, 2) [m], vectors (k, 2), and whether each is significant (k,).
+    """
     assert mismatch.place is not None and mismatch.axis is not None and mismatch.size is not None
     cell = mismatch.size[0] / CELLS
     left = np.stack([-mismatch.axis[:, 1], mismatch.axis[:, 0]], axis=1)
@@ -77,8 +82,8 @@ def cell_means(mismatch: Mismatch, values: np.ndarray) -> tuple[np.ndarray, np.n
             found.append((weight @ mismatch.place[use], mean, np.hypot(*mean) > STANDARD_ERRORS * error))
     if not found:
         return np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0, bool)
-    places, means, sure = (np.array(column) for column in zip(*found, strict=True))
-    return places, means, sure
+    places, means, significant = (np.array(column) for column in zip(*found, strict=True))
+    return places, means, significant
 
 
 def _series(mismatch: Mismatch) -> dict[str, np.ndarray]:
@@ -88,7 +93,7 @@ def _series(mismatch: Mismatch) -> dict[str, np.ndarray]:
 
 
 def _within(place: np.ndarray, arrow: np.ndarray, size: tuple[float, float]) -> np.ndarray:
-    """An arrow, cut where it would leave the table or be longer than LONGEST_ARROW cells."""
+    """Return an arrow clipped to the table and to a length of LONGEST_ARROW cells."""
     room = np.where(arrow > 0.0, np.array(size) - place, place)
     share = room / np.maximum(np.abs(arrow), 1e-12)
     longest = LONGEST_ARROW * size[0] / CELLS / max(float(np.hypot(*arrow)), 1e-12)

@@ -1,6 +1,6 @@
-"""The pictures of the report: laws as curves, residuals by coordinate and by place, and rms residuals as bars.
+"""The figures of the report: laws as curves, residuals by coordinate and by place, rms residuals as bars.
 
-Each `draw_*` fills given axes of matplotlib; the function beside it makes the inline SVG.
+Each `draw_*` fills matplotlib axes; the function before it returns the inline SVG.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ MAP_EDGE = 0.05  # around the table, as a share of its width
 
 
 def curve_picture(curve: Curve, description: str) -> str:
-    """A law with its 95 % band, the data in bins with errors, and a readable formula where there is one."""
+    """Return a law with its 95 % band, the binned data with errors, and the readable formula if there is one."""
     return inline_svg(description, *CURVE, partial(draw_curve, curve=curve))
 
 
 def draw_curve(axes: Axes, curve: Curve) -> None:
-    """The law as a line with its band, or as squares with error bars where x counts things (`ticks`) or is one."""
+    """Draw the law as a line with its band, or as squares with error bars if x is categorical or a single value."""
     error, discrete = STANDARD_ERRORS * curve.data_error, bool(curve.ticks) or len(curve.x) == 1
     shift = 0.08 if curve.ticks else 0.0
     axes.margins(x=0.03, y=0.08)
@@ -53,7 +53,7 @@ def draw_curve(axes: Axes, curve: Curve) -> None:
 
 
 def residual_pictures(mismatch: Mismatch, coordinate: str) -> list[str]:
-    """What laws do not predict, along one coordinate: a picture a component, before and after."""
+    """Return the residuals along one coordinate, before and after, one figure for each component."""
     return [_residual_picture(mismatch, coordinate, k) for k in range(len(mismatch.components))]
 
 
@@ -70,7 +70,7 @@ def _residual_picture(mismatch: Mismatch, coordinate: str, component: int) -> st
 
 
 def draw_residuals(axes: Axes, mismatch: Mismatch, coordinate: str, component: int) -> None:
-    """Binned means of one component along one coordinate, with ±2 standard errors, and zero."""
+    """Draw binned means of one component along one coordinate, with ±2 standard errors, and zero."""
     axes.margins(x=0.06, y=0.12)
     axes.axhline(0.0, color=FAINT, linewidth=1.0)
     for name, some in along(mismatch, coordinate, component).items():
@@ -82,7 +82,7 @@ def draw_residuals(axes: Axes, mismatch: Mismatch, coordinate: str, component: i
 
 
 def map_picture(mismatch: Mismatch, name: str, arrows: MapArrows) -> str:
-    """Mean residual vectors by place on the table; `name`: under which law."""
+    """Return mean residual vectors by place on the table; `name`: of the law."""
     assert mismatch.size is not None
     length, width = mismatch.size
     edge = 2.0 * MAP_EDGE * width
@@ -95,12 +95,12 @@ def map_picture(mismatch: Mismatch, name: str, arrows: MapArrows) -> str:
 
 
 def draw_map(axes: Axes, arrows: MapArrows, size: tuple[float, float], colour: str) -> None:
-    """The table's outline and an arrow a cell, grey where it is no more than noise; one unit for both axes."""
+    """Draw the table's outline and an arrow for each cell, grey if it is not significant; equal axis scales."""
     length, width = size
     edge = MAP_EDGE * width
     axes.plot([0, length, length, 0, 0], [0, 0, width, width, 0], color=INK, linewidth=1.0)
     if len(arrows.places):
-        colours = [colour if sure else FAINT for sure in arrows.sure]
+        colours = [colour if significant else FAINT for significant in arrows.significant]
         axes.quiver(*arrows.places.T, *arrows.vectors.T, color=colours, angles="xy", scale_units="xy", scale=1.0,
                     units="dots", width=1.6, headwidth=4.0, headlength=4.5, headaxislength=4.0)  # fmt: skip
     axes.set(xlim=(-edge, length + edge), ylim=(-edge, width + edge), aspect="equal")
@@ -108,7 +108,7 @@ def draw_map(axes: Axes, arrows: MapArrows, size: tuple[float, float], colour: s
 
 
 def bars_picture(title: str, sizes: dict[str, float]) -> str:
-    """Rms residuals [m] by name as horizontal bars [mm]; the last of them is the noise alone."""
+    """Return rms residuals [m] by name as horizontal bars [mm]; the last is the noise alone."""
     description = f"{title}: {', '.join(f'{name} {number(1e3 * size)} mm' for name, size in sizes.items())}"
     left = 12.0 + LETTER * max(map(len, sizes))
     return inline_svg(
@@ -117,7 +117,7 @@ def bars_picture(title: str, sizes: dict[str, float]) -> str:
 
 
 def draw_bars(axes: Axes, sizes: dict[str, float]) -> None:
-    """A bar a size [m], with its number in mm at the end."""
+    """Draw a bar for each size [m], with its value in mm at the end."""
     colours = [*(ORANGE, BLUE)[: len(sizes) - 1], GREY]
     bars = axes.barh(range(len(sizes)), [1e3 * size for size in sizes.values()], color=colours, height=0.7)
     axes.bar_label(bars, [f"{number(1e3 * size)} mm" for size in sizes.values()], padding=4)
@@ -133,7 +133,7 @@ def _points(axes: Axes, x: np.ndarray, y: np.ndarray, error: np.ndarray, colour:
 
 
 def _label(axes: Axes, x: str, y: str, height: float, counts: bool = False) -> None:
-    """Labels and round ticks; the label of the upright axis on two lines where one is too long for the `height`."""
+    """Set labels and round ticks; the y label is wrapped if it is too long for the `height`."""
     from matplotlib.ticker import FuncFormatter, MaxNLocator
     from matplotlib.transforms import blended_transform_factory
 

@@ -1,4 +1,4 @@
-"""A finding in the report: the law in words and formula, its numbers, its curve, its alternatives, its proof."""
+"""A finding in the report: the law in words and formula, its parameters, its curve, its alternatives, its proof."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from sim2real.diagnose.report.plain_words import are_weights, chance, explained,
 from sim2real.diagnose.report.shapes import shape_in_words
 from sim2real.diagnose.result.result import Curve, Finding
 
-MOST_ALTERNATIVES = 5  # before the rest is folded away
-WORSE = ((0.0, "no worse"), (9.0, "a tie"), (30.0, "a little"), (100.0, "clearly"), (1000.0, "far"))
-HOPELESS = "hopelessly"
-NOMINAL = "Nominal probability that noise alone gains as much, times the number of laws tried"
-PART_OF = {"corner": "wall"}  # regimes of findings, to the regimes that are identified
+MOST_ALTERNATIVES = 5  # shown; the others are folded
+WORSE = ((0.0, "not worse"), (9.0, "equivalent"), (30.0, "slightly"), (100.0, "clearly"), (1000.0, "strongly"))
+FAR_WORSE = "very strongly"
+NOMINAL = "Nominal p-value of the likelihood-ratio test, times the number of laws tried"
+PART_OF = {"corner": "wall"}  # regime of a finding: the regime that identifies it
 LAW_ALONE = (
-    "The law with its 95 % band, and its formula, both less what the baseline's own numbers could do. No data are "
-    "drawn beside it: the path responds to the volts of a while, and does not measure those of a moment."
+    "The law with its 95 % band, and its formula, both without the part that the baseline's parameters can fit. No "
+    "data are drawn: the path responds to the volts over some time and does not measure them at one instant."
 )
 
 
 def finding_view(one: Finding, index: int) -> dict[str, Any]:
-    """What finding.html.j2 shows of the finding of this `index`, from 1."""
+    """Return what finding.html.j2 shows of the finding of this `index`, from 1."""
     rows = [(each.mechanism, number(each.loss), how_much(each.loss), each.reason) for each in one.alternatives]
     drawn = one.curve is not None and len(one.curve.x) > 0
     return {
@@ -45,8 +45,8 @@ def finding_view(one: Finding, index: int) -> dict[str, Any]:
 
 
 def how_much(loss: float) -> str:
-    """How much worse an alternative is, in words: noise alone makes differences of some units."""
-    return next((said for most, said in WORSE if loss < most), HOPELESS)
+    """Return how much worse an alternative is, in words; noise alone makes differences of a few units of `loss`."""
+    return next((words for most, words in WORSE if loss < most), FAR_WORSE)
 
 
 def _regime_of(one: Finding) -> type[Regime] | Regime:
@@ -54,10 +54,10 @@ def _regime_of(one: Finding) -> type[Regime] | Regime:
 
 
 def _law_in_words(one: Finding) -> str:
-    depends = f"What it does to the motion depends on {' and '.join(one.depends_on)}." if one.depends_on else ""
+    depends = f"Its effect on the motion depends on {' and '.join(one.depends_on)}." if one.depends_on else ""
     law = explained(one.mechanism)
     if one.mechanism == "unlisted":
-        law = "No mechanism that the simulator knows explains this."
+        law = "No mechanism of the simulator explains this."
     return " ".join(part for part in (law, depends, shape_in_words(one.formula)) if part)
 
 
@@ -78,18 +78,18 @@ def _curve(one: Finding, curve: Curve) -> str:
 def _caption(one: Finding) -> str:
     return (
         f"The law with its 95 % band, and the recording: the residuals of {_regime_of(one).shown_by} added to the "
-        "curve, means with ±2 standard errors. What the axis does not show is held fixed or averaged over; where the "
-        "law depends on too much for that, measured values are drawn against predicted ones."
+        "curve, means with ±2 standard errors. Other variables are held fixed or averaged over; if the law depends on "
+        "too many of them, measured values are drawn against predicted ones."
     )
 
 
 def _proof(one: Finding) -> str:
-    shown = "No held-out data show it."
+    shown = "The holdout does not test it."
     if one.before is not None and one.after is not None:
         what = f"residuals of the {one.regime}, in units of the noise, fall"
         if one.regime == "sensing":
-            what = "what this fault makes wrong, each residual in units of its own standard error, falls"
-        fall = f"from {number(one.before)} without this law to {number(one.after)} with all that was found"
+            what = "the error due to this fault, each residual in units of its own standard error, falls"
+        fall = f"from {number(one.before)} without this law to {number(one.after)} with all findings"
         shown = f"On {piece_words(one.regime)} of the holdout, {what} {fall}."
     size = "" if one.size_m is None else f"Its effect is {number(1e3 * one.size_m)} mm{_regime_of(one).measured_at}. "
     return f"{size}{shown} {NOMINAL}: {chance(one.p_value)}."

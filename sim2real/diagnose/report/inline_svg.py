@@ -1,4 +1,4 @@
-"""Matplotlib axes as inline SVG: the same data give the same bytes, and the picture needs nothing beside itself."""
+"""Matplotlib axes as self-contained inline SVG; the same data give the same bytes."""
 
 from __future__ import annotations
 
@@ -44,10 +44,10 @@ def inline_svg(
     draw: Callable[[Axes], None],
     margins: tuple[float, float, float] = (LEFT, TOP, BOTTOM),
 ) -> str:
-    """An <svg> element of `width` × `height` [points] that scales to the width of its box.
+    """Return an <svg> element of `width` × `height` [points] that scales to the width of its box.
 
-    `draw` fills the axes, which leave `margins` (left, top, bottom) [points] of the picture free; its labelled artists
-    become a legend above them. `description` becomes the element's aria-label. Nothing is clipped to the axes, so no
+    `draw` fills the axes, which have `margins` (left, top, bottom) [points]; labelled artists become a legend above
+    them. `description` becomes the element's aria-label. Nothing is clipped to the axes, so no
     artist may reach beyond their limits.
     """
     import matplotlib
@@ -68,7 +68,7 @@ def inline_svg(
 
 
 def _element(svg: str, description: str, width: float, height: float) -> str:
-    """The <svg> element of a whole SVG file, without its size, name spaces, clipping and unused ids."""
+    """Return the <svg> element of an SVG file, without its size, name spaces, clipping and unused ids."""
     body = svg[svg.index(">", svg.index("<svg")) + 1 :]
     body = re.sub(OUTSIDE, "", body, flags=re.DOTALL)
     body = re.sub(r"<defs>\s*</defs>", "", body)

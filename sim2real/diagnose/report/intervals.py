@@ -1,4 +1,4 @@
-"""Fitted numbers with their 95 % intervals in words; a number that the data leave open does not look like a result."""
+"""Fitted parameters with their 95 % intervals in words; undetermined parameters are marked as such."""
 
 from __future__ import annotations
 
@@ -13,22 +13,25 @@ NOT_DETERMINED, AT_BOUND = "not determined", "at its bound"
 
 
 def estimate_cells(name: str, one: Estimate, mechanism: str = "") -> list[str]:
-    """The cells of a row: name, value or why there is none, 95 % interval, unit; `mechanism` as in `reservation`."""
+    """Return the cells of a row: name, value or status, 95 % interval, unit; `mechanism` as in `estimate_status`."""
     value, low, high = digits_of(one)
-    return [name, reservation(name, one, mechanism) or value, f"{low} … {high}", unit_words(one.unit)]
+    return [name, estimate_status(name, one, mechanism) or value, f"{low} … {high}", unit_words(one.unit)]
 
 
 def estimate_words(name: str, one: Estimate, mechanism: str = "") -> str:
-    """`name 1.2 [1.1, 1.3] m/s`, or `name not determined (0 to 1.6 m/s)`; `mechanism` as in `reservation`."""
+    """Return `name 1.2 [1.1, 1.3] m/s` or `name not determined (0 to 1.6 m/s)`; `mechanism` as in `estimate_status`."""
     value, low, high = digits_of(one)
-    unit, why = f" {unit_words(one.unit)}".rstrip(), reservation(name, one, mechanism)
+    unit, why = f" {unit_words(one.unit)}".rstrip(), estimate_status(name, one, mechanism)
     return f"{name} {why} ({low} to {high}{unit})" if why else f"{name} {value} [{low}, {high}]{unit}"
 
 
-def reservation(name: str, one: Estimate, mechanism: str = "") -> str:
-    """Why an estimate is no result: NOT_DETERMINED where its 95 % interval holds zero or its whole range, AT_BOUND
-    where it reaches an end of its range; "" else. The range is that of the simulator's parameter `name`, or of the
-    parameter to which the effect `mechanism` gives that short name; other numbers have none."""
+def estimate_status(name: str, one: Estimate, mechanism: str = "") -> str:
+    """Return the status of an estimate, "" if it is determined.
+
+    It is NOT_DETERMINED if the 95 % interval contains zero or the whole range, AT_BOUND if it reaches an end of the
+    range. The range is that of the simulator's parameter `name`, or of the parameter with that label in the effect
+    `mechanism`; other estimates have none.
+    """
     low, high = _range(name, mechanism)
     ends = [one.low <= low, one.high >= high]
     if one.low < one.high and (one.low <= 0.0 <= one.high or all(ends)):

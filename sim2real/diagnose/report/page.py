@@ -1,4 +1,4 @@
-"""The whole page of a diagnosis, from the templates beside this file."""
+"""The HTML page of a diagnosis, from the templates beside this file."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from markupsafe import Markup
 from sim2real.diagnose.pipeline import Diagnosis
 from sim2real.diagnose.report.charts import bars_picture
 from sim2real.diagnose.report.findings import finding_view
-from sim2real.diagnose.report.plain_words import NOTHING, left_over, number, proof_sizes
+from sim2real.diagnose.report.plain_words import NOTHING, number, proof_sizes, residual_words
 from sim2real.diagnose.report.regimes import regime_view
 from sim2real.diagnose.report.sensor import sensor_view
 from sim2real.diagnose.report.summary import sentence
@@ -23,7 +23,7 @@ NO_SIZES = (NOTHING, NOTHING, NOTHING)
 
 
 def page(diagnosis: Diagnosis, context: ReportContext = PLAIN) -> str:
-    """The diagnosis as one HTML page that needs nothing beside itself, without scripts."""
+    """Return the diagnosis as one self-contained HTML page without scripts."""
     environment = Environment(
         loader=FileSystemLoader(TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
         lstrip_blocks=True, keep_trailing_newline=True,
@@ -45,10 +45,10 @@ def page(diagnosis: Diagnosis, context: ReportContext = PLAIN) -> str:
 
 
 def _overview(diagnosis: Diagnosis, missing: dict[str, str]) -> list[list[str]]:
-    """A row a regime: its name, what is missing, residuals before and after in units of the noise, what held out."""
-    there = {each.regime for each in diagnosis.regime_results}
+    """Return a row for each regime: name, missing laws, residuals in units of the noise, size of the holdout."""
+    tested = {each.regime for each in diagnosis.regime_results}
     rows = [_row(each, missing) for each in diagnosis.regime_results]
-    return rows + [[name, f"not tested: {why}", *NO_SIZES] for name, why in missing.items() if name not in there]
+    return rows + [[name, f"not tested: {why}", *NO_SIZES] for name, why in missing.items() if name not in tested]
 
 
 def _row(each: RegimeResult, missing: dict[str, str]) -> list[str]:
@@ -67,7 +67,7 @@ def _sizes(each: RegimeResult) -> tuple[str, ...]:
 
 
 def _unexplained(diagnosis: Diagnosis) -> str:
-    """Regimes in which something was found and more than noise is left, in a sentence; "" where there are none."""
+    """Return the regimes with findings whose residuals exceed the noise, in a sentence; "" if there are none."""
     found = {each.regime: each.times_noise for each in diagnosis.regime_results if each.findings}
-    more = [f"in the {name} {left_over(times)}" for name, times in found.items() if times and times > TO_THE_NOISE]
-    return f"What was found does not explain all: {'; '.join(more)}." if more else ""
+    more = [f"the {name} {residual_words(times)}" for name, times in found.items() if times and times > TO_THE_NOISE]
+    return f"The findings do not explain all: {'; '.join(more)}." if more else ""

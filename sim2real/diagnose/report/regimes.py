@@ -1,4 +1,4 @@
-"""A regime in the report: its conclusion, the baseline's numbers, the proof with its controls, and the residuals."""
+"""A regime in the report: its conclusion, the baseline's parameters, the proof with null controls, the residuals."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from sim2real.diagnose.engine.null_controls import NULL, PERMUTED
 from sim2real.diagnose.report.binned_residuals import map_arrows, unchanged
 from sim2real.diagnose.report.charts import bars_picture, map_picture, residual_pictures
 from sim2real.diagnose.report.intervals import estimate_cells
-from sim2real.diagnose.report.plain_words import NOTHING, left_over, number, pieces, proof_sizes, with_gist
+from sim2real.diagnose.report.plain_words import NOTHING, number, pieces, proof_sizes, residual_words, with_description
 from sim2real.diagnose.result.context import ReportContext
 from sim2real.diagnose.result.result import TO_THE_NOISE, Mismatch, RegimeResult
 from sim2real.diagnose.result.untested import NO_PATH
 
-FEWEST = 8  # pieces that a picture needs
+FEWEST = 8  # segments that a figure needs
 CONTROLS = {NULL: "simulated control", PERMUTED: "sign-flipped control"}
 
 
 def regime_view(one: RegimeResult, context: ReportContext, missing: Mapping[str, str]) -> dict[str, Any]:
-    """What regime.html.j2 shows of a regime; `missing`: what regimes that were not tested would take."""
+    """Return what regime.html.j2 shows of a regime; `missing`: missing data of regimes that were not tested."""
     bars = ""
     if one.proof is not None and one.proof.pieces:
         sizes = proof_sizes(one.proof, bool(one.findings), one.regime == "sensing")
@@ -48,15 +48,14 @@ def _baseline_row(name: str, estimate, context: ReportContext) -> list[str]:
 def _proof(one: RegimeResult) -> str:
     if one.regime == "sensing":
         return (
-            f"Rms of all that the faults make wrong, together and in metres, on {pieces(one)} of the holdout; each "
-            "finding has its own residuals, in units of their standard errors."
+            f"Rms position error of all sensor faults together on {pieces(one)} of the holdout; each finding lists its "
+            "own residuals in units of their standard errors."
         )
     return f"Rms residual on {pieces(one)} that no fit, choice or correction used."
 
 
 def _null_controls(one: RegimeResult) -> list[tuple[str, ...]]:
-    """Rows of the regime's launches, each predicted by laws fitted to others, and of their null controls; [] where
-    there are none."""
+    """Return the rows of cross-validation residuals, of the recording and of the null controls; [] without controls."""
     controls = next((each.null_controls for each in one.findings if each.null_controls), {})
     if not controls or one.selection is None or not one.selection.floor_m:
         return []
@@ -74,28 +73,28 @@ def _conclusion(one: RegimeResult, context: ReportContext, missing: Mapping[str,
     if one.regime in missing:
         return f"Not tested: {missing[one.regime]}."
     if one.regime == "sensing":
-        return _sensing(one, missing) + _rest(one, "With that corrected")
-    rest = _rest(one, "With it" if one.findings else "With them")
+        return _sensing(one, missing) + _rest(one, "After correction")
+    rest = _rest(one, "With the laws found" if one.findings else "With the refitted parameters")
     if one.findings:
-        return f"Physics is missing here: {', '.join(with_gist(each.mechanism) for each in one.findings)}.{rest}"
+        return f"Physics is missing here: {', '.join(with_description(each.mechanism) for each in one.findings)}.{rest}"
     if not one.defaults:
-        return f"The simulator's law explains this regime, with other numbers than {context.standard}.{rest}"
+        return f"The simulator's laws explain this regime with parameters other than {context.reference}.{rest}"
     if rest:
-        return f"Nothing is found to be missing here.{_rest(one, 'Yet')}"
-    return f"{context.simulator} explains this regime to the noise of its sensors."
+        return f"No missing physics is found here.{_rest(one, 'However')}"
+    return f"{context.simulator} explains this regime to the noise of the sensors."
 
 
 def _rest(one: RegimeResult, after: str) -> str:
-    """A sentence on the residuals of launches, where they are more than noise."""
+    """Return a sentence on the cross-validation residuals, "" if they are noise."""
     times = one.times_noise
-    return f" {after}, {left_over(times)}." if times and times > TO_THE_NOISE else ""
+    return f" {after}, {residual_words(times)}." if times and times > TO_THE_NOISE else ""
 
 
 def _sensing(one: RegimeResult, missing: Mapping[str, str]) -> str:
-    """What was looked for depends on what was recorded."""
-    found = "No fault shows in where the walls are measured, nor in how often frames repeat."
+    """Return the conclusion on the sensors; which faults were tested depends on the recorded streams."""
+    found = "The measured wall positions and the repetition of frames show no sensor fault."
     if one.findings:
-        found = f"The sensors err: {', '.join(with_gist(each.mechanism) for each in one.findings)}."
+        found = f"Sensor faults: {', '.join(with_description(each.mechanism) for each in one.findings)}."
     if missing.get("gantry") == NO_PATH:
         return f"{found} Not tested: the camera's delay and clock, since {NO_PATH}."
     untested = one.next_recording and not one.findings
@@ -116,5 +115,5 @@ def _residuals(one: Mismatch) -> dict[str, Any]:
 
 
 def _how_to_read(one: Mismatch) -> str:
-    target = "noise alone gives one" if one.components == ("rms",) else "what is explained lies on zero"
+    target = "noise alone gives one" if one.components == ("rms",) else "explained residuals are zero"
     return f"Means of {len(one.before)} {one.of}, ±2 standard errors; {target}."

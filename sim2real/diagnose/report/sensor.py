@@ -1,4 +1,4 @@
-"""The sensor in the report: what each recording's camera was like."""
+"""The sensors in the report: the properties of each recording's camera."""
 
 from __future__ import annotations
 
@@ -11,8 +11,10 @@ from sim2real.diagnose.result.result import SensorSummary
 
 
 def sensor_view(diagnosis: Diagnosis) -> dict[str, Any] | None:
-    """What sensor.html.j2 shows, with a column a recording: two or three are usual, and many rows fit any screen.
-    None where nothing is known of any sensor."""
+    """Return what sensor.html.j2 shows, None without a sensor summary.
+
+    Each recording is a column: two or three are usual, and a tall table fits any screen.
+    """
     summaries = diagnosis.sensor_summaries
     if not summaries:
         return None
@@ -34,11 +36,13 @@ ROWS: dict[str, Callable[[SensorSummary], str]] = {
     "frames": lambda one: str(one.frames),
     "noise of a position [mm]": lambda one: number(1e3 * one.noise_m),
     "noise of the clock [ms]": lambda one: number(1e3 * one.clock_s),
-    "errors are correlated over [ms]": lambda one: number(1e3 * one.memory_s) if one.memory_s else NOTHING,
+    "errors are correlated over [ms]": lambda one: (
+        number(1e3 * one.correlation_time_s) if one.correlation_time_s else NOTHING
+    ),
     "position error of the calibration [mm]": lambda one: number(1e3 * one.place_std_m) if one.place_std_m else NOTHING,
     "frames without the puck": lambda one: _share(one.dropped),
-    "frames repeated": lambda one: _share(one.held),
-    "frames with outliers": lambda one: _share(one.wild),
+    "frames repeated": lambda one: _share(one.repeated),
+    "frames with outliers": lambda one: _share(one.outliers),
     "launches": lambda one: str(one.launches),
     "glides": lambda one: str(one.glides),
     "contacts": lambda one: str(one.contacts),

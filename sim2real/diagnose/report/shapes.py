@@ -1,4 +1,4 @@
-"""Smooth laws without a formula, in words: their names say what acts and what it depends on."""
+"""Smooth laws without a formula, in words derived from their names."""
 
 from __future__ import annotations
 
@@ -7,29 +7,29 @@ import re
 WHAT = {
     "force": "an extra force",
     "loss": "an extra loss of speed",
-    "pull": "more or less pull of the motors than their volts give",
-    "restitution": "another restitution",
-    "tangential ratio": "another share kept of the speed along the contact",
-    "share kept": "another share kept of the speed, against the wall or mallet and along it",
+    "pull": "a deviation of the motors' force from the one that the volts predict",
+    "restitution": "a change of the restitution",
+    "tangential ratio": "a change of the tangential speed ratio of contacts",
+    "share kept": "a change of the speed ratio of contacts, normal and tangential alike",
     "side force": "a force across the velocity",
 }
 BY = {
-    "place": "the place",
+    "place": "the position",
     "speed": "the speed",
     "volts": "the commanded volts",
     "time": "the time",
     "heading": "the direction of motion",
     "angle": "the angle of the contact",
-    "place along the table": "the place along the table",
-    "place across the table": "the place across the table",
+    "place along the table": "the position along the table",
+    "place across the table": "the position across the table",
     "history": "the volts and the speed of the last second",
-    "each launch's spin": "the spin that each launch begins with, a number a launch",
+    "each launch's spin": "the initial spin of each launch",
 }
 
 
 def shape_in_words(name: str) -> str:
-    """A sentence on the smooth law of this name; "" where the name says no such law."""
+    """Return a sentence on the smooth law of this name; "" for any other name."""
     parts = re.fullmatch(r"(?:mallet's )?(.+) by (.+)", name)
     if parts is None or parts[1] not in WHAT or parts[2] not in BY:
         return ""
-    return f"It is {WHAT[parts[1]]}, whose size is a smooth curve of {BY[parts[2]]}."
+    return f"It is {WHAT[parts[1]]}, whose size is a smooth function of {BY[parts[2]]}."

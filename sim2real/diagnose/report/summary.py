@@ -1,4 +1,4 @@
-"""A diagnosis in ten lines for the terminal."""
+"""The summary of a diagnosis for the terminal, about ten lines."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from sim2real.diagnose.report.intervals import estimate_words
 from sim2real.diagnose.report.plain_words import (
     are_weights,
     clause,
-    left_over,
     pieces,
-    with_gist,
+    residual_words,
+    with_description,
 )
 from sim2real.diagnose.result.context import PLAIN, ReportContext
 from sim2real.diagnose.result.result import TO_THE_NOISE, Finding, RegimeResult
@@ -21,43 +21,39 @@ MOST_LINES = 10
 
 
 def sentence(diagnosis: Diagnosis, context: ReportContext = PLAIN) -> str:
-    """The verdict in one sentence."""
+    """Return the verdict in one sentence."""
     if diagnosis.verdict == "undetermined":
-        return _cannot_tell(diagnosis, context)
+        return _undetermined(diagnosis, context)
     verdict = _lacking(diagnosis.findings) if diagnosis.findings else _explained(diagnosis, context)
     misfit = " and ".join(each.regime for each in diagnosis.regime_results if each.misfit)
     inconclusive_regimes = " and ".join(each.regime for each in diagnosis.inconclusive_regimes if not each.misfit)
-    beside = [f"something is missing in the {misfit} too, but it cannot tell what"] if misfit else []
-    beside += [f"of the {inconclusive_regimes} it cannot tell"] if inconclusive_regimes else []
+    beside = [f"an effect is missing in the {misfit} too, but cannot be identified"] if misfit else []
+    beside += [f"undetermined: {inconclusive_regimes}"] if inconclusive_regimes else []
     return f"{verdict} ({_capital('; '.join(beside))}.)" if beside else verdict
 
 
-def _cannot_tell(diagnosis: Diagnosis, context: ReportContext) -> str:
+def _undetermined(diagnosis: Diagnosis, context: ReportContext) -> str:
     misfit = " and ".join(each.regime for each in diagnosis.regime_results if each.misfit)
     if misfit:
-        return f"Something is missing in the {misfit}, but {context.these} cannot tell what."
+        return f"An effect is missing in the {misfit}, but {context.these} cannot identify it."
     reasons = [diagnosis.reason, *(each.undetermined for each in diagnosis.regime_results)]
-    why = next((r for r in reasons if r), "nothing in it shows it")
-    return f"{_capital(context.these)} cannot tell whether physics is missing: {why}."
+    why = next((r for r in reasons if r), "no usable data")
+    return f"{_capital(context.these)} cannot determine whether physics is missing: {why}."
 
 
 def _explained(diagnosis: Diagnosis, context: ReportContext) -> str:
-    """That nothing is missing, and the regimes in which more than noise is left all the same."""
-    left = {each.regime: each.times_noise for each in diagnosis.regime_results}
-    more = [f"in the {regime} {left_over(many)}" for regime, many in left.items() if many and many > TO_THE_NOISE]
+    """Return that no physics is missing, and the regimes whose residuals exceed the noise."""
+    times = {each.regime: each.times_noise for each in diagnosis.regime_results}
+    more = [f"the {regime} {residual_words(many)}" for regime, many in times.items() if many and many > TO_THE_NOISE]
     if diagnosis.verdict == "parameters_only":
-        said = f"The simulator's law explains {context.these}, with other numbers than {_own(context)}"
+        verdict = f"The simulator's laws explain {context.these} with parameters other than {context.reference}"
     else:
-        said = f"{context.simulator} explains {context.these}{'' if more else ' to the noise of the sensors'}"
-    return f"{said}, but {' and '.join(more)}." if more else f"{said}."
-
-
-def _own(context: ReportContext) -> str:
-    return "your baseline's" if context.baseline else "shipped"
+        verdict = f"{context.simulator} explains {context.these}{'' if more else ' to the noise of the sensors'}"
+    return f"{verdict}, but {' and '.join(more)}." if more else f"{verdict}."
 
 
 def _lacking(findings: Sequence[Finding]) -> str:
-    """All that is missing; faults of the sensors last, for they are no physics of the table."""
+    """Return all missing laws in a sentence; sensor faults come last, since they are not physics of the table."""
     faults = [f"{clause(one.mechanism)} ({one.mechanism})" for one in findings if one.regime == "sensing"]
     names = list(dict.fromkeys(_name(one) for one in findings if one.regime != "sensing"))
     parts = [*faults]
@@ -72,14 +68,16 @@ def _lacking(findings: Sequence[Finding]) -> str:
 def _name(one: Finding) -> str:
     if one.mechanism == "unlisted":
         depends = " and ".join(one.depends_on)
-        return f"something unlisted in the {one.regime}" + (f" that depends on {depends}" if depends else "")
+        return f"an unlisted effect in the {one.regime}" + (f" that depends on {depends}" if depends else "")
     also = f" or, not distinguished from it, {' or '.join(one.also_possible)}" if one.also_possible else ""
-    return with_gist(one.mechanism) + also
+    return with_description(one.mechanism) + also
 
 
 def summary(diagnosis: Diagnosis, written: Sequence[Path], context: ReportContext = PLAIN) -> list[str]:
-    """The verdict, each finding, the proof, what to do next, all notes, the baseline's numbers as far as MOST_LINES
-    allow, the files."""
+    """Return the lines: verdict, findings, holdout residuals, next recording, notes, baseline, `written` files.
+
+    Baseline parameters are shown as far as MOST_LINES allow.
+    """
     lines = [sentence(diagnosis, context)]
     lines += [f"  {one.mechanism}: {_numbers(one)}" for one in diagnosis.findings]
     lines += [_held_out(each) for each in diagnosis.regime_results if each.findings or not diagnosis.findings]
@@ -90,27 +88,27 @@ def summary(diagnosis: Diagnosis, written: Sequence[Path], context: ReportContex
     room = max(MOST_LINES - 1 - len(lines), 0)
     if len(fitted) > room:
         fitted = fitted[: max(room - 1, 0)]
-        left = [each.regime for each in diagnosis.regime_results if each.baseline][len(fitted) :]
-        fitted.append(f"  refitted numbers of {', '.join(left)}: in report.html")
+        others = [each.regime for each in diagnosis.regime_results if each.baseline][len(fitted) :]
+        fitted.append(f"  refitted parameters of {', '.join(others)}: see report.html")
     return [*lines, *fitted, "wrote " + ", ".join(map(str, written))]
 
 
 def _numbers(one: Finding) -> str:
     if one.parameters and are_weights(one.parameters):
-        return f"{one.formula}; its {len(one.parameters)} numbers are in diagnosis.json"
+        return f"{one.formula}; its {len(one.parameters)} coefficients are in diagnosis.json"
     shown = list(one.parameters.items())[:3]
     more = f" and {len(one.parameters) - 3} more" if len(one.parameters) > 3 else ""
     return f"{one.formula}; " + ", ".join(estimate_words(name, each, one.mechanism) for name, each in shown) + more
 
 
 def _held_out(each: RegimeResult) -> str:
-    """Rms residuals on the holdout of a regime; "" where it has none."""
+    """Return the rms residuals of a regime on the holdout; "" if it has none."""
     if each.proof is None or not each.proof.pieces:
         return ""
     before, after, floor = (1e3 * size for size in (each.proof.before_m, each.proof.after_m, each.proof.floor_m))
-    found = f", {after:.2f} mm with what was found" if each.findings else ""
+    found = f", {after:.2f} mm with the findings" if each.findings else ""
     baseline = "as recorded" if each.regime == "sensing" else "with the refitted baseline"
-    return f"  held out, {each.regime}: {before:.2f} mm {baseline}{found}; noise alone {floor:.2f} mm ({pieces(each)})"
+    return f"  holdout, {each.regime}: {before:.2f} mm {baseline}{found}; noise alone {floor:.2f} mm ({pieces(each)})"
 
 
 def _baseline(each: RegimeResult) -> str:

@@ -1,1 +1,1 @@
-"""What a diagnosis says, as data."""
+"""The result of a diagnosis as data."""

@@ -1,4 +1,4 @@
-"""What to record next, where these data cannot tell two laws apart or rest on too few launches."""
+"""What to record next if the data do not discriminate two laws or too few launches support a law."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ from sim2real.diagnose.result.result import Finding
 
 
 def advice(problem: Problem, found: SearchResult, findings: Sequence[Finding], use: np.ndarray) -> str:
-    """What to record next of a regime whose clusters `use` were explained; "" where nothing is open."""
+    """Return what to record next of a regime whose clusters `use` were fitted; "" if no question is open."""
     unclear = next((one for one in findings if one.also_possible), None)
     if unclear is not None:
         law = next(each for each in found.model.laws if each.name == unclear.mechanism)
         alternatives = [each for each in found.screen.listed if each.name in unclear.also_possible]
         others = [*found.model.minus(law).names, *(name for each in alternatives for name in each.columns)]
-        purpose = f"to tell {unclear.mechanism} from {' or '.join(unclear.also_possible)}"
+        purpose = f"to discriminate {unclear.mechanism} from {' or '.join(unclear.also_possible)}"
     elif found.inconclusive is not None:
         law, others = found.inconclusive, list(found.model.names)
-        purpose = f"to see whether {law.name} is there"
+        purpose = f"to test for {law.name}"
     else:
         return ""
     return f"{purpose}, record {_segments(problem, found, law, others, use) or EFFECTS[law.name].excited_by}"
 
 
 def _segments(problem: Problem, found: SearchResult, law: Law, others: Sequence[str], use: np.ndarray) -> str:
-    """The pieces that tell most of a law beside the columns `others`, in words; "" where all tell alike."""
+    """Return the most informative kind of segments on a law beside the columns `others`; "" if there is none."""
     equations, units = found.screen.equations, problem.units.of(use)
     own = [name for name in law.columns if name not in others]
     theta = normal_equations.solve(equations, equations.columns([*others, *own]), units)[len(others) :]

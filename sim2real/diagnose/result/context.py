@@ -1,4 +1,4 @@
-"""What a diagnosis was asked about, for those who put it into words."""
+"""The context of a diagnosis for its report: recordings and baseline."""
 
 from __future__ import annotations
 
@@ -10,30 +10,37 @@ from puckpilot_env.parameters import BY_NAME
 
 @dataclass(frozen=True)
 class ReportContext:
-    """The names of the `recordings`, held-out ones among them, and the `baseline`: numbers that were given in place of
-    the simulator's own, by their names in `puckpilot_env.parameters`."""
+    """The names of the `recordings`, the holdout included, and the user's `baseline`.
+
+    `baseline`: parameters that replace the simulator's defaults, by their names in `puckpilot_env.parameters`.
+    """
 
     recordings: tuple[str, ...] = ()
     baseline: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def simulator(self) -> str:
-        """Whose numbers the recordings were held against."""
-        return "The simulator with your baseline" if self.baseline else "The simulator as shipped"
+        """The simulator that the recordings are compared with, as the subject of a sentence."""
+        return "The simulator with your baseline" if self.baseline else "The simulator with default parameters"
 
     @property
     def standard(self) -> str:
-        """The same numbers, in the words of a comparison or of a table's head."""
-        return "your baseline" if self.baseline else "shipped"
+        """Its parameters, as the head of a column."""
+        return "your baseline" if self.baseline else "default"
+
+    @property
+    def reference(self) -> str:
+        """Its parameters, as the second part of a comparison."""
+        return "your baseline" if self.baseline else "the defaults"
 
     @property
     def these(self) -> str:
-        """The recordings as the subject of a sentence, in which they are one thing."""
+        """The recordings as the subject or object of a sentence."""
         return "these recordings" if len(self.recordings) > 1 else "this recording"
 
     def value(self, name: str) -> float:
-        """A parameter as it was before anything was fitted."""
+        """Return a parameter before any fit."""
         return self.baseline.get(name, BY_NAME[name].default)
 
 
-PLAIN = ReportContext()  # one recording, held against the simulator as shipped
+PLAIN = ReportContext()  # one recording, compared with the default parameters

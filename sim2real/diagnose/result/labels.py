@@ -1,4 +1,4 @@
-"""Fitted parameters under the names that the format of a diagnosis gives them."""
+"""Fitted parameters by their labels in the format of a diagnosis."""
 
 from __future__ import annotations
 
@@ -13,46 +13,46 @@ Numbers = Mapping[str, Estimate]
 
 
 def labelled(law: Law, fit: LeastSquaresFit) -> Numbers:
-    """The parameters of a mechanism that a fit freed, by the labels of its effect; some in the words of the format."""
-    return SPECIAL.get(law.name, _freed)(law, fit)
+    """Return the fitted parameters of a mechanism by the labels of its effect, or by those of the format."""
+    return SPECIAL.get(law.name, _fitted_numbers)(law, fit)
 
 
-def _freed(law: Law, fit: LeastSquaresFit) -> Numbers:
+def _fitted_numbers(law: Law, fit: LeastSquaresFit) -> Numbers:
     return {label: fit.estimate(row.name) for label, row in EFFECTS[law.name].rows.items() if row.name in fit.free}
 
 
 def _falling(base: str) -> Callable[[Law, LeastSquaresFit], Numbers]:
-    return lambda law, fit: {"e0": fit.estimate(base), **_freed(law, fit)}
+    return lambda law, fit: {"e0": fit.estimate(base), **_fitted_numbers(law, fit)}
 
 
 def _tangential(law: Law, fit: LeastSquaresFit) -> Numbers:
     e, ratio = (float(fit.values[name]) for name in ("wall_restitution", "tangential_ratio"))
-    e_t = _made(fit, ratio * e, {"wall_restitution": ratio, "tangential_ratio": e})
+    e_t = _derived(fit, ratio * e, {"wall_restitution": ratio, "tangential_ratio": e})
     return {"e_n": fit.estimate("wall_restitution"), "e_t": e_t}
 
 
 def _odd_wall(law: Law, fit: LeastSquaresFit) -> Numbers:
-    """Which wall it is stands in the finding's `where`."""
+    """The finding's `where` names the wall."""
     (row,) = law.columns
     return {"delta": fit.estimate(row)}
 
 
 def _posts(law: Law, fit: LeastSquaresFit) -> Numbers:
     rows = ("wall_restitution", "post_extra")
-    return {"e": _made(fit, sum(float(fit.values[name]) for name in rows), dict.fromkeys(rows, 1.0))}
+    return {"e": _derived(fit, sum(float(fit.values[name]) for name in rows), dict.fromkeys(rows, 1.0))}
 
 
 def _headings(law: Law, fit: LeastSquaresFit) -> Numbers:
-    """With the ratio of friction along x to that along y, where the interval leaves friction along y."""
-    numbers, grain = _freed(law, fit), fit.estimate("friction_anisotropy")
+    """Add the ratio of friction along x to that along y, if the interval excludes zero friction along y."""
+    numbers, grain = _fitted_numbers(law, fit), fit.estimate("friction_anisotropy")
     if grain.high >= 1.0:
         return numbers
     value, low, high = ((1.0 + one) / (1.0 - one) for one in (grain.value, grain.low, grain.high))
     return {**numbers, "ratio": Estimate(value, low, high, "1")}
 
 
-def _made(fit: LeastSquaresFit, value: float, slopes: Mapping[str, float]) -> Estimate:
-    """A restitution made of fitted numbers, with its slopes by them."""
+def _derived(fit: LeastSquaresFit, value: float, slopes: Mapping[str, float]) -> Estimate:
+    """Return a restitution derived from fitted parameters, with its derivatives `slopes` by them."""
     half = fit.reach(slopes)
     return Estimate(value, value - half, value + half, "1")
 

@@ -1,4 +1,4 @@
-"""Several proofs as one."""
+"""The pooled proof of several regimes."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from sim2real.diagnose.result.result import Proof
 
 
 def pooled(proofs: Sequence[Proof]) -> Proof | None:
-    """The rms over the pieces of all; None of none."""
+    """Return the rms over all segments of the proofs, None if there is none."""
     if not proofs:
         return None
     pieces = sum(one.pieces for one in proofs)

@@ -1,4 +1,4 @@
-"""From what the engine found to what a diagnosis says: findings with formula, numbers, and proof."""
+"""The result of a regime from the engine's selection: findings with formula, parameters, and residuals."""
 
 from __future__ import annotations
 
@@ -12,64 +12,65 @@ from sim2real.diagnose.engine.alternatives import compare, nominal_p
 from sim2real.diagnose.engine.cross_validation import Selection
 from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.engine.least_squares import given, robust_loss
-from sim2real.diagnose.engine.model_search import SearchResult, bare
+from sim2real.diagnose.engine.model_search import SearchResult, without_laws
 from sim2real.diagnose.engine.null_controls import null_controls
 from sim2real.diagnose.engine.problem import Problem
 from sim2real.diagnose.engine.tuned import ENGINE
 from sim2real.diagnose.regimes.base import Regime
 from sim2real.diagnose.result.advice import advice
 from sim2real.diagnose.result.labels import labelled
-from sim2real.diagnose.result.result import MUCH, Estimate, Finding, Proof, RegimeResult
+from sim2real.diagnose.result.result import LARGE_MISFIT, Estimate, Finding, Proof, RegimeResult
 from sim2real.diagnose.result.whereabouts import whereabouts
 from sim2real.statistics.intervals import reach_of_launches
 
-ENOUGH = 4  # launches, to say that numbers of a law that does not explain them are better than others
-MISFIT = "something is missing, but these data do not tell what"
+FEWEST_LAUNCHES = 4  # to compare the parameters of a law that does not explain the launches
+MISFIT = "an effect is missing, but these data cannot identify it"
 
 
 def regime_result(regime: Regime, problem: Problem, chosen: Selection, defaults: Mapping[str, float]) -> RegimeResult:
-    """What a regime says: laws as they were `chosen`, from the simulator's own numbers `defaults`."""
-    found, crossed = chosen.found, chosen.cross_validation
-    before, after = (crossed.rms(one) for one in (bare(found), found))
+    """Return the result of a regime for the laws `chosen`, with the simulator's default parameters `defaults`."""
+    found, validation = chosen.found, chosen.cross_validation
+    before, after = (validation.rms(one) for one in (without_laws(found), found))
     findings = _findings(problem, chosen)
     refuted = bool(chosen.rejected and not findings)
-    unseen = not findings and _unseen(problem, found, crossed.launches)
-    misfit = found.misfit or refuted or unseen or (found.inconclusive is not None and not findings)
+    large_residuals = not findings and _has_large_residuals(problem, found, validation.launches)
+    misfit = found.misfit or refuted or large_residuals or (found.inconclusive is not None and not findings)
     return RegimeResult(
         problem.regime,
         findings,
         {name: found.final.estimate(name) for name in problem.base},
         found.defaults and not findings and not misfit,
-        Proof(problem.noise_m * before, problem.noise_m * after, problem.noise_m, len(crossed.launches)),
+        Proof(problem.noise_m * before, problem.noise_m * after, problem.noise_m, len(validation.launches)),
         undetermined=MISFIT if misfit else "",
         next_recording=advice(problem, found, findings, found.clusters),
         doubt=_doubt(chosen),
         minor=_minor(regime, chosen),
         misfit=misfit,
-        better=len(crossed.launches) >= ENOUGH
-        and crossed.loss(bare(found)).sum() < crossed.loss(_unfitted(problem, found, defaults)).sum(),
+        better=len(validation.launches) >= FEWEST_LAUNCHES
+        and validation.loss(without_laws(found)).sum()
+        < validation.loss(_with_defaults(problem, found, defaults)).sum(),
     )
 
 
-def _unfitted(problem: Problem, found: SearchResult, defaults: Mapping[str, float]) -> SearchResult:
-    """The simulator's own numbers as they are."""
-    return replace(bare(found), law=given({**found.baseline.values, **defaults}))
+def _with_defaults(problem: Problem, found: SearchResult, defaults: Mapping[str, float]) -> SearchResult:
+    """Return the result with the simulator's default parameters."""
+    return replace(without_laws(found), law=given({**found.baseline.values, **defaults}))
 
 
-def _unseen(problem: Problem, found: SearchResult, launches: np.ndarray) -> bool:
-    """Whether far more than noise is left of the launches; single bounces may be odd."""
-    left = robust_loss(problem, problem.residuals(found.law.values, (), launches))[0]
-    return left > MUCH**2 * max(float(problem.freedom[launches].sum()), 1.0)
+def _has_large_residuals(problem: Problem, found: SearchResult, launches: np.ndarray) -> bool:
+    """Return whether the robust residuals of the launches are far beyond noise."""
+    loss = robust_loss(problem, problem.residuals(found.law.values, (), launches))[0]
+    return loss > LARGE_MISFIT**2 * max(float(problem.freedom[launches].sum()), 1.0)
 
 
 def _findings(problem: Problem, chosen: Selection) -> tuple[Finding, ...]:
-    """All findings; those first without which most is lost."""
-    found, crossed = chosen.found, chosen.cross_validation
+    """Return all findings, sorted by the residual without each, the largest first."""
+    found, validation = chosen.found, chosen.cross_validation
     if not found.model.laws:
         return ()
-    misfit = {law.name: crossed.rms(chosen.without[law.name]) for law in found.model.laws}
-    tried = np.isin(found.clusters, crossed.launches[ENGINE.launch_folds - 1 :: ENGINE.launch_folds])
-    parts = (found.clusters[~tried], found.clusters[tried])
+    misfit = {law.name: validation.rms(chosen.without[law.name]) for law in found.model.laws}
+    tested = np.isin(found.clusters, validation.launches[ENGINE.launch_folds - 1 :: ENGINE.launch_folds])
+    parts = (found.clusters[~tested], found.clusters[tested])
     controls = null_controls(found.screen.equations, problem.units, found.model, found.screen.listed, *parts)
     ordered = sorted(found.model.laws, key=lambda law: -misfit[law.name])
     findings = [_unlisted(problem, found, law) if law.family else _listed(found, law) for law in ordered]
@@ -93,33 +94,31 @@ def _unlisted(problem: Problem, found: SearchResult, law: Law) -> Finding:
     also, alternatives = compare(found.forward_selection, found.model, law, found.screen)
     p_value = nominal_p(found.forward_selection, found.model, law, found.screen)
     return Finding(
-        problem.regime, law.mechanism, also, (law.family,), law.name, _sizes(found, law), p_value,
+        problem.regime, law.mechanism, also, (law.family,), law.name, _coefficients(found, law), p_value,
         values=found.effect_parameters(), alternatives=alternatives,
     )  # fmt: skip
 
 
-def _sizes(found: SearchResult, law: Law) -> Mapping[str, Estimate]:
-    """The coefficients of a smooth law with their intervals."""
-    near = reach_of_launches(found.law.clusters) * np.sqrt(np.diag(found.theta_covariance))
+def _coefficients(found: SearchResult, law: Law) -> Mapping[str, Estimate]:
+    """Return the coefficients of a smooth law with their 95 % intervals."""
+    halves = reach_of_launches(found.law.clusters) * np.sqrt(np.diag(found.theta_covariance))
     return {
         f"c{i}": Estimate(float(value), float(value - half), float(value + half), "1")
-        for i, (value, half) in enumerate(zip(found.coefficients, near[-len(law.columns) :], strict=True))
+        for i, (value, half) in enumerate(zip(found.coefficients, halves[-len(law.columns) :], strict=True))
     }
 
 
 def _minor(regime: Regime, chosen: Selection) -> str:
-    laws = [f"{name} is significant, but makes only {1e3 * size:.2g} mm" for name, size in chosen.small.items()]
-    return f"{'; '.join(laws)}; less than {1e3 * regime.least_size:g} mm is not reported" if laws else ""
+    laws = [f"{name} is significant, but its effect is only {1e3 * size:.2g} mm" for name, size in chosen.small.items()]
+    return f"{'; '.join(laws)}; effects below {1e3 * regime.least_size:g} mm are not reported" if laws else ""
 
 
 def _doubt(chosen: Selection) -> str:
     found = chosen.found
     if chosen.rejected:
         names, others = (" and ".join(law.name for law in laws) for laws in (chosen.rejected, chosen.others))
-        beside = f"; beside that, {others} leaves most unexplained" if others else ""
+        beside = f"; without it, {others} explains too little" if others else ""
         return f"{names} would fit, but cross-validation over launches rejects it{beside}"
     if found.inconclusive is None:
         return ""
-    return (
-        f"{found.inconclusive.name} would fit, but what asks for it is in too few launches to tell it from an accident"
-    )
+    return f"{found.inconclusive.name} would fit, but too few launches support it"

@@ -1,4 +1,4 @@
-"""What a diagnosis says, as data: estimates, findings, and the account that each regime gives of a recording."""
+"""The result of a diagnosis as data: estimates, findings, and the result of each regime."""
 
 from __future__ import annotations
 
@@ -8,19 +8,21 @@ from typing import Any
 
 import numpy as np
 
-TO_THE_NOISE = 1.3  # times what noise alone leaves, up to which residuals are called noise
-MUCH = 3.0  # times the noise, and what is left is worth a word
+TO_THE_NOISE = 1.3  # times the noise, up to which residuals count as noise
+LARGE_MISFIT = 3.0  # times the noise, from which residuals are reported
 
 
 def explained(before: float, after: float) -> float:
-    """Share of what residuals of rms `before`, in units of the noise, have beyond noise, that is gone `after`; 0 where
-    they are noise."""
+    """Return the share of the excess variance over the noise that a law explains, 0 if there is no excess.
+
+    `before`, `after`: rms residuals without and with the law, in units of the noise.
+    """
     return (before**2 - after**2) / (before**2 - 1.0) if before > 1.0 else 0.0
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """A fitted number with its 95 % interval."""
+    """A fitted parameter with its 95 % interval."""
 
     value: float
     low: float
@@ -30,7 +32,7 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Proof:
-    """Residuals on pieces that no fit ever saw: rms [m] before and after, and what noise alone leaves."""
+    """Residuals on `pieces` held-out segments: rms [m] before and after, and `floor_m`, the rms of noise alone."""
 
     before_m: float
     after_m: float
@@ -40,7 +42,7 @@ class Proof:
 
 @dataclass(frozen=True)
 class Alternative:
-    """A mechanism that was tried and not chosen: how much worse it foretells held-out pieces, and why it lost."""
+    """A mechanism that was not chosen: the increase `loss` of the cross-validation loss, and the reason."""
 
     mechanism: str
     loss: float
@@ -49,9 +51,9 @@ class Alternative:
 
 @dataclass(frozen=True)
 class Curve:
-    """A law as a picture: `y` over `x` with a 95 % band, each (n,), and the binned data (m,) with its standard errors.
+    """A law as a curve: `y` over `x` with a 95 % band, each (n,), and binned data (m,) with standard errors.
 
-    `ticks` are names for x = 0, 1, …, where it counts things. `formula` (n,): a readable formula beside a smooth law.
+    `ticks`: names of x = 0, 1, … if x is categorical. `formula` (n,): values of a readable formula for a smooth law.
     """
 
     x_label: str
@@ -69,13 +71,12 @@ class Curve:
 
 @dataclass(frozen=True)
 class Mismatch:
-    """Where recording and simulator part: what each of `n` things (`of`, in the plural) has more than a law foretells,
-    seen less foretold.
+    """Where recording and simulator differ: residuals, measured minus predicted, of n items (`of`, in the plural).
 
-    `before`, `after` (n, c) in `unit`, under the refitted baseline and under the final law; `std` (n, c): what the
-    sensor's noise makes of them; `components`: their `c` names. `by`: what they may depend on, label with unit to (n,).
-    On a table of `size` (2,) [m], `place` (n, 2) [m] and `axis` (n, 2), the unit vector of the first component, of
-    which the second is to the left; None where the pieces have no place.
+    `before`, `after` (n, c) in `unit`: under the refitted baseline and under the final law; `std` (n, c): their
+    standard deviation from sensor noise; `components`: their c names; `by`: coordinates (n,) by label with unit. On a
+    table of `size` (2,) [m], `place` (n, 2) [m] and `axis` (n, 2), the unit vector of the first component; the second
+    component points to its left. These are None if the items have no place.
     """
 
     of: str
@@ -93,20 +94,23 @@ class Mismatch:
 
 @dataclass(frozen=True)
 class SensorSummary:
-    """What the sensor gave in one recording: `noise_m`, `clock_s` as in `sensor.Noise`; `memory_s`, for which errors
-    hang together (0 where they do not); `place_std_m`, by which the calibration says that it has all places wrong;
-    shares of all frames."""
+    """The sensor in one recording.
+
+    `noise_m`, `clock_s`: white noise of position [m] and time stamp [s]; `correlation_time_s`: of the errors [s], 0 if
+    they are white; `place_std_m`: position error that the calibration states [m]; `dropped`, `repeated`, `outliers`:
+    shares of all frames; then counts of launches, glides, contacts and unexplained events.
+    """
 
     recording: str
     seconds: float
     frames: int
     noise_m: float
     clock_s: float
-    memory_s: float
+    correlation_time_s: float
     place_std_m: float
     dropped: float
-    held: float
-    wild: float
+    repeated: float
+    outliers: float
     launches: int
     glides: int
     contacts: int
@@ -116,8 +120,11 @@ class SensorSummary:
 
 @dataclass(frozen=True)
 class NullControl:
-    """A control of a proof, in which nothing is to be found: rms residuals as a finding's, before and after, and in how
-    many `of` so many drawn twins a search `named` something, None where that would tell nothing."""
+    """A control of a proof that contains no law by construction.
+
+    `before`, `after`: rms residuals as of a finding; `named`: the number `of` drawn controls in which a search selected
+    a law, None if no search was made.
+    """
 
     before: float
     after: float
@@ -127,11 +134,11 @@ class NullControl:
 
 @dataclass(frozen=True)
 class Finding:
-    """One missing piece of physics, in the words of the format puckpilot-diagnosis/1.
+    """One missing effect, in the terms of the format puckpilot-diagnosis/1.
 
-    `values`: the simulator's parameters that switch it on, by their names in `puckpilot_env.parameters`; `ranges`:
-    those fitted, with intervals. `null_controls`: the same residuals before and after in controls where nothing is to
-    be found, by the control's name (`engine.null_controls`). `size_m`: by how much it moves things (`effect_size`).
+    `values`: the simulator's parameters that switch it on, by their names in `puckpilot_env.parameters`; `ranges`: the
+    fitted ones with intervals. `null_controls`: residuals before and after in null controls, by name
+    (`engine.null_controls`). `size_m`: size of the effect [m] (`effect_size`).
     """
 
     regime: str
@@ -141,7 +148,7 @@ class Finding:
     formula: str
     parameters: Mapping[str, Estimate]
     p_value: float
-    before: float | None = None  # rms of held-out residuals in units of the sensor's noise; None where there are none
+    before: float | None = None  # rms of holdout residuals in units of the sensor's noise; None without data
     after: float | None = None
     where: Mapping[str, Any] = field(default_factory=dict)
     values: Mapping[str, float] = field(default_factory=dict)
@@ -154,13 +161,12 @@ class Finding:
 
 @dataclass(frozen=True)
 class RegimeResult:
-    """What one regime of the recording says. `undetermined` gives the reason why it cannot tell, "" if it can.
+    """The result of one regime. `undetermined`: the reason why there is no conclusion, "" if there is one.
 
-    `baseline`: the refitted parameters of the baseline law; `defaults`: whether the simulator's own numbers do as well.
-    `selection`: residuals of launches, each predicted by laws fitted to others; `proof`: of data
-    that nothing else here depends on. `better`: whether the refitted numbers predict launches better than the
-    simulator's own. `doubt`: what the data hint at without telling it surely, "" where nothing; `minor`: what is there
-    and too small to matter. `misfit`: whether no law explains it.
+    `baseline`: the refitted parameters of the baseline law; `defaults`: whether the default parameters fit as well.
+    `selection`: cross-validation residuals of launches; `proof`: residuals on the holdout, which nothing else here
+    uses. `better`: whether the refitted parameters predict launches better than the defaults. `doubt`: an inconclusive
+    law, "" if there is none; `minor`: laws too small to report. `misfit`: whether no law explains the residuals.
     """
 
     regime: str
@@ -179,7 +185,7 @@ class RegimeResult:
 
     @property
     def verdict(self) -> str:
-        """As a diagnosis's, of this regime alone."""
+        """The verdict, as of a diagnosis, of this regime alone."""
         if self.findings:
             return "missing_physics"
         if self.undetermined or self.misfit:
@@ -188,15 +194,17 @@ class RegimeResult:
 
     @property
     def times_noise(self) -> float | None:
-        """What laws leave of launches not fitted to, over what noise alone would; None where nothing was tried.
-        Every choice and every word on how well laws fit rests on it, and none on the proof."""
+        """The rms cross-validation residual divided by the noise, None without data.
+
+        All choices and statements on the quality of fit use it; none uses the holdout.
+        """
         one = self.selection
         return None if one is None or not one.floor_m or not one.pieces else one.after_m / one.floor_m
 
     @property
     def unexplained(self) -> str:
-        """How much more than noise the laws leave of launches, in words; "" where hardly any is."""
+        """The remaining cross-validation residual in words, "" if it is not large."""
         times = self.times_noise
-        if self.undetermined or self.selection is None or times is None or times < MUCH:
+        if self.undetermined or self.selection is None or times is None or times < LARGE_MISFIT:
             return ""
-        return f"{1e3 * self.selection.after_m:.2g} mm stay unexplained, {times:.2g} times the noise"
+        return f"the remaining residual is {1e3 * self.selection.after_m:.2g} mm, {times:.2g} times the noise"

@@ -1,4 +1,4 @@
-"""Which regimes a recording says nothing about, and what it would take."""
+"""The regimes that a recording does not test, and the missing data."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ LACKS = {name: regime.lacks for name, regime in REGIMES.items() if regime.lacks}
 
 
 def untested(diagnosis: Diagnosis) -> dict[str, str]:
-    """What is missing, by the regimes that were not tested at all; {} where nothing could be said anyway."""
+    """Return the missing data by regime, for regimes that were not tested; {} if the diagnosis has no result."""
     if not diagnosis.regime_results:
         return {}
-    there = {each.regime for each in diagnosis.regime_results}
-    path = "gantry" in there
+    tested = {each.regime for each in diagnosis.regime_results}
+    path = "gantry" in tested
     if not any(seen.frames and seen.dropped < 1.0 for seen in diagnosis.sensor_summaries):
         found = dict.fromkeys(("sensing", *LACKS), NO_PUCK)
     else:
-        found = {regime: why for regime, why in LACKS.items() if regime not in there}
+        found = {regime: why for regime, why in LACKS.items() if regime not in tested}
         if "mallet" in found and not path:
             found["mallet"] = NO_PATH
     return found if path else {**found, "gantry": NO_PATH}

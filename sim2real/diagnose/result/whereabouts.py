@@ -1,4 +1,4 @@
-"""Where on the table a law acts, in the words of the format."""
+"""The place on the table at which a law acts, in the terms of the format."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from sim2real.diagnose.engine.law import Law
 
 
 def whereabouts(law: Law, values: Mapping[str, float]) -> dict[str, Any]:
-    """The walls, the part of the table or the stream that a listed law is about; empty where it is about everything."""
+    """Return the walls, the area of the table or the stream on which a listed law acts; empty if it acts everywhere."""
     if law.name == "friction_patch":
         x, y, radius = (float(values[name]) for name in ("patch_x", "patch_y", "patch_radius"))
         return {"x": [x - radius, x + radius], "y": [y - radius, y + radius]}

@@ -1,1 +1,1 @@
-"""The noise model of the puck's measured places, with which residuals are whitened."""
+"""The noise model of the puck's measured positions, used to whiten residuals."""

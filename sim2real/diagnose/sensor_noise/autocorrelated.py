@@ -1,8 +1,8 @@
-"""Errors of a puck's places that are correlated from frame to frame, as those of an outline that moves over pixels are.
+"""Autocorrelated errors of the puck's measured positions, as caused by an outline that moves over pixels.
 
-Of each coordinate a `share` of the variance is correlated by exp(-|dt| / time) between frames, and the rest is white.
-Both are estimated by restricted maximum likelihood (Patterson and Thompson, 1971) from the residuals of polynomials
-through the glides, with the polynomials' coefficients integrated out.
+A `share` of the variance of each coordinate has the correlation exp(-|dt| / time) between frames; the rest is white.
+Share and time are estimated by restricted maximum likelihood (Patterson and Thompson, 1971) from the residuals of
+polynomials fitted to the glides, with the polynomials' coefficients integrated out.
 """
 
 from __future__ import annotations
@@ -18,15 +18,18 @@ from sim2real.diagnose.sensor_noise.tuned import SENSOR_NOISE
 
 @dataclass(frozen=True)
 class AutocorrelatedNoise:
-    """`share` [1] of the variance whose correlation decays with the time constant `time` [s]; `scale` [1]: the whole
-    standard deviation in units of the assumed one."""
+    """Autocorrelated noise.
+
+    `share` [1]: of the variance, whose correlation decays with the time constant `time` [s]; `scale` [1]: the total
+    standard deviation in units of the assumed one.
+    """
 
     share: float = 0.0
     time: float = 1.0
     scale: float = 1.0
 
     def covariance(self, t: np.ndarray) -> np.ndarray:
-        """Covariance (n, n) of errors of unit variance at the times `t` (n,) [s]."""
+        """Return the covariance (n, n) of errors of unit variance at the times `t` (n,) [s]."""
         correlation = self.share * np.exp(-np.abs(t[:, None] - t) / self.time)
         np.fill_diagonal(correlation, 1.0)
         return correlation
@@ -34,8 +37,8 @@ class AutocorrelatedNoise:
 
 @dataclass(frozen=True)
 class Excerpt:
-    """A glide or a part of one: times `t` (n,) [s], places (n, 2) [m], and the standard deviation `std` (n, 2) [m]
-    that is assumed of each coordinate."""
+    """A glide or a part of one: times `t` (n,) [s], `place` (n, 2) [m], and the assumed standard deviation `std` (n, 2)
+    [m] of each coordinate."""
 
     t: np.ndarray
     place: np.ndarray
@@ -48,10 +51,10 @@ class Excerpt:
 
 
 def estimate_autocorrelation(glides: Sequence[Excerpt], order: int, period: float) -> AutocorrelatedNoise:
-    """Estimate the autocorrelation of the errors of glides about polynomials of an `order`.
+    """Estimate the autocorrelation of the errors of glides about polynomials of order `order`.
 
-    `period` [s]: time between frames, in which correlation times are tried. White noise, with scale 1, where no
-    autocorrelation raises the likelihood by `SENSOR_NOISE.likelihood_gain`.
+    `period` [s]: time between frames, the unit of the correlation times that are tried. Returns white noise with scale
+    1 if no autocorrelation raises the log-likelihood by `SENSOR_NOISE.likelihood_gain`.
     """
     parts = [part for glide in glides for part in glide.cut(SENSOR_NOISE.correlated_frames)]
     if not parts:
@@ -70,8 +73,9 @@ def estimate_autocorrelation(glides: Sequence[Excerpt], order: int, period: floa
 
 
 def polynomial_residual(part: Excerpt, order: int, root: np.ndarray | None = None) -> tuple[float, int, float]:
-    """Fit polynomials of an `order` to both coordinates of a part, its noise whitened by a Cholesky factor `root`
-    (n, n) of its correlation.
+    """Fit polynomials of order `order` to both coordinates of a part.
+
+    `root` (n, n): Cholesky factor of the noise correlation, by which the noise is whitened; None for white noise.
 
     Returns the residuals' sum of squares in units of the assumed noise, their degrees of freedom, and half the
     logarithm of the determinant of the coefficients' information matrices.
@@ -88,13 +92,15 @@ def polynomial_residual(part: Excerpt, order: int, root: np.ndarray | None = Non
 
 
 def _polynomials(t: np.ndarray, order: int) -> np.ndarray:
-    """Powers (n, k) of the times `t` (n,), scaled to a range of 1, up to an `order`, or a lower one for few frames."""
+    """Return powers (n, k) of the times `t` (n,), scaled to a range of 1, up to `order`, or lower for few frames."""
     return np.vander((t - t[0]) / np.ptp(t) - 0.5, min(order, len(t) // 4) + 1)
 
 
 def _likelihood(parts: Sequence[Excerpt], noise: AutocorrelatedNoise, order: int) -> tuple[float, float]:
-    """Logarithm of the restricted likelihood, up to a constant, at the scale that is likeliest for each part, so that
-    no rough one outweighs the others; and the scale of all parts, with outliers clipped, at least 1."""
+    """Return the restricted log-likelihood, up to a constant, and the scale of all parts, at least 1.
+
+    Each part has its own maximum-likelihood scale, so that no outlying part dominates; the common scale clips outliers.
+    """
     total, variances, counts = 0.0, [], []
     for part in parts:
         root = np.linalg.cholesky(noise.covariance(part.t))

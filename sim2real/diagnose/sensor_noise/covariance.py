@@ -1,5 +1,5 @@
-"""The covariance of all measured places of glides: noise of each frame, which may be autocorrelated, and the errors of
-the calibrations, which are common to all frames."""
+"""The covariance of the measured positions of glides: noise of each frame, which may be autocorrelated, and calibration
+errors, which are common to all frames."""
 
 from __future__ import annotations
 
@@ -14,14 +14,17 @@ from sim2real.statistics.whitening import whitened
 
 
 class PositionCovariance:
-    """Whitens changes of the places of g segments, of which number i has the frames first[i] … first[i + 1] − 1."""
+    """Whitens changes of the positions of g segments; segment i has the frames first[i] … first[i + 1] − 1."""
 
     def __init__(
         self, t: np.ndarray, std: np.ndarray, first: np.ndarray, noise: Sequence[SensorNoise], size: np.ndarray
     ) -> None:
-        """`t` (n,) [s]; `std` (n, 2) [m] of the frames' noise; `noise`: the camera of each segment (g,); `size` (2,)
-        [m] of the table. Recordings that state the same size of their calibration's error share that error; others
-        have another calibration, since no two come to the same size."""
+        """Set the data.
+
+        `t` (n,) [s]; `std` (n, 2) [m]: of the frames' noise; `noise` (g,): the camera of each segment; `size` (2,) [m]:
+        of the table. Recordings that state the same size of their calibration error share that error; different sizes
+        mean different calibrations.
+        """
         self._std, self._first, self._size = std, first, size
         stated = np.array([one.map_error_std for one in noise])
         self._map_error_std = np.repeat(stated, np.diff(first))
@@ -33,7 +36,7 @@ class PositionCovariance:
         }
 
     def white(self, values: np.ndarray) -> np.ndarray:
-        """Changes of the places (n, 2, …) [m], as rows in units of white noise, in the same shape."""
+        """Return changes of the positions (n, 2, …) [m], whitened to units of the noise, in the same shape."""
         whitened = values / self._std.reshape(*self._std.shape, *[1] * (values.ndim - 2))
         for i, whiten in self._whiten.items():
             rows = slice(self._first[i], self._first[i + 1])
@@ -41,12 +44,16 @@ class PositionCovariance:
         return whitened
 
     def modes(self, place: np.ndarray) -> np.ndarray:
-        """Displacements (n, 2, m) [m] of places (n, 2) [m] by each independent standard deviation of the
-        calibrations' errors; m is 0 where no recording states one."""
+        """Return displacements (n, 2, m) [m] of positions (n, 2) [m] by each mode of the calibration errors.
+
+        Modes are independent, of one standard deviation each; m is 0 if no recording states an error.
+        """
         each = [modes(place, self._size, np.where(self._map_error_std == std, std, 0.0)) for std in self._calibrations]
         return np.concatenate([np.zeros((len(place), 2, 0)), *each], axis=2)
 
     def allowing(self, shared: np.ndarray, rows: np.ndarray) -> np.ndarray:
-        """Rows (2n, k) of white noise, made white again with the common errors `shared` (2n, m): the modes, whitened
-        and projected as the rows are."""
+        """Return whitened rows (2n, k), whitened again for the common errors `shared` (2n, m).
+
+        `shared`: the modes, whitened and projected like the rows.
+        """
         return whitened(shared, rows) if shared.shape[1] else rows

@@ -1,8 +1,8 @@
 """The error of a camera's calibration: a smooth field of displacements over the table, the same in all frames.
 
-A recording states its size (`camera.place_std_m`), as `puckpilot track` does. The errors of calibrations of a rendered
-table are Legendre polynomials, with coefficients up to the third order of 0.05 to 1 times the stated size, and of 0.03
-(places measured to 0.3 mm) to 0.16 (to 1 mm) beyond: `python -m tests.sim2real.vision.trial.fields`.
+A recording states its size (`camera.place_std_m`), as `puckpilot track` does. The field is a sum of Legendre
+polynomials. On a rendered table, their coefficients are 0.05 to 1 times the stated size up to the third order, and 0.03
+(calibration points measured to 0.3 mm) to 0.16 (to 1 mm) above: `python -m tests.sim2real.vision.trial.fields`.
 """
 
 from __future__ import annotations
@@ -18,9 +18,10 @@ COEFFICIENT = np.where(SENSOR_NOISE.map_low_orders >= ORDERS, SENSOR_NOISE.map_l
 
 
 def modes(place: np.ndarray, size: np.ndarray, std: np.ndarray) -> np.ndarray:
-    """Displacements (n, 2, m) [m] of places (n, 2) [m] by each of the field's m independent standard normal numbers.
+    """Return displacements (n, 2, m) [m] of positions (n, 2) [m] by each of the m modes of the field.
 
-    `size` (2,) [m]: of the table, beyond which the field is as at its border; `std` (n,) [m]: the stated deviation.
+    The modes have independent standard normal amplitudes. `size` (2,) [m]: of the table, outside which the field is as
+    at its border; `std` (n,) [m]: the stated standard deviation.
     """
     x, y = np.clip(2.0 * place / size - 1.0, -1.0, 1.0).T
     products = legvander2d(x, y, [ORDERS[-1], ORDERS[-1]]).reshape(len(place), len(ORDERS), len(ORDERS))

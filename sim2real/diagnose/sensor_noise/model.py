@@ -1,20 +1,20 @@
-"""The noise model of a camera: by what each measured place of the puck is off.
+"""The noise model of a camera: the errors of the puck's measured positions.
 
-The error of a coordinate is noise of each frame plus the error of the calibration, a smooth field over the table that
-is the same in all frames (`map_error`). The noise of a frame is white noise of the position and of the time stamp
-(`segmentation.sensor_noise`), larger where glides are rougher than that, and of a calibrated camera different over the
-table (`heteroscedastic`) and correlated from frame to frame (`autocorrelated`).
+The error of a coordinate is the noise of each frame plus the error of the calibration, a smooth field over the table
+that is the same in all frames (`map_error`). The noise of a frame is white noise of the position and of the time stamp
+(`segmentation.sensor_noise`), scaled up if glides show larger residuals. For a calibrated camera its variance varies
+over the table (`heteroscedastic`) and it is correlated from frame to frame (`autocorrelated`).
 
-Who uses what:
+Its users are:
 
-- Glides are whitened with all of it (`covariance`), and windows of them weighted by it.
-- Contacts get it through the covariance and the drift of the glides' ends (`sliding.problem.States`). Beside these
-  `contact.motion` takes the size of the map error as the distance from a wall at which a contact may be the wall's.
-- The engine demands that a law moves places by more than the map error, and puts more misfit of a calibrated camera
-  down to the sensor, by `Problem.place_error_m`.
-- The sensing depends only on whether a camera is calibrated: if so, a scale error must explain nearly all of the lines'
-  displacements.
-- Segmentation and the encoders know white noise alone, which they estimate before there are glides.
+- Glides are whitened with the full model (`covariance`), and windows of them are weighted by it.
+- Contacts use it through the covariance and the drift of the glides' ends (`sliding.problem.States`). `contact.motion`
+  also uses the size of the map error as the distance from a wall within which a contact may be the wall's.
+- The engine requires that a law moves positions by more than the map error, and tolerates a larger misfit for a
+  calibrated camera, by `Problem.place_error_m`.
+- The sensing uses only whether a camera is calibrated: if so, a scale error must explain nearly all displacements of
+  the lines.
+- Segmentation and the encoders use white noise alone, which they estimate before glides exist.
 """
 
 from __future__ import annotations
@@ -33,8 +33,7 @@ from sim2real.segmentation.tuned import SEGMENTATION
 
 
 class GlideTrack(NamedTuple):
-    """A glide as it was measured: times `t` (n,) [s], places (n, 2) [m], and the speed (n, 2) [m/s] of each
-    coordinate."""
+    """A measured glide: times `t` (n,) [s], `place` (n, 2) [m], and the `speed` (n, 2) [m/s] of each coordinate."""
 
     t: np.ndarray
     place: np.ndarray
@@ -48,9 +47,9 @@ LEAST, UNCORRELATED = Noise(SEGMENTATION.noise_floor, 0.0), AutocorrelatedNoise(
 class SensorNoise:
     """The noise of the camera of one recording.
 
-    `white`: of the position and of the time stamp; `excess` [1]: the variance in units of it, at least 1;
-    `log_variance`: coefficients of `heteroscedastic.std_ratio`, 1, 1/m, 1/m; `map_error_std` [m]: the stated standard
-    deviation of the calibration's error along each axis, 0 of a camera that is not calibrated.
+    `white`: of the position and of the time stamp; `excess` [1]: the variance relative to it, at least 1;
+    `log_variance`: coefficients of `heteroscedastic.std_ratio` [1, 1/m, 1/m]; `map_error_std` [m]: the stated standard
+    deviation of the calibration error along each axis, 0 for an uncalibrated camera.
     """
 
     white: Noise = LEAST
@@ -61,34 +60,34 @@ class SensorNoise:
 
     @property
     def calibrated(self) -> bool:
-        """Whether the recording states the error of its camera's calibration."""
+        """Whether the recording states its camera's calibration error."""
         return self.map_error_std > 0.0
 
     def std(self, track: GlideTrack) -> np.ndarray:
-        """Standard deviation (n, 2) [m] of the noise of each frame and coordinate of a glide."""
+        """Return the standard deviation (n, 2) [m] of the noise of each frame and coordinate of a glide."""
         white = np.sqrt(self.excess) * self.white.std(track.speed)
         return self.autocorrelation.scale * (white * std_ratio(track.place, np.array(self.log_variance)))
 
     def correlation(self, t: np.ndarray) -> np.ndarray:
-        """Correlation (n, n) of the noise of one coordinate at the times `t` (n,) [s] of a segment; with the standard
-        deviations on both sides, its covariance."""
+        """Return the correlation (n, n) of the noise of one coordinate at the times `t` (n,) [s] of a segment."""
         return self.autocorrelation.covariance(t)
 
 
 def stated_map_error(recording: Recording) -> float:
-    """The standard deviation [m] along each axis that a recording states of its calibration's error,
-    `camera.place_std_m`; 0 where it states none: its camera is not calibrated."""
+    """Return the standard deviation [m] of the calibration error along each axis, `camera.place_std_m`.
+
+    It is 0 if the recording states none: its camera is not calibrated.
+    """
     return recording.nominal("camera", "place_std_m") or 0.0
 
 
 def estimate_sensor_noise(
     white: Noise, excess: float, glides: Sequence[GlideTrack], order: int, map_error_std: float
 ) -> SensorNoise:
-    """Estimate the noise of a camera by what polynomials of an `order` leave of its smooth `glides`.
+    """Estimate the noise of a camera from the residuals of polynomials of order `order` fitted to its smooth `glides`.
 
-    The variance over the table and the autocorrelation are estimated of a calibrated camera alone: of another, errors
-    of the places themselves, which last as long as forces do, would pass for them. For `white`, `excess` and
-    `map_error_std` see `SensorNoise`.
+    The variance over the table and the autocorrelation are estimated only for a calibrated camera: otherwise errors of
+    the map, which vary as slowly as forces, would bias them. `white`, `excess` and `map_error_std`: see `SensorNoise`.
     """
     noise = SensorNoise(white, excess, map_error_std=map_error_std)
     if not noise.calibrated:
@@ -104,5 +103,5 @@ def _excerpts(noise: SensorNoise, glides: Sequence[GlideTrack]) -> list[Excerpt]
 
 
 def _period(glides: Sequence[GlideTrack]) -> float:
-    """Median time between frames [s]."""
+    """Return the median time between frames [s]."""
     return float(np.median(np.concatenate([np.diff(glide.t) for glide in glides]))) if glides else 0.0

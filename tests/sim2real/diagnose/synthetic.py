@@ -1,4 +1,4 @@
-"""A table small enough to check by hand: straight free paths, walls with one restitution, and a bad camera."""
+"""A table that can be checked by hand: straight free paths, one wall restitution, and a camera with faults."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ LENGTH, WIDTH, RADIUS, MALLET = 2.0, 1.0, 0.03, 0.05
 RATE = 150.0
 META = {
     "format": "puckpilot-recording/1",
-    "table": {"length_m": LENGTH, "width_m": WIDTH, "goal_width_m": 0.001},  # none, as good as
+    "table": {"length_m": LENGTH, "width_m": WIDTH, "goal_width_m": 0.001},  # practically none
     "puck": {"radius_m": RADIUS},
     "mallet": {"radius_m": MALLET},
     "camera": {"rate_hz": RATE, "position_std_m": None},
@@ -19,7 +19,7 @@ META = {
 
 @dataclass(frozen=True)
 class Truth:
-    """Times, walls and normal speeds of the hits, and the frames that were spoilt."""
+    """Times, walls and normal speeds of the contacts, and the faulty frames."""
 
     contacts: list[tuple[float, str, float]]
     wild: np.ndarray
@@ -27,7 +27,7 @@ class Truth:
 
 
 def bouncing(launches, seconds: float, restitution: float = 0.8, deceleration: float = 0.0):
-    """Positions (frames, 2) at RATE, and the hits; each launch (x, y, vx, vy) lasts `seconds`."""
+    """Return positions (frames, 2) at RATE, and the contacts; each launch (x, y, vx, vy) lasts `seconds`."""
     step = 1.0 / RATE
     path, contacts = [], []
     for number, (x, y, vx, vy) in enumerate(launches):
@@ -59,7 +59,7 @@ def _advance(p, v, now, left, restitution, contacts):
 
 
 def recorded(path, contacts, rng, noise=0.0005, drops=0.0, held=0.0, wild=0.0, jitter=0.0):
-    """The recording of `path` by a camera with `noise` [m], and the truth about it."""
+    """Return the recording of `path` by a camera with `noise` [m], and its ground truth."""
     t = np.arange(len(path)) / RATE
     seen = path + rng.normal(0, noise, path.shape)
     was_wild = rng.random(len(t)) < wild

@@ -1,4 +1,4 @@
-"""Several recordings in one call: of one table they help each other, of two they name nothing."""
+"""Several recordings in one call: recordings of one table are pooled, those of two tables are undetermined."""
 
 import json
 from contextlib import nullcontext
@@ -43,7 +43,7 @@ LAWS = {
 
 @pytest.fixture(scope="module")
 def recorded(tmp_path_factory):
-    """Makes the recording of a table of LAWS, once; each by another hand. All state a table of 2 m by 1 m."""
+    """Record a table of LAWS, once, each with another seed. All state a table of 2 m by 1 m."""
     root = tmp_path_factory.mktemp("tables")
 
     @cache
@@ -59,8 +59,8 @@ def recorded(tmp_path_factory):
 
 
 def _diagnosis(recordings, heldout=()):
-    here, apart = ([read_recording(folder) for folder in folders] for folders in (recordings, heldout))
-    return diagnose(here, apart, {}, lambda stage, share: None)
+    training, holdout = ([read_recording(folder) for folder in folders] for folders in (recordings, heldout))
+    return diagnose(training, holdout, {}, lambda stage, share: None)
 
 
 @pytest.mark.slow
@@ -77,17 +77,17 @@ def _diagnosis(recordings, heldout=()):
         ("plain", "large"),
     ],
 )
-def test_two_tables_name_nothing(recorded, one, other):
+def test_two_tables_are_undetermined(recorded, one, other):
     found = _diagnosis([recorded(one), recorded(other)])
     assert (found.verdict, found.findings) == ("undetermined", [])
     assert found.reason and found.next_recording
 
 
 @pytest.mark.slow
-def test_a_held_out_recording_of_another_table_speaks_against_what_is_named(recorded):
+def test_a_holdout_of_another_table_contradicts_the_findings(recorded):
     found = _diagnosis([recorded("tilted")], [recorded("plain")])
     assert [one.mechanism for one in found.findings] == ["table_tilt"]
-    assert any(said.startswith("glide: held-out data speak against") for said in found.proof_remarks)
+    assert any(remark.startswith("glide: the holdout contradicts the findings") for remark in found.proof_remarks)
 
 
 @pytest.mark.slow
@@ -102,7 +102,7 @@ def test_two_recordings_of_one_table_agree(recorded, name, mechanism):
     "number, missing", [(0, "side_force"), (1, "mallet_give"), (35, "wall_to_wall_restitution"), (38, "scale_error")]
 )
 def test_what_is_missing_in_both_is_no_other_table(tmp_path, number, missing):
-    """Half a minute and a quarter of one table each; what is missing may show more in the one, or be of each launch."""
+    """Two recordings of one table, of 30 s and 15 s; the effect may be larger in one of them, or differ by launch."""
     case = draw_case(54, number, "one", None)
     assert case.truth["mechanisms"] == [missing]
     for seed, (name, seconds) in enumerate((("long", 30.0), ("short", 15.0))):
@@ -111,12 +111,12 @@ def test_what_is_missing_in_both_is_no_other_table(tmp_path, number, missing):
             encoder_noise=case.encoder_noise, hand=case.hand, dt=1e-4,
         )  # fmt: skip
     found = _diagnosis([tmp_path / "long"], [tmp_path / "short"])
-    assert "two tables" not in (found.reason or "")
+    assert "not of one table" not in (found.reason or "")
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name, agrees", [("plain", True), ("tilted", False)])
-def test_a_recording_too_small_for_a_law_is_held_against_the_other_s(recorded, tmp_path, name, agrees):
+def test_a_recording_too_small_for_a_law_is_compared_with_the_other(recorded, tmp_path, name, agrees):
     make_recording(tmp_path / "short", LAWS[name], "launches", 77, 8.0, camera=CAMERA, dt=1e-4)
     recordings = [read_recording(folder) for folder in (recorded("plain"), tmp_path / "short")]
     values = parameters(recordings[0])
@@ -127,19 +127,19 @@ def test_a_recording_too_small_for_a_law_is_held_against_the_other_s(recorded, t
         for k, name in enumerate(("long", "short"))
     ]
     assert len(parts[1].clusters) < CONSISTENCY.fewest_launches
-    with nullcontext() if agrees else pytest.raises(UndeterminedError, match="long and short disagree"):
+    with nullcontext() if agrees else pytest.raises(UndeterminedError, match="long and short are not of one table"):
         check_consistency(problem, {name: values[name] for name in problem.base}, parts)
 
 
 @pytest.mark.slow
-def test_a_robot_s_recording_beside_one_without_keeps_its_account(tmp_path):
+def test_a_robot_s_recording_beside_one_without_keeps_its_result(tmp_path):
     """Two recordings of one table, one of the robot alone and one of the puck alone; and the robot's as a proof."""
     make_recording(tmp_path / "robot", Law(voltage_sag=0.02), "gantry", 3, 14.0, dt=1e-4)
     make_recording(tmp_path / "puck", Law(), "launches", 4, 10.0, camera=CAMERA, dt=1e-4)
     found = _diagnosis([tmp_path / "puck", tmp_path / "robot"])
     assert [one.mechanism for one in found.findings] == ["voltage_sag"]
-    apart = _diagnosis([tmp_path / "puck"], [tmp_path / "robot"])
-    assert "gantry" not in {each.regime for each in apart.regime_results}  # what proves finds nothing
+    alone = _diagnosis([tmp_path / "puck"], [tmp_path / "robot"])
+    assert "gantry" not in {each.regime for each in alone.regime_results}  # the holdout finds nothing
 
 
 def test_stated_sizes_of_two_tables_are_refused_in_one_line(recorded, tmp_path, capsys):

@@ -1,4 +1,4 @@
-"""The data that prove choose nothing: exchanged, they change their own figures and no other word, number or file."""
+"""The holdout affects no choice: exchanging it changes the holdout figures and no other word, number or file."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ SECONDS, LATE = 40.0, 0.01  # s
 
 
 def quiet(stage: str, share: float) -> None:
-    """No bar."""
+    """Show no progress."""
 
 
 def recorded(folder: Path, law: Law, seed: int) -> Recording:
-    """Play on a table, by a camera that is late by LATE."""
+    """Return a recording of play with a camera delay of LATE."""
     make_recording(folder, law, "rally", seed, SECONDS, dt=5e-5)
     one = read_recording(folder).from_zero()
     assert one.frames is not None
@@ -40,18 +40,18 @@ def recorded(folder: Path, law: Law, seed: int) -> Recording:
 
 @pytest.fixture(scope="module")
 def recording(tmp_path_factory: pytest.TempPathFactory) -> Recording:
-    """A table that leans, of soft walls, seen late."""
+    """A tilted table with a low restitution and a camera delay."""
     return recorded(tmp_path_factory.mktemp("own") / "one", TRUTH, 3)
 
 
 @pytest.fixture(scope="module")
 def another(tmp_path_factory: pytest.TempPathFactory) -> Recording:
-    """Another table, on which all that is wrong the other way round."""
+    """Another table, with effects of the opposite sign."""
     return recorded(tmp_path_factory.mktemp("another") / "one", Law(tilt_x=-0.08, wall_restitution=0.5), 8)
 
 
 def noise(one: Recording) -> Recording:
-    """Places drawn at random, of the puck and of the mallet."""
+    """Return the recording with random positions of the puck and of the mallet."""
     rng, streams = np.random.default_rng(5), {}
     for name, columns in (("frames", ("puck_x", "puck_y")), ("mallet", ("mallet_x", "mallet_y"))):
         stream = getattr(one, name)
@@ -61,14 +61,14 @@ def noise(one: Recording) -> Recording:
 
 
 def nothing(one: Recording) -> Recording:
-    """No row of what was seen."""
+    """Return the recording without rows."""
     streams = {name: getattr(one, name) for name in ("frames", "mallet")}
     none = {name: Stream({key: column[:0] for key, column in each.columns.items()}) for name, each in streams.items()}
     return replace(one, **none)
 
 
 def words(found: Diagnosis) -> tuple[str, str, str]:
-    """All that a diagnosis says but how far off the data that prove are."""
+    """Return all output of a diagnosis but the holdout figures."""
     return json.dumps(_without_proof(as_dict(found)), indent=1), effects_toml(found), draws_toml(found)
 
 
@@ -79,25 +79,25 @@ def _without_proof(value: Any) -> Any:
 
 
 @pytest.fixture(scope="module")
-def divided(recording: Recording):
+def split(recording: Recording):
     return split_data([recording], [])
 
 
 @pytest.fixture(scope="module")
-def found(divided) -> Diagnosis:
-    return diagnose_split(divided, {}, quiet)
+def found(split) -> Diagnosis:
+    return diagnose_split(split, {}, quiet)
 
 
-def test_there_is_something_to_prove(found: Diagnosis) -> None:
+def test_there_are_findings_to_prove(found: Diagnosis) -> None:
     names = {one.mechanism for one in found.findings}
     assert {"table_tilt", "camera_delay"} <= names
     assert all(one.before is not None and one.after is not None and one.after < one.before for one in found.findings)
 
 
 @pytest.mark.parametrize("make", [noise, nothing])
-def test_launches_that_prove_change_nothing_but_the_proof(divided, found, make: Callable) -> None:
-    swapped = divided._replace(
-        holdout=[make(one) for one in divided.holdout], gantry_holdout=[make(one) for one in divided.gantry_holdout]
+def test_other_holdout_launches_change_only_the_proof(split, found, make: Callable) -> None:
+    swapped = split._replace(
+        holdout=[make(one) for one in split.holdout], gantry_holdout=[make(one) for one in split.gantry_holdout]
     )
     other = diagnose_split(swapped, {}, quiet)
     assert words(other) == words(found)
@@ -105,16 +105,16 @@ def test_launches_that_prove_change_nothing_but_the_proof(divided, found, make: 
     assert not found.proof_remarks
 
 
-def test_launches_of_another_table_change_nothing_but_the_proof(divided, found, another: Recording) -> None:
-    other = diagnose_split(divided._replace(holdout=[another], gantry_holdout=[another]), {}, quiet)
+def test_a_holdout_of_another_table_changes_only_the_proof(split, found, another: Recording) -> None:
+    other = diagnose_split(split._replace(holdout=[another], gantry_holdout=[another]), {}, quiet)
     assert words(other) == words(found)
     assert other.proof is not None and other.proof.after_m > 3.0 * other.proof.floor_m
-    assert any("glide: held-out data speak against what was found" in said for said in other.proof_remarks)
+    assert any("glide: the holdout contradicts the findings" in remark for remark in other.proof_remarks)
 
 
-def test_a_recording_held_out_changes_nothing_but_the_proof(recording, another) -> None:
+def test_a_held_out_recording_changes_only_the_proof(recording, another) -> None:
     every = [diagnose([recording], [one], {}, quiet) for one in (another, noise(recording), nothing(recording))]
     assert len({words(replace(one, notes=())) for one in every}) == 1
     assert every[0].findings and every[0].proof is not None
     for unusable in every[1:]:
-        assert any("no held-out data show" in said for said in unusable.proof_remarks)
+        assert any("the holdout does not test the findings" in remark for remark in unusable.proof_remarks)

@@ -1,5 +1,5 @@
-"""A table that was filmed: silence where nothing is missing, whatever the calibration errs by, and findings where
-something is."""
+"""Tables recorded by a simulated camera: no finding where nothing is missing, in spite of calibration errors, and the
+right one otherwise."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from sim2real.study.independent_table.recorder.record import make_recording
 
 pytestmark = pytest.mark.slow
 
-SHIPPED = {row.name: row.default for row in TABLE}
+DEFAULTS = {row.name: row.default for row in TABLE}
 SECONDS = 45.0
 
 
@@ -27,7 +27,7 @@ def diagnosed(folder: Path, law: Law, scenario: str, seed: int, stated: bool = T
     if not stated:
         camera = {**recording.meta["camera"], "place_std_m": None}
         recording = replace(recording, meta={**recording.meta, "camera": camera})
-    return diagnose([recording], [], SHIPPED, lambda *_: None)
+    return diagnose([recording], [], DEFAULTS, lambda *_: None)
 
 
 @pytest.mark.parametrize(("scenario", "seed"), [("launches", 1), ("rally", 2)])
@@ -35,11 +35,11 @@ def test_nothing_is_missing(tmp_path: Path, scenario: str, seed: int) -> None:
     found = diagnosed(tmp_path, Law(), scenario, seed)
     assert found.verdict == "agrees" and not found.findings and not any(one.misfit for one in found.regime_results)
     (sensor_summary,) = found.sensor_summaries
-    assert 0.005 < sensor_summary.memory_s < 0.03 and sensor_summary.place_std_m == 1.8e-4
+    assert 0.005 < sensor_summary.correlation_time_s < 0.03 and sensor_summary.place_std_m == 1.8e-4
 
 
-def test_a_calibration_that_does_not_say_how_far_it_errs_is_taken_for_physics(tmp_path: Path) -> None:
-    """The control: the same puck, seen alike."""
+def test_an_unstated_calibration_error_is_taken_for_physics(tmp_path: Path) -> None:
+    """The control: the same recording without the stated error."""
     found = diagnosed(tmp_path, Law(), "launches", 1, stated=False)
     assert found.verdict != "agrees"
 
@@ -60,8 +60,8 @@ def test_what_is_missing_is_named(tmp_path: Path, law: Law, mechanism: str, name
     assert one.before is not None and one.after is not None and one.after < min(1.3, one.before)
 
 
-def test_what_untouched_recordings_err_by_tells_the_fit_nothing(tmp_path: Path) -> None:
-    """The same recording, with one or another for the proof alone: the same numbers."""
+def test_errors_of_the_holdout_do_not_affect_the_fit(tmp_path: Path) -> None:
+    """The same recording with two holdouts gives the same parameters."""
     names = ("fitted", "proof", "another")
     for seed, name in enumerate(names, 1):
         make_recording(tmp_path / name, Law(), "launches", seed, 15.0, replace(FILM, calibration=7), dt=5e-5)
@@ -69,7 +69,9 @@ def test_what_untouched_recordings_err_by_tells_the_fit_nothing(tmp_path: Path) 
     baselines = []
     for proof in proofs:
         (glide,) = (
-            one for one in diagnose([fitted], [proof], SHIPPED, lambda *_: None).regime_results if one.regime == "glide"
+            one
+            for one in diagnose([fitted], [proof], DEFAULTS, lambda *_: None).regime_results
+            if one.regime == "glide"
         )
         baselines.append([glide.baseline[name].value for name in ("friction", "drag")])
     assert baselines[0] == pytest.approx(baselines[1], rel=1e-6)

@@ -1,4 +1,4 @@
-"""Recordings that cannot be believed: a line that says why, or `undetermined`, and never a name."""
+"""Unusable recordings: an error in one line, or `undetermined`, and never a finding."""
 
 import json
 import shutil
@@ -36,7 +36,7 @@ def rally(tmp_path_factory):
 
 
 def _change(source: Path, folder: Path, file: str, change) -> Path:
-    """A copy of a recording in which `change` made other lines (the header first) of those of one file."""
+    """Return a copy of a recording with the lines (the header first) of one file replaced by `change`."""
     shutil.copytree(source, folder)
     lines = (folder / file).read_text().splitlines()
     (folder / file).write_text("\n".join(change(lines)) + "\n")
@@ -80,46 +80,46 @@ def _diagnosed(out: Path, capsys, *words: Path | str) -> dict:
     return json.loads(capsys.readouterr().out)
 
 
-def _undetermined(expected: dict, *said: str) -> None:
+def _undetermined(expected: dict, *message: str) -> None:
     assert (expected["verdict"], expected["findings"]) == ("undetermined", [])
-    assert all(word in expected["reason"] for word in said), expected["reason"]
+    assert all(word in expected["reason"] for word in message), expected["reason"]
     assert expected["next_recording"]
 
 
 @pytest.mark.parametrize(
-    "file, change, said",
+    "file, change, message",
     [
         ("frames.csv", lambda lines: lines[: 3 * 150], ["too little data"]),
         ("frames.csv", lambda lines: lines[:1], ["too little data"]),
         ("frames.csv", _puck_at(_noisy), ["never moves"]),
         ("frames.csv", _puck_at(lambda: ["0.7", "0.4"]), ["never moves"]),
-        ("frames.csv", _restamp(lambda t: t + 5.0 * (t // 10.0)), ["frames.csv", "leaps by 5000 ms"]),
-        ("frames.csv", _restamp(lambda t: t + 0.05 * (t // 3.0)), ["frames.csv", "leaps by 50 ms"]),
+        ("frames.csv", _restamp(lambda t: t + 5.0 * (t // 10.0)), ["frames.csv", "jumps by 5000 ms"]),
+        ("frames.csv", _restamp(lambda t: t + 0.05 * (t // 3.0)), ["frames.csv", "jumps by 50 ms"]),
         ("meta.json", _sized({"length_m": 1.03}), ["stated length of 2.060 m"]),
         ("meta.json", _sized({"width_m": 0.97}), ["stated width of 0.970 m"]),
         ("meta.json", _sized({"length_m": 1.03, "width_m": 1.03, "goal_width_m": 1.03}), ["stated length of 2.060 m"]),
     ],
     ids=["3 s", "header", "still", "frozen", "leaps", "small leaps", "too long", "too narrow", "too large"],
 )
-def test_a_puck_that_tells_nothing(tilted, tmp_path, capsys, file, change, said):
+def test_unusable_frames_are_undetermined(tilted, tmp_path, capsys, file, change, message):
     broken = _change(tilted, tmp_path / "broken", file, change)
-    _undetermined(_diagnosed(tmp_path / "out", capsys, broken), *said)
+    _undetermined(_diagnosed(tmp_path / "out", capsys, broken), *message)
 
 
 @pytest.mark.parametrize(
-    "file, change, said",
+    "file, change, message",
     [
         ("frames.csv", lambda lines: lines[: len(lines) // 2], ["frames.csv stops at 1", "mallet.csv goes on"]),
         ("mallet.csv", lambda lines: lines[: len(lines) // 2], ["mallet.csv stops at 15.0 s", "frames.csv goes on"]),
         ("commands.csv", lambda lines: lines[: len(lines) // 2], ["commands.csv stops at", "mallet.csv goes on"]),
-        ("mallet.csv", _restamp(lambda t: t + 3.0 * (t > 15.3)), ["mallet.csv leaps by 3000 ms at 15.30 s"]),
+        ("mallet.csv", _restamp(lambda t: t + 3.0 * (t > 15.3)), ["mallet.csv jumps by 3000 ms at 15.30 s"]),
         ("mallet.csv", lambda lines: lines[:5001] + lines[6501:], ["mallet.csv has no row for 3.0 s from 10.0 s"]),
     ],
     ids=["no camera", "no encoders", "no commands", "leap", "pause"],
 )
-def test_a_robot_s_streams_that_do_not_go_together(rally, tmp_path, capsys, file, change, said):
+def test_streams_that_contradict_each_other_are_undetermined(rally, tmp_path, capsys, file, change, message):
     broken = _change(rally, tmp_path / "broken", file, change)
-    _undetermined(_diagnosed(tmp_path / "out", capsys, broken), *said)
+    _undetermined(_diagnosed(tmp_path / "out", capsys, broken), *message)
 
 
 def test_commands_may_end_when_the_mallet_rests(rally, tmp_path):
@@ -135,7 +135,7 @@ def test_commands_may_end_when_the_mallet_rests(rally, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "file, change, said",
+    "file, change, message",
     [
         ("frames.csv", lambda lines: [*lines[:900], lines[900][:12]], "frames.csv:901: has 2 cells, expected 5"),
         ("frames.csv", _restamp(lambda t: t - 2.0 * (t > 15.0)), "the clock runs back"),
@@ -143,16 +143,16 @@ def test_commands_may_end_when_the_mallet_rests(rally, tmp_path):
     ],
     ids=["half a row", "back in time", "half the meta data"],
 )
-def test_a_file_that_breaks_a_rule_gets_one_line(tilted, tmp_path, capsys, file, change, said):
+def test_a_file_that_breaks_a_rule_gets_one_line(tilted, tmp_path, capsys, file, change, message):
     broken = _change(tilted, tmp_path / "broken", file, change)
     assert main(["diagnose", str(broken), "--out", str(tmp_path / "out")]) == 2
     error = capsys.readouterr().err
-    assert said in error and error.count("\n") == 1
+    assert message in error and error.count("\n") == 1
     assert not (tmp_path / "out").exists()
 
 
 def test_pauses_are_noted(tilted, tmp_path, capsys):
-    """A camera that was off for a while: what it saw before and after is diagnosed."""
+    """The data before and after a gap of the camera are diagnosed."""
     paused = _change(tilted, tmp_path / "paused", "frames.csv", lambda lines: lines[:2000] + lines[2300:])
     expected = _diagnosed(tmp_path / "out", capsys, paused)
     assert expected["notes"] == ["paused: frames.csv has 1 pause of more than 0.5 s and is cut there"]

@@ -1,4 +1,4 @@
-"""A diagnosis of recordings whose truth an independent table knows: named, silent, or undetermined."""
+"""A diagnosis of recordings whose truth an independent table knows: findings, none, or undetermined."""
 
 import json
 from dataclasses import replace
@@ -30,13 +30,13 @@ def _diagnosis(folder: Path, law: Law, seconds: float = SECONDS, seed: int = 5, 
 
 
 @pytest.mark.slow
-def test_silent_where_nothing_is_missing(tmp_path):
+def test_no_finding_where_nothing_is_missing(tmp_path):
     found = _diagnosis(tmp_path, Law())
     assert (found.verdict, found.findings) == ("agrees", [])
 
 
 @pytest.mark.slow
-def test_other_numbers_are_no_missing_physics(tmp_path):
+def test_other_parameters_are_no_missing_physics(tmp_path):
     found = _diagnosis(tmp_path, Law(friction=0.06, drag=0.05, wall_restitution=0.88))
     assert (found.verdict, found.findings) == ("parameters_only", [])
     glide = next(each for each in found.regime_results if each.regime == "glide")
@@ -94,7 +94,7 @@ def test_what_is_no_recording_gets_one_line(words, expected, tmp_path, capsys):
     assert not (tmp_path / "out").exists()
 
 
-def test_a_place_that_cannot_be_written_to_is_told_before_the_work(tmp_path, capsys, monkeypatch):
+def test_a_folder_that_cannot_be_written_to_is_reported_before_the_work(tmp_path, capsys, monkeypatch):
     make_recording(tmp_path / "table", Law(), "launches", 3, 3.0, camera=NOISE)
     (tmp_path / "file").write_text("")
     monkeypatch.setattr("sim2real.diagnose.pipeline.diagnose", lambda *_: pytest.fail("diagnosed"))
@@ -146,21 +146,21 @@ def test_labelled_practice(name):
 
 
 @pytest.mark.parametrize("proved, odd, expected", [(True, 0.1, True), (False, 0.1, False), (False, 0.0, True)])
-def test_what_rests_on_a_rough_law_and_leaves_much_is_not_told(proved, odd, expected):
-    """Nor are its numbers: the refitted baseline's are, and what that leaves. `odd`: a push that is another one
-    in every launch, which no law explains."""
+def test_a_law_is_not_reported_on_premises_with_a_misfit_if_large_residuals_remain(proved, odd, expected):
+    """Nor are its parameters: the baseline and its residuals are reported. `odd`: a push that differs in every
+    launch, which no law explains."""
     pushes = odd * np.random.default_rng(1).normal(size=LAUNCHES)
     problem = LinearProblem({"tilt_x": 0.06, "tilt_y": -0.08, "spin": pushes})
-    said = identify_regime(LinearRegime(proved), problem, NO_EVIDENCE, {})
-    stands, found = said.final, said.regime_result
-    assert stands is not None and found.selection is not None and found.mismatch is not None
-    assert bool(found.findings) == expected == (not found.undetermined) == bool(stands.model.laws)
+    identified = identify_regime(LinearRegime(proved), problem, NO_EVIDENCE, {})
+    final, found = identified.final, identified.regime_result
+    assert final is not None and found.selection is not None and found.mismatch is not None
+    assert bool(found.findings) == expected == (not found.undetermined) == bool(final.model.laws)
     assert (found.selection.after_m < 0.9 * found.selection.before_m) == expected and not found.misfit
     assert (found.mismatch.after.mean() < 0.9 * found.mismatch.before.mean()) == expected
 
 
 @pytest.mark.slow
-def test_walls_that_bounce_worse_and_worse_are_told_though_no_effect_is_named_so(tmp_path):
+def test_a_restitution_that_falls_with_time_is_reported_as_unlisted(tmp_path):
     """Both components change, as the baseline's restitution has it."""
     found = _diagnosis(tmp_path / "warming", Law(wall_warming=-0.003, wall_restitution=0.85))
     (law,) = found.findings

@@ -1,7 +1,7 @@
-"""A real table, of which nobody knows the law: what is found in a part of its recordings must foretell the rest.
+"""A real table, whose laws are unknown: a model found in a part of its recordings must predict the rest.
 
-Robust error: the median of the absolute residual [m/s] of one component over all held-out bounces, so that blows of a
-hand that nobody recorded count as little as they should.
+Robust error: the median of the absolute residual [m/s] of one component over all held-out wall contacts, so that
+unrecorded contacts with a hand have little weight.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ from tests.places import UBC
 
 pytestmark = pytest.mark.slow
 
-SHIPPED = {row.name: row.default for row in TABLE if row.name in GlideProblem.base}
+DEFAULTS = {row.name: row.default for row in TABLE if row.name in GlideProblem.base}
 HALF = 83.3  # s, of a recording of 167 s
 
 
 @dataclass(frozen=True)
 class RecordingPart:
     recording: Recording
-    pieces: Segments
+    segments: Segments
     glides: GlideProblem
 
 
@@ -45,14 +45,14 @@ def part(name: str) -> RecordingPart:
     if not (UBC / name).exists():
         pytest.skip(f"no recordings of the real table beside the project ({UBC / name})")
     recording = read_recording(UBC / name)
-    pieces = segment(recording)
+    segments = segment(recording)
     assert recording.frames is not None
-    data = glide_data(pieces, geometry(recording), mallet_tracks(recording, recording.frames.t))
-    return RecordingPart(recording, pieces, GlideProblem(data, parameters(recording, {})))
+    data = glide_data(segments, geometry(recording), mallet_tracks(recording, recording.frames.t))
+    return RecordingPart(recording, segments, GlideProblem(data, parameters(recording, {})))
 
 
 def begun(problem: GlideProblem) -> np.ndarray:
-    """When each launch begins [s]."""
+    """Return the start of each launch [s]."""
     first = np.full(problem.clusters, np.inf)
     np.minimum.at(first, problem.data.cluster, problem.data.t[problem.data.first[:-1]])
     return first
@@ -61,14 +61,14 @@ def begun(problem: GlideProblem) -> np.ndarray:
 @cache
 def glides_of_first_half() -> SearchResult:
     problem = part("play_a").glides
-    return search_model(problem, SHIPPED, np.flatnonzero(begun(problem) < HALF))
+    return search_model(problem, DEFAULTS, np.flatnonzero(begun(problem) < HALF))
 
 
 def bounces_of(name: str) -> tuple[WallContacts, int]:
-    """The bounces of a recording, told by the law of the glides, and its number of launches."""
+    """Return the wall contacts of a recording, identified with the law of the glides, and its number of launches."""
     here = part(name)
     states = here.glides.states(given(glides_of_first_half().all_values))
-    found = wall_contacts(find_contact_motions(here.pieces, here.glides, states), geometry(here.recording))
+    found = wall_contacts(find_contact_motions(here.segments, here.glides, states), geometry(here.recording))
     return found, here.glides.clusters
 
 
@@ -76,10 +76,10 @@ def typical(residual: np.ndarray) -> np.ndarray:
     return np.median(np.abs(residual), axis=0)
 
 
-def test_what_the_first_half_s_glides_say_holds_in_the_second() -> None:
+def test_the_glides_of_the_first_half_predict_the_second() -> None:
     found, problem = glides_of_first_half(), part("play_a").glides
     assert "table_warp" in [law.name for law in found.listed]
-    assert found.unlisted is None or found.unlisted.family == "position"  # no real table is quite a quadratic surface
+    assert found.unlisted is None or found.unlisted.family == "position"  # no real table is exactly a quadratic surface
     second = np.flatnonzero(begun(problem) >= HALF)
     before, after = (
         float(np.sum(problem.residuals(values, (), second).r ** 2))
@@ -89,7 +89,7 @@ def test_what_the_first_half_s_glides_say_holds_in_the_second() -> None:
     assert after < 0.3 * before
 
 
-def test_what_the_bounces_of_one_recording_say_holds_in_another() -> None:
+def test_the_wall_contacts_of_one_recording_predict_another() -> None:
     values = dict(glides_of_first_half().all_values)
     data, launches = bounces_of("play_a")
     _, found = search_wall_model(
@@ -106,7 +106,7 @@ def test_what_the_bounces_of_one_recording_say_holds_in_another() -> None:
     defaults = typical(seen - np.array([-0.7, 0.7]) * before)
     refitted = typical(seen - found.baseline.values["wall_restitution"] * np.array([-1.0, 1.0]) * before)
     final = typical(seen - WallProblem(other, launches, values).predicted(found.law.values))
-    for words, base in (("shipped", defaults), ("refitted baseline", refitted)):
+    for words, base in (("default parameters", defaults), ("refitted baseline", refitted)):
         change = final / base - 1.0
         print(f"puck_a's bounces, against the {words}: normal {change[0]:+.0%}, along the wall {change[1]:+.0%}")
     assert final[0] < 0.55 * defaults[0] and final[1] < 0.4 * defaults[1]

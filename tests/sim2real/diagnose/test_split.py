@@ -1,9 +1,9 @@
-"""Which launches prove: about every fifth, but some of each kind of contact; and what is left then."""
+"""The choice of the holdout: about every fifth launch, with some of each kind of contact."""
 
 import numpy as np
 import pytest
 
-from sim2real.diagnose.split import _every, launches_of, split_data
+from sim2real.diagnose.split import _choose_holdout, launches_of, split_data
 from sim2real.diagnose.tuned import SPLIT
 from sim2real.recording.folder import read_recording
 from sim2real.segmentation.segments import segment
@@ -11,56 +11,58 @@ from sim2real.study.independent_table import Law
 from sim2real.study.independent_table.recorder.record import make_recording
 
 
-def test_every_fifth_launch_is_taken_where_all_meet_everything():
-    np.testing.assert_array_equal(_every(5, np.ones((14, 6), int)), [4, 9])
+def test_every_fifth_launch_is_held_out_where_all_have_every_contact():
+    np.testing.assert_array_equal(_choose_holdout(5, np.ones((14, 6), int)), [4, 9])
 
 
-def test_a_launch_that_alone_met_a_wall_is_left_to_the_fits():
-    """Number 4 has all touches of the second wall; of the third there are five, of which number 8 takes one."""
-    met = np.ones((10, 6), int)
-    met[:, 1], met[4, 1] = 0, 6
-    met[:, 2] = [0, 0, 0, 0, 1, 0, 0, 1, 1, 2]
-    np.testing.assert_array_equal(_every(5, met), [3, 8])
+def test_the_only_launch_with_contacts_at_a_wall_stays_in_the_training_data():
+    """Launch 4 has all contacts with the second wall; the third wall has five contacts, one of them in launch 8."""
+    counts = np.ones((10, 6), int)
+    counts[:, 1], counts[4, 1] = 0, 6
+    counts[:, 2] = [0, 0, 0, 0, 1, 0, 0, 1, 1, 2]
+    np.testing.assert_array_equal(_choose_holdout(5, counts), [3, 8])
 
 
 @pytest.mark.parametrize("walls, robots", [([0, 1], [4]), ([5, 6, 8], [2, 9]), ([0, 3], [3, 5])])
-def test_some_of_those_taken_meet_walls_and_some_the_robot(walls, robots):
-    met = np.zeros((12, 6), int)
-    met[walls, 0], met[robots, 5] = 2, 1
-    taken = _every(4, met)
-    assert len(taken) == 3 and len(np.unique(taken)) == 3
-    assert met[taken][:, [0, 5]].any(axis=0).all()
+def test_the_holdout_has_contacts_with_walls_and_with_the_robot(walls, robots):
+    counts = np.zeros((12, 6), int)
+    counts[walls, 0], counts[robots, 5] = 2, 1
+    held_out = _choose_holdout(4, counts)
+    assert len(held_out) == 3 and len(np.unique(held_out)) == 3
+    assert counts[held_out][:, [0, 5]].any(axis=0).all()
 
 
-def test_a_kind_that_one_launch_alone_has_met_is_not_given_up_for_another():
-    met = np.zeros((9, 6), int)
-    met[3, 0], met[8, 0], met[5, 5] = 3, 5, 1  # launch 3 is taken, 5 is not; 7 met nothing
-    np.testing.assert_array_equal(_every(4, met), [3, 5])
+def test_the_only_launch_of_a_kind_is_not_replaced():
+    counts = np.zeros((9, 6), int)
+    counts[3, 0], counts[8, 0], counts[5, 5] = 3, 5, 1  # launch 3 is held out, 5 is not; 7 has no contact
+    np.testing.assert_array_equal(_choose_holdout(4, counts), [3, 5])
 
 
-def test_of_few_launches_the_last_is_taken_and_of_one_none():
-    np.testing.assert_array_equal(_every(5, np.ones((3, 6), int)), [2])
-    assert len(_every(5, np.ones((1, 6), int))) == 0
+def test_of_few_launches_the_last_is_held_out_and_of_one_none():
+    np.testing.assert_array_equal(_choose_holdout(5, np.ones((3, 6), int)), [2])
+    assert len(_choose_holdout(5, np.ones((1, 6), int))) == 0
 
 
 def test_each_frame_is_in_one_part_and_a_path_goes_with_its_launches(tmp_path):
     make_recording(tmp_path / "one", Law(), "rally", 3, 30.0, dt=5e-5)
     recording = read_recording(tmp_path / "one")
-    divided = split_data([recording], [])
-    (rest,), (proof,), (path,), (path_proof,) = (
-        divided.training,
-        divided.holdout,
-        divided.gantry_training,
-        divided.gantry_holdout,
+    split = split_data([recording], [])
+    (training,), (holdout,), (path,), (path_holdout,) = (
+        split.training,
+        split.holdout,
+        split.gantry_training,
+        split.gantry_holdout,
     )
-    assert recording.frames is not None and rest.frames is not None and proof.frames is not None
-    np.testing.assert_array_equal(np.sort(np.concatenate([rest.frames.t, proof.frames.t])), recording.frames.t)
-    assert 0.5 / SPLIT.launches < proof.frames.rows / recording.frames.rows < 2.0 / SPLIT.launches
-    assert rest.mallet is proof.mallet is recording.mallet and path.frames is recording.frames
-    assert path.mallet is not None and path_proof.mallet is not None and recording.mallet is not None
-    np.testing.assert_array_equal(np.sort(np.concatenate([path.mallet.t, path_proof.mallet.t])), recording.mallet.t)
-    frame = proof.frames.t[np.clip(np.searchsorted(proof.frames.t, path_proof.mallet.t, side="right") - 1, 0, None)]
-    assert np.median(path_proof.mallet.t - frame) < 0.02  # seconds, if other launches were meant
+    assert recording.frames is not None and training.frames is not None and holdout.frames is not None
+    np.testing.assert_array_equal(np.sort(np.concatenate([training.frames.t, holdout.frames.t])), recording.frames.t)
+    assert 0.5 / SPLIT.launches < holdout.frames.rows / recording.frames.rows < 2.0 / SPLIT.launches
+    assert training.mallet is holdout.mallet is recording.mallet and path.frames is recording.frames
+    assert path.mallet is not None and path_holdout.mallet is not None and recording.mallet is not None
+    np.testing.assert_array_equal(np.sort(np.concatenate([path.mallet.t, path_holdout.mallet.t])), recording.mallet.t)
+    frame = holdout.frames.t[
+        np.clip(np.searchsorted(holdout.frames.t, path_holdout.mallet.t, side="right") - 1, 0, None)
+    ]
+    assert np.median(path_holdout.mallet.t - frame) < 0.02  # seconds, if the launches differed
 
 
 def test_launches_are_counted_through_all_recordings(tmp_path):

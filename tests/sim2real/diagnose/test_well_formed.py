@@ -1,4 +1,4 @@
-"""The checker of a diagnosis' format finds what is wrong with one, and nothing in a right one."""
+"""The format checker finds each fault of a diagnosis, and none in a valid one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the format puckpilot-diagnosis/1 asks of a diagnosis.json, written down apart from the code that writes one."""
+"""A checker of the format puckpilot-diagnosis/1, independent of the code that writes diagnosis.json."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SIZES = ("before_m", "after_m", "floor_m", "pieces")
 
 
 def faults(printed: dict[str, Any]) -> list[str]:
-    """What is wrong with a diagnosis, a line each."""
+    """Return the faults of a diagnosis, a line each."""
     found = printed.get("findings")
     if printed.get("format") != "puckpilot-diagnosis/1" or not isinstance(found, list):
         return ["no diagnosis of this format"]

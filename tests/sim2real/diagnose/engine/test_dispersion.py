@@ -1,4 +1,4 @@
-"""The dispersion is estimated from what all laws leave, however many columns they have."""
+"""The dispersion is estimated from the residuals of all laws, for any number of columns."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from sim2real.diagnose.engine.forward_selection import estimated_dispersion
 from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.engine.problem import Units
 
-EACH = 2  # residuals of a bounce
+EACH = 2  # residuals of a wall contact
 DISPERSION = 4.0  # variance of the noise
 
 
@@ -28,7 +28,7 @@ def estimate(wall_contacts: int, columns: int, seed: int) -> float:
 
 
 @pytest.mark.parametrize(("wall_contacts", "columns"), [(400, 0), (400, 100), (80, 100), (40, 60)])
-def test_the_dispersion_is_found_however_rich_the_laws(wall_contacts: int, columns: int) -> None:
-    """The median of what few residuals leave lies below their mean: of 8, which a launch has, by 8 %."""
+def test_the_dispersion_is_estimated_for_any_number_of_columns(wall_contacts: int, columns: int) -> None:
+    """The median of a chi-square is below its mean: with 8 residuals, as in a launch, by 8 %."""
     found = np.mean([estimate(wall_contacts, columns, seed) for seed in range(10)])
     assert found == pytest.approx(DISPERSION, rel=0.3)

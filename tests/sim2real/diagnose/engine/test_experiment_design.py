@@ -1,4 +1,4 @@
-"""Which pieces discriminate between two laws, held against least squares on all residuals at once."""
+"""Which segments discriminate between two laws, compared with least squares on all residuals at once."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ NAMES = ("base", "tilt", "warp")
 def columns():
     rng = np.random.default_rng(3)
     found = rng.normal(size=(UNITS * EACH, len(NAMES)))
-    found[: 6 * EACH, 1] = 2.0 * found[: 6 * EACH, 2]  # in the first half of the units tilt is warp by another name
+    found[: 6 * EACH, 1] = 2.0 * found[: 6 * EACH, 2]  # in the first half of the units tilt and warp are proportional
     found[6 * EACH : 8 * EACH, 1] *= 0.3
     return found
 
@@ -26,10 +26,10 @@ def of_units(columns):
     return information(equations, np.arange(UNITS), ["tilt"], np.array([0.7]), ["base", "warp"])
 
 
-def test_the_information_of_a_piece_is_what_the_best_of_the_other_law_leaves(columns, of_units):
-    says = 0.7 * columns[:, 1]
-    best = np.linalg.lstsq(columns[:, [0, 2]], says, rcond=None)[0]
-    left = says - columns[:, [0, 2]] @ best
+def test_the_information_of_a_segment_is_the_residual_of_the_best_other_law(columns, of_units):
+    predicted = 0.7 * columns[:, 1]
+    best = np.linalg.lstsq(columns[:, [0, 2]], predicted, rcond=None)[0]
+    left = predicted - columns[:, [0, 2]] @ best
     np.testing.assert_allclose(of_units, (left.reshape(UNITS, EACH) ** 2).sum(axis=1), rtol=1e-9)
 
 
@@ -37,11 +37,13 @@ def test_the_most_informative_kind_is_advised(of_units):
     third = np.arange(UNITS) // 4 == 2
     words = most_informative(of_units, {"slow": ~third, "fast": third, "rare": of_units == of_units.max()}, "glides")
     ratio = of_units[third].mean() / of_units.mean()
-    assert words.endswith(f" more fast glides, each of which is {ratio:.1f} times as informative as the average one")
+    assert words.endswith(f" more fast glides, each {ratio:.1f} times as informative as the average one")
 
 
-@pytest.mark.parametrize("scale, more", [(1.0, 4), (0.1, 11)])  # (18 - 5.6) / 1.2 = 10.3; of the surer one a few
-def test_weak_laws_need_more_pieces(scale, more):
+@pytest.mark.parametrize(
+    "scale, more", [(1.0, 4), (0.1, 11)]
+)  # (18 - 5.6) / 1.2 = 10.3; the more significant one needs few
+def test_weak_laws_need_more_segments(scale, more):
     of_units = scale * np.array([2.0, 2.0, 2.0, 2.0, 12.0, 12.0, 12.0, 12.0])
     words = most_informative(of_units, {"slow": of_units > 6.0 * scale}, "glides")
     assert words.startswith(f"about {more} more slow glides")

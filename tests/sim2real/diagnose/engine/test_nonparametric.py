@@ -1,4 +1,4 @@
-"""A strong smooth term, linearized about the path with it, on a table that the product did not make."""
+"""A strong smooth term, linearized about the trajectory with it, on an independent simulator's table."""
 
 from dataclasses import replace
 
@@ -23,7 +23,7 @@ FAMILY = "force by heading"
 
 @pytest.fixture(scope="module")
 def grainy(tmp_path_factory):
-    """The glides of a table whose friction doubles and vanishes with the heading, and the baseline's best fit."""
+    """The glides of a table with strongly anisotropic friction, and the baseline's best fit."""
     folder = tmp_path_factory.mktemp("grainy")
     make_recording(folder / "table", Law(grain=0.9), "launches", 3, 60.0, dt=5e-5)
     recording = read_recording(folder / "table")
@@ -34,7 +34,7 @@ def grainy(tmp_path_factory):
 
 
 def mean_squares(problem, values, clusters):
-    """Of the residuals under a law of parameters, in units of the noise."""
+    """Return the mean square residual under these parameters, in units of the noise."""
     return np.sum(problem.residuals(values, (), clusters).r ** 2) / problem.freedom[clusters].sum()
 
 
@@ -46,33 +46,33 @@ def test_a_strong_term_is_fitted_to_the_noise_and_predicts_held_out_launches(gra
     problem, baseline, use = grainy
     smooth = fit_nonparametric(problem, baseline, by_name(problem, baseline.values, FAMILY), use, 1.0)
     n = len(smooth.law.free)
-    whole = {**smooth.law.values, **smooth.family.switch(smooth.theta[n:])}
+    values = {**smooth.law.values, **smooth.family.switch(smooth.theta[n:])}
     held_out = np.setdiff1d(np.flatnonzero(problem.freedom > 0), use)
     assert mean_squares(problem, baseline.values, held_out) > 20.0
-    assert mean_squares(problem, whole, use) < 1.2
-    assert mean_squares(problem, whole, held_out) < 1.5
+    assert mean_squares(problem, values, use) < 1.2
+    assert mean_squares(problem, values, held_out) < 1.5
     assert smooth.law.values["friction"] == pytest.approx(Law().friction, rel=0.03)
 
 
-def test_what_is_claimed_to_be_left_is_what_the_simulator_leaves(grainy):
+def test_the_linearized_loss_is_that_of_the_simulator(grainy):
     problem, baseline, use = grainy
     smooth = fit_nonparametric(problem, baseline, by_name(problem, baseline.values, FAMILY), use, 1.0)
     n = len(smooth.law.free)
     index, _ = smooth.model.columns(smooth.columns.equations)
     claimed = normal_equations.losses(smooth.columns.equations, index, smooth.theta, problem.units.of(use)).sum()
-    whole = {**smooth.law.values, **smooth.family.switch(smooth.theta[n:])}
-    assert claimed == pytest.approx(np.sum(problem.residuals(whole, (), use).r ** 2), rel=0.02)
+    values = {**smooth.law.values, **smooth.family.switch(smooth.theta[n:])}
+    assert claimed == pytest.approx(np.sum(problem.residuals(values, (), use).r ** 2), rel=0.02)
 
 
-def test_a_family_that_the_simulator_cannot_switch_on_is_fitted_about_the_law_alone(grainy):
+def test_a_term_that_the_simulator_cannot_represent_is_linearized_about_the_law_alone(grainy):
     problem, baseline, use = grainy
     smooth = fit_nonparametric(problem, baseline, by_name(problem, baseline.values, "brake after a contact"), use, 1.0)
     assert smooth.law is baseline
     assert not smooth.family.switch(smooth.theta[len(baseline.free) :])
 
 
-def test_a_straight_family_is_fitted_about_the_law_alone_and_never_switched_on(grainy):
-    """As those of the bounces, of which the columns hold however large the law is."""
+def test_a_linear_term_is_linearized_about_the_law_alone(grainy):
+    """As for wall contacts, whose columns are exact for laws of any size."""
     problem, baseline, use = grainy
     family = by_name(problem, baseline.values, FAMILY)
     straight = replace(family, linear=True, switch=lambda theta: pytest.fail("switched on"))
@@ -80,13 +80,13 @@ def test_a_straight_family_is_fitted_about_the_law_alone_and_never_switched_on(g
     assert smooth.law is baseline and np.isfinite(smooth.cv_loss)
 
 
-def test_a_term_of_which_every_step_leads_uphill_predicts_nothing(grainy, monkeypatch):
-    """As where the simulator's switch does the opposite of what the columns say."""
+def test_a_term_whose_steps_all_increase_the_loss_predicts_nothing(grainy, monkeypatch):
+    """As if the simulator's parameters had the opposite effect of the columns."""
     problem, baseline, use = grainy
-    honest = problem.columns
+    original = problem.columns
 
     def opposite(values, free, at):
-        found = honest(values, free, at)
+        found = original(values, free, at)
         turned = [replace(one, switch=lambda theta, one=one: one.switch(-theta)) for one in found.families]
         return replace(found, families=turned)
 

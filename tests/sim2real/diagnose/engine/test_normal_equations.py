@@ -1,4 +1,4 @@
-"""Sums by launch: the same least squares as numpy's on all rows at once."""
+"""Sums by launch give the same least-squares solution as numpy on all rows."""
 
 import numpy as np
 import pytest
@@ -24,7 +24,7 @@ def test_a_solution_is_that_of_least_squares_on_the_same_rows():
     assert np.allclose(normal_equations.solve(equations, np.arange(3), some), expected, rtol=1e-9)
 
 
-def test_a_matrix_on_which_numpy_does_not_converge_is_solved_all_the_same(monkeypatch: pytest.MonkeyPatch):
+def test_a_matrix_on_which_numpy_does_not_converge_is_solved(monkeypatch: pytest.MonkeyPatch):
     r, jacobian, cluster, _ = _problem()
     equations = normal_equations.make_equations("abc", r, jacobian, cluster, 8)
 
@@ -44,7 +44,7 @@ def test_losses_are_the_sums_of_squares_of_each_cluster():
     assert np.allclose(found, by_hand)
 
 
-def test_intervals_cover_what_made_the_data():
+def test_intervals_cover_the_truth():
     inside = []
     for seed in range(200):
         r, jacobian, cluster, truth = _problem(seed)
@@ -61,7 +61,7 @@ def test_intervals_cover_where_launches_scatter_more_than_their_noise():
         rng = np.random.default_rng(seed)
         launch = np.repeat(np.arange(launches), 30)
         jacobian = rng.normal(size=(len(launch), 2))
-        own = 0.5 + 0.3 * rng.normal(size=launches)  # the number is another in every launch; 0.5 in the mean
+        own = 0.5 + 0.3 * rng.normal(size=launches)  # the parameter differs by launch, with mean 0.5
         r = rng.normal(size=len(launch)) - own[launch] * jacobian[:, 0] - 0.2 * jacobian[:, 1]
         equations = normal_equations.make_equations("ab", r, jacobian, launch, launches)
         theta = normal_equations.solve(equations, np.arange(2), np.arange(launches))
@@ -70,7 +70,7 @@ def test_intervals_cover_where_launches_scatter_more_than_their_noise():
     assert 0.92 <= np.mean(inside) <= 0.98
 
 
-def test_parts_gather_into_the_sums_of_larger_ones():
+def test_gathered_equations_are_those_of_the_larger_clusters():
     r, jacobian, cluster, _ = _problem(2)
     fine = normal_equations.make_equations("abc", r, jacobian, cluster, 8)
     into = np.array([0, 0, 1, 1, 2, 2, 0, 1])
@@ -82,14 +82,14 @@ def test_parts_gather_into_the_sums_of_larger_ones():
         assert np.allclose(getattr(found, name), getattr(expected, name))
 
 
-def test_a_column_without_data_gets_nothing():
+def test_a_column_without_data_gets_zero():
     r, jacobian, cluster, _ = _problem()
     jacobian[:, 1] = 0.0
     equations = normal_equations.make_equations("abc", r, jacobian, cluster, 8)
     assert normal_equations.solve(equations, np.arange(3), np.arange(8))[1] == 0.0
 
 
-def test_moved_residuals_are_those_of_the_same_law_counted_from_elsewhere():
+def test_moved_equations_are_those_of_the_moved_residuals():
     r, jacobian, cluster, truth = _problem(4)
     equations = normal_equations.make_equations("abc", r, jacobian, cluster, 8)
     expected = normal_equations.make_equations("abc", r + jacobian[:, [0, 2]] @ truth[[0, 2]], jacobian, cluster, 8)

@@ -1,4 +1,4 @@
-"""A readable formula from data whose law is known: its form, its numbers, its words."""
+"""A readable formula from data of a known law: its form, its parameters, its text."""
 
 import numpy as np
 import pytest
@@ -10,11 +10,11 @@ from sim2real.diagnose.regimes.sliding.basis_library import Motion
 
 NOISE = 0.01
 CLUSTERS = 20
-PIECES = 1200
+POINTS = 1200
 
 
 def _rest(seen: np.ndarray, base: np.ndarray | None = None, seed: int = 0) -> FormulaProblem:
-    """Data (n, c) with noise, of which everything is seen directly; `base` (n, b) is fitted along."""
+    """Return data (n, c) with noise, measured directly; `base` (n, b) is fitted jointly."""
     rng = np.random.default_rng(seed)
     flat = (seen + rng.normal(0.0, NOISE, seen.shape)).reshape(-1) / NOISE
     cluster = np.repeat(np.arange(len(seen)) * CLUSTERS // len(seen), seen.shape[1])
@@ -45,38 +45,38 @@ def _profiles(axis):
         (lambda u: 0.15 * (np.abs(u - 0.9) < 0.2), "stripe", {"size": 0.15, "middle": 0.9, "width": 0.4}),
     ],
 )
-def test_a_law_of_one_coordinate_is_read_off(law, name, numbers):
-    u = np.random.default_rng(1).uniform(0.0, 2.5, PIECES)
+def test_a_law_of_one_coordinate_is_found(law, name, numbers):
+    u = np.random.default_rng(1).uniform(0.0, 2.5, POINTS)
     found = _formula(u, law(u), _profiles)
     assert found.form.name.split()[0] == name
     for key, value in numbers.items():
         one = found.parameters[key]
         assert one.value == pytest.approx(value, rel=0.05)
         assert one.low - 0.01 * abs(value) < value < one.high + 0.01 * abs(value)
-        assert f"{abs(one.value):.4g}" in found.words or key == "width"  # a stripe's half width is said
+        assert f"{abs(one.value):.4g}" in found.words or key == "width"  # a stripe's formula has half its width
 
 
 @pytest.mark.parametrize(
     "law, name",
     [
-        (lambda u: 0.3 * u - 0.015 * u**2, "linear"),  # a bend too small to be worth three numbers
+        (lambda u: 0.3 * u - 0.015 * u**2, "linear"),  # a curvature too small for three parameters
         (lambda u: 0.2 * np.exp(-0.5 * ((u - 2.0) / 0.6) ** 2), "bump"),  # a line would explain three quarters
     ],
 )
-def test_the_simplest_that_explains_nearly_all_is_said(law, name):
-    u = np.random.default_rng(7).uniform(0.0, 2.5, PIECES)
+def test_the_simplest_form_that_explains_nearly_all_is_selected(law, name):
+    u = np.random.default_rng(7).uniform(0.0, 2.5, POINTS)
     assert _formula(u, law(u), _profiles).form.name.split()[0] == name
 
 
 def test_the_words_are_a_formula():
-    u = np.linspace(0.0, 2.0, PIECES)
+    u = np.linspace(0.0, 2.0, POINTS)
     found = _formula(u, -0.12 * np.exp(-u / 0.21), _profiles)
     p = found.values
     assert found.words == f"a = {p['size']:.4g} exp(-u / {p['decay']:.4g} s) m/s^2 along it"
 
 
-def test_an_offset_is_fitted_where_nothing_else_stands_for_it():
-    u = np.random.default_rng(2).uniform(0.0, 100.0, PIECES)
+def test_an_offset_is_fitted_where_the_coordinate_has_one():
+    u = np.random.default_rng(2).uniform(0.0, 100.0, POINTS)
     found = _formula(u, 0.05 + 0.002 * u, _profiles, offset=True)
     assert found.values["slope"] == pytest.approx(0.002, rel=0.05)
     assert found.values["offset"] == pytest.approx(0.05, abs=0.005)
@@ -84,7 +84,7 @@ def test_an_offset_is_fitted_where_nothing_else_stands_for_it():
 
 
 def test_an_angle_gets_harmonics():
-    heading = np.random.default_rng(3).uniform(-180.0, 180.0, PIECES)
+    heading = np.random.default_rng(3).uniform(-180.0, 180.0, POINTS)
     law = 0.05 * np.cos(2 * np.radians(heading - 30.0))
     found = _formula(heading, law, lambda axis: [harmonic(k, "m/s^2") for k in (1, 2, 3, 4)])
     assert found.values == pytest.approx({"size": 0.05, "toward": 30.0}, rel=0.1)
@@ -92,10 +92,10 @@ def test_an_angle_gets_harmonics():
 
 
 def test_what_the_baseline_explains_is_not_explained_again():
-    """A slope that a fitted parameter stands for is taken off; the wave on top of it is what is said."""
-    u = np.random.default_rng(4).uniform(0.0, 2.5, PIECES)
+    """A slope that a baseline parameter fits is removed; the formula is the sine added to it."""
+    u = np.random.default_rng(4).uniform(0.0, 2.5, POINTS)
     law = 5.0 * u + 0.1 * np.sin(2 * np.pi * u / 0.5)
-    axis, side = Axis("u", "m", u), Direction("a", "", "", np.ones((PIECES, 1)))
+    axis, side = Axis("u", "m", u), Direction("a", "", "", np.ones((POINTS, 1)))
     forms = [form(one, axis, [side], "1") for one in profiles(axis, "1")]
     found = find_formula(_rest(law[:, None], base=u[:, None]), forms, lambda one, shape: ())
     assert found.form.name.startswith("sine")
@@ -105,10 +105,10 @@ def test_what_the_baseline_explains_is_not_explained_again():
 @pytest.mark.parametrize("turn, name", [(True, "local round"), (False, "local away from")])
 def test_a_whirl_and_a_source_have_a_middle(turn, name):
     rng = np.random.default_rng(5)
-    place = rng.uniform((0.0, 0.0), (2.0, 1.0), (PIECES, 2))
-    t, one = np.arange(PIECES) / 100.0, np.zeros(PIECES)
+    place = rng.uniform((0.0, 0.0), (2.0, 1.0), (POINTS, 2))
+    t, one = np.arange(POINTS) / 100.0, np.zeros(POINTS)
     motion = Motion(
-        t, place, np.ones((PIECES, 2)), np.full(PIECES, np.nan), one, t, np.array([2.0, 1.0]), np.array([0.1, 2.0])
+        t, place, np.ones((POINTS, 2)), np.full(POINTS, np.nan), one, t, np.array([2.0, 1.0]), np.array([0.1, 2.0])
     )
     dx, dy = (place - (0.7, 0.6)).T / 0.25
     strength = 0.06 * np.exp(0.5 - 0.5 * (dx**2 + dy**2))
@@ -118,7 +118,7 @@ def test_a_whirl_and_a_source_have_a_middle(turn, name):
     assert found.values == pytest.approx({"size": 0.06, "x": 0.7, "y": 0.6, "radius": 0.25}, rel=0.07)
 
 
-def test_the_intervals_hold_the_truth_as_often_as_they_say():
+def test_the_intervals_have_their_nominal_coverage():
     u = np.random.default_rng(6).uniform(0.0, 2.0, 300)
     law = 0.1 * np.exp(-u / 0.5)
     axis, side = Axis("u", "s", u), Direction("a", "", "", np.ones((len(u), 1)))
@@ -127,4 +127,4 @@ def test_the_intervals_hold_the_truth_as_often_as_they_say():
     for seed in range(60):
         one = find_formula(_rest(law[:, None], seed=seed), forms, lambda one, shape: ()).parameters["decay"]
         held += one.low < 0.5 < one.high
-    assert held >= 52  # of 60 at 95 %; fewer has a chance of 1 in 1000
+    assert held >= 52  # of 60 at 95 %; fewer has a probability of 1 in 1000

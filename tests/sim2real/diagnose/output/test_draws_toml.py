@@ -1,4 +1,4 @@
-"""A diagnosis as a distribution to train on: what it writes, tables draw, within its intervals, about its numbers."""
+"""The draws.toml of a diagnosis: tables draw parameters within its intervals, about its nominal values."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ COUNT = 300
 
 
 def gantry(share: float) -> dict[str, Estimate]:
-    """The shipped coefficients, each with an interval of `share` of itself either way."""
+    """The default coefficients, each with an interval of `share` of itself on both sides."""
     defaults = {"a1": 3.6e-6, "a2": 0.0057, "a3": 0.053, "b1": -1.7e-6, "b2": -0.0027, "b3": 0.0}
     return {
         name: Estimate(value, value - share * abs(value), value + share * abs(value), "V s")
@@ -98,7 +98,7 @@ def test_tables_of_every_variant_draw_within_the_intervals(variant: str, found: 
     np.testing.assert_allclose(tables.observation_bounds[1].max(), 180.0 if "match" in variant else 50.0)
 
 
-def test_with_the_effects_beside_it_what_has_no_name_is_on_too(found: Diagnosis, tmp_path: Path) -> None:
+def test_with_effects_toml_the_unlisted_law_is_on_too(found: Diagnosis, tmp_path: Path) -> None:
     file = written(tmp_path, found)
     alone, both = (
         Tables("match-randomized-v0", 50, draws=file, effects=effects) for effects in (None, tmp_path / "effects.toml")
@@ -106,13 +106,13 @@ def test_with_the_effects_beside_it_what_has_no_name_is_on_too(found: Diagnosis,
     assert (alone.params["unlisted_kind"] == 0.0).all() and (both.params["unlisted_kind"] == 6.0).all()
     for name, (low, high) in RANGES.items():
         assert low <= both.params[name].min() < both.params[name].max() <= high
-    assert "# not drawn: what has no name in the glide and depends on position; effects.toml has it" in file.read_text()
+    assert "# not drawn: the unlisted glide law that depends on position; it is in effects.toml" in file.read_text()
 
 
-def test_what_says_nothing_of_a_number_leaves_it_to_the_variant(found: Diagnosis, tmp_path: Path) -> None:
+def test_undetermined_parameters_are_left_to_the_variant(found: Diagnosis, tmp_path: Path) -> None:
     expected = read_draws(written(tmp_path, found))
     assert [draw.parameter for draw in expected.draws] == [*RANGES, "gantry_spread"]
-    assert "mallet_restitution" not in expected.parameters  # its regime could not tell
+    assert "mallet_restitution" not in expected.parameters  # its regime is undetermined
     drawn = Tables("match-randomized-v0", COUNT, draws=tmp_path / "draws.toml").params["mallet_restitution"]
     assert drawn.min() < 0.5 and drawn.max() > 0.85
     assert expected.draws[0].source == '95 % interval, fitted to the glide of monday and a "late" evening'
@@ -124,8 +124,8 @@ def test_parameters_are_those_of_effects_toml(found: Diagnosis, tmp_path: Path) 
     assert expected == {name: value for name, value in effects.items() if not name.startswith("unlisted")}
 
 
-def test_gantries_spread_as_far_as_their_coefficients_are_unsure(tmp_path: Path) -> None:
-    """The widest share of C6 and C7: of y, where C6 = a2 + b2 has the halves of both and is the least."""
+def test_the_gantry_spread_is_as_wide_as_the_intervals_of_its_coefficients(tmp_path: Path) -> None:
+    """The widest relative interval of C6 and C7 is that of axis y, whose C6 = a2 + b2 is the smallest."""
     expected = read_draws(written(tmp_path, Diagnosis((RegimeResult("gantry", (), gantry(0.01), False, None),))))
     (spread,) = expected.draws
     assert (spread.parameter, spread.low) == ("gantry_spread", 0.0)
@@ -135,7 +135,7 @@ def test_gantries_spread_as_far_as_their_coefficients_are_unsure(tmp_path: Path)
     Tables("match-randomized-v0", 1, draws=tmp_path / "draws.toml")
 
 
-def test_a_diagnosis_that_tells_nothing_draws_nothing(tmp_path: Path) -> None:
+def test_a_diagnosis_without_results_draws_nothing(tmp_path: Path) -> None:
     expected = read_draws(written(tmp_path, Diagnosis((), reason="too short")))
     assert (expected.parameters, expected.draws) == ({}, ())
 

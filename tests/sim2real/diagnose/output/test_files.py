@@ -1,4 +1,4 @@
-"""What a diagnosis found, as a file that the simulator takes: parameters, effects, and what it has no place for."""
+"""The files of a diagnosis for the simulator: parameters, effects, and findings that it cannot represent."""
 
 import dataclasses
 
@@ -20,7 +20,7 @@ PLAIN = Finding("sensing", "held_frames", (), (), "", {}, 1e-9, 2.0, 1.0, values
 
 
 def _taken(tmp_path, *findings: Finding, **baseline: float) -> dict[str, float]:
-    """The simulator's parameters by name from the file of a diagnosis that found so."""
+    """Return the simulator's parameters by name from the effects.toml of a diagnosis."""
     numbers = {name: Estimate(value, value, value, "1") for name, value in baseline.items()}
     file = tmp_path / "effects.toml"
     file.write_text(effects_toml(Diagnosis((RegimeResult("sensing", findings, numbers, False, None),))))
@@ -41,7 +41,7 @@ def test_the_camera_s_faults_are_the_simulator_s(tmp_path):
     assert Tables("match-sensors-v0", 1, effects=tmp_path / "effects.toml").params["camera_shear"][0] == -0.004
 
 
-def test_numbers_beyond_what_the_simulator_takes_are_its_nearest(tmp_path):
+def test_parameters_are_clipped_to_the_simulator_s_range(tmp_path):
     early = dataclasses.replace(PLAIN, mechanism="camera_delay", values={"camera_latency": -0.004})
     assert _taken(tmp_path, early) == {"camera_latency": 0.0}
 
@@ -56,41 +56,38 @@ def test_two_findings_of_one_effect_make_one_table(tmp_path):
     assert _taken(tmp_path, *walls) == {"restitution_x0": 0.05, "restitution_y1": -0.03}
 
 
-def test_numbers_say_what_they_are_of(tmp_path):
+def test_comments_explain_the_coefficients(tmp_path):
     force = {"unlisted_kind": 6.0, **{f"unlisted_{k:02}": 0.01 for k in range(14)}}
     _taken(tmp_path, dataclasses.replace(PLAIN, regime="glide", mechanism="unlisted", values=force))
-    said = (tmp_path / "effects.toml").read_text().splitlines()
-    at = said.index("[effects.unlisted_force]")
-    assert said[at - 1].startswith("# a force that has no name: brake by x alone, by y alone; its numbers c00")
+    lines = (tmp_path / "effects.toml").read_text().splitlines()
+    at = lines.index("[effects.unlisted_force]")
+    assert lines[at - 1].startswith("# an unlisted force: brake by x alone, by y alone; coefficients c00")
 
 
-def test_what_has_no_place_in_the_simulator_is_named(tmp_path):
+def test_a_finding_that_the_simulator_cannot_represent_is_named(tmp_path):
     drift = dataclasses.replace(PLAIN, mechanism="clock_drift", depends_on=("time",), values={})
     assert _taken(tmp_path, drift) == {}
     assert "# not in the simulator: clock_drift of the sensing" in (tmp_path / "effects.toml").read_text()
 
 
-def test_a_regime_that_cannot_tell_is_left_as_it_was(tmp_path):
+def test_an_undetermined_regime_is_unchanged(tmp_path):
     numbers = {"wall_restitution": Estimate(0.69, 0.6, 0.8, "1")}
-    unsure = RegimeResult("wall", (), numbers, False, None, undetermined="too few bounces")
-    sure = RegimeResult("glide", (), {"friction": Estimate(0.09, 0.08, 0.1, "m/s^2")}, False, None)
+    undetermined = RegimeResult("wall", (), numbers, False, None, undetermined="too few bounces")
+    determined = RegimeResult("glide", (), {"friction": Estimate(0.09, 0.08, 0.1, "m/s^2")}, False, None)
     file = tmp_path / "effects.toml"
-    file.write_text(effects_toml(Diagnosis((unsure, sure))))
+    file.write_text(effects_toml(Diagnosis((undetermined, determined))))
     assert effect_values(file) == {"friction": 0.09}
-    left = "# the wall is left as it was (too few bounces); fitted all the same, no better: wall_restitution = 0.69"
-    assert left in file.read_text().splitlines() and "could not tell" not in file.read_text()
-    file.write_text(effects_toml(Diagnosis((unsure,))))
+    unchanged = "# the wall is unchanged (too few bounces); the fitted values are no better: wall_restitution = 0.69"
+    assert unchanged in file.read_text().splitlines() and "the diagnosis is undetermined" not in file.read_text()
+    file.write_text(effects_toml(Diagnosis((undetermined,))))
     assert effect_values(file) == {}
-    assert "# the diagnosis could not tell what is missing" in file.read_text()
-    file.write_text(effects_toml(Diagnosis((dataclasses.replace(unsure, better=True),))))
+    assert "# the diagnosis is undetermined" in file.read_text()
+    file.write_text(effects_toml(Diagnosis((dataclasses.replace(undetermined, better=True),))))
     assert effect_values(file) == {"wall_restitution": 0.69}
-    assert (
-        "# the wall is not explained by its numbers above (too few bounces), only better than before"
-        in file.read_text()
-    )
+    assert "# the wall parameters above only improve on the previous ones (too few bounces)" in file.read_text()
 
 
-def test_numbers_that_make_no_table_together_are_left_out_and_named(tmp_path):
+def test_invalid_combinations_of_parameters_are_left_out_and_named(tmp_path):
     sizes = {"length": 1.05, "width": 0.55}
     far = {"a1": Estimate(1e-3, 1e-3, 1e-3, "V s^3"), "friction": Estimate(0.09, 0.09, 0.09, "m/s^2")}
     file = tmp_path / "effects.toml"
@@ -115,7 +112,7 @@ def test_a_law_that_cannot_be_simulated_is_left_out_and_named(tmp_path):
     assert "# not in the simulator: unlisted_force: its force is up to 14 m/s^2; expected at most 5" in file.read_text()
 
 
-def test_every_regime_says_for_itself_what_it_has():
+def test_every_regime_has_its_own_result():
     proof = Proof(0.004, 0.001, 0.0009, 7)
     numbers = {"wall_restitution": Estimate(0.69, 0.6, 0.8, "1")}
     found = as_dict(
@@ -144,7 +141,7 @@ def test_every_regime_says_for_itself_what_it_has():
     ]
 
 
-def test_what_was_not_tested_is_no_agreement():
+def test_an_untested_regime_is_no_agreement():
     alone = as_dict(
         Diagnosis((RegimeResult("sensing", (), {}, True, None), RegimeResult("gantry", (), {}, True, None)))
     )
@@ -153,13 +150,13 @@ def test_what_was_not_tested_is_no_agreement():
     assert "no camera frame shows a puck" in alone["regimes"][1]["reason"]
 
 
-def test_players_meet_the_table_s_own_sizes_on_it(tmp_path):
+def test_the_stated_sizes_are_written(tmp_path):
     sizes = {"length": 2.3, "width": 1.1, "puck_radius": 0.05}
     file = tmp_path / "effects.toml"
     file.write_text(effects_toml(Diagnosis((), sizes=sizes)))
     assert effect_values(file) == {"length": 2.3, "width": 1.1}
     assert Tables("match-v0", 1, effects=file).params["length"][0] == 2.3
-    assert "# not in the simulator: puck_radius 0.05 m, which is beyond its 0.01 to 0.045 m" in file.read_text()
+    assert "# not in the simulator: puck_radius 0.05 m, outside its range 0.01 to 0.045 m" in file.read_text()
 
 
 @pytest.mark.slow

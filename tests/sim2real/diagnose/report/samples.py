@@ -1,4 +1,4 @@
-"""A law as a curve and residuals, for pictures."""
+"""A sample curve and sample residuals for figures."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ CURVE = Curve("heading [°]", "acceleration [m/s²]", X, Y, LOW, HIGH, DATA_X, D
 
 
 def mismatch_sample(n: int = 60) -> Mismatch:
-    """Accelerations of `n` stretches of motion that a law found takes to zero."""
+    """Return accelerations of `n` segments of motion that a law reduces to zero."""
     rng = np.random.default_rng(0)
     before, after = rng.normal(0.02, 0.01, (n, 2)), rng.normal(0.0, 0.01, (n, 2))
     axis = np.stack([np.cos(k := rng.uniform(-3, 3, n)), np.sin(k)], axis=1)
@@ -18,5 +18,5 @@ def mismatch_sample(n: int = 60) -> Mismatch:
     place = rng.uniform((0, 0), (2, 1), (n, 2))
     std = np.full((n, 2), 0.01)
     return Mismatch(
-        "stretches", "acceleration", "m/s²", ("along", "left"), before, after, std, by, place, axis, (2.0, 1.0)
+        "segments", "acceleration", "m/s²", ("along", "left"), before, after, std, by, place, axis, (2.0, 1.0)
     )

@@ -1,4 +1,4 @@
-"""Charts by what matplotlib holds, and by the SVG that it becomes."""
+"""Charts: the contents of the matplotlib axes and the resulting SVG."""
 
 import re
 import xml.etree.ElementTree as ET
@@ -24,7 +24,7 @@ def _axes() -> Axes:
     return Figure(figsize=(4.0, 3.0)).add_subplot()
 
 
-def test_a_picture_is_well_formed_scales_and_tells_what_it_shows():
+def test_a_figure_is_well_formed_and_has_a_description():
     def draw(axes: Axes) -> None:
         axes.plot([0.0, 1.0], [-1.0, 1.0], "o--", label="law")
         axes.set_xlabel("a < b, $1")
@@ -60,7 +60,7 @@ def test_nothing_of_a_curve_is_outside_the_axes(curve):
     assert axes.get_xlim()[0] < -180.0 and axes.get_xlim()[1] > 180.0
 
 
-def test_a_law_that_counts_things_has_their_names():
+def test_a_categorical_axis_has_its_labels():
     axes = _axes()
     three = {name: getattr(CURVE, name)[:3] for name in ("y", "low", "high", "data_y", "data_error")}
     draw_curve(axes, replace(CURVE, x=np.arange(3.0), data_x=np.arange(3.0), ticks=("east", "north", "west"), **three))
@@ -86,7 +86,7 @@ def test_residuals_are_drawn_where_their_bins_are():
 
 def test_maps_have_one_scale_and_no_arrow_leaves_the_table():
     mismatch = mismatch_sample(400)
-    mismatch.before[:3] = 5.0  # some far off all others
+    mismatch.before[:3] = 5.0  # outliers
     maps = map_arrows(mismatch)
     assert len({arrows.scale for arrows in maps.values()}) == 1
     axes = _axes()

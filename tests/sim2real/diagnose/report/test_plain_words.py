@@ -8,12 +8,12 @@ from sim2real.diagnose.result.result import Estimate
 
 
 @pytest.mark.parametrize("mechanism", [*(name for name, effect in EFFECTS.items() if effect.listed), *FAULTS])
-def test_every_mechanism_has_a_gist_that_fits_a_headline(mechanism):
+def test_every_mechanism_has_a_clause_that_fits_a_headline(mechanism):
     assert 2 <= len(clause(mechanism).split()) <= 14
     assert clause(mechanism)[0].islower() and clause(mechanism) in explained(mechanism).lower()
 
 
-def test_what_has_no_words_gets_none():
+def test_a_mechanism_without_a_description_has_none():
     assert clause("unlisted") == explained("unlisted") == ""
 
 
@@ -26,7 +26,7 @@ def test_what_has_no_words_gets_none():
         (3.0, 0.0, ("3", "3", "3")),
     ],
 )
-def test_digits_tell_a_value_from_its_bounds(value, half, expected):
+def test_digits_distinguish_a_value_from_its_bounds(value, half, expected):
     assert digits_of(Estimate(value, value - half, value + half, "1")) == expected
 
 

@@ -1,4 +1,4 @@
-"""The report as a browser and a reader would have it: whole, safe, self-contained, and true to diagnosis.json."""
+"""The report: well-formed, safe, self-contained, and consistent with diagnosis.json."""
 
 import re
 from dataclasses import replace
@@ -28,12 +28,12 @@ SIGHT = SensorSummary("monday <script>alert(1)</script>", 61.5, 7380, 0.00061, 0
 TILT = Finding(
     "glide", "table_tilt", (), ("heading",), "a = (tilt_x, tilt_y)",
     {"tilt_x": Estimate(0.020018, 0.019931, 0.020105, "m/s^2")}, 1e-30, 5.2917, 0.99243,
-    alternatives=(Alternative("push by time", 398.7, "explains 99 % of what the winner does"),), curve=CURVE,
+    alternatives=(Alternative("push by time", 398.7, "explains 99 % of what the model explains"),), curve=CURVE,
 )  # fmt: skip
 
 
 class Reader(HTMLParser):
-    """Checks that tags close in order, and gathers text, tags and what is referred to."""
+    """Checks that tags close in order, and collects text and tags."""
 
     def __init__(self, html: str) -> None:
         super().__init__()
@@ -94,10 +94,10 @@ def test_every_verdict_has_its_page(verdict):
     assert verdict.replace("_", " ") in read.text
 
 
-def test_a_diagnosis_of_nothing_says_why():
-    nothing = Diagnosis((), "a and b disagree as two tables do", "diagnose each recording by itself", ("b: <old>",))
+def test_a_diagnosis_without_results_gives_the_reason():
+    nothing = Diagnosis((), "a and b are not of one table", "diagnose each recording separately", ("b: <old>",))
     read = Reader(page(nothing, ReportContext(("a", "b"))))
-    assert "These recordings cannot tell whether physics is missing: a and b disagree as two tables do." in read.text
+    assert "These recordings cannot determine whether physics is missing: a and b are not of one table." in read.text
     assert nothing.remedy in read.text and "b: <old>" in read.text and "Recordings: a, b" in read.text
     assert read.sections == ["overview", "next"]
 
@@ -121,7 +121,7 @@ def test_the_same_diagnosis_gives_the_same_bytes():
     assert len(identifiers) == len(set(identifiers))
 
 
-def test_numbers_that_the_data_leave_open_are_not_listed_as_found():
+def test_undetermined_parameters_are_marked():
     numbers = {"mu": Estimate(0.15, 0.14, 0.16, "1"), "decay": Estimate(0.0, 0.0, 1.624, "1/s")}
     finding = replace(TILT, regime="wall", mechanism="wall_friction_spin", parameters=numbers)
     read = Reader(page(Diagnosis((_glide((finding,)),), sensor_summaries=(SIGHT,))))
@@ -131,8 +131,8 @@ def test_numbers_that_the_data_leave_open_are_not_listed_as_found():
 def test_names_and_notes_are_text_and_no_markup():
     hostile = '"><script>alert(1)</script><img src=x onerror=y>'
     finding = replace(TILT, formula=hostile, mechanism="unlisted", where={hostile: [hostile]}, depends_on=(hostile,))
-    rival = replace(finding, alternatives=(Alternative(hostile, 1.0, hostile),), also_possible=(hostile,))
-    regime_result = replace(_glide((rival,), further=hostile), undetermined=hostile)
+    alternative = replace(finding, alternatives=(Alternative(hostile, 1.0, hostile),), also_possible=(hostile,))
+    regime_result = replace(_glide((alternative,), further=hostile), undetermined=hostile)
     html = page(
         Diagnosis((regime_result,), hostile, sensor_summaries=(replace(SIGHT, recording=hostile, notes=(hostile,)),))
     )
@@ -154,7 +154,7 @@ def test_the_numbers_are_those_of_the_diagnosis():
     assert "push by time" in text and "explains 99 %" in text
 
 
-def test_pictures_and_tables_speak_to_those_who_do_not_see_them():
+def test_figures_and_tables_are_accessible():
     read = Reader(page(DIAGNOSES["missing_physics"]))
     pictures = [attrs for tag, attrs in read.tags if tag == "svg"]
     assert len(pictures) >= 5
@@ -173,13 +173,13 @@ def test_the_sensor_is_described_by_recording():
 
 
 def test_what_was_not_recorded_is_not_tested():
-    """No word of agreement on a regime of which the recording shows nothing."""
+    """No statement of agreement on a regime without data."""
     blind = replace(SIGHT, frames=0)
     gantry = RegimeResult("gantry", (), {}, True, Proof(0.004, 0.002, 0.001, 1), proof=Proof(0.004, 0.002, 0.001, 1))
     read = Reader(page(Diagnosis((RegimeResult("sensing", (), {}, True, None), gantry), sensor_summaries=(blind,))))
     assert "Not tested: no camera frame shows a puck (frames.csv)." in read.text
-    assert "to the noise" not in read.text and "Yet, residuals are 2 times the noise." in read.text
-    assert "Rms residual on 1 stretch of some seconds" in read.text and "No camera: nothing but the gantry" in read.text
+    assert "to the noise" not in read.text and "However, residuals are 2 times the noise." in read.text
+    assert "Rms residual on 1 stretch of some seconds" in read.text and "No camera: only the gantry" in read.text
     assert [row in read.text for row in ("wall not tested", "gantry not tested")] == [True, False]
     seen = Reader(
         page(Diagnosis((RegimeResult("sensing", (), {}, True, None), _glide(defaults=True)), sensor_summaries=(SIGHT,)))
@@ -188,54 +188,53 @@ def test_what_was_not_recorded_is_not_tested():
     assert "gantry not tested: the robot's mallet was not recorded (mallet.csv)" in seen.text
 
 
-def test_numbers_stand_beside_those_that_they_replace():
-    for baseline, expected in (
-        ({}, "parameter shipped fitted"),
-        ({"friction": 0.31}, "parameter your baseline fitted"),
-    ):
+def test_refitted_parameters_are_shown_beside_the_previous_ones():
+    for baseline, head in (({}, "default"), ({"friction": 0.31}, "your baseline")):
         read = Reader(page(DIAGNOSES["parameters_only"], ReportContext(("a",), baseline)))
-        assert expected in read.text
+        assert f"parameter {head} fitted" in read.text
         shown = baseline.get("friction", 0.125)
         assert f"friction {shown} 0.1251 0.125 … 0.1252 m/s²" in read.text
     read = Reader(page(DIAGNOSES["agrees"], ReportContext(("a",), {"friction": 0.31})))
-    assert "The simulator with your baseline explains" in read.text and "as shipped" not in read.text
+    assert "The simulator with your baseline explains" in read.text and "default parameters" not in read.text
 
 
-def test_faults_of_the_sensors_are_undone_and_not_refitted():
+def test_sensor_faults_are_corrected_and_not_refitted():
     late = replace(TILT, regime="sensing", mechanism="camera_delay", formula="t - delay_s", curve=None, alternatives=())
     faults = RegimeResult(
         "sensing", (late,), {}, False, Proof(0.004, 0.002, 0.001, 3), proof=Proof(0.004, 0.002, 0.001, 3)
     )
     read = Reader(page(Diagnosis((faults,), sensor_summaries=(SIGHT,))))
     section = read.text.split("Regime: sensing")[1]
-    assert "The sensors err: camera_delay (the camera's frames are stamped late)." in section
+    assert "Sensor faults: camera_delay (the camera's frames are stamped late)." in section
     picture = next(one for tag, one in read.tags if tag == "svg" and "sensing" in (one.get("aria-label") or ""))
     assert "as recorded 4 mm, corrected 2 mm" in (picture["aria-label"] or "")
     assert "The camera's frames are stamped late: each shows the table as it was" in read.text
-    assert "What was found does not explain all: in the sensing residuals are 2 times" in read.text
+    assert "The findings do not explain all: the sensing residuals are 2 times" in read.text
 
 
-def test_weights_of_shapes_are_folded_and_their_law_is_said():
+def test_coefficients_are_folded_and_their_law_is_described():
     numbers = {f"c{k}": Estimate(0.1 * k, 0.0, 1.0, "1") for k in range(14)}
     law = replace(
         TILT, regime="gantry", mechanism="unlisted", formula="pull by history", parameters=numbers, curve=None
     )
     read = Reader(page(Diagnosis((replace(_glide((law,)), regime="gantry"),), sensor_summaries=(SIGHT,))))
-    assert "whose size is a smooth curve of the volts and the speed of the last second" in read.text
-    assert "14 numbers, the weights of the law's shapes" in read.text
+    assert "whose size is a smooth function of the volts and the speed of the last second" in read.text
+    assert "14 coefficients of the law's basis functions" in read.text
 
 
-def test_no_chance_is_said_to_be_the_least_that_a_number_can_hold():
+def test_the_least_p_value_is_printed_as_a_bound():
     read = Reader(page(Diagnosis((_glide((replace(TILT, p_value=1e-300),)),), sensor_summaries=(SIGHT,))))
     assert "p < 1e-300" in read.text and "= 1.0e-300" not in read.text
 
 
-@pytest.mark.parametrize("loss, said", [(5.0, "a tie"), (20.0, "a little"), (400.0, "far"), (2.6e4, "hopelessly")])
-def test_how_much_worse_a_rival_is(loss, said):
-    assert how_much(loss) == said
+@pytest.mark.parametrize(
+    "loss, expected", [(5.0, "equivalent"), (20.0, "slightly"), (400.0, "strongly"), (2.6e4, "very strongly")]
+)
+def test_how_much_worse_an_alternative_is(loss, expected):
+    assert how_much(loss) == expected
 
 
-def test_what_is_ambiguous_is_said():
+def test_ambiguity_is_reported():
     finding = replace(TILT, also_possible=("table_warp",))
     read = Reader(page(Diagnosis((_glide((finding,), further="record slow glides"),), sensor_summaries=(SIGHT,))))
     assert "Also possible: table_warp" in read.text and "record slow glides" in read.text

@@ -1,4 +1,4 @@
-"""What a diagnosis shows of an independent table: curves that follow the true law, and formulas that say it."""
+"""Curves and formulas of a diagnosis of an independent simulator's table, compared with the true laws."""
 
 from dataclasses import replace
 
@@ -41,7 +41,7 @@ def test_a_tilt_is_the_same_for_every_heading(tmp_path):
 
 @pytest.mark.slow
 def test_a_force_that_turns_is_drawn_where_its_law_is(tmp_path):
-    """The force changes and turns within a stretch, so that the mean over it is smaller than what is in its middle."""
+    """The force varies and rotates within a segment, so that its mean is smaller than its value in the middle."""
     curve = _curve(_diagnosis(tmp_path / "table", Law(vortex=0.1, vortex_size=0.35)))
     assert "round it" in curve.y_label
     r = curve.data_x / 0.35
@@ -58,7 +58,7 @@ def test_restitution_is_a_line_over_the_speed(tmp_path):
 
 
 @pytest.mark.slow
-def test_a_braking_that_fades_gets_its_formula_and_its_parting(tmp_path):
+def test_a_decaying_deceleration_gets_its_formula_and_its_mismatch(tmp_path):
     found = _diagnosis(tmp_path / "table", Law(fading=0.25, fading_time=0.3))
     one = found.findings[0]
     assert one.mechanism == "unlisted" and one.depends_on == ("history",)
@@ -71,12 +71,12 @@ def test_a_braking_that_fades_gets_its_formula_and_its_parting(tmp_path):
     assert mismatch is not None
     before, after = (np.sqrt(np.mean((some / mismatch.std) ** 2)) for some in (mismatch.before, mismatch.after))
     assert before > 2.0
-    assert after**2 - 1.0 < 0.1 * (before**2 - 1.0)  # excess over the noise; 0.3 is asked of an unlisted law
+    assert after**2 - 1.0 < 0.1 * (before**2 - 1.0)  # excess over the noise; an unlisted law must reduce it to 0.3
     assert "t_since_hit" in page(found)
 
 
 @pytest.mark.slow
-def test_walls_that_tire_get_a_slope(tmp_path):
+def test_a_falling_wall_restitution_gets_a_slope(tmp_path):
     one = _diagnosis(tmp_path / "table", Law(wall_warming=-0.003, wall_restitution=0.85)).findings[0]
     assert (one.mechanism, one.depends_on) == ("unlisted", ("time",))
     assert one.parameters["slope"].value == pytest.approx(-0.003, rel=0.02)
@@ -85,7 +85,7 @@ def test_walls_that_tire_get_a_slope(tmp_path):
 
 
 @pytest.mark.slow
-def test_a_mallet_that_tires_gets_a_slope(tmp_path):
+def test_a_falling_mallet_restitution_gets_a_slope(tmp_path):
     law = Law(mallet_warming=-0.004, mallet_restitution=0.85)
     make_recording(tmp_path / "table", law, "rally", 7, 80.0, camera=Camera(noise=0.0006, rate=150.0), dt=5e-5)
     found = diagnose([read_recording(tmp_path / "table")], [], {}, lambda stage, share: None)
@@ -111,14 +111,14 @@ def test_a_gantry_rough_by_place_gets_a_wave_in_volts(tmp_path):
     size, wave, shift = (one.parameters[name].value for name in ("size", "wave", "shift"))
     assert size == pytest.approx(0.3 * SPEED_LOSS, rel=0.02)
     assert wave == pytest.approx(0.4, rel=0.01)
-    assert np.cos(2.0 * np.pi * shift / wave) < -0.98  # it takes where the law, a loss, gives
+    assert np.cos(2.0 * np.pi * shift / wave) < -0.98  # opposite in sign to the law, which is a loss
     assert float(one.formula.split("a3 ")[1].split()[0]) == pytest.approx(Law().a3, rel=0.005)
     curve = _curve(found)
     expected = -0.3 * SPEED_LOSS * np.sin(2.0 * np.pi * curve.x / 0.4)
     assert curve.formula is not None
-    for drawn in (curve.y, curve.formula):  # less a constant, and more, that the baseline could do
+    for drawn in (curve.y, curve.formula):  # without the part that the baseline can fit, such as a constant
         assert np.corrcoef(drawn, expected)[0, 1] > 0.98
-        assert np.ptp(drawn) == pytest.approx(np.ptp(expected), rel=0.2)  # that takes a sixth off the formula
+        assert np.ptp(drawn) == pytest.approx(np.ptp(expected), rel=0.2)  # which is a sixth of the formula
     assert "No data are drawn" in page(found)
 
 
@@ -128,7 +128,7 @@ def test_a_gantry_that_loses_more_at_speed_gets_a_square(tmp_path):
     found = diagnose([read_recording(tmp_path / "table")], [], {}, lambda stage, share: None)
     one, curve = found.findings[0], _curve(found)
     fast = curve.x > 0.5
-    slope, _ = np.polyfit(curve.x[fast] ** 2, curve.y[fast], 1)  # the constant is the baseline's
+    slope, _ = np.polyfit(curve.x[fast] ** 2, curve.y[fast], 1)  # the baseline fits the constant
     assert slope == pytest.approx(-0.1 * SPEED_LOSS, rel=0.15)
     assert (one.regime, one.depends_on) == ("gantry", ("speed",))
     assert "speed^2 V s/m times the speed, on both axes" in one.formula
@@ -136,37 +136,35 @@ def test_a_gantry_that_loses_more_at_speed_gets_a_square(tmp_path):
 
 
 @pytest.mark.slow
-def test_friction_that_breathes_is_a_wave_in_time(tmp_path):
+def test_periodic_friction_is_a_sine_of_time(tmp_path):
     one = _diagnosis(tmp_path / "table", Law(breathing=0.4, breathing_period=9.3), 40.0).findings[0]
     assert (one.mechanism, one.depends_on) == ("unlisted", ("time",))
     assert one.parameters["wave"].value == pytest.approx(9.3, rel=0.01)
     assert abs(one.parameters["size"].value) == pytest.approx(0.4 * Law().friction, rel=0.05)
-    assert one.values["unlisted_00"] == pytest.approx(9.3, rel=0.05)  # and players meet it
+    assert one.values["unlisted_00"] == pytest.approx(9.3, rel=0.05)  # and the simulator represents it
 
 
-class _Nameless(LinearProblem):
-    """What the linear problem lacks has no name in it: it is a family's."""
+class _Unlisted(LinearProblem):
+    """A linear problem whose missing law is a smooth term."""
 
     def columns(self, values, free, use):
         found = super().columns(values, free, use)
         return replace(found, listed=[], families=[Tried("push by place", ("tilt_x", "tilt_y"), "position")])
 
 
-def test_launches_are_shown_under_the_law_that_was_found_smooth_part_and_all():
-    problem = _Nameless({"tilt_x": 0.02, "tilt_y": -0.03})
+def test_residuals_are_shown_under_the_law_with_its_smooth_term():
+    problem = _Unlisted({"tilt_x": 0.02, "tilt_y": -0.03})
     wanted = identify_regime(LinearRegime(), problem, NO_EVIDENCE, {}).regime_result
     assert [one.mechanism for one in wanted.findings] == ["unlisted"]
     assert wanted.mismatch is not None and wanted.selection is not None
-    for shown, left in (
-        (wanted.mismatch.before, wanted.selection.before_m),
-        (wanted.mismatch.after, wanted.selection.after_m),
-    ):
-        assert np.sqrt(np.mean(shown**2)) == pytest.approx(left / problem.noise_m, rel=0.02)  # by fits to others
+    selection, mismatch = wanted.selection, wanted.mismatch
+    for shown, rms in ((mismatch.before, selection.before_m), (mismatch.after, selection.after_m)):
+        assert np.sqrt(np.mean(shown**2)) == pytest.approx(rms / problem.noise_m, rel=0.02)  # cross-validation
     assert wanted.mismatch.after.mean() < 1.1 < wanted.mismatch.before.mean()
 
 
 @pytest.mark.slow
-def test_a_law_of_speed_angle_and_spin_is_shown_as_seen_against_foretold(tmp_path):
+def test_a_law_of_speed_angle_and_spin_is_shown_as_measured_against_predicted(tmp_path):
     law = Law(wall_spin=True, wall_mu=0.15, wall_restitution=0.8)
     curve = _curve(_diagnosis(tmp_path / "table", law))
     assert curve.x_label.endswith("by the law") and curve.y_label.endswith("as seen")

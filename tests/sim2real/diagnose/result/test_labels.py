@@ -1,4 +1,4 @@
-"""Numbers that a diagnosis makes of fitted ones: their values, and intervals against a sample of the fit's own."""
+"""Parameters derived from fitted ones: values, and intervals compared with samples of the fit's distribution."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.engine.least_squares import LeastSquaresFit
 from sim2real.diagnose.result.labels import labelled
 
-MANY = 100_000  # clusters: Student's quantile is the normal one
+MANY = 100_000  # clusters, so that Student's quantile is the normal one
 
 
 def fitted(values: dict[str, float], covariance: ArrayLike) -> LeastSquaresFit:
@@ -24,7 +24,7 @@ def fitted(values: dict[str, float], covariance: ArrayLike) -> LeastSquaresFit:
         ("corner_restitution", "post_extra", -0.2, "e", lambda e, extra: e + extra),
     ],
 )
-def test_the_interval_of_what_is_made_of_two_numbers_has_the_spread_of_both(mechanism, row, value, label, made):
+def test_the_interval_of_a_derived_parameter_propagates_both_errors(mechanism, row, value, label, made):
     for together in (-0.8, 0.0, 0.8):
         covariance = [[4e-4, together * 6e-4], [together * 6e-4, 9e-4]]
         one = labelled(Law(mechanism, (row,)), fitted({"wall_restitution": 0.8, row: value}, covariance))[label]
@@ -34,7 +34,7 @@ def test_the_interval_of_what_is_made_of_two_numbers_has_the_spread_of_both(mech
         assert (one.low, one.high) == (pytest.approx(low, abs=0.002), pytest.approx(high, abs=0.002))
 
 
-def test_a_ratio_of_headings_is_left_out_where_it_may_be_endless():
+def test_a_ratio_of_headings_is_omitted_where_it_may_be_infinite():
     law = Law("friction_anisotropy", ("friction_anisotropy", "friction_turning"))
     for grain, std, expected in ((0.25, 0.05, True), (-0.9, 0.2, True), (0.9, 0.2, False), (1.0, 0.0, False)):
         numbers = labelled(law, fitted({"friction_anisotropy": grain}, [[std**2]]))
@@ -45,7 +45,7 @@ def test_a_ratio_of_headings_is_left_out_where_it_may_be_endless():
             assert 0.0 <= one.low < one.value < one.high
 
 
-def test_the_odd_wall_is_one_number_of_the_wall_that_the_law_is_about():
+def test_the_deviating_wall_has_one_parameter():
     walls = fitted({"wall_restitution": 0.8, "restitution_x1": -0.04, "restitution_y0": 0.06}, np.eye(3) * 1e-6)
     for row, delta in (("restitution_x1", -0.04), ("restitution_y0", 0.06)):
         numbers = labelled(Law("wall_to_wall_restitution", (row,)), walls)

@@ -1,4 +1,4 @@
-"""Autocorrelated errors: drawn by a recursion, and their likelihood by the density of contrasts."""
+"""Autocorrelated errors: drawn recursively, and their restricted likelihood computed from contrasts."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ PERIOD, ORDER = 1.0 / 120.0, 4
 
 
 def drawn(rng: np.random.Generator, glides: int, share: float, time: float, scale: float = 1.0) -> list[Excerpt]:
-    """Glides of 24 to 60 frames along a parabola, some of them missing; errors are `scale` times what is assumed."""
+    """Return glides of 24 to 60 frames along a parabola; frames are missing; errors have `scale`."""
     found = []
     for frames in rng.integers(24, 60, glides):
         slow = rng.normal(size=2)
@@ -45,7 +45,7 @@ def drawn(rng: np.random.Generator, glides: int, share: float, time: float, scal
     return found
 
 
-def test_correlation_and_size_of_errors_are_found() -> None:
+def test_correlation_and_scale_are_estimated() -> None:
     found = estimate_autocorrelation(drawn(np.random.default_rng(3), 150, 0.75, 3.0 * PERIOD, 1.4), ORDER, PERIOD)
     assert found.share == pytest.approx(0.75, abs=0.16) and found.time == pytest.approx(3.0 * PERIOD)
     assert found.scale == pytest.approx(1.4, rel=0.05)
@@ -63,9 +63,9 @@ def test_without_glides_there_is_none() -> None:
     assert estimate_autocorrelation([], ORDER, PERIOD) == AutocorrelatedNoise()
 
 
-def test_the_likeliest_is_taken() -> None:
-    """By the density of contrasts, combinations of frames that are zero for any polynomial of the order, at the size of
-    each glide's own."""
+def test_the_maximum_likelihood_is_found() -> None:
+    """The likelihood is the density of contrasts, which are zero for any polynomial of the order, at each glide's own
+    scale."""
     glides = drawn(np.random.default_rng(5), 30, 0.6, 1.5 * PERIOD)
     found = estimate_autocorrelation(glides, ORDER, PERIOD)
     likelihoods, sizes = {}, {}
@@ -85,8 +85,8 @@ def test_the_likeliest_is_taken() -> None:
     assert (found.share, found.time) == best and found.scale == pytest.approx(sizes[best])
 
 
-def test_rough_glides_do_not_decide() -> None:
-    """Of a tenth of the glides, pushed by a hand, errors are thirty times as large and slow."""
+def test_outlying_glides_do_not_dominate() -> None:
+    """A tenth of the glides, pushed by a hand, has thirty times larger and slow errors."""
     rng = np.random.default_rng(6)
     found = estimate_autocorrelation(
         [*drawn(rng, 60, 0.0, 1.0), *drawn(rng, 6, 0.9, 3.0 * PERIOD, 30.0)], ORDER, PERIOD
@@ -95,7 +95,7 @@ def test_rough_glides_do_not_decide() -> None:
 
 
 @pytest.mark.parametrize("place_error", [0.0, FILM.place_error])
-def test_glides_of_a_calibrated_camera_alone_have_it(tmp_path: Path, place_error: float) -> None:
+def test_only_glides_of_a_calibrated_camera_have_autocorrelation(tmp_path: Path, place_error: float) -> None:
     make_recording(tmp_path / "film", Law(), "launches", 1, 30.0, replace(FILM, place_error=place_error))
     recording = read_recording(tmp_path / "film")
     data = glides_of(recording, segment(recording))

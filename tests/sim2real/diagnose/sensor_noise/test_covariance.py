@@ -1,4 +1,4 @@
-"""The covariance of places: what is drawn by it is white after whitening."""
+"""The covariance of positions: errors drawn from it are white after whitening."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def covariance_of(data: GlideData) -> PositionCovariance:
 
 
 def recordings(data: GlideData, *map_error_std: float) -> GlideData:
-    """The same glides, of as many recordings as there are sizes of map errors, half of them each."""
+    """Return the glides divided in two recordings with these map errors."""
     noise = tuple(SensorNoise(map_error_std=std) for std in map_error_std)
     return replace(data, recording=np.repeat([0, 1], GLIDES // 2), noise=noise)
 
@@ -65,7 +65,7 @@ def test_a_camera_that_is_not_calibrated_has_no_modes() -> None:
     assert errors.allowing(np.zeros((len(rows), 0)), rows) is rows
 
 
-def test_of_two_recordings_each_has_what_it_states() -> None:
+def test_each_of_two_recordings_has_its_stated_error() -> None:
     first, second = glides(AutocorrelatedNoise(), 0.0), glides(AutocorrelatedNoise(), STATED)
     both = recordings(first, 0.0, STATED)
     found = covariance_of(both).modes(both.place)
@@ -75,7 +75,7 @@ def test_of_two_recordings_each_has_what_it_states() -> None:
 
 
 def test_two_calibrations_have_independent_errors() -> None:
-    """Recordings that state two sizes were calibrated twice; of one size, they share its error."""
+    """Recordings that state different sizes have independent errors; those with the same size share one."""
     first, half = glides(AutocorrelatedNoise(), STATED), GLIDES // 2 * FRAMES
     shared = covariance_of(recordings(first, STATED, STATED)).modes(first.place)
     np.testing.assert_array_equal(shared, modes(first.place, SIZE, np.full(len(first.t), STATED)))

@@ -1,4 +1,4 @@
-"""Noise whose variance differs over the table, drawn by hand."""
+"""Synthetic noise whose variance differs over the table."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ ORDER, ASSUMED = 4, 2e-5
 
 
 def drawn(rng: np.random.Generator, glides: int, law: tuple[float, float, float], rough: int = 0) -> list[Excerpt]:
-    """Glides of 60 frames with the logarithm of the variance linear in x and y; of some, `rough`, far larger."""
+    """Glides of 60 frames with the logarithm of the variance linear in x and y; `rough` of them are outliers."""
     found = []
     for k in range(glides):
         start, end = rng.uniform((0.1, 0.1), (1.9, 0.9), (2, 2))
@@ -32,8 +32,8 @@ def test_the_variance_over_the_table_is_found(rough: int) -> None:
     assert std_ratio(place, found)[:, 0] == pytest.approx(expected, rel=0.2 if rough else 0.1)
 
 
-def test_slopes_scatter_about_the_truth_as_a_gamma_law_says() -> None:
-    """80 parts of 110 degrees of freedom: the logarithm of one's variance has a deviation of sqrt(2 / 110)."""
+def test_slopes_scatter_as_expected_of_gamma_variables() -> None:
+    """80 parts of 110 degrees of freedom: each log variance has a standard deviation of sqrt(2 / 110)."""
     slopes = [estimate_log_variance(drawn(np.random.default_rng(k), 80, (0.0, 0.0, 0.0)), ORDER)[1] for k in range(40)]
     assert abs(np.mean(slopes)) < 0.02 and np.std(slopes) < 0.08
 

@@ -194,7 +194,7 @@ def test_two_gantries_are_refused(baseline: Recording, tmp_path: Path) -> None:
     values = parameters(baseline)
     problem, _ = gantry_problem([baseline, recorded(tmp_path, replace(Law(), a2=0.0075), seconds=8.0)], values)
     parts = [RecordingPart(name, part) for name, part in zip("ab", problem.clusters_of_runs, strict=True)]
-    with pytest.raises(UndeterminedError, match="a and b disagree as two tables do: a2 is"):
+    with pytest.raises(UndeterminedError, match="a and b are not of one table: a2 is"):
         check_consistency(problem, {name: values[name] for name in problem.base}, parts)
 
 

@@ -97,7 +97,7 @@ def test_a_law_of_the_time_since_a_contact_is_refused_by_name(tmp_path):
     assert effect_values(file) == {}
     assert described(file) == [
         "not switched on: unlisted of the wall, which depends on history: "
-        "a table does not know when its puck last touched something"
+        "the simulator does not store the time of the puck's last contact"
     ]
 
 
