@@ -157,7 +157,10 @@ def test_launches_are_shown_under_the_law_that_was_found_smooth_part_and_all():
     wanted = identify_regime(LinearRegime(), problem, NO_EVIDENCE, {}).regime_result
     assert [one.mechanism for one in wanted.findings] == ["unlisted"]
     assert wanted.mismatch is not None and wanted.selection is not None
-    for shown, left in ((wanted.mismatch.before, wanted.selection.before_m), (wanted.mismatch.after, wanted.selection.after_m)):
+    for shown, left in (
+        (wanted.mismatch.before, wanted.selection.before_m),
+        (wanted.mismatch.after, wanted.selection.after_m),
+    ):
         assert np.sqrt(np.mean(shown**2)) == pytest.approx(left / problem.noise_m, rel=0.02)  # by fits to others
     assert wanted.mismatch.after.mean() < 1.1 < wanted.mismatch.before.mean()
 
