@@ -106,9 +106,7 @@ def test_what_stays_unexplained_is_told(after, expected):
         "wall", (), {}, False, Proof(0.05, 1e-3 * after, 1e-3, 9), proof=Proof(0.05, 1e-3 * after, 1e-3, 9)
     )
     remarks = Diagnosis((wall,)).remarks
-    assert len(remarks) == len(expected) and all(
-        one.startswith(start) for one, start in zip(remarks, expected, strict=True)
-    )
+    assert len(remarks) == len(expected) and all(one.startswith(start) for one, start in zip(remarks, expected, strict=True))
 
 
 def test_what_no_law_explains_is_no_agreement():

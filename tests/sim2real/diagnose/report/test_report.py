@@ -189,10 +189,7 @@ def test_what_was_not_recorded_is_not_tested():
 
 
 def test_numbers_stand_beside_those_that_they_replace():
-    for baseline, expected in (
-        ({}, "parameter shipped fitted"),
-        ({"friction": 0.31}, "parameter your baseline fitted"),
-    ):
+    for baseline, expected in (({}, "parameter shipped fitted"), ({"friction": 0.31}, "parameter your baseline fitted")):
         read = Reader(page(DIAGNOSES["parameters_only"], ReportContext(("a",), baseline)))
         assert expected in read.text
         shown = baseline.get("friction", 0.125)

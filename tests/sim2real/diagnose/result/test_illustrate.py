@@ -62,7 +62,7 @@ def test_a_braking_that_fades_gets_its_formula_and_its_parting(tmp_path):
     found = _diagnosis(tmp_path / "table", Law(fading=0.25, fading_time=0.3))
     one = found.findings[0]
     assert one.mechanism == "unlisted" and one.depends_on == ("history",)
-    assert one.formula.startswith("a = -0.2") and "exp(-t_since_hit / 0.3" in one.formula
+    assert one.formula.startswith("a = -0.2") and "exp(-t_since_contact / 0.3" in one.formula
     assert one.parameters["size"].value == pytest.approx(-0.25, rel=0.05)
     assert one.parameters["decay"].value == pytest.approx(0.3, rel=0.05)
     curve = _curve(found)
@@ -72,7 +72,7 @@ def test_a_braking_that_fades_gets_its_formula_and_its_parting(tmp_path):
     before, after = (np.sqrt(np.mean((some / mismatch.std) ** 2)) for some in (mismatch.before, mismatch.after))
     assert before > 2.0
     assert after**2 - 1.0 < 0.1 * (before**2 - 1.0)  # excess over the noise; 0.3 is asked of an unlisted law
-    assert "t_since_hit" in page(found)
+    assert "t_since_contact" in page(found)
 
 
 @pytest.mark.slow
@@ -157,10 +157,7 @@ def test_launches_are_shown_under_the_law_that_was_found_smooth_part_and_all():
     wanted = identify_regime(LinearRegime(), problem, NO_EVIDENCE, {}).regime_result
     assert [one.mechanism for one in wanted.findings] == ["unlisted"]
     assert wanted.mismatch is not None and wanted.selection is not None
-    for shown, left in (
-        (wanted.mismatch.before, wanted.selection.before_m),
-        (wanted.mismatch.after, wanted.selection.after_m),
-    ):
+    for shown, left in ((wanted.mismatch.before, wanted.selection.before_m), (wanted.mismatch.after, wanted.selection.after_m)):
         assert np.sqrt(np.mean(shown**2)) == pytest.approx(left / problem.noise_m, rel=0.02)  # by fits to others
     assert wanted.mismatch.after.mean() < 1.1 < wanted.mismatch.before.mean()
 
