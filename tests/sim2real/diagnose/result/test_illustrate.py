@@ -166,6 +166,6 @@ def test_launches_are_shown_under_the_law_that_was_found_smooth_part_and_all():
 def test_a_law_of_speed_angle_and_spin_is_shown_as_seen_against_foretold(tmp_path):
     law = Law(wall_spin=True, wall_mu=0.15, wall_restitution=0.8)
     curve = _curve(_diagnosis(tmp_path / "table", law))
-    assert curve.x_label.endswith("by the law") and curve.y_label.endswith("as seen")
+    assert curve.x_label.endswith("predicted") and curve.y_label.endswith("observed")
     assert curve.y == pytest.approx(curve.x)
     assert np.abs(curve.data_y - curve.data_x).max() < 0.05 < np.ptp(curve.x)
