@@ -1,1 +1,1 @@
-"""Commands of the topmost floor: those that need players and recordings."""
+"""Commands that need recordings, cameras or boards."""

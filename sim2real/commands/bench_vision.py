@@ -1,8 +1,8 @@
 """Measure the errors and the run time of the vision on this machine: one core, rendered pictures of 1440 x 1080 pixels.
 
-The calibration is estimated from rendered views and places measured to 0.3 mm. Errors are of the puck's centre, clear
-and half hidden by the gantry, by three methods: the disc fit that the tracker uses; the report's rules, which are given
-the right outline and the place before; and the outline's centroid. Times are of new pictures, as in play.
+The calibration is estimated from rendered views and places measured to 0.3 mm. Errors are those of the puck's centre,
+clear and half hidden by the gantry, for three methods: the disc fit that the tracker uses; the report's rules, with the
+correct outline and the previous place given; and the outline's centroid. Times are for new pictures, as in play.
 """
 
 from __future__ import annotations
@@ -19,7 +19,9 @@ MOST = 100_000
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
-    parser.add_argument("--pictures", type=int, default=500, metavar="N", help="for each figure (500)")
+    parser.add_argument(
+        "--pictures", type=int, default=500, metavar="N", help="number of pictures for each figure (500)"
+    )
     parser.add_argument("--seed", type=int, default=0, help="of the calibration's errors and of all pictures (0)")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 
@@ -58,7 +60,7 @@ def run(args: argparse.Namespace) -> int:
         one = result[name]
         print(
             f"{name:20}{one['median_ms']:.2f} ms median, {one['p90_ms']:.2f} in 9 of 10; "
-            f"{one['again_median_ms']:.2f} at the same picture at once again"
+            f"{one['again_median_ms']:.2f} for the same picture again"
         )
     for name in ("clear", "half hidden"):
         for method, one in result[name].items():
@@ -70,7 +72,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _figures(far: np.ndarray) -> dict[str, Any]:
-    """Statistics of distances (n,) [m], NaN where nothing was found, as a JSON object."""
+    """Statistics of distances (n,) [m], NaN if nothing was found, as a JSON object."""
     import numpy as np
 
     mm = 1e3 * far[np.isfinite(far)]

@@ -1,8 +1,8 @@
-"""A camera's intrinsics from photographs of a flat board, a dozen from all sides, tilted by 20 to 45 degrees.
+"""Calibrate a camera's intrinsics from a dozen photographs of a flat board, from all sides, tilted by 20 to 45 degrees.
 
-The boards together should cover the picture up to its corners. Writes camera.json, in which the user fills in what the
-table's calibration needs in addition: the dictionary of the table's markers, the height of the puck's mark, and the
-table's size. A photograph that the others contradict is named.
+The boards together should cover the picture up to its corners. Writes camera.json, in which the user adds what the
+table's calibration needs: the dictionary of the table's markers, the height of the puck's mark, and the table's size. A
+photograph that contradicts the others is reported.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def run(args: argparse.Namespace) -> int:
         raise ValueError(f"--board is '{args.board}'; expected inner corners like {BOARD}, 3 at least each way")
     if not 0.1 <= args.marker < 1.0:
         raise ValueError(f"--marker is {args.marker:g}; expected a share of a square from 0.1 to below 1")
-    if args.out.exists():  # what was filled in by hand is not written over
+    if args.out.exists():  # do not overwrite values that were filled in by hand
         raise ValueError(f"{args.out} exists already; choose another name or remove it")
     check_folder(args.out.absolute().parent)
     seen, (width, height) = _find(CalibrationBoard(int(size[1]), int(size[2]), args.charuco, args.marker), args.images)
@@ -69,8 +69,10 @@ def run(args: argparse.Namespace) -> int:
 def _find(
     board: CalibrationBoard, paths: list[Path]
 ) -> tuple[dict[Path, tuple[np.ndarray, np.ndarray]], tuple[int, int]]:
-    """Find the board: its corners by photograph, for those that show it, and the width and height of all photographs.
-    Raises ValueError for photographs of different sizes and for the same photograph twice."""
+    """Find the board's corners in each photograph that shows it; return these and the photographs' width and height.
+
+    Raises ValueError for photographs of different sizes and for the same photograph twice.
+    """
     from baselines.commands.options import progress_bar
     from sim2real.camera.grey_image import read_grey
 
@@ -86,9 +88,9 @@ def _find(
             shape, found = image.shape, board.find(image)
             if found is None:
                 continue
-            twin = first.setdefault(found[1].tobytes(), path)
-            if path in seen or twin != path:
-                raise ValueError(f"{path} shows the same photograph as {twin}; give each once")
+            same = first.setdefault(found[1].tobytes(), path)
+            if path in seen or same != path:
+                raise ValueError(f"{path} shows the same photograph as {same}; give each once")
             seen[path] = found
     assert shape is not None
     return seen, (shape[1], shape[0])
@@ -125,11 +127,11 @@ def _result(names: list[str], found: Intrinsics) -> dict[str, Any]:
 def _lines(result: dict[str, Any], width: int, height: int) -> list[str]:
     """The result as lines of text."""
     return [
-        *(f"no board is seen in {path}; a checkerboard must be in it whole" for path in result["without_board"]),
+        *(f"no board is seen in {path}; a checkerboard must be completely visible" for path in result["without_board"]),
         f"{result['photographs']} photographs of {width}x{height} pixels, {result['rms_px']:.3f} px rms",
         *(
-            f"{one['photograph']} stands out: its corners are {one['off_px']:.2f} px off where the others put the "
-            f"camera, theirs {one['others_px']:.2f} px; if it is blurred, mirrored or of a bent board, leave it out"
+            f"{one['photograph']} is an outlier: its corners are {one['off_px']:.2f} px off the camera fitted to the "
+            f"others, theirs {one['others_px']:.2f} px; leave it out if it is blurred, mirrored or of a bent board"
             for one in result["each"]
             if one["contradicted"]
         ),

@@ -1,7 +1,7 @@
 """Calibrate the pulley's radius by the two-point procedure of the report (L.2).
 
-The motors stay off. The user moves the mallet by hand, with a jig that keeps it at known distances from the walls, from
-the right-hand corner to the left-hand one, both at the robot's end of the table, as seen from there.
+The motors stay off. The user moves the mallet by hand from the right-hand corner to the left-hand one, both at the
+robot's end of the table and as seen from there; a jig keeps it at known distances from the walls.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from sim2real.link.session import Session
     from sim2real.link.two_points import Pair, ShaftAngles
 
-ALIKE = 0.003  # m, greatest difference along x between both corners
+ALIKE = 0.003  # m, largest difference along x between both corners
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -60,8 +60,8 @@ def run(args: argparse.Namespace) -> int:
     found = solve(right, left, corner, width)
     if abs(found.sideways) > ALIKE:
         raise ValueError(
-            f"the corners differ by {1000 * found.sideways:.1f} mm along x; expected the jig to stand alike in both, "
-            f"within {1000 * ALIKE:.0f} mm: try again, or look for a belt that slipped"
+            f"the corners differ by {1000 * found.sideways:.1f} mm along x; expected the same position of the jig in "
+            f"both, within {1000 * ALIKE:.0f} mm: try again, or check for a slipped belt"
         )
     checked("pulley_radius", found.pulley_radius)
     write_text_whole(args.out, f"pulley_radius = {found.pulley_radius:.6g}  # m\n")
@@ -74,16 +74,16 @@ def run(args: argparse.Namespace) -> int:
         }
         print(json.dumps(result, indent=1))
         return 0
-    print(f"pulley radius {1000 * found.pulley_radius:.3f} mm; both corners alike within "
+    print(f"pulley radius {1000 * found.pulley_radius:.3f} mm; the corners differ by "
           f"{1000 * abs(found.sideways):.2f} mm along x")  # fmt: skip
-    print(f"{args.out} holds it, for --baseline of `puckpilot diagnose`")
+    print(f"wrote {args.out}, for --baseline of `puckpilot diagnose`")
     print(f"home of the mallet in the right-hand corner: x {corner[0]:.4f} m, y {corner[1]:.4f} m")
     return 0
 
 
 def _at(session: Session, shafts: ShaftAngles, words: str) -> Pair:
-    """The shafts' angles [rad] when the user presses Enter; all telemetry until then is taken. Raises ValueError if the
-    port vanishes, the board is reset, or the input ends."""
+    """The shafts' angles [rad] when the user presses Enter; telemetry is read until then. Raises ValueError if the port
+    disappears, the board is reset, or the input ends."""
     print(words, file=sys.stderr, flush=True)
     resets = session.resets
     while not select.select([sys.stdin], [], [], 0.0)[0]:
@@ -103,7 +103,7 @@ def _take_telemetry(session: Session, shafts: ShaftAngles, resets: int) -> None:
     session.poll()
     if not session.port_is_open or session.resets > resets:
         raise ValueError(
-            "the port vanished or the board was reset on the way, so that turns were not counted; begin anew"
+            "the port disappeared or the board was reset during the motion, so turns were not counted; start again"
         )
     if session.telemetry_status.missing > missing + 20:
         raise ValueError("too much telemetry was lost to count turns; see `puckpilot link test`")

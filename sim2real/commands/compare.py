@@ -1,18 +1,19 @@
-"""What a real table did beside what the simulator says it should have done.
+"""Compare a recording of a real table with the simulator.
 
-A recording is a folder: meta.json (sizes of table, puck and mallet), frames.csv (what the camera saw of the puck) and,
-where there are any, mallet.csv and commands.csv. It is cut into pieces, and each is predicted by itself:
+A recording is a folder with meta.json (sizes of table, puck and mallet), frames.csv (the puck seen by the camera) and
+optionally mallet.csv and commands.csv. It is cut into segments, and each is predicted separately:
 
-- glide: the puck slides freely. Its start is fitted to its first part; the error is what follows, seen less predicted.
-- wall, mallet: a hit. The velocity after it is predicted from the one before. The ratio kept is what share of the speed
-  along (normal) or across (tangential) the line of contact was left; beside it stands the simulator's own.
-- rms in units of noise: 1 is what noise alone explains. The noise of camera and encoders is estimated from the
-  recording; it makes the velocities of puck and mallet uncertain, the time of a hit and its normal. If the calibration
-  states its error (camera.place_std_m), that counts as well.
-- held: frames that repeat the one before; wild: positions that jump and come back; launch: an unbroken run of play.
-- unexplained: a change of motion where nothing known was near, an unseen hand for example.
+- glide: the puck slides freely. The start is fitted to the first part; the error of the rest is observed minus
+  predicted.
+- wall, mallet: a contact. The velocity after it is predicted from the one before. The ratio kept is the share of the
+  speed along (normal) or across (tangential) the line of contact after it; the simulator's ratio is shown too.
+- rms in units of noise: 1 is expected from noise alone. The noise of camera and encoders is estimated from the
+  recording; it affects the velocities of puck and mallet, the time of a contact and its normal. If the calibration
+  states its error (camera.place_std_m), that is included.
+- held: frames that repeat the previous one; wild: outliers; launch: uninterrupted motion of the puck.
+- unexplained: a change of motion without a known cause nearby, for example a hand.
 
-They part most where the median error is the most in units of noise."""
+The largest difference is the largest median error in units of noise."""
 
 from __future__ import annotations
 
@@ -42,7 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Compare and print; 0. Raises RecordingError or OSError, in one line, where it cannot."""
+    """Compare and print. Returns 0; raises RecordingError or OSError, in one line, if that is impossible."""
     summary = compare_recording(args.recording, args.out)
     if args.json:
         print(json.dumps(summary, indent=1, allow_nan=False))
@@ -52,12 +53,12 @@ def run(args: argparse.Namespace) -> int:
 
 
 def compare_recording(path: Path, out: Path) -> dict[str, Any]:
-    """Cut a recording into pieces, predict each, draw a picture into `out`; what was found, ready for JSON."""
+    """Cut a recording into segments, predict each, draw a picture into `out`; return the summary, ready for JSON."""
     with Console(stderr=True).status("reading the recording") as status:
         recording = read_recording(path)
-        status.update("cutting it into pieces")
+        status.update("cutting it into segments")
         segments = segment(recording)
-        status.update("predicting each piece")
+        status.update("predicting each segment")
         values = parameters(recording)
         found = compare_segments(recording, segments, values)
         summary = summarize(recording, segments, found, values)
@@ -80,19 +81,19 @@ def _draw(folder: Path, name: str, segments, found, values: dict[str, float]) ->
 
 
 def print_summary(summary: dict[str, Any]) -> None:
-    """Print what `compare_recording` found: a table, the growth of errors, and where they part most."""
+    """Print the summary of `compare_recording`: a table, the growth of errors, and the largest difference."""
     console = Console(highlight=False, soft_wrap=True)
     console.print(f"{summary['recording']}: {_sensor(summary['sensor'])}")
     for note in summary["notes"]:
         console.print(f"note: {note}")
     if not summary["sensor"]["seen"]:
-        console.print(f"where they part most: {summary['part_most']}")
+        console.print(f"largest difference: {summary['part_most']}")
         return
-    table = Table("piece", "what", "median", "90 % range", "simulator", "count", title_justify="left")
+    table = Table("kind", "what", "median", "90 % range", "simulator", "count", title_justify="left")
     for kind, rows in ROWS.items():
         part = summary[kind]
         if not part["pieces"]:
-            table.add_row(kind, "none that could be compared", "", "", "", "0")
+            table.add_row(kind, "none to compare", "", "", "", "0")
             continue
         for k, (key, words, unit) in enumerate(rows):
             count = str(part["pieces"]) if k == 0 else ""
@@ -110,13 +111,13 @@ def print_summary(summary: dict[str, Any]) -> None:
         for reason, count in reasons.items():
             console.print(f"not usable, {kind}: {count} {reason}")
     console.print(f"picture: {summary['picture']}")
-    console.print(f"where they part most: {summary['part_most']}")
+    console.print(f"largest difference: {summary['part_most']}")
 
 
 ROWS = {
     "glide": (
         ("end_error_m", "error at the end", "m"),
-        ("end_error_along_m", "the same, along the motion", "m"),
+        ("end_error_along_m", "error along the motion", "m"),
         ("times_noise", "rms in units of noise", ""),
     ),
     "wall": (

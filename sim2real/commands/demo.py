@@ -1,11 +1,11 @@
-"""A first look, in a minute or two: players meet, a game is filmed, a recording is compared and diagnosed.
+"""Demonstrate puckpilot in a minute or two: players meet, a game is filmed, a recording is compared and diagnosed.
 
 1. A trained player and a scripted one, or any two, meet in paired games on every registered environment; a table with
    95 % intervals.
 2. The first of those matches is filmed.
-3. A small bundled recording, made by an independent table with physics that the simulator leaves out, is compared with
-   the simulator: it departs from it.
-4. The same recording is diagnosed: which physics is missing, and how much the fit improves on launches held out.
+3. A small bundled recording, made by an independent table with physics that the simulator does not contain, is compared
+   with the simulator.
+4. The same recording is diagnosed: which physics is missing, and how much the fit improves on holdout launches.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Show all four; 0. Raises ValueError, in one line, for unknown players."""
+    """Run all four parts. Returns 0; raises ValueError, in one line, for unknown players."""
     from baselines import find_player
     from baselines.commands.options import console_for
     from baselines.matches.match import MOST_GAMES
@@ -75,10 +75,12 @@ def run(args: argparse.Namespace) -> int:
         "an attack with a shot that would score, and it ends before the shot arrives.\n"
     )
     console.print(f"The beginning of the first {FILMED} is filmed: {film}\n")
-    console.print("A recording of a table with physics that the simulator leaves out, beside the simulator")
+    console.print(
+        "A recording of a table with physics that the simulator does not contain, compared with the simulator"
+    )
     console.print("(puckpilot compare --help explains the words):")
     print_summary(comparison)
-    console.print(f"\nWhich physics the simulator lacks of that recording's table (puckpilot diagnose {BUNDLED}):")
+    console.print(f"\nThe physics of that recording's table that the simulator lacks (puckpilot diagnose {BUNDLED}):")
     print("\n".join(summary(*_diagnose(args.out))))
     console.print(
         "\nNext: puckpilot envs, puckpilot tournament, puckpilot diagnose RECORDING; each explains itself with --help."
@@ -87,7 +89,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _diagnose(out: Path) -> tuple[Diagnosis, list[Path]]:
-    """The diagnosis of the bundled recording, and its files in `out`/diagnosis."""
+    """Diagnose the bundled recording; return the diagnosis and its files in `out`/diagnosis."""
     from baselines.commands.options import progress_bar
     from sim2real.diagnose.output.files import write
     from sim2real.diagnose.pipeline import diagnose
@@ -99,7 +101,7 @@ def _diagnose(out: Path) -> tuple[Diagnosis, list[Path]]:
 
 
 def _meet(players: tuple[str, str], games: int, seed: int, film: Path) -> list[dict[str, Any]]:
-    """One row an environment; the first game of FILMED goes to `film`."""
+    """Play on every environment; return one row for each. The first game of FILMED is filmed to `film`."""
     from baselines.commands.options import progress_bar
     from baselines.matches.filming import FirstGame
     from baselines.matches.match import play

@@ -1,10 +1,10 @@
-"""Where a table and the simulator part, which physics is missing, and proof on untouched data that adding it helps.
+"""Diagnose which physics the simulator lacks for a real table, and validate the result on holdout data.
 
 Give one or more recordings (folders in the format puckpilot-recording/1) of one table. Writes diagnosis.json,
-report.html (one page to look at), effects.toml and draws.toml into --out. With `puckpilot match A B --effects
-OUT/effects.toml` players meet on the mended simulator; with `puckpilot train --draws OUT/draws.toml` they learn on
-tables drawn anew from the intervals of all that was measured. draws.toml alone holds what can be drawn, and the numbers
-about which it is drawn; laws without a name are in effects.toml alone, so give both files where there are some.
+report.html, effects.toml and draws.toml into --out. With `puckpilot match A B --effects OUT/effects.toml` players meet
+on the corrected simulator; with `puckpilot train --draws OUT/draws.toml` they learn on tables drawn from the intervals
+of all measured parameters. draws.toml contains the parameters with their ranges; unlisted laws are only in
+effects.toml, so give both files if there are some.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("recordings", nargs="+", type=Path, metavar="RECORDING", help="folder of a recording")
     parser.add_argument(
         "--holdout", nargs="+", type=Path, default=[], metavar="RECORDING",
-        help="recordings of the same table that serve the proof alone, and change nothing else; without them about "
-        "every sixth launch does",
+        help="recordings of the same table that are used only as holdout; without them about every sixth launch is the "
+        "holdout",
     )  # fmt: skip
     parser.add_argument("--baseline", type=Path, metavar="FILE", help="TOML file of the simulator's parameters")
     parser.add_argument("--out", type=Path, default=Path("out/diagnosis"), metavar="DIR", help="(out/diagnosis)")
@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """0: diagnosed, whatever the verdict. Raises ValueError or OSError, in one line, where it cannot."""
+    """Diagnose. Returns 0 for every verdict; raises ValueError or OSError, in one line, if that is impossible."""
     from puckpilot_env.files.whole_file import check_folder
     from sim2real.diagnose.output.files import as_dict, write
     from sim2real.diagnose.pipeline import diagnose
@@ -61,7 +61,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _refuse_twice(folders: list[Path]) -> None:
-    """ValueError for a folder that is given twice: what a fit saw proves nothing."""
+    """Raise ValueError for a folder that is given twice, because fitted data cannot serve as holdout."""
     seen: dict[str, Path] = {}
     for folder in folders:
         same = seen.setdefault(_digest(folder), folder)
@@ -71,7 +71,7 @@ def _refuse_twice(folders: list[Path]) -> None:
 
 
 def _digest(folder: Path) -> str:
-    """Of what the tables of a recording hold; its place, where there are none."""
+    """A digest of the tables of a recording; its path if there are none."""
     tables = sorted(folder.glob("*.csv"))
     digest = hashlib.sha256()
     for path in tables:

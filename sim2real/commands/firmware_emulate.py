@@ -1,6 +1,6 @@
 """Run the microcontroller's program in an emulator, with a gantry on its motors, at a serial port of its own.
 
-Until Ctrl-C it serves `puckpilot link monitor PORT` and every other program for a board, at any baud rate. Its mallet
+It serves `puckpilot link monitor PORT` and other programs for a board, at any baud rate, until Ctrl-C. Its mallet
 cannot be moved by hand, so `calibrate gantry` does not work with it.
 """
 
@@ -14,10 +14,10 @@ from pathlib import Path
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
     parser.add_argument("--port", type=Path, metavar="PATH", help="a link to make to its serial port")
-    parser.add_argument("--seconds", type=float, metavar="S", help="end after so long (Ctrl-C)")
+    parser.add_argument("--seconds", type=float, metavar="S", help="end after S seconds (until Ctrl-C)")
     parser.add_argument(
         "--place", type=float, nargs=2, default=(0.1, 0.2), metavar=("X", "Y"),
-        help="where the mallet stands at first [m] (0.1 0.2)",
+        help="initial place of the mallet [m] (0.1 0.2)",
     )  # fmt: skip
 
 
@@ -55,5 +55,5 @@ def run(args: argparse.Namespace) -> int:
     x, y = gantry.place(machine.now)
     print(f"{machine.now * 1e-6:.1f} s of the board's time; the mallet is at ({x:.3f}, {y:.3f}) m")
     if behind > 0.0:
-        print(f"this machine was too slow by {behind:.1f} s: the board lived so much less")
+        print(f"this machine was too slow: the board's clock is {behind:.1f} s behind")
     return 0

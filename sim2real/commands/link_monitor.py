@@ -17,7 +17,7 @@ EVERY = 0.5  # s between status lines
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
     add_port(parser)
-    parser.add_argument("--seconds", type=float, metavar="S", help="watch for so long (until Ctrl-C)")
+    parser.add_argument("--seconds", type=float, metavar="S", help="end after S seconds (until Ctrl-C)")
     parser.add_argument("--json", action="store_true", help="print JSON, an object a line")
 
 

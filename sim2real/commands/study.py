@@ -1,8 +1,8 @@
-"""How often a diagnosis is right: cases with something hidden, diagnosed blindly, then scored.
+"""Measure how often a diagnosis is correct: cases with concealed effects, diagnosed blindly, then scored.
 
-An independent simulator draws tables at random: nothing missing, other parameters only, one effect, two, or a law that
-is in no list. A separate process diagnoses each and sees the recording alone; the key is opened for scoring only. A
-study that was stopped goes on where it was.
+An independent simulator draws tables at random: nothing missing, other parameters only, one effect, two effects, or an
+unlisted law. A separate process diagnoses each case and sees only the recording; the key is used only for scoring. A
+study that was interrupted can be resumed.
 """
 
 from __future__ import annotations
@@ -35,16 +35,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="cases as `puckpilot track` sees them: 0.02 mm of noise, "
         "places 0.2 mm off by a calibration, the puck hidden under the gantry",
     )
-    parser.add_argument("--holdout", action="store_true", help="give the diagnosis a second recording for its proof")
-    parser.add_argument("--peer", action="store_true", help="ask PySINDy too, on the cases of gliding pucks")
-    parser.add_argument("--tool", metavar="COMMAND", help="judge another program that is called as puckpilot is")
+    parser.add_argument("--holdout", action="store_true", help="give the diagnosis a second recording as holdout")
+    parser.add_argument("--peer", action="store_true", help="diagnose the cases of gliding pucks with PySINDy too")
+    parser.add_argument("--tool", metavar="COMMAND", help="study another program with puckpilot's command line")
     parser.add_argument("--workers", type=int, default=2, metavar="K", help="processes (default 2)")
     parser.add_argument("--json", action="store_true", help="print the result as JSON")
 
 
 def run(args: argparse.Namespace) -> int:
-    """0: the study is done; 1: it is, and a bar was surely missed or a case has no diagnosis. Raises ValueError, in one
-    line, for what cannot be run."""
+    """Run the study. Returns 0, or 1 if a limit was significantly missed or a case has no diagnosis; raises ValueError,
+    in one line, if the study cannot be run."""
     from sim2real.study.making import Plan
     from sim2real.study.run import run_study
 
@@ -56,18 +56,18 @@ def run(args: argparse.Namespace) -> int:
     plan = Plan(args.cases, args.seed, args.seconds, args.only, args.mechanism, args.filmed)
     tool = shlex.split(args.tool) if args.tool else None
     if tool and shutil.which(tool[0]) is None:
-        raise ValueError(f"--tool {tool[0]}: there is no such program; give one that is called as puckpilot is")
+        raise ValueError(f"--tool {tool[0]}: there is no such program; give one with puckpilot's command line")
     try:
         study = run_study(plan, args.out, args.workers, tool, args.holdout, args.peer)
     except KeyboardInterrupt:
-        print(f"what is done is kept in {args.out}; the same command goes on from there", file=sys.stderr)
+        print(f"results so far are kept in {args.out}; run the same command to resume", file=sys.stderr)
         raise
     if args.json:
         print(json.dumps(study.as_dict(), indent=1))
     else:
         _print(study, args.out)
         if args.peer and not study.peer_scores:
-            print("PySINDy was asked nothing: no case is of a gliding puck alone")
+            print("PySINDy diagnosed nothing: no case is of a gliding puck alone")
     failed = any(score.verdict == "failed" for score in study.scores)
     return int(failed or any(figure.reached is False and figure.sure for figure in study.figures))
 
@@ -117,14 +117,14 @@ def _bar(figure: Any) -> str:
 
 
 def _outcome(figure: Any) -> str:
-    """Whether a figure reaches its bar, and whether its interval leaves a doubt; nothing where there is no bar."""
+    """Whether a figure reaches its limit, and whether that is significant; "" if it has no limit."""
     if not _bar(figure) or figure.value is None:
         return ""
     if figure.too_few:
         return "too few cases"
     if figure.reached:
-        return "reached" if figure.sure else "reached, not sure"
-    return "MISSED" if figure.sure else "not reached, not sure"
+        return "reached" if figure.sure else "reached, not significant"
+    return "MISSED" if figure.sure else "not reached, not significant"
 
 
 def _mechanisms(study: Study) -> Any:
@@ -139,26 +139,26 @@ def _mechanisms(study: Study) -> Any:
 
 
 def _confusion(study: Study) -> Any:
-    """What is off the diagonal, row by row; the picture shows the whole."""
+    """The off-diagonal entries, row by row; the picture shows the full matrix."""
     from rich.table import Table
 
     confusion = study.confusion
     wrong = [
-        (row, said, count)
+        (row, column, count)
         for row, counts in zip(confusion.rows, confusion.counts, strict=True)
-        for said, count in zip(confusion.columns, counts, strict=True)
-        if count and said != row
+        for column, count in zip(confusion.columns, counts, strict=True)
+        if count and column != row
     ]
-    columns = [column for column in confusion.columns if any(said == column for _, said, _ in wrong)]
+    columns = [column for column in confusion.columns if any(other == column for _, other, _ in wrong)]
     if columns == ["undetermined"]:
-        table = _plain_table(Table, "said to be undetermined")
+        table = _plain_table(Table, "diagnosed as undetermined")
     else:
-        table = _plain_table(Table, "taken for something else (rows truth, columns what was said)")
+        table = _plain_table(Table, "diagnosed as something else (rows: truth, columns: diagnosis)")
     table.add_column("truth", no_wrap=True)
     for column in columns:
         table.add_column(column, justify="right", no_wrap=True)
     for row in dict.fromkeys(truth for truth, _, _ in wrong):
-        counts = {said: count for truth, said, count in wrong if truth == row}
+        counts = {column: count for truth, column, count in wrong if truth == row}
         table.add_row(row, *(str(counts.get(column, "")) for column in columns))
     return table
 

@@ -3,8 +3,8 @@
 SOURCE is a folder of pictures, a video file, device:0, aravis:NAME, flir:SERIAL, synthetic, or synthetic:RECORDING.
 The first picture must show at least three markers of the calibration, by which the camera is located. Numbers at the
 ends of a folder's file names are the pictures' sequence numbers. Ctrl-C ends a live source; everything up to then is
-written. A cell is blank where the puck's place is unknown: under the gantry, and in the first picture after that if the
-puck was struck there. Ends with 1 if something was wrong with the pictures; the recording's note names it.
+written. A cell is blank if the puck's place is unknown: under the gantry, and in the first picture after that if a
+contact happened there. Ends with 1 if something was wrong with the pictures; the recording's note names it.
 """
 
 from __future__ import annotations
@@ -165,7 +165,7 @@ def _preview(args: argparse.Namespace, tracker: Tracker) -> Iterator[Callable[[F
 
 
 def _summary(frames: ValidFrames, tracker: Tracker) -> dict[str, Any]:
-    """The statistics of the run as a JSON object; adds troubles that only the whole run shows."""
+    """The statistics of the run as a JSON object; adds troubles that only the complete run shows."""
     from sim2real.camera.frame_monitor import Trouble
 
     counts = tracker.counts

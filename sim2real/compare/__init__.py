@@ -1,1 +1,1 @@
-"""What a recording shows beside what the simulator predicts, segment by segment."""
+"""Compare a recording with the simulator's predictions, segment by segment."""

@@ -1,4 +1,4 @@
-"""Contacts against the simulator: the velocity after them, predicted from the one before, with its uncertainty."""
+"""Compare contacts with the simulator: velocity after a contact, predicted from the one before, with uncertainty."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from sim2real.segmentation.events import ContactEvent
 from sim2real.segmentation.mallet_path import MalletPath
 from sim2real.segmentation.velocity_jumps import VelocityJump
 
-STEP = 1e-6  # s, m, m/s, by which an input moves for a derivative
+STEP = 1e-6  # s, m, m/s: difference step of the inputs for derivatives
 TIME, PLACE, V_IN, V_OUT, MALLET, MALLET_V = 0, slice(1, 3), slice(3, 5), slice(5, 7), slice(7, 9), slice(9, 11)
 INPUTS = 11
 
 
 @dataclass(frozen=True)
 class ContactError:
-    """A contact against its prediction; velocities (2,) [m/s] along the normal and the tangent.
+    """A contact and its prediction; velocities (2,) [m/s] along the normal and the tangent.
 
-    `before` and `after` are recorded, relative to the mallet if one touched the puck; `predicted`: the velocity after;
-    `std`: standard deviation of `error` under noise alone.
+    `before`, `after`: recorded velocities, relative to the mallet for a mallet contact; `predicted`: predicted velocity
+    after; `std`: standard deviation of `error` due to noise alone.
     """
 
     contact: ContactEvent
@@ -35,12 +35,12 @@ class ContactError:
 
     @property
     def error(self) -> np.ndarray:
-        """The velocity after (2,) [m/s], recorded less predicted."""
+        """The velocity after (2,) [m/s], recorded minus predicted."""
         return self.after - self.predicted
 
 
 def predict_wall(jump: VelocityJump, restitution: float, map_error: MapError) -> ContactError:
-    """The velocity after a wall, from that before it."""
+    """Predict the velocity after a wall contact from the velocity before."""
     normal = jump.contact.normal
 
     def after(inputs: np.ndarray) -> np.ndarray:
@@ -57,9 +57,9 @@ def predict_wall(jump: VelocityJump, restitution: float, map_error: MapError) ->
 def predict_mallet(
     jump: VelocityJump, mallet: MalletPath, restitution: float, map_error: MapError
 ) -> ContactError | None:
-    """The velocity after a mallet, from those of puck and mallet; all relative to the mallet.
+    """Predict the velocity after a mallet contact from those of puck and mallet before; all relative to the mallet.
 
-    The normal is the line of centres. None where too few samples show the mallet.
+    The normal is the line of centres. None if too few samples show the mallet.
     """
     motion = mallet.motion(jump.t)
     if motion is None:
@@ -67,7 +67,7 @@ def predict_mallet(
     (place, velocity, acceleration), covariance = motion
 
     def after(inputs: np.ndarray) -> np.ndarray:
-        later = inputs[TIME] - jump.t  # the mallet moves on while the contact is late
+        later = inputs[TIME] - jump.t  # the mallet moves during an error of the contact's time
         m, m_v = inputs[MALLET] + later * velocity, inputs[MALLET_V] + later * acceleration
         normal = (inputs[PLACE] - m) / np.linalg.norm(inputs[PLACE] - m)
         return np.array(collision.reflect(*map(float, (*inputs[V_IN], *m_v, *normal)), restitution))
@@ -90,7 +90,7 @@ def _axes(normal: np.ndarray) -> np.ndarray:
 
 
 def _by_map(inputs: np.ndarray, map_error: MapError, seen_by_camera: bool) -> np.ndarray:
-    """Deviations (INPUTS, m) of the inputs by the map's error; of the mallet's where the camera sees it as well."""
+    """Deviations (INPUTS, m) of the inputs due to the map error; of the mallet too if the camera observed it."""
     place, v_in = map_error.of_motion(inputs[PLACE], inputs[V_IN])
     by_map = np.zeros((INPUTS, place.shape[1]))
     by_map[PLACE], by_map[V_IN] = place, v_in

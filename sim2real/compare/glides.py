@@ -1,4 +1,4 @@
-"""Glides against the simulator: where it says that the puck slides, from a start fitted to the first part."""
+"""Compare glides with the simulator: the predicted path from a start fitted to the first part of the glide."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ ROUNDS = 4  # of Gauss-Newton
 
 @dataclass(frozen=True)
 class GlideError:
-    """A glide against its prediction, from a start fitted to its first `fitted` frames with the same law.
+    """A glide and its prediction, from a start fitted to its first `fitted` frames with the same law.
 
     `t` (n,) [s] since the start; `x`, `y` (n,) [m] recorded; `error` (n, 2) [m] along and across the motion, recorded
-    less predicted; `std` (n, 2) [m]: its standard deviation under noise and the calibration's error, the fitted start's
-    share included; `speed` [m/s] at the start.
+    minus predicted; `std` (n, 2) [m]: its standard deviation due to noise and calibration error, including the error of
+    the fitted start; `speed` [m/s] at the start.
     """
 
     t: np.ndarray
@@ -33,22 +33,22 @@ class GlideError:
     speed: float
 
 
-def why_not_usable(piece: Glide) -> str:
-    """Why a glide cannot be compared; "" if it can."""
-    if len(piece.t) < COMPARISON.fewest_frames:
+def why_not_usable(segment: Glide) -> str:
+    """The reason why a glide cannot be compared; "" if it can."""
+    if len(segment.t) < COMPARISON.fewest_frames:
         return f"shorter than {COMPARISON.fewest_frames} frames"
-    speed = float(np.hypot(piece.x[-1] - piece.x[0], piece.y[-1] - piece.y[0])) / (piece.t[-1] - piece.t[0])
+    speed = float(np.hypot(segment.x[-1] - segment.x[0], segment.y[-1] - segment.y[0])) / (segment.t[-1] - segment.t[0])
     return f"slower than {COMPARISON.slowest} m/s" if speed < COMPARISON.slowest else ""
 
 
-def predict_glide(piece: Glide, noise: Noise, map_error: MapError, friction: float, drag: float) -> GlideError:
-    """Fit place and velocity of the start to the first part of the glide, then follow the law to its end.
+def predict_glide(segment: Glide, noise: Noise, map_error: MapError, friction: float, drag: float) -> GlideError:
+    """Fit place and velocity of the start to the first part of the glide, then predict to its end.
 
     `friction` [m/s^2] and `drag` [1/m]: s' = -(friction + drag s^2) of the speed s.
     """
-    t, place = piece.t - piece.t[0], np.stack([piece.x, piece.y], axis=1)
+    t, place = segment.t - segment.t[0], np.stack([segment.x, segment.y], axis=1)
     fitted = max(COMPARISON.fewest_fitted, int(COMPARISON.fitted_part * len(t)))
-    p0, v0 = piece.entry.place, piece.entry.velocity
+    p0, v0 = segment.entry.place, segment.entry.velocity
     for _ in range(ROUNDS):
         path, axes, slopes = _law(t, p0, v0, friction, drag)
         rest = (place - path) @ axes
@@ -60,14 +60,14 @@ def predict_glide(piece: Glide, noise: Noise, map_error: MapError, friction: flo
     sigma = noise.std(np.array([speed, 0.0]))
     by_map = np.einsum("nim,ik->nkm", map_error.of_places(place), axes)
     std = np.stack([_spread(slopes[:, k], fitted, sigma[k], by_map[:, k]) for k in (0, 1)], axis=1)
-    return GlideError(t, piece.x, piece.y, (place - path) @ axes, std, fitted, speed)
+    return GlideError(t, segment.x, segment.y, (place - path) @ axes, std, fitted, speed)
 
 
 def _law(
     t: np.ndarray, p0: np.ndarray, v0: np.ndarray, friction: float, drag: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Path (n, 2) [m] of the simulator, its axes (2, 2), along and across in columns, and the path's derivatives (n, 2)
-    [s] along and across by the start's velocity along and across. Those by the start's place are 1."""
+    """Simulate the path (n, 2) [m]; return it, its axes (2, 2), along and across in columns, and its derivatives (n, 2)
+    [s] along and across by the start's velocity along and across. Derivatives by the start's place are 1."""
     speed = max(float(np.linalg.norm(v0)), 1e-6)
     along = v0 / speed
     step = 1e-4 * speed
@@ -82,14 +82,14 @@ def _design(slope: np.ndarray) -> np.ndarray:
 
 
 def _spread(slope: np.ndarray, fitted: int, sigma: float, by_map: np.ndarray) -> np.ndarray:
-    """Standard deviation (n,) [m] of recorded less predicted, for a start fitted to the first `fitted` frames.
+    """Standard deviation (n,) [m] of recorded minus predicted, for a start fitted to the first `fitted` frames.
 
-    `sigma` [m]: white noise of each frame; `by_map` (n, m) [m]: deviations by the map's error, of which the start
-    follows a part.
+    `sigma` [m]: white noise of each frame; `by_map` (n, m) [m]: deviations due to the map error, which the fitted start
+    absorbs in part.
     """
     design = _design(slope)
     cover = np.linalg.pinv(design[:fitted].T @ design[:fitted])
     share = np.einsum("ni,ij,nj->n", design, cover, design)
     white = 1.0 + np.where(np.arange(len(slope)) < fitted, -share, share).clip(-0.99)
-    left = by_map - design @ cover @ (design[:fitted].T @ by_map[:fitted])
-    return np.sqrt(sigma**2 * white + (left**2).sum(axis=1))
+    rest = by_map - design @ cover @ (design[:fitted].T @ by_map[:fitted])
+    return np.sqrt(sigma**2 * white + (rest**2).sum(axis=1))

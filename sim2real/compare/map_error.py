@@ -1,4 +1,4 @@
-"""What the camera's calibration has places wrong by, in a comparison."""
+"""The error of places due to the camera's calibration, in a comparison."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ import numpy as np
 
 from sim2real.diagnose.sensor_noise.map_error import modes
 
-STEP = 1e-3  # s, over which the change of the error along a motion is a difference
+STEP = 1e-3  # s, difference step for the rate of the error along a motion
 
 
 @dataclass(frozen=True)
 class MapError:
-    """The error of places on a table of `size` (2,) [m]: a smooth field of deviation `std` [m], 0 where none is stated.
+    """The error of places on a table of `size` (2,) [m]: a smooth random field with deviation `std` [m], 0 if unstated.
 
-    Its deviations are those by each of the field's m independent standard normal numbers.
+    Deviations are the effects of each of the field's m independent standard normal coefficients.
     """
 
     size: np.ndarray

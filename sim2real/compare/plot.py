@@ -18,15 +18,15 @@ from sim2real.compare.predict import Comparison
 from sim2real.segmentation.segments import Segments
 
 RECORDED, TANGENT, SIMULATOR, EVENT = "#1f6fb4", "#d9822b", "#222222", "#c0392b"
-RATIOS = (-0.2, 1.4)  # shown
-MEDIAN_OF_RMS = math.sqrt(math.log(2))  # of a distance in the plane under white noise
+RATIOS = (-0.2, 1.4)  # range of the axis
+MEDIAN_OF_RMS = math.sqrt(math.log(2))  # median by rms of a distance in the plane under white noise
 
 
 def draw(file: Path, title: str, segments: Segments, found: Comparison, values: dict[str, float]) -> None:
     """Write the picture `file` (PNG). `title`: the recording's name; `values`: the simulator's parameters by name."""
     figure = Figure(figsize=(14, 9), layout="constrained")
     FigureCanvasAgg(figure)
-    figure.suptitle(f"{title}: recording against simulator")
+    figure.suptitle(f"{title}: recording and simulator")
     (table, growth), (walls, mallets) = figure.subplots(2, 2)
     _draw_table(figure, table, segments, found, values)
     _draw_growth(growth, found)
@@ -49,7 +49,7 @@ def _draw_table(figure: Figure, ax: Axes, segments: Segments, found: Comparison,
         lines = LineCollection(list(np.concatenate(steps)), cmap="viridis", norm=LogNorm(0.1, 100), lw=0.9)
         lines.set_array(np.concatenate(colours).clip(0.1, 100))
         ax.add_collection(lines)
-        figure.colorbar(lines, ax=ax, label="seen − predicted [mm]", shrink=0.75)
+        figure.colorbar(lines, ax=ax, label="observed − predicted [mm]", shrink=0.75)
     unexplained = [(h.x, h.y) for h in segments.of_kind("unexplained")]
     if unexplained:
         label = f"{len(unexplained)} unexplained events"
@@ -60,7 +60,7 @@ def _draw_table(figure: Figure, ax: Axes, segments: Segments, found: Comparison,
 def _draw_growth(ax: Axes, found: Comparison) -> None:
     ax.set(title="Glides: error beyond the fitted start", xlabel="time since the fit [s]", ylabel="distance [mm]")
     if not found.glides:
-        _write_instead(ax, "no glide that could be compared")
+        _write_instead(ax, "no glide to compare")
         return
     t = np.concatenate([g.t[g.fitted :] - g.t[g.fitted - 1] for g in found.glides])
     off = np.concatenate([1e3 * np.hypot(*g.error[g.fitted :].T) for g in found.glides])
@@ -73,7 +73,7 @@ def _draw_growth(ax: Axes, found: Comparison) -> None:
     middle = [np.median(t[which == k]) for k in range(15)]
     recorded = [np.median(off[which == k]) for k in range(15)]
     alone = [MEDIAN_OF_RMS * np.median(noise[which == k]) for k in range(15)]
-    ax.plot(middle, recorded, color=RECORDED, lw=2, label="median seen")
+    ax.plot(middle, recorded, color=RECORDED, lw=2, label="median observed")
     ax.plot(middle, alone, color=SIMULATOR, lw=1.5, ls="--", label="median of noise alone")
     ax.set_yscale("log")
     ax.set_ylim(bottom=0.3 * float(np.nanmin([*alone, *recorded])))
@@ -83,9 +83,9 @@ def _draw_growth(ax: Axes, found: Comparison) -> None:
 
 
 def _draw_walls(ax: Axes, contacts: tuple[ContactError, ...], restitution: float) -> None:
-    ax.set(title="Wall hits: ratio of speed kept", xlabel="speed of the component before the hit [m/s]", ylabel="ratio")
+    ax.set(title="Wall contacts: ratio of speed kept", xlabel="speed of the component before [m/s]", ylabel="ratio")
     if not contacts:
-        _write_instead(ax, "no wall hit that could be compared")
+        _write_instead(ax, "no wall contact to compare")
         return
     before, after = np.array([h.before for h in contacts]), np.array([h.after for h in contacts])
     for axis, sign, colour, name in ((0, -1, RECORDED, "normal"), (1, 1, TANGENT, "tangential")):
@@ -102,9 +102,9 @@ def _draw_walls(ax: Axes, contacts: tuple[ContactError, ...], restitution: float
 
 
 def _draw_mallets(ax: Axes, contacts: tuple[ContactError, ...]) -> None:
-    ax.set(title="Mallet hits: speed away from the mallet", xlabel="predicted [m/s]", ylabel="seen [m/s]")
+    ax.set(title="Mallet contacts: speed away from the mallet", xlabel="predicted [m/s]", ylabel="observed [m/s]")
     if not contacts:
-        _write_instead(ax, "no mallet hit that could be compared")
+        _write_instead(ax, "no mallet contact to compare")
         return
     predicted, after = np.array([h.predicted[0] for h in contacts]), np.array([h.after[0] for h in contacts])
     for who, colour in (("robot", RECORDED), ("opponent", TANGENT)):

@@ -1,4 +1,4 @@
-"""What the simulator predicts for each segment of a recording, and how far the segment is from it."""
+"""Predict each segment of a recording with the simulator, and compute the prediction errors."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ UNEXPLAINED = "unexplained events"
 
 @dataclass(frozen=True)
 class Comparison:
-    """All segments that could be compared, and for each kind why others could not (reason -> count)."""
+    """The compared segments, and for each kind the reasons why others could not be compared (reason -> count)."""
 
     glides: tuple[GlideError, ...]
     walls: tuple[ContactError, ...]
@@ -34,12 +34,12 @@ def compare_segments(recording: Recording, segments: Segments, values: dict[str,
     size = np.array([values["length"], values["width"]])
     map_error = MapError(size, recording.nominal("camera", "place_std_m") or 0.0)
     glides = []
-    for piece in segments.glides:
-        reason = why_not_usable(piece)
+    for segment in segments.glides:
+        reason = why_not_usable(segment)
         if reason:
             unusable["glide"][reason] += 1
         else:
-            glides.append(predict_glide(piece, segments.noise, map_error, values["friction"], values["drag"]))
+            glides.append(predict_glide(segment, segments.noise, map_error, values["friction"], values["drag"]))
     walls, mallets = _contacts(recording, segments, values, map_error, unusable)
     return Comparison(tuple(glides), tuple(walls), tuple(mallets), unusable)
 
@@ -51,7 +51,7 @@ def _contacts(
     map_error: MapError,
     unusable: dict[str, Counter],
 ) -> tuple[list[ContactError], list[ContactError]]:
-    """The contacts with walls and with mallets against their predictions; those that are `unusable` are counted."""
+    """The contacts with walls and with mallets with their predictions; other contacts are counted in `unusable`."""
     jumps = velocity_jumps(recording, segments, values["friction"], values["drag"])
     by_contact = {id(jump.contact): jump for jump in jumps}
     touched = {contact.where for contact in segments.of_kind("mallet")}
@@ -60,7 +60,7 @@ def _contacts(
     walls, mallets = [], []
     for contact in segments.contacts:
         if contact.kind not in ("wall", "mallet"):
-            name = UNEXPLAINED if contact.kind == "unexplained" else "goal post hits, not compared"
+            name = UNEXPLAINED if contact.kind == "unexplained" else "goal post contacts, not compared"
             unusable["other"][name] += 1
         elif not contact.clean or (jump := by_contact.get(id(contact))) is None:
             unusable[contact.kind]["too few frames beside another event"] += 1

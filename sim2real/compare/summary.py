@@ -1,4 +1,4 @@
-"""The numbers of a comparison: how many segments, the simulator's errors on them, and where these are largest."""
+"""Summarise a comparison: number of segments, prediction errors, and the kind of segment with the largest error."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from sim2real.segmentation.segments import Segments
 
 
 def summarize(recording: Recording, segments: Segments, found: Comparison, values: dict[str, float]) -> dict[str, Any]:
-    """One JSON-ready object of what was `found` in the `segments` of a recording with parameters `values`, by name.
+    """Summarise the comparison `found` of `segments` with the parameters `values`, by name, as a JSON-ready object.
 
-    Errors in metres and m/s; `times_noise` is the rms in units of what noise explains.
+    Errors are in metres and m/s; `times_noise` is the rms in units of its standard deviation under noise alone.
     """
     seen = 0 if recording.frames is None else int(np.isfinite(recording.frames["puck_x"]).sum())
     summary = {
@@ -44,30 +44,30 @@ def summarize(recording: Recording, segments: Segments, found: Comparison, value
         "mallet": _contacts(found.mallets),
         "unusable": {kind: dict(reasons) for kind, reasons in found.unusable.items() if reasons},
     }
-    return summary | {"part_most": _part_most(summary)}
+    return summary | {"part_most": _largest_difference(summary)}
 
 
 def _remarks(recording: Recording, seen: int, found: Comparison) -> Iterator[str]:
-    """Sentences on what limits the numbers; `seen`: frames with a puck."""
+    """Sentences on limitations of the numbers; `seen`: number of frames with a puck."""
     if not seen:
         if recording.mallet is not None and recording.mallet.rows:
-            yield "the gantry alone was recorded: puckpilot diagnose says whether the simulator's gantry moves so"
+            yield "only the gantry was recorded: run puckpilot diagnose to compare its motion with the simulator's"
         return
     counts = {"glide": len(found.glides), "wall": len(found.walls), "mallet": len(found.mallets)}
     few = [f"{count} of {kind}" for kind, count in counts.items() if 0 < count < COMPARISON.few]
     if few:
-        yield f"medians of fewer than {COMPARISON.few} pieces tell little ({', '.join(few)}); record longer"
+        yield f"medians of fewer than {COMPARISON.few} segments are unreliable ({', '.join(few)}); record longer"
     unexplained = found.unusable["other"][UNEXPLAINED]
     changes = counts["wall"] + counts["mallet"] + unexplained
     if unexplained > COMPARISON.many * changes:
         yield (
-            f"{unexplained} of {changes} changes of motion are unexplained: were there hands "
-            "or things on the table, or are its stated sizes wrong?"
+            f"{unexplained} of {changes} changes of motion are unexplained; check for hands or objects on the table, "
+            "and for wrong sizes in meta.json"
         )
 
 
 def range_of(values: np.ndarray) -> dict[str, float] | None:
-    """Median of `values` (n,) and the range that holds 90 % of them; None where there are none."""
+    """Median of `values` (n,) and the range of the middle 90 %; None if there are none."""
     if len(values) == 0:
         return None
     low, middle, high = np.quantile(values, [0.05, 0.5, 0.95])
@@ -75,7 +75,7 @@ def range_of(values: np.ndarray) -> dict[str, float] | None:
 
 
 def _glides(glides: tuple[GlideError, ...]) -> dict[str, Any]:
-    """Numbers of the glides: errors beyond the part to which the start was fitted."""
+    """The numbers of the glides: errors after the part that the start was fitted to."""
     if not glides:
         return {"pieces": 0}
     ahead = [(g.error[g.fitted :], g.std[g.fitted :], g.t[g.fitted :] - g.t[g.fitted - 1]) for g in glides]
@@ -95,7 +95,7 @@ def _glides(glides: tuple[GlideError, ...]) -> dict[str, Any]:
 
 
 def _growth(error: np.ndarray, std: np.ndarray, t: np.ndarray) -> list[dict[str, float]]:
-    """Errors (n, 2) [m], of standard deviation `std` (n, 2), by the time `t` (n,) [s] since the fitted part."""
+    """Errors (n, 2) [m] with standard deviation `std` (n, 2), by the time `t` (n,) [s] since the fitted part."""
     rows = []
     for low, high in zip((0.0, *COMPARISON.growth[:-1]), COMPARISON.growth, strict=True):
         here = (t > low) & (t <= high)
@@ -107,7 +107,7 @@ def _growth(error: np.ndarray, std: np.ndarray, t: np.ndarray) -> list[dict[str,
 
 
 def _contacts(contacts: tuple[ContactError, ...]) -> dict[str, Any]:
-    """Numbers of the contacts of one kind: errors, and the ratios of speed that were kept."""
+    """The numbers of the contacts of one kind: errors, and ratios of speed kept."""
     if not contacts:
         return {"pieces": 0}
     before, after = np.array([h.before for h in contacts]), np.array([h.after for h in contacts])
@@ -126,33 +126,33 @@ def _contacts(contacts: tuple[ContactError, ...]) -> dict[str, Any]:
     }
 
 
-def _part_most(summary: dict[str, Any]) -> str:
-    """One sentence: the kind of segment on which simulator and recording differ most, in units of noise."""
+def _largest_difference(summary: dict[str, Any]) -> str:
+    """A sentence on the kind of segment on which simulator and recording differ most, in units of noise."""
     ratios = {
         kind: summary[kind]["times_noise"]["median"] for kind in ("glide", "wall", "mallet") if summary[kind]["pieces"]
     }
     if not ratios:
-        return "nowhere that can be told: the recording holds no puck in free motion that could be used"
+        return "unknown: the recording has no usable free motion of the puck"
     kind = max(ratios, key=lambda name: ratios[name])
     if ratios[kind] < COMPARISON.agrees:
-        return f"nowhere beyond noise: the largest is {kind} with {ratios[kind]:.1f} times what noise explains"
-    return f"{_words(kind, summary[kind])}; that is {ratios[kind]:.1f} times what noise explains"
+        return f"none beyond noise: the largest is {kind} with {ratios[kind]:.1f} times the noise"
+    return f"{_words(kind, summary[kind])}; that is {ratios[kind]:.1f} times the noise"
 
 
 def _words(kind: str, part: dict[str, Any]) -> str:
-    """What differs in the segments of a kind, in words."""
+    """The difference on the segments of a kind, in words."""
     if kind == "glide":
         along = part["end_error_along_m"]["median"]
         way = "further" if along > 0 else "less far"
         return (
-            f"glides: at the end of a glide the puck is {1e3 * part['end_error_m']['median']:.1f} mm off "
-            f"(median of {part['pieces']}), {1e3 * abs(along):.1f} mm {way} along its way than predicted"
+            f"glides: at the end of a glide the prediction error is {1e3 * part['end_error_m']['median']:.1f} mm "
+            f"(median of {part['pieces']}); the puck is {1e3 * abs(along):.1f} mm {way} along its path than predicted"
         )
     normal, tangential = part["restitution_normal"], part["restitution_tangential"]
     kept = [
         f"{range_['median']:.2f} {name}" for range_, name in ((normal, "normal"), (tangential, "tangential")) if range_
     ]
     return (
-        f"{kind} hits: the velocity after them is {part['error_mps']['median']:.2f} m/s off (median of "
+        f"{kind} contacts: the error of the velocity after them is {part['error_mps']['median']:.2f} m/s (median of "
         f"{part['pieces']}); the ratio kept is {', '.join(kept) or 'unknown'}"
     )

@@ -9,7 +9,7 @@ from sim2real.statistics.tuned import tuned
 
 @dataclass(frozen=True)
 class ComparisonNumbers:
-    """What can be compared, and what the summary says of it."""
+    """Tuned numbers of the selection of segments and of the summary."""
 
     fitted_part: float = tuned(
         0.4,
@@ -32,10 +32,8 @@ class ComparisonNumbers:
         1.5, "times noise", "noise reported as a difference (small), or a difference missed (large)",
         "choice, held by tests/sim2real/compare/test_units_of_noise.py",
     )  # fmt: skip
-    few: int = tuned(10, "pieces", "a median of a handful taken for a fact", "choice: two decide its 90 % range")
-    many: float = tuned(
-        0.25, "1", "hands on the table, or wrong sizes, that nobody notices", "choice: a quarter of all"
-    )
+    few: int = tuned(10, "segments", "an unreliable median without a warning", "choice: two decide its 90 % range")
+    many: float = tuned(0.25, "1", "hands on the table, or wrong sizes, without a warning", "choice: a quarter of all")
 
 
 COMPARISON = ComparisonNumbers()

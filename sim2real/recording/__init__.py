@@ -1,1 +1,1 @@
-"""Recordings of a table: read strictly, checked, written whole."""
+"""Read, check and write recordings of a table."""

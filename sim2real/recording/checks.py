@@ -1,4 +1,4 @@
-"""Rules of a recording beyond being well-formed: its meta data, its clocks, its units."""
+"""Checks of a well-formed recording: meta data, clocks, and units."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from sim2real.recording.stream_csv import RecordingError, Stream, read_text
 from sim2real.recording.tuned import RECORDING
 
 FORMAT = "puckpilot-recording/1"
-# key -> field -> largest value that can be meant in SI units
+# key -> field -> largest plausible value in SI units
 META_FIELDS: dict[str, dict[str, float]] = {
     "table": {"length_m": 20.0, "width_m": 20.0, "goal_width_m": 20.0},
     "puck": {"radius_m": 1.0},
@@ -24,25 +24,25 @@ META_FIELDS: dict[str, dict[str, float]] = {
     "gantry": {"supply_V": 1e3, "pulley_radius_m": 1.0},
 }
 OPTIONAL = ("gantry",)
-NOTES = ("note", "notes")  # free words, at the top and in every section
+NOTES = ("note", "notes")  # free text, allowed at the top and in every section
 UNREAD = {"gantry": ("supercapacitor",)}  # key -> fields that may be there and are not read
 
 
 def read_meta(file: Path) -> dict[str, Any]:
-    """The checked content of meta.json; nominal values that it leaves out are None.
+    """Read and check meta.json; missing nominal values are None.
 
-    Errors: RecordingError, in one line, also for a key or field that the format does not know, with the nearest.
+    Raises RecordingError, in one line; for an unknown key or field it suggests the nearest known one.
     """
     try:
         meta = json.loads(read_text(file), parse_constant=_refuse_constant)
     except json.JSONDecodeError as error:
-        raise RecordingError(file, f"is not JSON ({error.msg}); mend it there", error.lineno) from None
+        raise RecordingError(file, f"is not JSON ({error.msg}); correct it there", error.lineno) from None
     except (RecursionError, ValueError) as error:
         if isinstance(error, RecordingError):
             raise
-        raise RecordingError(file, f"is not usable JSON ({str(error)[:80]})") from None
+        raise RecordingError(file, f"is not usable JSON ({str(error)[:80]}); correct it there") from None
     if not isinstance(meta, dict):
-        raise RecordingError(file, f"holds a {type(meta).__name__}, expected one object with the key 'format'")
+        raise RecordingError(file, f"contains a {type(meta).__name__}, expected one object with the key 'format'")
     if meta.get("format") != FORMAT:
         reason = f"format is {str(meta.get('format'))[:60]!r}, expected {FORMAT!r}; convert the recording"
         raise RecordingError(file, reason)
@@ -59,14 +59,16 @@ def _refuse_unknown(file: Path, given: dict[str, Any], known: tuple[str, ...], w
 
 
 def _refuse_constant(word: str) -> float:
-    raise ValueError(f"{word} is no JSON number; write null where a value is unknown")
+    raise ValueError(f"{word} is not a JSON number; write null for an unknown value")
 
 
 def _section(file: Path, meta: dict[str, Any], key: str) -> dict[str, Any]:
-    """The checked section `key` of meta data, with None for fields that it leaves out."""
+    """The checked section `key` of the meta data, with None for missing fields."""
     if not isinstance(meta.get(key), dict):
         fields = ", ".join(f'"{field}": null' for field in META_FIELDS[key])
-        raise RecordingError(file, f'"{key}" is no object; expected "{key}": {{{fields}}} with null where unknown')
+        raise RecordingError(
+            file, f'"{key}" is not an object; expected "{key}": {{{fields}}} with null for unknown values'
+        )
     section = dict(meta[key])
     _refuse_unknown(file, section, (*META_FIELDS[key], *UNREAD.get(key, ())), f"field of {key}")
     for field, largest in META_FIELDS[key].items():
@@ -76,13 +78,13 @@ def _section(file: Path, meta: dict[str, Any], key: str) -> dict[str, Any]:
         number = isinstance(value, int | float) and not isinstance(value, bool)
         if not number or not 0 < value <= largest:
             span = f"a number above 0 and up to {largest:g} {field.rsplit('_')[-1]}"
-            reason = f"{key}.{field} is {json.dumps(value)[:40]}, expected {span}, or null where it is not known"
+            reason = f"{key}.{field} is {json.dumps(value)[:40]}, expected {span}, or null if unknown"
             raise RecordingError(file, reason)
     return section
 
 
 def check_clock(file: Path, stream: Stream) -> None:
-    """Check that `t` [s] is in every row and grows from row to row. Errors: RecordingError with the line."""
+    """Check that every row has a time `t` [s] and that `t` increases. Raises RecordingError with the line."""
     t = stream.t
     _refuse_first(file, np.isnan(t), lambda k: "t is blank; every row needs its time")
     _refuse_first(file, np.abs(t) > RECORDING.largest_time, lambda k: f"t is {t[k]:g}, expected seconds")
@@ -91,41 +93,43 @@ def check_clock(file: Path, stream: Stream) -> None:
 
     def reason(k: int) -> str:
         if t[k] == t[k - 1]:
-            return f"t {t[k]:.6f} stands twice; remove the repeated row"
-        return f"the clock runs back from {t[k - 1]:.6f} to {t[k]:.6f}; rows must come in the order of t"
+            return f"t {t[k]:.6f} appears twice; remove the repeated row"
+        return f"the clock goes back from {t[k - 1]:.6f} to {t[k]:.6f}; sort the rows by t"
 
     _refuse_first(file, late, reason)
 
 
 def check_size(file: Path, stream: Stream, columns: tuple[str, ...]) -> None:
-    """Check that no value of `columns` is larger than a position or voltage can be. Errors: RecordingError."""
+    """Check that the values of `columns` are plausible positions or voltages. Raises RecordingError with the line."""
     for name in columns:
         if name in stream and name != "t":
             value = stream[name]
             _refuse_first(
                 file,
                 np.abs(value) > RECORDING.largest_position,
-                lambda k, name=name, value=value: f"{name} is {value[k]:g}, far beyond anything in SI units",
+                lambda k, name=name, value=value: (
+                    f"{name} is {value[k]:g}; expected SI units, at most {RECORDING.largest_position:g}"
+                ),
             )
 
 
 def check_rate(file: Path, stream: Stream, rate: float | None) -> None:
-    """Check that the frames' clock is in seconds: its median step agrees roughly with the nominal `rate` [Hz].
+    """Check that the frames' clock is in seconds: its median step must roughly agree with the nominal `rate` [Hz].
 
-    Errors: RecordingError.
+    Raises RecordingError.
     """
     if rate is None or stream.rows < 3:
         return
     step = float(np.median(np.diff(stream.t)))
     if not 1 / RECORDING.rate_factor < step * rate < RECORDING.rate_factor:
-        reason = f"frames are {step:g} apart, but meta.json says {rate:g} Hz; t must be in seconds"
+        reason = f"the median step of t is {step:g}, but meta.json states {rate:g} Hz; write t in seconds"
         raise RecordingError(file, reason)
 
 
 def outside(stream: Stream, names: tuple[str, str], length: float | None, width: float | None) -> np.ndarray:
-    """Rows (rows,) bool with a position outside of the table by more than a goal is deep.
+    """Rows (rows,) bool with a position outside of the table by more than the depth of a goal.
 
-    `names`: the columns of x and y; `length`, `width` [m] of the table, None where unknown.
+    `names`: the columns of x and y; `length`, `width` [m] of the table, None if unknown.
     """
     x, y = stream[names[0]], stream[names[1]]
     far = np.zeros(len(x), bool)
@@ -137,7 +141,7 @@ def outside(stream: Stream, names: tuple[str, str], length: float | None, width:
 
 
 def check_inside(file: Path, stream: Stream, names: tuple[str, str], table: dict[str, Any]) -> int:
-    """Number of positions far outside of the `table`. Errors: RecordingError where most of those seen are."""
+    """Number of positions far outside of the `table`. Raises RecordingError if most observed positions are outside."""
     far = outside(stream, names, table["length_m"], table["width_m"])
     seen = np.isfinite(stream[names[0]]) & np.isfinite(stream[names[1]])
     if far.sum() > 0.5 * seen.sum():
@@ -151,7 +155,7 @@ def check_inside(file: Path, stream: Stream, names: tuple[str, str], table: dict
 
 
 def _refuse_first(file: Path, bad: np.ndarray, reason: Callable[[int], str]) -> None:
-    """RecordingError with the line of the first row that is `bad` (rows,) bool, and the `reason` of that row."""
+    """Raise RecordingError with line and `reason` of the first row that is `bad` (rows,) bool, if there is one."""
     if bad.any():
         k = int(np.argmax(bad))
         raise RecordingError(file, reason(k), k + 2)

@@ -1,4 +1,4 @@
-"""A recording of a table: a folder of streams, read whole or refused whole, written whole or not at all."""
+"""A recording of a table: a folder of streams. Reading and writing are atomic: the whole folder or an error."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from sim2real.recording.stream_csv import RecordingError, Stream, read_stream, w
 
 __all__ = ["STREAMS", "Recording", "RecordingError", "Stream", "read_recording", "write_recording"]
 
-# stream -> (columns that must be there, columns that may be there)
+# stream -> (required columns, optional columns)
 STREAMS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "frames": (("t", "puck_x", "puck_y", "opponent_x", "opponent_y"), ("obstructed",)),
     "mallet": (("t", "mallet_x", "mallet_y"), ("expected_x", "expected_y")),
@@ -28,10 +28,10 @@ POSITIONS = {"frames": ("puck_x", "puck_y"), "mallet": ("mallet_x", "mallet_y")}
 
 @dataclass(frozen=True)
 class Recording:
-    """What was recorded. SI units; a stream that was not recorded is None.
+    """A recording in SI units; a stream that was not recorded is None.
 
-    `meta` is the content of meta.json, its nominal values None where unknown. `notes` are sentences on oddities that
-    refuse nothing, e.g. positions far outside of the table.
+    `meta`: the content of meta.json, with None for unknown nominal values; `notes`: warnings in sentences, e.g. on
+    positions far outside of the table.
     """
 
     name: str
@@ -43,17 +43,17 @@ class Recording:
     notes: tuple[str, ...] = field(default=(), compare=False)
 
     def nominal(self, section: str, key: str) -> float | None:
-        """A nominal value of the meta data, e.g. `nominal("puck", "radius_m")`; None where unknown."""
+        """A nominal value of the meta data, e.g. `nominal("puck", "radius_m")`; None if unknown."""
         value = (self.meta.get(section) or {}).get(key)
         return None if value is None else float(value)
 
     def streams(self) -> dict[str, Stream]:
-        """The streams that are there, by name."""
+        """The recorded streams by name."""
         found = {name: getattr(self, name) for name in STREAMS}
         return {name: stream for name, stream in found.items() if stream is not None}
 
     def from_zero(self) -> Recording:
-        """The recording with all clocks counted from the earliest stamp of any stream."""
+        """A copy with all clocks relative to the earliest stamp of any stream."""
         streams = {name: stream for name, stream in self.streams().items() if stream.rows}
         zero = min((float(stream.t[0]) for stream in streams.values()), default=0.0)
         return replace(
@@ -61,7 +61,7 @@ class Recording:
         )
 
     def outside(self) -> np.ndarray:
-        """Frames (frames,) bool that show the puck far outside of the stated table: blunders of the vision."""
+        """Frames (frames,) bool with the puck far outside of the stated table: gross errors of the vision."""
         if self.frames is None:
             return np.zeros(0, bool)
         length, width = self.nominal("table", "length_m"), self.nominal("table", "width_m")
@@ -71,11 +71,11 @@ class Recording:
 def read_recording(path: Path | str) -> Recording:
     """Read the recording folder `path`, of format puckpilot-recording/1.
 
-    Errors: RecordingError, one line that names file, line and reason, if anything breaks a rule of the format.
+    Raises RecordingError, one line with file, line and reason, if the folder violates the format.
     """
     folder = Path(path)
     if not folder.is_dir():
-        raise RecordingError(folder, "is no folder; a recording is a folder with meta.json and frames.csv")
+        raise RecordingError(folder, "is not a folder; expected a folder with meta.json and frames.csv")
     meta = checks.read_meta(folder / "meta.json")
     found: dict[str, Stream] = {}
     notes: list[str] = []
@@ -85,25 +85,25 @@ def read_recording(path: Path | str) -> Recording:
             found[name] = read_stream(file, required, optional)
             notes += _check(name, file, found[name], meta)
     if not found:
-        raise RecordingError(folder, f"holds no stream; expected frames.csv or one of {', '.join(STREAMS)}")
+        raise RecordingError(folder, f"contains no stream; expected frames.csv or one of {', '.join(STREAMS)}")
     return Recording(folder.resolve().name, meta, **found, notes=tuple(notes))
 
 
 def write_recording(path: Path | str, recording: Recording) -> None:
-    """Write `recording` as the new folder `path`: the whole folder or nothing. Errors: RecordingError."""
+    """Write `recording` as the new folder `path`, either completely or not at all. Raises RecordingError."""
     folder = Path(path)
     if folder.exists() or folder.is_symlink():
         raise RecordingError(folder, "exists already; choose another name or remove it")
     try:
         folder.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(prefix=".recording-", dir=folder.parent) as scratch:
-            whole = Path(scratch) / "whole"
-            whole.mkdir()
-            _write_into(whole, recording)
-            read_recording(whole)
-            whole.rename(folder)
+            draft = Path(scratch) / "whole"
+            draft.mkdir()
+            _write_into(draft, recording)
+            read_recording(draft)
+            draft.rename(folder)
     except RecordingError as error:
-        reason = f"would not be read back: {error.reason}"
+        reason = f"could not be read back: {error.reason}"
         raise RecordingError(folder / error.file.name, reason, error.line) from None
     except (TypeError, ValueError) as error:
         raise RecordingError(folder, f"cannot be written ({error}); check the meta data and the columns") from None
@@ -119,7 +119,7 @@ def _check(name: str, file: Path, stream: Stream, meta: dict[str, Any]) -> list[
     if name not in POSITIONS:
         return []
     far = checks.check_inside(file, stream, POSITIONS[name], meta["table"])
-    return [f"{file.name}: {far} positions lie far outside of the table, taken as blunders"] if far else []
+    return [f"{file.name}: {far} positions lie far outside of the table and are ignored as gross errors"] if far else []
 
 
 def _write_into(folder: Path, recording: Recording) -> None:

@@ -1,4 +1,4 @@
-"""Sizes that recordings of one table state, together: each once, and a sentence for those that none states."""
+"""Merge the sizes that recordings of one table state, and note the sizes that none states."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from sim2real.recording.tuned import RECORDING
 
 
 def together(recordings: Sequence[Recording], baseline: Mapping[str, float]) -> list[Recording]:
-    """The recordings, each with every size that any of them states; where none does, with that of `baseline`, if any.
+    """Give each recording all sizes that any of them states; sizes that none states come from `baseline`, if there.
 
-    `baseline`: parameters of the simulator by name. ValueError, in one line, if the recordings state sizes of different
-    tables, pucks, mallets or gantries.
+    `baseline`: parameters of the simulator by name. Raises ValueError, in one line, if the recordings state sizes of
+    different tables, pucks, mallets or gantries.
     """
     known = {name: baseline[name] for name in FROM_META if name in baseline}
     known |= {name: value for name in FROM_META if (value := _stated(recordings, name)) is not None}
@@ -25,19 +25,19 @@ def together(recordings: Sequence[Recording], baseline: Mapping[str, float]) -> 
 
 
 def assumptions(recordings: Sequence[Recording]) -> Iterator[str]:
-    """A sentence for each number that a diagnosis needs and no recording states; `recordings` come from `together`."""
+    """A sentence for each size that a diagnosis needs and no recording states; `recordings` come from `together`."""
     for name, (section, key) in FROM_META.items():
         if recordings[0].nominal(section, key) is not None or not any(_needs(one, name) for one in recordings):
             continue
         if name == "goal_width":
-            yield f"{section}.{key} is not stated: what touched the end walls where goals may be is left out"
+            yield f"{section}.{key} is not stated: contacts with the end walls where a goal may be are ignored"
         else:
             row = BY_NAME[name]
-            yield f"{section}.{key} is not stated: taken for the simulator's own {row.default:g} {row.unit}"
+            yield f"{section}.{key} is not stated: the simulator's default {row.default:g} {row.unit} is used"
 
 
 def _stated(recordings: Sequence[Recording], name: str) -> float | None:
-    """The value of the parameter `name` that the recordings agree on; None where none states it. See `together`."""
+    """The value of the parameter `name` that the recordings agree on; None if none states it. See `together`."""
     section, key = FROM_META[name]
     values = [(one.name, value) for one in recordings if (value := one.nominal(section, key)) is not None]
     for who, value in values:
@@ -51,7 +51,7 @@ def _stated(recordings: Sequence[Recording], name: str) -> float | None:
 
 
 def _stating(one: Recording, known: Mapping[str, float]) -> Recording:
-    """The recording with `known` sizes, by the names of parameters, in its meta data."""
+    """A copy of the recording with the `known` sizes, by parameter name, in its meta data."""
     meta = {section: dict(one.meta.get(section) or {}) for section, _ in FROM_META.values()}
     for name, value in known.items():
         section, key = FROM_META[name]
@@ -60,7 +60,7 @@ def _stating(one: Recording, known: Mapping[str, float]) -> Recording:
 
 
 def _needs(one: Recording, name: str) -> bool:
-    """Whether the parameter `name` bears on what was recorded."""
+    """Whether the parameter `name` affects the analysis of the recorded streams."""
     puck, opponent, robot = (
         _seen(stream, column)
         for stream, column in ((one.frames, "puck_x"), (one.frames, "opponent_x"), (one.mallet, "mallet_x"))

@@ -1,4 +1,4 @@
-"""One CSV stream of a recording: read fast, refused by file, line and reason, written back exactly."""
+"""Read and write one CSV stream of a recording: fast, exact, and with file, line and reason in every error."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ NOT_SEEN = math.nan
 
 
 class RecordingError(ValueError):
-    """A recording that cannot be read or written. Its text is one line: file, line number where known, and reason."""
+    """A recording cannot be read or written. The text is one line: file, line number if known, and reason."""
 
     def __init__(self, file: Path | str, reason: str, line: int | None = None):
         shown = Path(file).resolve() if Path(file).parent == Path() else file  # "." says little
@@ -28,10 +28,10 @@ class RecordingError(ValueError):
 
 @dataclass(frozen=True)
 class Stream(Mapping[str, np.ndarray]):
-    """Columns of one clock, by name: `stream["puck_x"]`, all of one length; `stream.t` is the clock [s].
+    """Columns with a common clock, by name, e.g. `stream["puck_x"]`; `stream.t` is the clock [s].
 
-    Columns are float64 with nan for "not seen". A column that the format does not know is kept as it came:
-    float64 where all its cells are numbers, else text.
+    Columns are float64 with nan for "not seen". Unknown columns are kept: as float64 if all cells are numbers, else as
+    text.
     """
 
     columns: Mapping[str, np.ndarray]
@@ -56,9 +56,9 @@ class Stream(Mapping[str, np.ndarray]):
 
 
 def read_text(file: Path) -> str:
-    """The text of `file`, UTF-8 with or without a byte-order mark; RecordingError if it is not such a text."""
+    """The text of `file`, UTF-8 with or without a byte-order mark. Raises RecordingError for anything else."""
     if not file.is_file():
-        raise RecordingError(file, "is missing or is no plain file; a recording needs it there")
+        raise RecordingError(file, "is missing or is not a plain file; a recording needs it")
     try:
         if file.stat().st_size > RECORDING.largest_file:
             raise RecordingError(
@@ -69,7 +69,7 @@ def read_text(file: Path) -> str:
         raise RecordingError(file, f"cannot be read ({error.strerror}); check its permissions") from None
     if b"\0" in raw:
         raise RecordingError(
-            file, "holds zero bytes, so it is binary or UTF-16; expected UTF-8 text, export it as UTF-8"
+            file, "contains zero bytes, so it is binary or UTF-16; expected UTF-8 text, export it as UTF-8"
         )
     try:
         return raw.decode("utf-8-sig")
@@ -80,9 +80,9 @@ def read_text(file: Path) -> str:
 
 
 def read_stream(file: Path, required: tuple[str, ...], optional: tuple[str, ...] = ()) -> Stream:
-    """Read one CSV file with a header that holds at least `required`.
+    """Read one CSV file whose header contains at least the columns `required`.
 
-    Columns in neither list are kept and never refuse a file. Errors: RecordingError with the line of the first fault.
+    Columns in neither list are kept and cause no error. Raises RecordingError with the line of the first fault.
     """
     rows, lines = _rows(file)
     if not rows:
@@ -102,7 +102,7 @@ def read_stream(file: Path, required: tuple[str, ...], optional: tuple[str, ...]
 
 
 def write_stream(file: Path, stream: Stream) -> None:
-    """Write `stream` so that `read_stream` gives back the same bits; nan becomes a blank cell."""
+    """Write `stream` so that `read_stream` returns the same bits; nan becomes a blank cell."""
     columns = [_cells(column) for column in stream.columns.values()]
     with file.open("w", encoding="utf-8", newline="") as out:
         writer = csv.writer(out, lineterminator="\n")
@@ -134,19 +134,18 @@ def _check_header(file: Path, header: list[str], required: tuple[str, ...]) -> N
         raise RecordingError(file, reason + ",".join(required), 1)
     twice = sorted({name for name in header if header.count(name) > 1})
     if twice:
-        raise RecordingError(file, f"column {twice[0]!r} stands twice in the header; keep one of them", 1)
+        raise RecordingError(file, f"column {twice[0]!r} appears twice in the header; keep one of them", 1)
 
 
 def _refuse_width(file: Path, header: list[str], rows: list[list[str]], lines: list[int]) -> None:
     for row, line in zip(rows, lines, strict=True):
         if len(row) != len(header):
-            reason = f"has {len(row)} cells, expected {len(header)} as in the header; mend or remove the row"
+            reason = f"has {len(row)} cells, expected {len(header)} as in the header; correct or remove the row"
             raise RecordingError(file, reason, line)
 
 
 def _numbers(file: Path, name: str, cells: tuple[str, ...], lines: list[int]) -> np.ndarray:
-    """Cells to float64, blank to nan. The fast path leaves every doubtful cell (and the words nan, inf) to
-    `_numbers_slowly`."""
+    """Convert cells to float64, blank cells to nan. Unusual cells (also the words nan, inf) go to `_numbers_slowly`."""
     try:
         values = np.array([float(cell) if cell else NOT_SEEN for cell in cells])
     except ValueError:
@@ -158,7 +157,7 @@ def _numbers(file: Path, name: str, cells: tuple[str, ...], lines: list[int]) ->
 
 
 def _numbers_slowly(file: Path, name: str, cells: tuple[str, ...], lines: list[int]) -> np.ndarray:
-    """Cells to float64, blank to nan. Errors: RecordingError with the line of the first that is no number."""
+    """Convert cells to float64, blank cells to nan. Raises RecordingError with the line of the first non-number."""
     values = []
     for cell, line in zip(cells, lines, strict=True):
         text = cell.strip()
@@ -174,7 +173,7 @@ def _numbers_slowly(file: Path, name: str, cells: tuple[str, ...], lines: list[i
 
 
 def _unknown_column(cells: tuple[str, ...]) -> np.ndarray:
-    """A column that the format does not know: float64, blank to nan, where all cells are numbers; else text."""
+    """Convert an unknown column to float64, blank cells to nan, if all cells are numbers; else keep the text."""
     try:
         return np.array([float(cell) if cell else NOT_SEEN for cell in cells])
     except ValueError:

@@ -25,19 +25,21 @@ FROM_META = {
 
 
 def parameters(recording: Recording, defaults: Mapping[str, float] | None = None) -> dict[str, float]:
-    """Parameters by name: the simulator's own, then `defaults`, then the sizes that the recording states."""
+    """Parameters by name: the simulator's defaults, updated by `defaults`, then by the sizes in the recording."""
     return {row.name: row.default for row in TABLE} | dict(defaults or {}) | stated_sizes(recording)
 
 
 def stated_sizes(recording: Recording) -> dict[str, float]:
-    """The sizes that the recording states, by the names of parameters."""
+    """The sizes that the recording states, by parameter name."""
     stated = {name: recording.nominal(section, key) for name, (section, key) in FROM_META.items()}
     return {name: value for name, value in stated.items() if value is not None}
 
 
 def read_baseline(path: Path) -> dict[str, float]:
-    """Parameters by name from a TOML file of lines like `friction = 0.1`, or of a diagnosis's effects.toml that holds
-    no effects. ValueError, in one line, if it is neither."""
+    """Read parameters by name from a TOML file of lines like `friction = 0.1`, or from an effects.toml without effects.
+
+    Raises ValueError, in one line, for any other file.
+    """
     try:
         text = small_file.read_text(path)
     except OSError as error:
@@ -54,14 +56,14 @@ def read_baseline(path: Path) -> dict[str, float]:
 
 
 def _numbers(path: Path, found: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The values of a file by parameter. ValueError, with what to do, for one that holds more."""
-    alone = "give --baseline a file of its [parameters] alone; to play with it, puckpilot match A B"
+    """The values of a file by parameter. Raises ValueError, with what to do, for a file with other content."""
+    alone = "give --baseline a file with [parameters] alone; to play with this one: puckpilot match A B"
     if found.get("format") == DRAWS_FORMAT:
-        raise ValueError(f"holds ranges to draw from, not one table's numbers: {alone} --draws {path}")
+        raise ValueError(f"contains ranges to draw from, not the parameters of one table: {alone} --draws {path}")
     if found.get("format") != EFFECTS_FORMAT:
         return found
     refuse_unknown(found, ("format", "parameters", "effects"), "entry")
     if section(found, "effects"):
         names = ", ".join(section(found, "effects"))
-        raise ValueError(f"holds effects ({names}), which diagnose looks for by itself: {alone} --effects {path}")
+        raise ValueError(f"contains effects ({names}), which diagnose identifies itself: {alone} --effects {path}")
     return section(found, "parameters")

@@ -1,4 +1,4 @@
-"""What a puck can have touched at a place and time: walls, goal posts, the robot's or the opponent's mallet."""
+"""Attribute a contact at a place and time to a wall, a goal post, the robot's mallet or the opponent's mallet."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SIZES = ("length", "width", "goal_width", "puck_radius", "mallet_radius")
 
 @dataclass(frozen=True)
 class Geometry:
-    """Nominal sizes [m]. `assumed`: names of the sizes that the recording does not state; these are the simulator's."""
+    """Nominal sizes [m]. `assumed`: names of the sizes that the recording does not state and that have defaults."""
 
     length: float
     width: float
@@ -41,20 +41,20 @@ class Geometry:
 
 @dataclass(frozen=True)
 class Track:
-    """A mallet at the frames' times: place (frames, 2) [m], velocity (frames, 2) [m/s]; nan where it was not seen."""
+    """A mallet at the frames' times: place (frames, 2) [m], velocity (frames, 2) [m/s]; nan if it was not seen."""
 
     place: np.ndarray
     velocity: np.ndarray
 
     def at(self, t: np.ndarray, when: float) -> tuple[np.ndarray, np.ndarray]:
-        """Place (2,) and velocity (2,) at the time `when` [s], from the nearer frame of the clock `t` (frames,)."""
+        """Place (2,) and velocity (2,) at the time `when` [s], extrapolated from the nearest frame of `t` (frames,)."""
         k = int(np.clip(np.searchsorted(t, when), 1, len(t) - 1))
         k -= when - t[k - 1] < t[k] - when
         return self.place[k] + self.velocity[k] * (when - t[k]), self.velocity[k]
 
 
 def geometry(recording: Recording) -> Geometry:
-    """Sizes from the recording's meta data; the simulator's own where the recording does not state them."""
+    """Sizes from the recording's meta data; the simulator's defaults for those that it does not state."""
     sizes = parameters(recording)
     assumed = frozenset(name for name in SIZES if recording.nominal(*FROM_META[name]) is None)
     return Geometry(**{name: sizes[name] for name in SIZES}, assumed=assumed)
@@ -63,7 +63,7 @@ def geometry(recording: Recording) -> Geometry:
 def mallet_tracks(recording: Recording, t: np.ndarray) -> dict[str, Track]:
     """The recorded mallets at the frames' times `t` (frames,) [s]: "robot" by its encoders, "opponent" by the camera.
 
-    Good enough to find what the puck touched; `mallet_path` gives the motion at a contact with its covariance.
+    The accuracy suffices to attribute contacts; `mallet_path` gives the motion at a contact with its covariance.
     """
     streams = {"robot": (recording.mallet, "mallet"), "opponent": (recording.frames, "opponent")}
     found = {
@@ -75,7 +75,7 @@ def mallet_tracks(recording: Recording, t: np.ndarray) -> dict[str, Track]:
 
 
 def _track(clock: np.ndarray, x: np.ndarray, y: np.ndarray, t: np.ndarray) -> Track | None:
-    """The mallet seen at (x, y) (n,) at the times `clock` (n,); None if fewer than two samples see it."""
+    """The track of a mallet with samples `x`, `y` (n,) at the times `clock` (n,); None for fewer than two samples."""
     seen = np.isfinite(x) & np.isfinite(y)
     if seen.sum() < 2:
         return None
@@ -93,16 +93,16 @@ def _track(clock: np.ndarray, x: np.ndarray, y: np.ndarray, t: np.ndarray) -> Tr
 
 
 def nominal_lines(g: Geometry) -> dict[str, float]:
-    """Coordinate [m] of the puck's centre when it touches each wall, by the nominal sizes."""
+    """Coordinate [m] of the puck's centre at contact with each wall, from the nominal sizes."""
     r = g.puck_radius
     return {"x0": r, "x1": g.length - r, "y0": r, "y1": g.width - r}
 
 
 def measured_lines(g: Geometry, place: np.ndarray, v_in: np.ndarray, v_out: np.ndarray) -> dict[str, float]:
-    """The walls' contact lines [m] by the events at `place` (n, 2) [m] with velocities `v_in`, `v_out` (n, 2) [m/s].
+    """Estimate the walls' contact lines [m] from events at `place` (n, 2) [m] with velocities `v_in`, `v_out` (n, 2).
 
-    A line is the median of the wall's clear contacts, which turn the puck round near the nominal line. It is the
-    nominal one where there are too few of them.
+    A line is the median over the wall's clear contacts, which reverse the puck near the nominal line. The nominal line
+    is used if there are too few of them.
     """
     lines = nominal_lines(g)
     for wall, line in lines.items():
@@ -115,19 +115,19 @@ def measured_lines(g: Geometry, place: np.ndarray, v_in: np.ndarray, v_out: np.n
 
 
 def wall_axis(wall: str) -> tuple[int, int]:
-    """The axis (0 is x, 1 is y) and the sign of the inward normal of a wall."""
+    """The axis (0: x, 1: y) and the sign of the inward normal of a wall."""
     return "xy".index(wall[0]), 1 if wall[1] == "0" else -1
 
 
 def turned_round(wall: str, v_in: np.ndarray, v_out: np.ndarray) -> np.ndarray:
-    """Whether velocities (…, 2) [m/s] before and after a contact clearly go to a wall and away from it, (…) bool."""
+    """Whether velocities (…, 2) [m/s] before and after a contact clearly point to a wall and away from it, (…) bool."""
     axis, inward = wall_axis(wall)
     inwards, outwards = -SEGMENTATION.clearly_in, SEGMENTATION.clearly_out
     return (v_in[..., axis] * inward < inwards) & (v_out[..., axis] * inward > outwards)
 
 
 def possible(g: Geometry, p: np.ndarray, tracks: dict[str, Track], noise: float) -> np.ndarray:
-    """Frames (n,) bool at which the puck at `p` (n, 2) [m] is so near to a wall or mallet that they may touch.
+    """Whether (n,) bool the puck at `p` (n, 2) [m] is close enough to a wall or mallet for a contact.
 
     `noise` [m]: standard deviation of a coordinate.
     """
@@ -137,7 +137,7 @@ def possible(g: Geometry, p: np.ndarray, tracks: dict[str, Track], noise: float)
 
 
 def near_walls(lines: dict[str, float], p: np.ndarray, reach: float) -> np.ndarray:
-    """Places (n, 2) at which the puck is within `reach` [m] of a wall's contact line, shape (n,) bool."""
+    """Whether (n,) bool a puck at the places `p` (n, 2) [m] is within `reach` [m] of a wall's contact line."""
     near = np.zeros(len(p), bool)
     for wall, line in lines.items():
         axis, inward = wall_axis(wall)
@@ -146,7 +146,7 @@ def near_walls(lines: dict[str, float], p: np.ndarray, reach: float) -> np.ndarr
 
 
 def near_posts(g: Geometry, p: np.ndarray, reach: float) -> np.ndarray:
-    """Places (n, 2) at which the puck is within `reach` [m] of touching a goal post, shape (n,) bool."""
+    """Whether (n,) bool a puck at the places `p` (n, 2) [m] is within `reach` [m] of touching a goal post."""
     near = np.zeros(len(p), bool)
     for where in POSTS if g.goals_known else ():
         near |= np.linalg.norm(p - g.post(where), axis=1) < g.puck_radius + reach
@@ -156,7 +156,7 @@ def near_posts(g: Geometry, p: np.ndarray, reach: float) -> np.ndarray:
 def near_mallets(
     g: Geometry, tracks: Mapping[str, Track], index: np.ndarray, p: np.ndarray, reach: float
 ) -> np.ndarray:
-    """Places (n, 2) at the frames `index` at which a mallet may touch the puck, allowing for its clock; (n,) bool."""
+    """Whether (n,) bool a mallet may touch the puck at places (n, 2) in the frames `index`, given its clock error."""
     near = np.zeros(len(p), bool)
     for track in tracks.values():
         distance = np.linalg.norm(p - track.place[index], axis=1) - g.puck_radius - g.mallet_radius
@@ -168,7 +168,7 @@ def near_mallets(
 def touched_walls(
     lines: dict[str, float], g: Geometry, place: np.ndarray, v_in: np.ndarray, v_out: np.ndarray, slack: float
 ) -> list[str]:
-    """Walls whose contact line is within `slack` [m] of `place` (2,) and that can turn `v_in` into `v_out` (2,)."""
+    """Walls whose contact line is within `slack` [m] of `place` (2,) and that can change `v_in` to `v_out` (2,)."""
     found = []
     for wall, line in lines.items():
         axis, inward = wall_axis(wall)
@@ -184,7 +184,7 @@ def touched_walls(
 def touched_post(g: Geometry, place: np.ndarray, dv: np.ndarray, slack: float) -> str:
     """The goal post ("x0 right", "x1 left", …) that the puck at `place` (2,) [m] touches; "" if none or unknown.
 
-    `dv` (2,) [m/s]: the change of the puck's velocity; `slack` [m]: by which the contact may be off its place.
+    `dv` (2,) [m/s]: the change of the puck's velocity; `slack` [m]: tolerance of the contact's place.
     """
     for where in POSTS if g.goals_known else ():
         away = place - g.post(where)
@@ -204,7 +204,7 @@ def touched_mallet(
     dv: np.ndarray,
     slack: float,
 ) -> tuple[str, np.ndarray, np.ndarray]:
-    """The mallet that pushed the puck at the time `when` [s]: its name ("" if none), velocity (2,) and the normal (2,).
+    """The mallet that touched the puck at the time `when` [s]: its name ("" if none), velocity (2,), and normal (2,).
 
     `t` (frames,) [s]: the clock of the tracks; `place`, `dv`, `slack` as in `touched_post`.
     """
@@ -226,7 +226,7 @@ def _pushed_along(away: np.ndarray, distance: float, dv: np.ndarray) -> bool:
 
 
 def may_be_goal(g: Geometry, wall: str, place: np.ndarray) -> bool:
-    """Whether a touch of `wall` at `place` (2,) may be one of a goal post, where the goals' width is unknown."""
+    """Whether a contact with `wall` at `place` (2,) may be one with a goal post, as the goals' width is unknown."""
     reach = g.goal_width / 2 + SEGMENTATION.wider_goal / 2 + g.puck_radius
     return wall[0] == "x" and not g.goals_known and abs(place[1] - g.width / 2) < reach
 

@@ -1,7 +1,7 @@
 """Changepoints of a path of frames: jumps of the place, and sudden changes of the velocity.
 
 A path is `t` (frames,) [s] and `p` (frames, 2) [m]; a *gap* k lies between frames k and k + 1; `cuts` (frames - 1,)
-marks the gaps at which the path is cut already. No window reaches across a cut.
+marks the gaps at which the path is already cut. No window spans a cut.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ import numpy as np
 from sim2real.segmentation.sensor_noise import Noise
 from sim2real.segmentation.tuned import SEGMENTATION
 
-TRIED = 3  # gaps on either side of a changepoint, at which it is placed instead if that fits better
+TRIED = 3  # number of gaps on either side of a changepoint that are tried as its position
 
 
 @dataclass(frozen=True)
 class LocalMotion:
     """The motion on one side of a time, from a parabola through `frames` frames on that side.
 
-    place (2,) [m], velocity (2,) [m/s]; `place_std`, `velocity_std`: standard deviation of each component; `rest`
-    [m^2]: sum of the squared residuals.
+    `place` (2,) [m], `velocity` (2,) [m/s]; `place_std`, `velocity_std`: standard deviation of each component; `rest`
+    [m^2]: residual sum of squares.
     """
 
     place: np.ndarray
@@ -33,7 +33,7 @@ class LocalMotion:
 
 
 def find_jumps(t: np.ndarray, p: np.ndarray, noise: Noise) -> np.ndarray:
-    """Gaps (frames - 1,) bool over which the path is not one motion: too long, or the place jumps across them."""
+    """Find the gaps (frames - 1,) bool that interrupt the motion: they are too long, or the place jumps across them."""
     jump = np.diff(t) > SEGMENTATION.longest_gap
     for k in np.flatnonzero(~jump & _suspicious(t, p, noise)):
         left = local_motion(t, p, t[k], slice(max(0, k - 3), k + 1), noise)
@@ -42,7 +42,7 @@ def find_jumps(t: np.ndarray, p: np.ndarray, noise: Noise) -> np.ndarray:
         forward = right.place - (left.place + left.velocity * dt)
         backward = left.place - (right.place - right.velocity * dt)
         miss = np.fmin(np.abs(forward), np.abs(backward))
-        contact = 0.6 * dt * np.abs(right.velocity - left.velocity)  # of a contact somewhere within the gap
+        contact = 0.6 * dt * np.abs(right.velocity - left.velocity)  # due to a contact anywhere within the gap
         limit = SEGMENTATION.least_jump + 10 * noise.std(left.velocity) + contact
         jump[k] = np.any(miss > limit)
     return jump
@@ -59,25 +59,25 @@ def _suspicious(t: np.ndarray, p: np.ndarray, noise: Noise) -> np.ndarray:
 
 
 def find_changepoints(t: np.ndarray, p: np.ndarray, noise: Noise, cuts: np.ndarray, expected: np.ndarray) -> np.ndarray:
-    """Strength (frames - 1,) of the velocity's change at each changepoint, in standard deviations; 0 at other gaps.
+    """Find changepoints; return the strength (frames - 1,) of each velocity change in standard deviations, 0 elsewhere.
 
-    `expected` (frames,) bool: where a contact is possible. There weaker evidence and longer windows suffice.
-    Short windows come first, as they place fast contacts sharply; long ones then find the slow contacts.
+    `expected` (frames,) bool: frames at which a contact is possible; weaker evidence and longer windows suffice there.
+    Short windows come first because they locate fast contacts precisely; long windows then find slow contacts.
     """
     found = np.zeros(len(t) - 1)
     cuts = cuts.copy()
-    sure = np.where(expected, SEGMENTATION.sure_where_expected, SEGMENTATION.sure)
+    threshold = np.where(expected, SEGMENTATION.threshold_where_expected, SEGMENTATION.threshold)
     for half in SEGMENTATION.window_frames:
         rows = _allowed(t, p, half, expected)
         rows = rows[~cuts[rows]]  # across a pause of minutes there is nothing to fit
         spread = _spread_of_most(changepoint_strength(t, p, noise, cuts, rows, half)[0])
         while len(rows):
-            new = _peaks(t, p, noise, cuts, rows, half, spread * sure)
+            new = _peaks(t, p, noise, cuts, rows, half, spread * threshold)
             if not new:
                 break
             near = np.zeros(len(t) - 1, bool)
             for k, strength in new.items():
-                best = best_gap(t, p, noise, cuts, k)  # at once: a changepoint a frame off would make another one
+                best = best_gap(t, p, noise, cuts, k)  # immediately: a misplaced changepoint would produce another one
                 best = k if cuts[best] else best
                 found[best], cuts[best] = strength, True
                 near[max(0, best - 2 * half) : best + 2 * half + 1] = True
@@ -91,7 +91,7 @@ def find_changepoints(t: np.ndarray, p: np.ndarray, noise: Noise, cuts: np.ndarr
 
 
 def _allowed(t: np.ndarray, p: np.ndarray, half: int, expected: np.ndarray) -> np.ndarray:
-    """Gaps that windows of `half` frames a side may judge: long ones short ways, or where contacts are possible."""
+    """Gaps that windows of `half` frames a side may test: long windows need short paths or a possible contact."""
     gaps = np.arange(len(t) - 1)
     if half <= SEGMENTATION.long_window:
         return gaps
@@ -101,9 +101,9 @@ def _allowed(t: np.ndarray, p: np.ndarray, half: int, expected: np.ndarray) -> n
 
 
 def _spread_of_most(strength: np.ndarray) -> float:
-    """How much wider than under white noise (1.0) the strengths (n,) of most windows spread, at least 1.
+    """Robust scale of the strengths (n,) of windows relative to white noise (1.0), at least 1.
 
-    Errors of a camera that change slowly with the place look like small changes of velocity everywhere. From the
+    Camera errors that vary slowly with the place look like small velocity changes everywhere. The scale comes from the
     median and the 70 % quantile of a Rayleigh distribution.
     """
     strength = strength[strength > 0]
@@ -114,11 +114,11 @@ def _spread_of_most(strength: np.ndarray) -> float:
 
 
 def _peaks(
-    t: np.ndarray, p: np.ndarray, noise: Noise, cuts: np.ndarray, rows: np.ndarray, half: int, sure: np.ndarray
+    t: np.ndarray, p: np.ndarray, noise: Noise, cuts: np.ndarray, rows: np.ndarray, half: int, threshold: np.ndarray
 ) -> dict[int, float]:
-    """Gaps of `rows` that are local maxima of the strength and stronger than `sure` (frames,), with their strength."""
+    """Gaps of `rows` with a local maximum of the strength above `threshold` (frames,), with their strength."""
     widened, raw = changepoint_strength(t, p, noise, cuts, rows, half)
-    limit = np.minimum(sure[rows], sure[rows + 1])
+    limit = np.minimum(threshold[rows], threshold[rows + 1])
     score = np.zeros(len(t) - 1)
     score[rows] = np.where((widened > limit) | (raw > 5 * limit), widened + 1e-3 * raw, 0.0)
     best = {}
@@ -133,8 +133,8 @@ def changepoint_strength(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Significance (n,) of a velocity change at the gaps `rows` (n,), by `half` frames a side, in standard deviations.
 
-    Least squares of a parabola, a step and a change of slope at the middle of the gap: step and change of slope
-    together allow any time within the gap. The second result trusts the noise; the first widens it where fits are bad.
+    Least squares of a parabola, a step and a change of slope at the middle of the gap; step and change of slope
+    together allow any time within the gap. The second result uses `noise`; the first scales it up where fits are bad.
     """
     u, q, weight, unit = _windows(t, p, cuts, rows, half)
     sigma = noise.std(np.ptp(q, axis=1) / unit[:, None])
@@ -166,8 +166,8 @@ def _windows(
     index = rows[:, None] + offsets
     inside = (index >= 0) & (index < len(t))
     index = np.clip(index, 0, len(t) - 1)
-    piece = np.concatenate([[0], np.cumsum(cuts)])
-    weight = (inside & (piece[index] == piece[rows][:, None])).astype(float)
+    segment = np.concatenate([[0], np.cumsum(cuts)])
+    weight = (inside & (segment[index] == segment[rows][:, None])).astype(float)
     middle = (t[rows] + t[rows + 1]) / 2
     unit = np.full(len(rows), half * float(np.median(np.diff(t))))
     u = (t[index] - middle[:, None]) / unit[:, None] * weight
@@ -176,7 +176,7 @@ def _windows(
 
 
 def best_gap(t: np.ndarray, p: np.ndarray, noise: Noise, cuts: np.ndarray, k: int) -> int:
-    """The gap near the changepoint `k` at which one motion before and one after leave the smallest residuals."""
+    """The gap near the changepoint `k` that gives the least residuals of one motion before and one after."""
     others = np.flatnonzero(cuts)
     before, after = others[others < k], others[others > k]
     first = max(int(before[-1]) + 1 if len(before) else 0, k - SEGMENTATION.placing_frames)
@@ -192,7 +192,7 @@ def best_gap(t: np.ndarray, p: np.ndarray, noise: Noise, cuts: np.ndarray, k: in
 
 
 def _rest(t: np.ndarray, p: np.ndarray, frames: slice, noise: Noise) -> float:
-    """Sum of squares [m^2] that `local_motion` leaves of `frames`."""
+    """Residual sum of squares [m^2] of `local_motion` through `frames`."""
     return local_motion(t, p, float(t[frames].mean()), frames, noise).rest
 
 

@@ -1,4 +1,4 @@
-"""Jumps of a clock: steps between time stamps that differ from the time by which the motion went on."""
+"""Jumps of a clock: steps of the time stamps that contradict the motion."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from sim2real.segmentation.sensor_noise import estimate_noise
 from sim2real.segmentation.tuned import SEGMENTATION
 
-ROWS = 3  # from the row before the step to the second one after it: a row next to the step may alone be late
+ROWS = 3  # from the row before the step to the second one after it, because one row next to the step may be late
 
 
 @dataclass(frozen=True)
@@ -21,10 +21,10 @@ class ClockJump:
 
 
 def clock_jumps(t: np.ndarray, place: np.ndarray) -> list[ClockJump]:
-    """Steps of the clock `t` (n,) [s] that the motion at `place` (n, 2) [m], nan where not seen, did not take.
+    """Find steps of the clock `t` (n,) [s] that contradict the motion `place` (n, 2) [m], nan where not seen.
 
-    Before and after such a step the motion is the same, and across it the motion went on for as long as the number of
-    rows says, not for as long as the stamps say. Steps without motion, or near a contact, do not count.
+    The velocity is equal before and after such a step, and the distance across it agrees with the number of rows, not
+    with the stamps. Steps without motion or near a contact are ignored.
     """
     if len(t) < 4 * SEGMENTATION.beside_rows:
         return []
@@ -37,7 +37,7 @@ def clock_jumps(t: np.ndarray, place: np.ndarray) -> list[ClockJump]:
 
 
 def _clock_jump(t: np.ndarray, place: np.ndarray, k: int, period: float, noise: float) -> ClockJump | None:
-    """The jump at the step from row `k` to the next; None if it is none."""
+    """The jump at the step from row `k` to the next; None if there is none."""
     left, right = slice(k - SEGMENTATION.beside_rows, k), slice(k + 2, k + 2 + SEGMENTATION.beside_rows)
     if left.start < 0 or right.stop > len(t):
         return None
@@ -57,8 +57,8 @@ def _clock_jump(t: np.ndarray, place: np.ndarray, k: int, period: float, noise: 
 
 
 def _line(u: np.ndarray, q: np.ndarray, noise: float) -> tuple[np.ndarray, np.ndarray, float]:
-    """Place (2,) at u = 0 and velocity (2,) of a straight line through `q` (n, 2) at `u` (n,), nan if a place is, and
-    the standard deviation of the velocity's components."""
+    """Place (2,) at u = 0 and velocity (2,) of a straight line through `q` (n, 2) at `u` (n,), nan if any place is nan,
+    and the standard deviation of the velocity's components."""
     mean = u.mean()
     square = float(((u - mean) ** 2).sum())
     velocity = ((u - mean)[:, None] * q).sum(axis=0) / square

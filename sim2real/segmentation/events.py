@@ -1,4 +1,4 @@
-"""Changepoints as events, and events as contacts: when, where, the velocities before and after, and the cause."""
+"""Convert changepoints to events, and events to contacts with time, place, velocities before and after, and cause."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class Event:
 
 
 def find_events(path: Path, noise: Noise, strength: np.ndarray) -> list[Event]:
-    """The events of a path, one at each gap of positive `strength` (gaps,) [standard deviations]; jumps only cut it."""
+    """The events of a path, one at each gap of positive `strength` (gaps,) [standard deviations] that is no jump."""
     cuts = np.flatnonzero(path.jumps | (strength > 0))
     events = []
     for k in np.flatnonzero(strength > 0):
@@ -68,7 +68,7 @@ def find_events(path: Path, noise: Noise, strength: np.ndarray) -> list[Event]:
 
 
 def _meet(path: Path, noise: Noise, k: int, left: slice, right: slice, strength: float) -> Event:
-    """The event where the motions before and after the gap come nearest, at most half a gap outside of it."""
+    """The event where the motions before and after the gap are closest, at most half a gap outside of it."""
     slack = 0.5 * (path.t[k + 1] - path.t[k])
     when = (path.t[k] + path.t[k + 1]) / 2
     for _ in range(3):
@@ -88,7 +88,7 @@ def _meet(path: Path, noise: Noise, k: int, left: slice, right: slice, strength:
 def attribute(
     event: Event, path: Path, g: Geometry, lines: dict[str, float], tracks: Mapping[str, Track]
 ) -> list[ContactEvent]:
-    """The event as contacts: one; two in a corner; an unexplained one where nothing or more than one thing fits.
+    """Attribute an event to contacts: one; two in a corner; an unexplained one if no cause or several causes fit.
 
     `lines`: the walls' contact lines [m]; `tracks`: the recorded mallets at the path's times.
     """
@@ -118,7 +118,7 @@ def attribute(
 
 
 def _corner_contact(event: Event, path: Path, wall: str) -> ContactEvent:
-    """One of two contacts without a frame between them: its time is that at which its own coordinate turns."""
+    """One of two contacts without a frame between them; its time is that at which its coordinate reverses."""
     axis, _ = causes.wall_axis(wall)
     miss = event.right.place[axis] - event.left.place[axis]
     turn = event.right.velocity[axis] - event.left.velocity[axis]

@@ -10,7 +10,7 @@ from sim2real.recording.folder import Recording, Stream
 from sim2real.segmentation.sensor_noise import estimate_noise
 from sim2real.segmentation.tuned import SEGMENTATION
 
-DIFFUSE = (0.1, 10.0, 100.0)  # m, m/s, m/s^2: as good as unknown, of place, velocity and acceleration
+DIFFUSE = (0.1, 10.0, 100.0)  # m, m/s, m/s^2: diffuse prior of place, velocity and acceleration
 NO_SWITCHES = (np.zeros(0), np.zeros(0))
 
 
@@ -18,8 +18,8 @@ NO_SWITCHES = (np.zeros(0), np.zeros(0))
 class MalletPath:
     """A sampled path: clock `t` (n,) [s], places `p` (n, 2) [m], white noise [m] of a coordinate.
 
-    The acceleration is a Wiener process of intensity `jerk` [m^2/s^5] that jumps at `switches` [s]: one entry an axis
-    each. The switches are the times at which the axis' voltage changes (empty where the commands are unknown).
+    The acceleration is a Wiener process of intensity `jerk` [m^2/s^5] with jumps at `switches` [s], one entry for each
+    axis. The switches are the times at which the axis' voltage changes (empty if the commands are unknown).
     """
 
     t: np.ndarray
@@ -37,9 +37,9 @@ class MalletPath:
         return np.where((hole | (share < 0) | (share > 1))[..., None], np.nan, place)
 
     def motion_at_contact(self, when: float) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
-        """Velocity (2,) [m/s] just before `when` [s], its step (2,) there, their covariances (2, 2, 2), an axis each.
+        """Velocity (2,) [m/s] just before `when` [s], its step (2,) there, and their covariances (2, 2, 2) by axis.
 
-        None where the stream has too few samples there.
+        None if the stream has too few samples there.
         """
         fits = self._fits(when, step=True)
         if fits is None:
@@ -48,8 +48,8 @@ class MalletPath:
         return before, step, np.array([covariance[np.ix_([1, 3], [1, 3])] for _, covariance in fits])
 
     def motion(self, when: float) -> tuple[np.ndarray, np.ndarray] | None:
-        """Place, velocity and acceleration (3, 2) at `when` [s] of a mallet that no contact disturbs, and their
-        covariances (2, 3, 3), an axis each, in SI units. None where the stream has too few samples there."""
+        """Place, velocity and acceleration (3, 2) at `when` [s] of a mallet without a contact, and their covariances
+        (2, 3, 3) by axis, in SI units. None if the stream has too few samples there."""
         fits = self._fits(when, step=False)
         if fits is None:
             return None
@@ -68,8 +68,10 @@ class MalletPath:
         return found
 
     def _fits(self, when: float, step: bool) -> list[tuple[np.ndarray, np.ndarray]] | None:
-        """For each axis place, velocity and acceleration at `when`, then a `step` of the velocity there if wanted,
-        (k,), and their covariance (k, k): generalised least squares under the random acceleration."""
+        """For each axis the estimates (k,) and their covariance (k, k) by generalised least squares.
+
+        The estimates are place, velocity and acceleration at `when`, and the velocity step there if `step`.
+        """
         here = self._around(when)
         u, q = self.t[here] - when, self.p[here]
         if min((u < 0).sum(), (u >= 0).sum()) < 3 or np.diff(u).max() > SEGMENTATION.path_hole:
@@ -84,28 +86,28 @@ class MalletPath:
         return fits
 
     def _around(self, when: float) -> slice:
-        """The samples within the window around `when`, and at least so many on either side."""
+        """The samples within the window around `when`, with a minimum number on either side."""
         near = int(np.searchsorted(self.t, when))
         window, least = SEGMENTATION.path_window, SEGMENTATION.path_samples
         first, last = np.searchsorted(self.t, [when - window, when + window])
         return slice(max(0, min(int(first), near - least)), max(int(last), near + least))
 
     def _covariance(self, u: np.ndarray, axis: int, when: float) -> np.ndarray:
-        """Covariance (n, n) [m^2] of places at `when + u` about a parabola, from noise, random jerk and switches."""
+        """Covariance (n, n) [m^2] of places at `when + u` about a parabola: noise, random jerk, and switches."""
         near = self.switches[axis] - when
         near = near[(near > u[0]) & (near < u[-1])]
-        beyond = np.where(near < 0, near - u[:, None], u[:, None] - near)  # no switch bends the path at 0 itself
+        beyond = np.where(near < 0, near - u[:, None], u[:, None] - near)  # no switch acts at 0 itself
         bends = SEGMENTATION.switch_step * np.maximum(beyond, 0.0) ** 2 / 2
         return self.noise**2 * np.eye(len(u)) + self.jerk[axis] * wiener_covariance(u) + bends @ bends.T
 
 
 def robot_path(recording: Recording) -> MalletPath | None:
-    """The robot's mallet by its encoders; None where too few samples see it."""
+    """The path of the robot's mallet from its encoders; None if there are too few samples."""
     return _path(recording.mallet, "mallet", _switches(recording))
 
 
 def opponent_path(recording: Recording) -> MalletPath | None:
-    """The opponent's mallet by the camera; None where too few frames see it."""
+    """The path of the opponent's mallet from the camera; None if too few frames show it."""
     return _path(recording.frames, "opponent", NO_SWITCHES)
 
 
@@ -123,7 +125,7 @@ def _path(stream: Stream | None, column: str, switches: tuple[np.ndarray, np.nda
 
 
 def _switches(recording: Recording) -> tuple[np.ndarray, np.ndarray]:
-    """When each axis' voltage is switched, by the commands: at a plan's start and at its two times, if it lasts."""
+    """The switching times of each axis' voltage from the commands: start and both times of each plan, unless cut."""
     if recording.commands is None or not recording.commands.rows:
         return NO_SWITCHES
     plans = recording.commands
@@ -136,7 +138,7 @@ def _switches(recording: Recording) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _tune(path: MalletPath) -> MalletPath:
-    """The path with the jerk and the lag of the switches of greatest likelihood where the mallet moves most."""
+    """Choose the jerk and the lag of the switches by maximum likelihood over windows in which the mallet moves most."""
     windows = _busy_times(path)
     candidates = [NO_SWITCHES]
     if len(path.switches[0]):

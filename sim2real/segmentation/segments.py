@@ -1,4 +1,4 @@
-"""Cut a recording into segments: free glides, contacts, and events that nothing on the table explains."""
+"""Cut a recording into segments: free glides, contacts, and unexplained events."""
 
 from __future__ import annotations
 
@@ -18,9 +18,10 @@ from sim2real.segmentation.valid_path import Path, valid_path
 
 @dataclass(frozen=True)
 class Glide:
-    """Free motion between events, in the frames `start` … `stop` − 1 of the recording, of which `index` (n,) are valid.
+    """Free motion between events, in the frames `start` … `stop` − 1 of the recording.
 
-    `t` (n,) [s], `x`, `y` (n,) [m]: the valid frames; `entry`: the motion at the first of them.
+    `index` (n,): the valid frames among these; `t` (n,) [s], `x`, `y` (n,) [m]: their times and places; `entry`: the
+    motion at the first of them.
     """
 
     start: int
@@ -37,8 +38,8 @@ class Segments:
     """The segments of a recording.
 
     `noise`: of the puck's place and the frames' clock; `held`, `wild` (frames,) bool: repeated frames and outliers;
-    `glides` and `contacts` in the order of time; `launches`: (start, stop) frames of unbroken motion; `lines`:
-    coordinate [m] of the puck's centre when it touches each wall.
+    `glides` and `contacts`: in order of time; `launches`: (start, stop) frames of uninterrupted motion; `lines`:
+    coordinate [m] of the puck's centre at contact with each wall.
     """
 
     noise: Noise
@@ -55,12 +56,12 @@ class Segments:
         return self.noise.position
 
     def of_kind(self, kind: str) -> list[ContactEvent]:
-        """The contacts of one kind, in the order of time."""
+        """The contacts of one kind, in order of time."""
         return [contact for contact in self.contacts if contact.kind == kind]
 
 
 def segment(recording: Recording) -> Segments:
-    """Cut `recording` into segments. A recording without a puck has none."""
+    """Cut `recording` into segments; a recording without a puck has none."""
     g = causes.geometry(recording)
     frames = recording.frames
     x = np.zeros(0) if frames is None else frames["puck_x"]
@@ -85,7 +86,7 @@ def segment(recording: Recording) -> Segments:
 
 
 def _glides(path: Path, noise: Noise, broken: np.ndarray) -> tuple[list[Glide], list[ContactEvent]]:
-    """Free motions between events that are long enough; those that gain too much speed were pushed: unexplained."""
+    """The free motions between events that are long enough; motions that gain speed become unexplained pushes."""
     edges = np.concatenate([[0], np.flatnonzero(path.jumps | broken) + 1, [len(path.t)]])
     glides, pushes, ends = [], [], SEGMENTATION.end_frames
     for a, b in pairwise(edges):
@@ -95,11 +96,10 @@ def _glides(path: Path, noise: Noise, broken: np.ndarray) -> tuple[list[Glide], 
         entry = changepoints.local_motion(path.t, path.p, t[0], slice(a, min(b, a + ends)), noise)
         last = changepoints.local_motion(path.t, path.p, t[-1], slice(max(a, b - ends), b), noise)
         gained = float(np.linalg.norm(last.velocity) - np.linalg.norm(entry.velocity))
-        sure = 4 * float(np.hypot(entry.velocity_std, last.velocity_std))
+        std = float(np.hypot(entry.velocity_std, last.velocity_std))
         start, stop = int(path.index[a]), int(path.index[b - 1]) + 1
-        if gained - sure > SEGMENTATION.pushed * (t[-1] - t[0]):
-            v, std = (entry.velocity, last.velocity), sure / 4
-            pushes.append(_push(t[0], p[0], v, std, (start, stop - 1)))
+        if gained - 4 * std > SEGMENTATION.pushed * (t[-1] - t[0]):
+            pushes.append(_push(t[0], p[0], (entry.velocity, last.velocity), std, (start, stop - 1)))
             continue
         glides.append(Glide(start, stop, path.index[a:b], t, p[:, 0], p[:, 1], entry))
     return glides, pushes

@@ -1,4 +1,4 @@
-"""The sensor by its data alone: its noise, the frames it repeated, and its outliers."""
+"""Estimate the sensor's noise, repeated frames, and outliers from the recorded positions alone."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from sim2real.statistics.robust import GAUSS
 
 @dataclass(frozen=True)
 class Noise:
-    """White noise of the position [m] and of the time stamp [s]: std of one axis = hypot(position, clock * speed)."""
+    """White noise of the position [m] and of the time stamp [s]; std of one axis: hypot(position, clock * speed)."""
 
     position: float
     clock: float
@@ -24,7 +24,7 @@ class Noise:
 
 
 def held_frames(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Frames (frames,) bool that repeat the last seen position `x`, `y` (frames,) [m] to the last digit."""
+    """Frames (frames,) bool that exactly repeat the last observed position `x`, `y` (frames,) [m]."""
     held = np.zeros(len(x), bool)
     seen = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
     held[seen[1:]] = (np.diff(x[seen]) == 0) & (np.diff(y[seen]) == 0)
@@ -32,10 +32,10 @@ def held_frames(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def estimate_noise(t: np.ndarray, p: np.ndarray) -> Noise:
-    """Noise from third divided differences of `p` (frames, 2) [m] at `t` (frames,) [s], which no parabola changes.
+    """Estimate the noise from third divided differences of `p` (frames, 2) [m] at `t` (frames,) [s].
 
-    Of four frames of any spacing it takes the combination that is zero for each parabola, scaled to unit variance.
-    Medians make it robust to contacts.
+    Each difference is the combination of four frames of any spacing that is zero for every parabola, scaled to unit
+    variance. Medians make the estimate robust to contacts.
     """
     if len(t) < 12:
         return Noise(SEGMENTATION.noise_floor, 0.0)
@@ -53,10 +53,10 @@ def estimate_noise(t: np.ndarray, p: np.ndarray) -> Noise:
 
 
 def _split(size: np.ndarray, speed: np.ndarray, period: float) -> Noise:
-    """Noise of the position from slow axes, and of the clock from the excess of fast axes.
+    """Estimate the position noise from slow axes, and the clock noise from the excess of fast axes.
 
-    `size`, `speed` (n,): unit-variance differences [m] and the speed along their axis [m/s]. The clock is exact where
-    hardly anything is fast, as fast frames are jumps then, and where its noise would be much of the `period` [s].
+    `size`, `speed` (n,): unit-variance differences [m] and the speed along their axis [m/s]. The clock noise is 0 if
+    there are few fast frames, which are then jumps, or if it would be a large share of the `period` [s].
     """
     if len(size) == 0:
         return Noise(SEGMENTATION.noise_floor, 0.0)
@@ -79,7 +79,7 @@ def _split(size: np.ndarray, speed: np.ndarray, period: float) -> Noise:
 
 
 def wild_frames(t: np.ndarray, p: np.ndarray, noise: Noise) -> np.ndarray:
-    """Outliers (frames,) bool: frames far from what the frames before predict, and from what those after them do."""
+    """Outliers (frames,) bool: frames far from both the prediction of earlier frames and that of later frames."""
     wild = np.zeros(len(t), bool)
     for _ in range(2):
         keep = np.flatnonzero(~wild)
@@ -93,7 +93,7 @@ def wild_frames(t: np.ndarray, p: np.ndarray, noise: Noise) -> np.ndarray:
 
 
 def _off_path(t: np.ndarray, p: np.ndarray, noise: Noise) -> np.ndarray:
-    """One pass of `wild_frames`: frames with a coordinate that neither side nor the two neighbours predict."""
+    """One pass of `wild_frames`: frames with a coordinate that is predicted neither by a side nor by the neighbours."""
     before = _predicted(t, p, (-1, -2, -3))
     after = _predicted(t, p, (1, 2, 3))
     between = _predicted(t, p, (-1, 1))
@@ -104,7 +104,7 @@ def _off_path(t: np.ndarray, p: np.ndarray, noise: Noise) -> np.ndarray:
 
 
 def _predicted(t: np.ndarray, p: np.ndarray, offsets: tuple[int, ...]) -> np.ndarray:
-    """Places (frames, 2) of the straight line through the frames at `offsets` (least squares); nan across long gaps."""
+    """Places (frames, 2) predicted by a least-squares line through the frames at `offsets`; nan across long gaps."""
     times, places = zip(*(_shifted(t, p, offset) for offset in offsets), strict=True)
     u = np.stack(times) - t
     q = np.stack(places)
@@ -122,7 +122,7 @@ def _speed(t: np.ndarray, p: np.ndarray, offsets: tuple[int, int]) -> np.ndarray
 
 
 def _shifted(t: np.ndarray, p: np.ndarray, offset: int) -> tuple[np.ndarray, np.ndarray]:
-    """Time and place `offset` frames on; nan beyond the ends."""
+    """Time and place shifted by `offset` frames; nan beyond the ends."""
     times, places = np.full(len(t), np.nan), np.full(p.shape, np.nan)
     if offset > 0:
         times[:-offset], places[:-offset] = t[offset:], p[offset:]

@@ -9,11 +9,11 @@ from sim2real.statistics.tuned import tuned
 
 @dataclass(frozen=True)
 class SegmentationNumbers:
-    """Thresholds and windows, in the order in which a recording meets them."""
+    """Thresholds and windows, in the order of the processing steps."""
 
     # sensor_noise: noise and outliers
     noise_floor: float = tuned(
-        1e-5, "m", "zero noise, by which weights would be infinite", "choice: the last digit of most streams"
+        1e-5, "m", "zero noise, which gives infinite weights", "choice: the last digit of most streams"
     )
     longest_gap: float = tuned(
         0.1, "s", "a prediction across frames that are missing", "choice: a dozen frames at 120 Hz"
@@ -59,10 +59,10 @@ class SegmentationNumbers:
     long_window: int = tuned(
         6, "frames", "windows longer than this that judge long ways", "choice: the second shortest"
     )
-    sure: float = tuned(
+    threshold: float = tuned(
         6.5, "standard deviations", "noise taken for contacts, or contacts missed", "choice, held by test_segments.py"
     )
-    sure_where_expected: float = tuned(
+    threshold_where_expected: float = tuned(
         5.0, "standard deviations", "weak contacts missed at walls and mallets", "choice, held by test_segments.py"
     )
     free_acceleration: float = tuned(
@@ -87,15 +87,15 @@ class SegmentationNumbers:
         0.006, "m", "contacts with no cause (small), or with two (large)", "choice: a fifth of a puck's radius"
     )
     wall_search: float = tuned(
-        0.03, "m", "a wall that lies off its stated line not found, or a mallet's contacts taken for a wall's",
+        0.03, "m", "a wall away from its stated line not found, or a mallet's contacts taken for a wall's",
         "choice: a puck's radius",
     )  # fmt: skip
-    wall_contacts: int = tuned(5, "contacts", "a wall placed by chance", "choice: a median that one or two cannot move")
+    wall_contacts: int = tuned(5, "contacts", "a wall's line set by chance", "choice: one or two cannot move a median")
     mallet_slack: float = tuned(
-        0.008, "m", "contacts of a mallet with no cause", "choice: a little more than of a wall, as two places err"
+        0.008, "m", "contacts of a mallet with no cause", "choice: more than for a wall, since both places have errors"
     )
     mallet_clock: float = tuned(
-        0.03, "s", "contacts with no cause where the mallet's clock is off the camera's", "choice: four frames"
+        0.03, "s", "contacts with no cause if the mallet's clock differs from the camera's", "choice: four frames"
     )
     mallet_farthest: float = tuned(
         0.07,
@@ -106,8 +106,8 @@ class SegmentationNumbers:
     clearly_in: float = tuned(
         0.1,
         "m/s",
-        "slow touches and slides along a wall that place it",
-        "choice: a slower touch may be noise or a slide",
+        "slow contacts and slides along a wall that determine its line",
+        "choice: a slower contact may be noise or a slide",
     )
     clearly_out: float = tuned(0.05, "m/s", "the same after the contact", "choice: half of the speed before")
     touching: float = tuned(
@@ -131,7 +131,7 @@ class SegmentationNumbers:
     # events and velocity_jumps: the motion beside a contact
     side_frames: int = tuned(12, "frames", "a velocity that is noise, or no longer local", "choice: 0.1 s at 120 Hz")
     clean_frames: int = tuned(
-        5, "frames", "velocities that few frames leave unknown", "choice: two more than a parabola"
+        5, "frames", "velocities that few frames do not determine", "choice: two more than a parabola"
     )
     side_time: float = tuned(
         0.25, "s", "a brake that changes within the parabola beside a contact", "choice: 30 frames at 120 Hz"
@@ -164,14 +164,14 @@ class SegmentationNumbers:
     switch_step: float = tuned(
         80.0,
         "m/s^2",
-        "a switch of the voltage that bends the path more than is allowed",
+        "a larger change of acceleration at a switch than the covariance allows",
         "choice: a typical size, not a limit",
     )
     contact_cost: float = tuned(
         6.0,
         "log likelihood",
         "windows with a contact that decide the jerk",
-        "choice: in some the puck strikes the mallet",
+        "choice: some windows contain a contact of the mallet",
     )
     # clock_jumps
     clock_step: float = tuned(

@@ -1,4 +1,4 @@
-"""The valid frames of a puck, without held, wild and unseen ones, and the gaps at which it jumps."""
+"""The valid frames of a puck, without repeats, outliers and missing detections, and the gaps at which it jumps."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ class Path:
 
 
 def valid_path(t: np.ndarray, p: np.ndarray, held: np.ndarray, far: np.ndarray) -> tuple[Noise, Path, np.ndarray]:
-    """Noise, the valid frames, and which of all frames (frames,) are wild: far off the table, or off the path and back.
+    """Estimate the noise and select the valid frames; return the noise, the path, and the outliers (frames,) bool.
 
-    `t` (frames,) [s], `p` (frames, 2) [m], nan where not seen; `held`, `far` (frames,) bool: repeated frames, and those
-    far off the table.
+    `t` (frames,) [s], `p` (frames, 2) [m], nan where not seen; `held`, `far` (frames,) bool: repeated frames, and
+    frames far outside of the table. Outliers are far outside of the table, or leave the path and return to it.
     """
     wild = far.copy()
     index = np.flatnonzero(np.isfinite(p).all(axis=1) & ~held & ~wild)
@@ -39,8 +39,8 @@ def valid_path(t: np.ndarray, p: np.ndarray, held: np.ndarray, far: np.ndarray) 
         short = [slice(a, b) for a, b in pairwise(edges) if 0 < b - a < SEGMENTATION.launch_frames]
         if not short:
             break
-        for piece in short:
-            wild[index[piece]] = True
+        for segment in short:
+            wild[index[segment]] = True
     index = np.flatnonzero(np.isfinite(p).all(axis=1) & ~held & ~wild)
     jumps = changepoints.find_jumps(t[index], p[index], noise) if len(index) > 1 else np.zeros(0, bool)
     return noise, Path(index, t[index], p[index], jumps), wild

@@ -1,4 +1,4 @@
-"""Sudden changes of the puck's velocity: when, where, the velocities, and the joint covariance of it all."""
+"""Sudden changes of the puck's velocity: time, place and velocities with their joint covariance."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from sim2real.segmentation.sensor_noise import Noise
 from sim2real.segmentation.tuned import SEGMENTATION
 
 Side = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
-ROUNDS = 3  # the time at which the motions are evaluated depends on when they meet, and that on the motions
+ROUNDS = 3  # iterations, because the time of evaluation depends on where the motions meet, and vice versa
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class VelocityJump:
     """A contact with its velocities and their errors.
 
     `state` (7,): its time on the camera's clock [s], place (2) [m], velocity before (2) and after (2) [m/s];
-    `covariance` (7, 7) of these; `launch`: number of the unbroken motion that it belongs to.
+    `covariance` (7, 7) of these; `launch`: number of its launch.
     """
 
     contact: ContactEvent
@@ -54,10 +54,10 @@ class VelocityJump:
 def velocity_jumps(
     recording: Recording, segments: Segments, friction: float = 0.0, drag: float = 0.0
 ) -> list[VelocityJump]:
-    """The contacts of a recording that have frames enough on both sides, in the order of time.
+    """Fit the contacts of a recording that have enough frames on both sides, in order of time.
 
-    The motion on either side is a parabola whose acceleration changes as that of a puck of this `friction` [m/s^2] and
-    `drag` [1/m] does; by default it does not change.
+    The motion on either side is a parabola plus the change of acceleration of a puck with `friction` [m/s^2] and `drag`
+    [1/m]; by default there is no such change.
     """
     frames = recording.frames
     if frames is None or not segments.contacts:
@@ -87,9 +87,9 @@ def velocity_jumps(
 def _meet(
     t: np.ndarray, p: np.ndarray, left: np.ndarray, right: np.ndarray, when: float, side: Side
 ) -> tuple[np.ndarray, np.ndarray]:
-    """State (7,) and covariance (7, 7) of the contact at which the motions by the frames `left` and `right` join.
+    """State (7,) and covariance (7, 7) of the contact at which the motions in the frames `left` and `right` meet.
 
-    `side` fits the frames of one of them.
+    `side`: fits the frames on one side.
     """
     low, high = float(t[left[-1]]), float(t[right[0]])
     slack = 0.5 * (high - low)
@@ -113,7 +113,7 @@ def _meet(
 
 
 def _touching(sides: np.ndarray, spread: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Both conditioned on the motions meeting: across the change of velocity their places are the same."""
+    """Condition both motions on meeting: their places across the change of velocity are equal."""
     change = sides[6:8] - sides[2:4]
     across = np.array([-change[1], change[0]]) / max(float(np.linalg.norm(change)), 1e-9)
     row = np.concatenate([-across, np.zeros(2), across, np.zeros(2)])
@@ -122,7 +122,7 @@ def _touching(sides: np.ndarray, spread: np.ndarray) -> tuple[np.ndarray, np.nda
 
 
 def _joined(sides: np.ndarray) -> np.ndarray:
-    """The contact (7,) of two motions (8,), its time counted from their common reference."""
+    """The contact (7,) of two motions (8,), with its time relative to their common reference."""
     a, v_in, b, v_out = sides[:2], sides[2:4], sides[4:6], sides[6:8]
     change = v_out - v_in
     later = -float((b - a) @ change) / max(float(change @ change), 1e-9)

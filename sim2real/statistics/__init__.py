@@ -1,1 +1,1 @@
-"""Statistics that know nothing of tables."""
+"""Statistics that do not depend on air hockey."""

@@ -1,4 +1,4 @@
-"""Scattered data as a few means with errors, for figures."""
+"""Summarise scattered data by a few bin means with errors, for figures."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from sim2real.statistics.tuned import tuned
 class FigureNumbers:
     """Tuned numbers of binned figures."""
 
-    fewest: int = tuned(4, "pieces", "bins whose scatter is unknown", "choice: three degrees of freedom")
+    fewest: int = tuned(4, "points", "bins whose scatter is unknown", "choice: three degrees of freedom")
     drawn: int = tuned(80, "places", "curves with corners, or large pages", "choice: 80 look smooth")
     rough: float = tuned(
         0.15,
@@ -32,7 +32,7 @@ FIGURES = FigureNumbers()
 
 @dataclass(frozen=True)
 class Binned:
-    """Bins: weighted means `x`, `y` (b,), the standard error (b,) of `y`, and `members` (b, n) bool of n pieces."""
+    """Bins: weighted means `x`, `y` (b,), the standard error (b,) of `y`, and `members` (b, n) bool of n points."""
 
     x: np.ndarray
     y: np.ndarray
@@ -41,10 +41,10 @@ class Binned:
 
 
 def binned(x: np.ndarray, y: np.ndarray, std: np.ndarray, bins: int = 12) -> Binned:
-    """`y` (n,) of noise `std` (n,) in up to `bins` bins of equally many pieces along `x` (n,).
+    """Bin `y` (n,) with noise `std` (n,) into up to `bins` bins along `x` (n,), with equal numbers of points.
 
-    The error is the larger of the noise's and that of the scatter within the bin. Pieces without `x` (nan) are left
-    out, no bin has fewer than FIGURES.fewest pieces, and pieces of equal `x` share a bin.
+    The standard error is the larger of that by the noise and that by the scatter within the bin. Points without `x`
+    (nan) are omitted, no bin has fewer than FIGURES.fewest points, and points with equal `x` share a bin.
     """
     known = np.isfinite(x) & np.isfinite(y)
     count = int(min(bins, known.sum() // FIGURES.fewest))
@@ -58,16 +58,16 @@ def binned(x: np.ndarray, y: np.ndarray, std: np.ndarray, bins: int = 12) -> Bin
 
 
 def over(members: np.ndarray, x: np.ndarray, y: np.ndarray, std: np.ndarray) -> Binned:
-    """The means of `x`, `y` (n,), of noise `std` (n,), over given `members` (b, n) bool; see `binned`."""
+    """The bins of `x`, `y` (n,) with noise `std` (n,) for given `members` (b, n) bool; see `binned`."""
     rows = [_mean(x[here], y[here], std[here]) for here in members]
     place, mean, error = (np.array(column) for column in zip(*rows, strict=True)) if rows else [np.zeros(0)] * 3
     return Binned(place, mean, error, members)
 
 
 def is_rough(x: np.ndarray, y: np.ndarray, std: np.ndarray) -> bool:
-    """Whether a law's values `y` (n,) at data of errors `std` (n,) are no curve over `x` (n,).
+    """Whether a law's values `y` (n,) at data with errors `std` (n,) are not a function of `x` (n,) alone.
 
-    They are none if neighbours along `x` differ by much of the law's own spread: then it depends on more than `x`.
+    They are not if neighbours along `x` differ by a large share of the law's own spread.
     """
     in_order = y[np.argsort(x, kind="stable")]
     if len(in_order) < 2:
@@ -77,7 +77,7 @@ def is_rough(x: np.ndarray, y: np.ndarray, std: np.ndarray) -> bool:
 
 
 def singles(x: np.ndarray) -> np.ndarray:
-    """Bins (b, n) bool of one piece each: up to FIGURES.drawn pieces, evenly spread over `x` (n,)."""
+    """Bins (b, n) bool of one point each: up to FIGURES.drawn points, evenly spread over `x` (n,)."""
     order = np.argsort(x, kind="stable")
     order = order[np.isfinite(x[order])]
     if not len(order):
@@ -89,14 +89,14 @@ def singles(x: np.ndarray) -> np.ndarray:
 
 def half_band(bins: Binned, std: np.ndarray, columns: np.ndarray, spread: np.ndarray, launches: int) -> np.ndarray:
     """Half widths (b,) of the 95 % band of binned `columns` (n, k) whose coefficients have the covariance `spread`
-    (k, k), by Student's t of so many launches."""
+    (k, k); Student's t with the degrees of freedom of `launches` launches."""
     weight = bins.members / std**2
     mean = (weight / weight.sum(axis=1, keepdims=True)) @ columns
     return reach_of_launches(launches) * np.sqrt(np.maximum(np.einsum("bi,ij,bj->b", mean, spread, mean), 0.0))
 
 
 def _mean(x: np.ndarray, y: np.ndarray, std: np.ndarray) -> tuple[float, float, float]:
-    """Weighted means of `x` and `y` (n,) of noise `std` (n,), and the standard error of the latter."""
+    """Weighted means of `x` and `y` (n,) with noise `std` (n,), and the standard error of the mean of `y`."""
     weight = 1.0 / std**2
     total = weight.sum()
     mean = float(weight @ y / total)

@@ -1,4 +1,4 @@
-"""95 % intervals: how many standard deviations they reach on either side of a fitted number."""
+"""Half widths of 95 % intervals in standard deviations."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from scipy.stats import t as student
 
 from sim2real.statistics.tuned import tuned
 
-NORMAL_REACH = 1.96  # of a standard deviation that is known
+NORMAL_REACH = 1.96  # for a known standard deviation
 
 
 @dataclass(frozen=True)
@@ -16,7 +16,7 @@ class IntervalNumbers:
     """Tuned numbers of intervals."""
 
     least_freedom: int = tuned(
-        2, "degrees of freedom", "intervals so wide that they say nothing", "choice: of one, they reach 12.7"
+        2, "degrees of freedom", "intervals too wide to be useful", "choice: with one, the half width is 12.7"
     )
 
 
@@ -24,10 +24,10 @@ INTERVALS = IntervalNumbers()
 
 
 def reach(freedom: float) -> float:
-    """Half width in standard deviations, where that deviation was itself fitted with so many degrees of freedom."""
+    """Half width in standard deviations, for a standard deviation estimated with `freedom` degrees of freedom."""
     return float(student.ppf(0.975, freedom))
 
 
 def reach_of_launches(launches: int) -> float:
-    """The same, where that deviation is the scatter between so many launches."""
+    """Half width in standard deviations, for a standard deviation estimated from the scatter between `launches`."""
     return reach(max(launches - 1, INTERVALS.least_freedom))

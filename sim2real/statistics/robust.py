@@ -5,9 +5,9 @@ that one gross error moves no fit far.
 
 - `t_weights`, for single residuals any of which may be an outlier: Student's t. The weight falls with every error.
 - `group_loss`, for the sum of squares of a group of residuals, such as a glide or a launch, that is an outlier as a
-  whole or not at all: the square itself as far as noise reaches, a logarithm beyond. The weight of a group that noise
-  explains is exactly 1, so that without outliers the fit is ordinary least squares and its covariance holds;
-  Student's t would weigh such groups unequally.
+  group: the sum itself within the range of noise, logarithmic beyond. Groups within the noise have weight exactly 1,
+  so that without outliers the fit is ordinary least squares and its covariance is valid; Student's t would weight such
+  groups unequally.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ GAUSS = 0.6745  # the median absolute value of a standard normal number
 
 @dataclass(frozen=True)
 class RobustNumbers:
-    """Where tails begin, and how heavy they are."""
+    """Thresholds and degrees of freedom of the robust losses."""
 
     t_freedom: float = tuned(
         4.0, "1", "outliers that pull the fit, or noise taken for outliers", "choice: usual degrees of freedom of a t"
@@ -31,7 +31,7 @@ class RobustNumbers:
     group_sigmas: float = tuned(
         6.0,
         "standard deviations",
-        "groups that noise explains weighed less, or outliers in full",
+        "groups within the noise get less weight, or outliers full weight",
         "choice: noise alone hardly ever reaches it",
     )
     group_margin: float = tuned(
@@ -53,25 +53,24 @@ def t_weights(z: np.ndarray) -> np.ndarray:
 
 
 def group_threshold(freedom: np.ndarray) -> np.ndarray:
-    """Sums of squares (c,) that noise alone hardly ever exceeds in groups of so many degrees of `freedom` (c,): the
-    mean of chi-square, some of its standard deviations sqrt(2 freedom), and a margin."""
+    """Sums of squares (c,) that noise alone rarely exceeds in groups with `freedom` (c,) degrees of freedom: the mean
+    of chi-square, plus some standard deviations sqrt(2 freedom), plus a margin."""
     return freedom + ROBUST.group_sigmas * np.sqrt(2.0 * freedom) + ROBUST.group_margin
 
 
 def group_loss(squares: np.ndarray, freedom: np.ndarray) -> np.ndarray:
-    """Losses (c,) of groups with sums of squares s (c,) and degrees of `freedom` (c,): s up to the threshold t of
-    `group_threshold`, t (1 + log(s / t)) beyond. Loss and slope are continuous."""
+    """Losses (c,) of groups with sums of squares s (c,) and `freedom` (c,) degrees of freedom: s up to the threshold t
+    of `group_threshold`, t (1 + log(s / t)) beyond. Loss and slope are continuous."""
     threshold = group_threshold(freedom)
     tail = threshold * (1.0 + np.log(np.maximum(squares, threshold) / threshold))
     return np.where(squares > threshold, tail, squares)
 
 
 def group_weights(squares: np.ndarray, freedom: np.ndarray) -> np.ndarray:
-    """Weights (c,) of the squares of groups in a fit by `group_loss`, its derivative by s: min(1, t / s)."""
+    """Weights (c,) of groups for `group_loss`, its derivative by s: min(1, t / s)."""
     return np.minimum(group_threshold(freedom) / np.maximum(squares, ROBUST.smallest_square), 1.0)
 
 
 def typical(z: np.ndarray) -> float:
-    """Standard deviation of errors `z` (n,) in units of their noise, by the median absolute deviation from 0; at least
-    1."""
+    """Robust standard deviation, at least 1, of errors `z` (n,) in units of their noise, by the median of |z|."""
     return max(1.0, float(np.median(np.abs(z))) / GAUSS)

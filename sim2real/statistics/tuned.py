@@ -1,4 +1,4 @@
-"""Tuned numbers: each with its unit, what it guards against, and how it was set; the page of thresholds lists them."""
+"""Tuned numbers with unit, failure mode and source; the page of thresholds lists them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def tuned(value: Any, unit: str, guards: str, source: str) -> Any:
 
 @dataclass(frozen=True)
 class TunedNumber:
-    """One number of a record, as a page shows it."""
+    """One number of a record, for the page of thresholds."""
 
     record: str
     name: str

@@ -1,4 +1,4 @@
-"""Residuals with noise in common made white."""
+"""Whiten residuals that share common noise."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ import numpy as np
 
 
 def whitened(shared: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """Rows (n, k) with the covariance I + S S' of their n entries, made white: (I + S S')^-1/2 times the rows, by the
-    symmetric root. S = `shared` (n, m): each column is noise that all rows have in common, times a standard normal
-    number."""
+    """Whiten `rows` (n, k) whose n entries have the covariance I + S S': (I + S S')^-1/2 times the rows.
+
+    The root is symmetric. S = `shared` (n, m): each column is the effect of one standard normal error on all entries.
+    """
     value, vector = np.linalg.eigh(shared.T @ shared)
     root = np.sqrt(1.0 + np.maximum(value, 0.0))
     return rows - shared @ ((vector / (root * (1.0 + root))) @ (vector.T @ (shared.T @ rows)))

@@ -1,5 +1,5 @@
-"""The proof of `puckpilot diagnose`: tables with something hidden, what it says of them, and how often it is right.
+"""Blind validation of `puckpilot diagnose` on simulated tables with known concealed effects.
 
-The path of a case: `making` (`independent_table` draws and records it) -> `diagnosing` (a process
-that sees a copy of the recording alone) -> `scoring` (the key is opened) -> `figures` and `confusion`.
+The path of a case: `making` (`independent_table` draws and records it) -> `diagnosing` (a process that sees only a copy
+of the recording) -> `scoring` (against the key) -> `figures` and `confusion`.
 """

@@ -1,4 +1,4 @@
-"""Who is taken for whom: what was true (rows) and what was said (columns), in counts of cases."""
+"""The confusion matrix: true effects (rows) and diagnosed effects (columns), in counts of cases."""
 
 from __future__ import annotations
 
@@ -10,24 +10,24 @@ from sim2real.study.scoring import Score
 
 QUIET = ("agrees", "parameters_only", "undetermined", "failed")
 SEVERAL = "several"
-TRUTHS = {"nothing": "agrees", "parameters": "parameters_only"}  # what should be said
+TRUTHS = {"nothing": "agrees", "parameters": "parameters_only"}  # the correct verdict
 
 
 @dataclass(frozen=True)
 class Confusion:
-    """`counts[i][j]` cases of truth `rows[i]` of which `columns[j]` was said. Cases with two effects are left out."""
+    """`counts[i][j]` cases with truth `rows[i]` were diagnosed as `columns[j]`; cases with two effects are omitted."""
 
     rows: tuple[str, ...]
     columns: tuple[str, ...]
     counts: tuple[tuple[int, ...], ...]
 
     def as_dict(self) -> dict[str, object]:
-        """The same as plain data."""
+        """The matrix as plain data."""
         return {"rows": self.rows, "columns": self.columns, "counts": self.counts}
 
 
 def confuse(scores: Sequence[Score]) -> Confusion:
-    """The matrix, with the rows and columns that occur."""
+    """Count the matrix; it has only the rows and columns that occur."""
     pairs = [(_truth(score), _said(score)) for score in scores if score.kind != "two"]
     names = {name for pair in pairs for name in pair}
     quiet, unlisted, several = ([name for name in group if name in names] for group in (QUIET, ["unlisted"], [SEVERAL]))
@@ -47,8 +47,7 @@ def _said(score: Score) -> str:
 
 
 def draw(path: Path, confusion: Confusion) -> None:
-    """The matrix as a picture: what is right in green, what is wrong in red, both as shares of the row; a word where
-    all cases have two effects."""
+    """Draw the matrix: correct counts in green, wrong ones in red, both as shares of the row; a note if it is empty."""
     import numpy as np
     from matplotlib.figure import Figure as Picture
 
@@ -65,10 +64,10 @@ def draw(path: Path, confusion: Confusion) -> None:
     if confusion.rows:
         axes.imshow(colours, aspect="auto")
     else:
-        axes.text(0.5, 0.5, "no case with one truth", ha="center", va="center", transform=axes.transAxes)
+        axes.text(0.5, 0.5, "no case with a single truth", ha="center", va="center", transform=axes.transAxes)
     axes.set_xticks(range(len(confusion.columns)), confusion.columns, rotation=60, ha="right", fontsize=8)
     axes.set_yticks(range(len(confusion.rows)), confusion.rows, fontsize=8)
-    axes.set_xlabel("said")
+    axes.set_xlabel("diagnosed")
     axes.set_ylabel("true")
     for i, row in enumerate(confusion.counts):
         for j, count in enumerate(row):

@@ -1,4 +1,4 @@
-"""Every case diagnosed by a process of its own, which sees a copy of the recording in a folder without a name."""
+"""Diagnose every case in a separate process, which sees a copy of the recording in an anonymous folder."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from typing import Any
 from puckpilot_env.files.whole_file import write_text_whole
 from sim2real.study.making import ROOT, Progress, with_root
 
-LONGEST = 600.0  # s, for one diagnosis
+LONGEST = 600.0  # s, time limit of one diagnosis
 THIS = (sys.executable, "-m", "puckpilot")
 
 
@@ -29,10 +29,10 @@ def diagnose_cases(
     workers: int = 2,
     progress: Progress = lambda done, total: None,
 ) -> dict[str, dict[str, Any]]:
-    """What `tool` says of each case: {"seconds", "diagnosis" or None, "error" or None} by label.
+    """Diagnose the cases with `tool`; return {"seconds", "diagnosis" or None, "error" or None} by label.
 
-    It is called as `TOOL diagnose RECORDING --out DIR [--holdout RECORDING]`. Answers are kept in `folder/into`, and
-    what has been diagnosed is not asked again.
+    The tool is called as `TOOL diagnose RECORDING --out DIR [--holdout RECORDING]`. Answers are stored in
+    `folder/into`; cases with a stored diagnosis are not diagnosed again.
     """
     kept = folder / into
     if labels:
@@ -40,10 +40,10 @@ def diagnose_cases(
     waiting = [label for label in labels if read_answer(kept, label).get("diagnosis") is None]
     done = len(labels) - len(waiting)
     progress(done, len(labels))
-    ask = _asker(folder, kept, tool, heldout)
+    diagnose = _diagnoser(folder, kept, tool, heldout)
     pool = ThreadPoolExecutor(workers)
     try:
-        for _ in pool.map(ask, waiting):
+        for _ in pool.map(diagnose, waiting):
             done += 1
             progress(done, len(labels))
     finally:
@@ -52,15 +52,15 @@ def diagnose_cases(
 
 
 def read_answer(kept: Path, label: str) -> dict[str, Any]:
-    """The answer on a case, or {} where there is none (or half of one)."""
+    """The stored answer on a case, or {} if there is none or it is incomplete."""
     try:
         return json.loads((kept / f"{label}.json").read_text())
     except (OSError, ValueError):
         return {}
 
 
-def _asker(folder: Path, kept: Path, tool: Sequence[str], heldout: bool) -> Callable[[str], None]:
-    def ask(label: str) -> None:
+def _diagnoser(folder: Path, kept: Path, tool: Sequence[str], heldout: bool) -> Callable[[str], None]:
+    def diagnose(label: str) -> None:
         with tempfile.TemporaryDirectory(prefix="recording-") as place:
             out = Path(place) / "out"
             command = [*tool, "diagnose", str(_copy(folder / "recordings" / label, Path(place) / "seen"))]
@@ -73,10 +73,10 @@ def _asker(folder: Path, kept: Path, tool: Sequence[str], heldout: bool) -> Call
             try:
                 answer.update(diagnosis=json.loads((out / "diagnosis.json").read_text()), error=None)
             except (OSError, ValueError) as problem:
-                answer["error"] = error or f"no diagnosis.json that can be read: {problem}"
+                answer["error"] = error or f"diagnosis.json cannot be read: {problem}"
         write_text_whole(kept / f"{label}.json", json.dumps(answer) + "\n")
 
-    return ask
+    return diagnose
 
 
 def _copy(recording: Path, to: Path) -> Path:
@@ -84,7 +84,7 @@ def _copy(recording: Path, to: Path) -> Path:
 
 
 def _run(command: Sequence[str], place: Path) -> str | None:
-    """Run a diagnosis in `place`; what went wrong in one line, or None."""
+    """Run a diagnosis in `place`; return the error in one line, or None."""
     try:
         done = subprocess.run(
             command, cwd=place, env=with_root(ROOT), capture_output=True, text=True, timeout=LONGEST, check=False
@@ -93,5 +93,5 @@ def _run(command: Sequence[str], place: Path) -> str | None:
         return f"no answer within {LONGEST:.0f} s"
     if done.returncode == 0:
         return None
-    said = done.stderr.strip().splitlines()
-    return said[-1] if said else f"exit {done.returncode}"
+    lines = done.stderr.strip().splitlines()
+    return lines[-1] if lines else f"exit {done.returncode}"

@@ -1,4 +1,4 @@
-"""Labelled cases from the independent table, which shares no code with the simulator and the diagnosis."""
+"""Make labelled cases with the independent table, which shares no code with the simulator and the diagnosis."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from pathlib import Path
 
 Progress = Callable[[int, int], None]
 MAKER = "sim2real.study.independent_table.make_cases"
-ROOT = Path(__file__).resolve().parents[2]  # of the code that makes cases and diagnoses them
+ROOT = Path(__file__).resolve().parents[2]  # root of the checkout whose code makes and diagnoses cases
 
 
 @dataclass(frozen=True)
 class Plan:
-    """Which cases: how many, of which seed, how long [s], whether of one kind or mechanism alone, and whether a
-    calibrated camera filmed them."""
+    """The cases of a study: their number, seed, length [s], an optional kind or mechanism, and whether a calibrated
+    camera filmed them."""
 
     cases: int
     seed: int
@@ -27,14 +27,14 @@ class Plan:
     filmed: bool = False
 
     def as_dict(self) -> dict[str, object]:
-        """The same as plain data."""
+        """The plan as plain data."""
         return asdict(self)
 
 
 def make_cases(plan: Plan, folder: Path, workers: int, progress: Progress) -> list[str]:
-    """Have the cases written to recordings/, heldout/ and key/ in `folder`; returns their labels.
+    """Write the cases to recordings/, heldout/ and key/ in `folder`; return their labels.
 
-    What is there already stays. ValueError, in one line, where the plan is refused.
+    Existing cases are kept. Raises ValueError, in one line, if the plan is refused.
     """
     command = [
         sys.executable, "-m", MAKER, "--cases", str(plan.cases), "--seed", str(plan.seed), "--out",
@@ -59,6 +59,6 @@ def make_cases(plan: Plan, folder: Path, workers: int, progress: Progress) -> li
 
 
 def with_root(root: Path) -> dict[str, str]:
-    """The environment for a process that shall run this checkout's code, wherever it is started."""
+    """The environment for a process that runs the code of the checkout `root` from any folder."""
     path = os.pathsep.join(part for part in (str(root), os.environ.get("PYTHONPATH", "")) if part)
     return {**os.environ, "PYTHONPATH": path}

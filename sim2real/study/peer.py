@@ -1,13 +1,14 @@
-"""The peer: PySINDy's sparse regression on the accelerations of a gliding puck, asked the same question.
+"""The comparison method: PySINDy's sparse regression on the accelerations of a gliding puck.
 
-`python -m sim2real.study.peer diagnose RECORDING --out DIR` answers as puckpilot does, so that both are scored alike.
+`python -m sim2real.study.peer diagnose RECORDING --out DIR` writes the same format as puckpilot, so that both are
+scored in the same way.
 
-A fair best effort: it gets this project's cut into glides; its library holds the true law of every glide mechanism (a
-friction patch as a grid of discs), as vectors, so that x and y share their coefficients; derivatives are its
-SmoothedFiniteDifference, twice, with the frames at the ends left out; the threshold of STLSQ (columns normalized) is
-chosen by cross-validation over glides, the sparsest that is worse than the best by no more than one standard error of
-the difference (Hastie, Tibshirani and Friedman, 2009, section 7.10); intervals come from a bootstrap over glides with
-the chosen terms.
+PySINDy gets this project's segmentation into glides. Its library contains the true law of every glide mechanism (a
+friction patch as a grid of discs), as vectors, so that x and y share their coefficients. Derivatives are its
+SmoothedFiniteDifference, applied twice, without the frames at the ends. The threshold of STLSQ (columns normalized) is
+chosen by cross-validation over glides: the sparsest model that is worse than the best by no more than one standard
+error of the difference (Hastie, Tibshirani and Friedman, 2009, section 7.10). Intervals come from a bootstrap over
+glides with the selected terms.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ import numpy as np
 
 PEER = (sys.executable, "-m", "sim2real.study.peer")
 WINDOW, ORDER = 45, 3  # frames and degree of the smoother
-SLOW = 0.15  # m/s, below which a heading is mostly noise
+SLOW = 0.15  # m/s, speed below which the heading is mostly noise
 THRESHOLDS = np.geomspace(0.003, 1.0, 24)  # of the acceleration's rms
 FOLDS, RESAMPLES = 5, 200
 # term: (mechanism, its parameter, unit); the baseline's own two have no mechanism
@@ -45,12 +46,12 @@ DISCS = (5, 3)  # along x and y
 
 
 def can_be_asked(key: dict[str, Any]) -> bool:
-    """Whether a case is about gliding alone: a puck by itself, and nothing missing but in the glide."""
+    """Whether a case is of gliding only: a puck without mallets, and nothing missing outside of the glides."""
     return key["scenario"] in ("launches", "posts") and set(key["regimes"]) <= {"glide"}
 
 
 def accelerations(recording: Any) -> list[np.ndarray]:
-    """One array (n, 7) for each glide that is long enough: t, x, y, vx, vy, ax, ay."""
+    """The arrays (n, 7) of all glides that are long enough: t, x, y, vx, vy, ax, ay."""
     from pysindy import SmoothedFiniteDifference
 
     from sim2real.segmentation.segments import segment
@@ -71,7 +72,7 @@ def accelerations(recording: Any) -> list[np.ndarray]:
 
 
 def library(rows: np.ndarray, length: float, width: float) -> np.ndarray:
-    """The terms (2 n, terms) as accelerations: all of x, then all of y."""
+    """The accelerations (2 n, terms) of the library's terms: x, then y."""
     t, x, y, vx, vy = rows[:, :5].T
     v = np.hypot(vx, vy)
     along, zero, one = np.stack([-vx / v, -vy / v]), np.zeros_like(v), np.ones_like(v)
@@ -87,16 +88,16 @@ def library(rows: np.ndarray, length: float, width: float) -> np.ndarray:
 
 
 def reduce(rows: np.ndarray, length: float, width: float) -> np.ndarray:
-    """The regression of a glide in few rows (terms + 1, terms + 1), the last column the target: R of its QR.
+    """Reduce the regression of a glide to R (terms + 1, terms + 1) of its QR decomposition, with the target last.
 
-    Least squares, and the norms of the columns, are the same on R as on all the frames.
+    Least squares and the norms of the columns are the same for R as for all frames.
     """
     table = np.column_stack([library(rows, length, width), rows[:, 5:].T.ravel()])
     return np.asarray(np.linalg.qr(table, mode="r"))
 
 
 def choose_terms(parts: Sequence[np.ndarray], seed: int = 0) -> np.ndarray:
-    """Which terms (bool) the sparse regression keeps, at the threshold of its own cross-validation over glides."""
+    """The terms (bool) that the sparse regression selects, at the threshold from cross-validation over glides."""
     fold = np.random.default_rng(seed).permutation(len(parts)) % FOLDS
     errors = np.empty((FOLDS, len(THRESHOLDS)))
     for k in range(FOLDS):
@@ -114,17 +115,17 @@ def sparse(rows: np.ndarray, threshold: float) -> np.ndarray:
     from pysindy import STLSQ
 
     terms, target = rows[:, :-1], rows[:, -1:]
-    kept = np.linalg.norm(terms, axis=0) > 0.0  # a disc that no puck crossed
+    kept = np.linalg.norm(terms, axis=0) > 0.0  # drop discs that no puck crossed
     optimizer = STLSQ(threshold=threshold * float(np.linalg.norm(target)), alpha=1e-9, normalize_columns=True)
     coefficients = np.zeros(terms.shape[1])
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # it warns where no term is left
+        warnings.simplefilter("ignore")  # PySINDy warns if no term remains
         coefficients[kept] = np.ravel(optimizer.fit(terms[:, kept], target).coef_)
     return coefficients
 
 
 def diagnose(folder: Path) -> dict[str, Any]:
-    """A diagnosis of the recording in `folder`, in the format puckpilot-diagnosis/1, without a held-out proof."""
+    """Diagnose the recording in `folder`; the result has the format puckpilot-diagnosis/1, without a holdout proof."""
     from sim2real.recording.folder import read_recording
 
     recording = read_recording(folder)
@@ -150,7 +151,7 @@ def diagnose(folder: Path) -> dict[str, Any]:
 
 
 def _estimates(parts: Sequence[np.ndarray], kept: np.ndarray) -> list[dict[str, float]]:
-    """Least squares with the kept terms, and the percentiles of a bootstrap over glides."""
+    """Least-squares estimates of the selected terms, with percentiles of a bootstrap over glides."""
     equations = np.array([part[:, :-1][:, kept].T @ part[:, :-1][:, kept] for part in parts])
     sides = np.array([part[:, :-1][:, kept].T @ part[:, -1] for part in parts])
     rng = np.random.default_rng(0)

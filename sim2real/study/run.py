@@ -1,4 +1,4 @@
-"""A study from its plan to its files: make the cases, have them diagnosed, open the keys, write what came out."""
+"""Run a study: make the cases, diagnose them, score them against the keys, and write the results."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from sim2real.study.version import code_version
 
 @dataclass(frozen=True)
 class Study:
-    """What came out. `peer_*`: the same for PySINDy on the cases that it can be asked about, else empty."""
+    """The results of a study. `peer_*`: those of PySINDy on the cases of gliding only, else empty."""
 
     plan: Plan
     scores: list[Score]
@@ -31,7 +31,7 @@ class Study:
     peer_figures: list[Figure]
 
     def as_dict(self) -> dict[str, Any]:
-        """The same as plain data."""
+        """The results as plain data."""
         return {
             "plan": self.plan.as_dict(),
             "figures": [figure.as_dict() for figure in self.figures],
@@ -46,7 +46,7 @@ class Study:
 def run_study(
     plan: Plan, folder: Path, workers: int, tool: Sequence[str] | None = None, heldout: bool = False, peer: bool = False
 ) -> Study:
-    """Run the study in `folder`, or go on with it. Raises ValueError where another study is in the way."""
+    """Run or resume the study in `folder`. Raises ValueError if the folder contains another study."""
     from baselines.commands.options import progress_bar
     from sim2real.study.peer import PEER, can_be_asked
 
@@ -57,17 +57,17 @@ def run_study(
         try:
             labels = make_cases(plan, folder, workers, progress)
         except ValueError:
-            if not (folder / "recordings").exists():  # such a study there is not: the folder is free for another
+            if not (folder / "recordings").exists():  # the plan is invalid: release the folder
                 (folder / "plan.json").unlink()
             raise
     with progress_bar("cases diagnosed") as progress:
         answers = diagnose_cases(folder, labels, tool or THIS, "diagnoses", heldout, workers, progress)
     keys = {label: json.loads((folder / "key" / f"{label}.json").read_text()) for label in labels}
-    asked_of_peer = [label for label in labels if peer and can_be_asked(keys[label])]
-    with progress_bar("cases put to PySINDy") as progress:
-        replies = diagnose_cases(folder, asked_of_peer, PEER, "peer", False, workers, progress)
+    peer_labels = [label for label in labels if peer and can_be_asked(keys[label])]
+    with progress_bar("cases diagnosed by PySINDy") as progress:
+        replies = diagnose_cases(folder, peer_labels, PEER, "peer", False, workers, progress)
     scores = [score(label, keys[label], answers[label]) for label in labels]
-    peer_scores = [score(label, keys[label], replies[label]) for label in asked_of_peer]
+    peer_scores = [score(label, keys[label], replies[label]) for label in peer_labels]
     study = Study(
         plan=plan,
         scores=scores,
@@ -75,7 +75,7 @@ def run_study(
         by_mechanism=by_mechanism(scores),
         confusion=matrix.confuse(scores),
         peer_scores=peer_scores,
-        peer_figures=figures(peer_scores, plan.seconds) if asked_of_peer else [],
+        peer_figures=figures(peer_scores, plan.seconds) if peer_labels else [],
     )
     write_text_whole(folder / "study.json", json.dumps(study.as_dict(), indent=1) + "\n")
     write_whole(folder / "confusion.png", lambda draft: matrix.draw(draft, study.confusion))
@@ -83,19 +83,25 @@ def run_study(
 
 
 def _claim(folder: Path, plan: Plan, tool: Sequence[str] | None, heldout: bool) -> str:
-    """Write down what the folder holds; ValueError where it holds something else. Another number of cases of the same
-    study is welcome; what that does to the files there is returned in a line, "" where nothing."""
-    note, told = folder / "plan.json", ""
+    """Record the plan in the folder. Raises ValueError if the folder contains another study.
+
+    The same study may continue with another number of cases; then a note on the existing result files is returned, else
+    "".
+    """
+    note, message = folder / "plan.json", ""
     wanted = {**plan.as_dict(), "tool": tool, "heldout": heldout, "code": code_version(ROOT)}
     if note.exists():
         there = json.loads(note.read_text())
         other = [name for name, value in wanted.items() if name != "cases" and there.get(name) != value]
         if other:
             parts = ", ".join(f"{name} {there.get(name)}" for name in other)
-            raise ValueError(f"{folder} holds another study ({parts}); name another folder with --out")
+            raise ValueError(f"{folder} contains another study ({parts}); name another folder with --out")
         before = there.get("cases")
         if before != plan.cases and (folder / "study.json").exists():
-            told = f"{folder} holds this study with {before} cases: study.json and confusion.png will tell {plan.cases}"
+            message = (
+                f"{folder} contains this study with {before} cases: study.json and confusion.png are rewritten for "
+                f"{plan.cases}"
+            )
     folder.mkdir(parents=True, exist_ok=True)
     write_text_whole(note, json.dumps(wanted) + "\n")
-    return told
+    return message

@@ -1,4 +1,4 @@
-"""One diagnosis held against its key: what of it is right, and by how much its numbers are off."""
+"""Score one diagnosis against its key: correct answers, and errors of parameters."""
 
 from __future__ import annotations
 
@@ -6,21 +6,21 @@ from dataclasses import asdict, dataclass, field
 from math import hypot
 from typing import Any
 
-SILENT = ("nothing", "parameters")  # kinds of cases in which nothing is missing
-# Numbers that are components of one: the error of each is measured by the size of all.
+NOTHING_MISSING = ("nothing", "parameters")  # kinds of cases without a missing effect
+# Components of a vector: the error of each is relative to the vector's length.
 VECTORS = (
     ("tilt_x", "tilt_y"),
     ("warp_xx", "warp_yy", "warp_xy"),
     ("scale_x", "scale_y", "shear"),
     ("grain", "turning"),
 )
-PLACES = ("walls", "stream")  # where a law may be that is nothing elsewhere
+PLACES = ("walls", "stream")  # keys of the place of a law that is zero elsewhere
 OTHER_NAMES = {"e_slope": "slope"}
 
 
 @dataclass(frozen=True)
 class Number:
-    """A fitted number beside the true one; `error` is relative."""
+    """A fitted and a true parameter; `error` is relative."""
 
     mechanism: str
     name: str
@@ -32,28 +32,28 @@ class Number:
 
 @dataclass(frozen=True)
 class Score:
-    """What is right in one answer. Where a question does not arise, the answer to it is None."""
+    """The score of one answer; None for questions that do not apply."""
 
     label: str
     kind: str
     scenario: str
     truth: tuple[str, ...]
-    law: str | None  # of an unlisted one
+    law: str | None  # name of an unlisted law
     said: tuple[str, ...]
-    verdict: str  # the diagnosis's; "failed" where there is none
+    verdict: str  # of the diagnosis; "failed" if there is none
     seconds: float
     error: str | None
-    named: bool = False  # the names are the true ones, all of them and no other
-    located: bool | None = None  # the regimes are
-    within: bool | None = None  # every true name is among winners and also_possible
-    set_size: float | None = None  # of these, for each true name
+    named: bool = False  # the findings are exactly the true effects
+    located: bool | None = None  # the regimes of the findings are exactly the true ones
+    within: bool | None = None  # every true effect is among findings and also_possible
+    set_size: float | None = None  # size of that set for each true effect
     false_alarm: bool | None = None
     depends_right: bool | None = None
     excess_removed: float | None = None  # (before - after) / (before - floor), rms
     numbers: tuple[Number, ...] = field(default_factory=tuple)
 
     def as_dict(self) -> dict[str, Any]:
-        """The same as plain data."""
+        """The score as plain data."""
         return asdict(self)
 
 
@@ -69,7 +69,7 @@ def score(label: str, key: dict[str, Any], answer: dict[str, Any]) -> Score:
         "label": label, "kind": kind, "scenario": key["scenario"], "truth": truth, "law": key.get("law"), "said": said,
         "verdict": verdict, "seconds": answer.get("seconds", 0.0), "error": answer.get("error"),
     }  # fmt: skip
-    if kind in SILENT:
+    if kind in NOTHING_MISSING:
         quiet = names_right and verdict in ("agrees", "parameters_only")
         return Score(**common, named=quiet, false_alarm=bool(said) if diagnosis else None)
     possible = set(said).union(*(finding.get("also_possible", ()) for finding in findings))
@@ -93,7 +93,7 @@ def score(label: str, key: dict[str, Any], answer: dict[str, Any]) -> Score:
 
 
 def excess_removed(heldout: dict[str, Any] | None) -> float | None:
-    """How much of the held-out error above the floor has gone; None where there was none to remove."""
+    """The share of the holdout error above the floor that was removed; None if there was none to remove."""
     if not heldout:
         return None
     before, after, floor = (heldout.get(name) for name in ("before_m", "after_m", "floor_m"))
@@ -103,7 +103,7 @@ def excess_removed(heldout: dict[str, Any] | None) -> float | None:
 
 
 def compare(finding: dict[str, Any], key: dict[str, Any]) -> list[Number]:
-    """The numbers of a rightly named finding that the key knows, beside the true ones: 0 at another wall or clock."""
+    """The parameters of a correctly named finding with their true values, which are 0 at another wall or clock."""
     truths: dict[str, float] = key["values"].get(finding["mechanism"], {})
     there = _there(finding.get("where", {}), key.get("where", {}).get(finding["mechanism"], {}))
     numbers = []
@@ -121,5 +121,5 @@ def compare(finding: dict[str, Any], key: dict[str, Any]) -> list[Number]:
 
 
 def _there(said: dict[str, Any], truth: dict[str, Any]) -> bool:
-    """Whether a finding is about the wall or the stream that the key is about."""
+    """Whether a finding is at the same wall or stream as the key."""
     return all(said[name] == truth[name] for name in PLACES if name in said and name in truth)

@@ -1,4 +1,4 @@
-"""Which code a study's answers are of: those of older code must not stand for those of newer."""
+"""The version of the code that a study's answers come from, so that answers of other versions are not reused."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ FOLDERS = ("sim2real", "puckpilot_env")  # the diagnosis, its physics, and the i
 
 
 def code_version(root: Path) -> str:
-    """A short digest of all that makes cases, diagnoses and scores in the checkout `root`."""
+    """A short digest of the code that makes cases, diagnoses and scores in the checkout `root`."""
     digest = hashlib.sha256()
     for folder in FOLDERS:
         for file in sorted((root / folder).rglob("*.py")):

@@ -1,3 +1,4 @@
-"""The regimes of the physics, a folder each: sliding, wall, mallet, gantry, sensing; `contact` is what walls
-and mallet share.
+"""The regimes of the physics, one folder each: sliding, wall, mallet, gantry, sensing.
+
+`contact` holds what the wall and mallet regimes share.
 """

@@ -1,7 +1,7 @@
-"""What a regime is: one interface from evidence to residuals, from a fitted law to sizes, figures and words.
+"""The interface of a regime: evidence to residuals, and fitted law to effect size, figures and words.
 
-A regime is a folder with a `regime.py` that ends in an instance `REGIME`; `regimes.registry` finds it. It reads the
-evidence of other regimes only through `known`, so that the order of `after` is the order of the pipeline.
+A regime is a folder with a `regime.py` that defines an instance `REGIME`; `regimes.registry` finds it. A regime reads
+the results of other regimes only through `known`, so `after` determines the order of the pipeline.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from sim2real.segmentation.segments import Segments
 
 
 class UnusableError(ValueError):
-    """A regime's data say nothing; its message says why, `next_recording` what to record."""
+    """The data of a regime cannot be used. The message gives the reason, `next_recording` what to record instead."""
 
     def __init__(self, reason: str, next_recording: str = "") -> None:
         super().__init__(reason)
@@ -29,8 +29,11 @@ class UnusableError(ValueError):
 
 @dataclass(frozen=True)
 class Evidence:
-    """What regimes are identified from, or proved on: recordings with the sensors' faults undone, their segments and
-    glides, the recordings whose mallet paths count, and the simulator's parameters `values`, by name."""
+    """The data that regimes are identified from or validated on.
+
+    `recordings`: corrected for sensor errors; `segments` and `glides`: of each recording; `paths`: the recordings whose
+    mallet paths are used; `values`: the simulator's parameters by name.
+    """
 
     recordings: Sequence[Recording]
     segments: Sequence[Segments]
@@ -41,7 +44,7 @@ class Evidence:
 
 @dataclass(frozen=True)
 class RecordingPart:
-    """One recording of several: its `name` and the indices of its launches."""
+    """One of several recordings: its `name` and the indices of its launches (clusters)."""
 
     name: str
     clusters: np.ndarray
@@ -49,8 +52,11 @@ class RecordingPart:
 
 @dataclass(frozen=True)
 class IdentifiedRegime:
-    """What a regime lacks. `final`: the model that was selected, None where there is too little data; `without`: the
-    same less each law, by its name; `clear`: whether a law by name, or none, explains what was fitted."""
+    """The result of identifying a regime.
+
+    `final`: the selected model, None if there is too little data; `without`: for each law by name, the selected model
+    without that law; `clear`: whether listed laws alone, or no law, explain the fitted data.
+    """
 
     problem: Problem | None
     regime_result: RegimeResult
@@ -60,7 +66,7 @@ class IdentifiedRegime:
 
     @property
     def laws(self) -> tuple[str, ...]:
-        """The law of each finding, by its name."""
+        """The name of the law of each finding."""
         assert self.final is not None
         known = {law.mechanism if law.family else law.name: law.name for law in self.final.model.laws}
         return tuple(known[one.mechanism] for one in self.regime_result.findings)
@@ -71,12 +77,12 @@ Known = Mapping[str, IdentifiedRegime]
 
 
 class Regime:
-    """A regime of the physics; a subclass says what differs from these defaults.
+    """A regime of the physics; subclasses override these defaults.
 
-    `name`: as in the format of a diagnosis. `after`: the regimes that are identified, and reported, before it.
-    `lacks`: why nothing is said of it although a camera saw a puck. `more_of`: what to record more of. `unit`: what the
-    holdout counts, one and many. `shown_by`: what of a recording shows it; `measured_at`: where `size` is measured.
-    `least_size` [m]: the smallest effect that is reported.
+    `name`: the regime's name in the diagnosis format. `after`: the regimes that are identified and reported first.
+    `lacks`: the reason to report if the regime was not tested although a camera saw a puck. `more_of`: what to record
+    more of. `unit`: the unit that the holdout counts, singular and plural. `shown_by`: the segments whose residuals
+    show the regime. `measured_at`: where `size` is measured. `least_size` [m]: the smallest effect that is reported.
     """
 
     name: str
@@ -90,51 +96,51 @@ class Regime:
 
     @property
     def more(self) -> str:
-        """What to record next where data are too few, as a clause."""
+        """What to record next if there are too few data, as a clause."""
         return f"record more {self.more_of}"
 
     def problem(self, evidence: Evidence, known: Known) -> Problem | None:
-        """The residuals of this regime with its candidates; None where nothing of it was recorded.
+        """The residuals and candidate laws of this regime; None if nothing was recorded of it.
 
-        Errors: UnusableError, where what was recorded says nothing.
+        Raises UnusableError if the recorded data cannot be used.
         """
         raise NotImplementedError
 
     def holdout_problem(self, evidence: Evidence, known: Known) -> Problem | None:
-        """The residuals of the identified laws on other evidence; None where that shows nothing of this regime."""
+        """The residuals of the identified laws on other evidence; None if that evidence has no data of this regime."""
         raise NotImplementedError
 
     def parts(self, problem: Problem, evidence: Evidence, known: Known) -> list[RecordingPart]:
-        """Which launches of the problem come from which recording."""
+        """The launches of the problem that come from each recording."""
         raise NotImplementedError
 
     def parameters(self, evidence: Evidence, known: Known) -> Mapping[str, float]:
-        """The simulator's parameters by name, with what is known of the regimes before this one."""
+        """The simulator's parameters by name, including the estimates of earlier regimes."""
         return evidence.values
 
     def premises(self, evidence: Evidence, known: Known) -> tuple[bool, bool]:
-        """Of what this regime takes as given: whether it is clear by name, and whether it leaves no misfit."""
+        """Whether listed laws explain the regimes that this one depends on, and whether those leave no misfit."""
         return True, True
 
     def search(
         self, problem: Problem, defaults: Mapping[str, float], use: np.ndarray, clear: bool
     ) -> tuple[Problem, SearchResult]:
-        """The model that explains the launches `use`, and the problem as it was refined meanwhile."""
+        """Search the model that explains the launches `use`; return the problem, possibly refined, and the model."""
         return problem, search_model(problem, defaults, use, clear)
 
     def size(self, problem: Problem, found: SearchResult, other: SearchResult) -> float:
-        """By how much [m] two laws of named numbers differ in what they predict, rms over the recordings."""
+        """Rms difference [m] between the predictions of two laws with listed parameters, over the recordings."""
         rows = [problem.residuals(one.all_values, (), found.clusters).r for one in (found, other)]
         return problem.noise_m * float(np.sqrt(np.mean((rows[0] - rows[1]) ** 2)))
 
     def mismatch(self, problem: Problem, found: SearchResult) -> Mismatch:
-        """Where recording and simulator differ, before and after, for the report."""
+        """The residuals before and after the fit, for the report."""
         raise NotImplementedError
 
     def illustrated(self, problem: Problem, found: SearchResult, finding: Finding, use: np.ndarray) -> Finding:
-        """The finding with its curve and, where it has no name, a readable formula; `use`: the clusters fitted."""
+        """Add a curve to the finding and, if it is unlisted, a readable formula; `use`: the fitted clusters."""
         return finding
 
     def note(self, problem: Problem) -> str:
-        """What should be known of the problem itself, in a clause; "" if nothing."""
+        """A remark on the problem itself, as a clause; "" if there is none."""
         return ""

@@ -1,4 +1,4 @@
-"""All regimes that have residuals of their own: every folder beside this file with a `regime.py`, in pipeline order."""
+"""All regimes with residuals of their own, in pipeline order: every folder here that has a `regime.py`."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from sim2real.diagnose.regimes.base import Regime
 
 
 def _in_order(regimes: list[Regime]) -> dict[str, Regime]:
-    """Each after those that it reads; alphabetical otherwise."""
+    """Order each regime after those that it depends on; alphabetical otherwise."""
     waiting, ordered = sorted(regimes, key=lambda one: one.name), {}
     while waiting:
         ready = next(one for one in waiting if set(one.after) <= ordered.keys())

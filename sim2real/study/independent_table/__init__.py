@@ -7,7 +7,7 @@ It shares no code with what it checks.
     trace.puck[-1], trace.contacts
 
 The path of one step: `volts` (plans as voltages) -> `march` (the loop) -> `gantry` and `puck` (motion) -> `table`
-(gaps) -> `bounce` (impulses). `law` holds every number. `record` writes what a camera would have seen.
+(gaps) -> `bounce` (impulses). `law` holds every number. `record` writes a recording by a simulated camera.
 """
 
 from sim2real.study.independent_table.physics.law import Law

@@ -1,6 +1,6 @@
-"""Cases for a diagnosis: a table drawn at random, with something missing or nothing, and the truth about it.
+"""Cases for a diagnosis: a randomly drawn table, with or without missing effects, and its key.
 
-A case depends on the seed and its number alone, so more cases of one seed begin with the same ones.
+A case depends only on the seed and its number, so a larger set of cases of one seed begins with the same ones.
 """
 
 from __future__ import annotations
@@ -10,21 +10,21 @@ from typing import Any
 
 import numpy as np
 
-from sim2real.study.independent_table.mechanisms import MECHANISMS, RIVALS, Mechanism, Rng
+from sim2real.study.independent_table.mechanisms import INCOMPATIBLE, MECHANISMS, Mechanism, Rng
 from sim2real.study.independent_table.physics.law import Law
 from sim2real.study.independent_table.physics.unlisted import LAWS
 from sim2real.study.independent_table.recorder.camera import Camera
 from sim2real.study.independent_table.recorder.scene import Hand
 
-# kind: how many of every BLOCK cases
+# kind: number of cases in every BLOCK
 KINDS = {"nothing": 5, "parameters": 3, "one": 7, "two": 2, "unlisted": 3}
 BLOCK = sum(KINDS.values())
 PLAIN_SCENARIOS = {"launches": 0.4, "posts": 0.1, "rally": 0.15, "match": 0.05, "gantry": 0.2, "drive": 0.1}
-# scenario: the mechanisms that two are drawn from, and how often
+# scenario: its probability for cases with two mechanisms
 PAIRS = {"launches": 0.5, "posts": 0.1, "rally": 0.2, "gantry": 0.2}
 LIFTED = {"rally": ("glide", "wall"), "posts": ("glide", "wall")}  # regimes that such a recording shows as well
 WEAKEST, STRONGEST = 0.5, 2.0
-FILM = Camera(noise=2e-5, jitter=0.0, dropped=0.005, memory=0.0125, place_error=1.8e-4, beam=0.05)
+FILM = Camera(noise=2e-5, jitter=0.0, dropped=0.005, correlation_time=0.0125, place_error=1.8e-4, beam=0.05)
 
 
 @dataclass(frozen=True)
@@ -40,8 +40,11 @@ class Case:
 
 
 def draw_case(seed: int, number: int, kind: str | None = None, name: str | None = None, filmed: bool = False) -> Case:
-    """Case `number` of a seed. `kind` and `name` (a mechanism, or an unlisted law) narrow what it may be; `filmed`: its
-    camera is a calibrated one."""
+    """Draw case `number` of a seed.
+
+    `kind` and `name` (a mechanism or an unlisted law) restrict the draw; `filmed`: the camera is a calibrated one.
+    Raises ValueError for an unknown kind or name.
+    """
     if kind is not None and kind not in KINDS:
         raise ValueError(f"unknown kind {kind!r}: expected one of {', '.join(KINDS)}")
     if name is not None and name not in {**MECHANISMS, **LAWS}:
@@ -68,7 +71,7 @@ def draw_case(seed: int, number: int, kind: str | None = None, name: str | None 
 
 
 def kind_of(seed: int, number: int) -> tuple[str, int]:
-    """The kind of a case, and how many of that kind come before it."""
+    """The kind of a case, and the number of earlier cases of that kind."""
     kinds = [kind for kind, count in KINDS.items() for _ in range(count)]
     block, place = divmod(number, BLOCK)
     order = np.random.default_rng([seed, block, 2]).permutation(BLOCK)
@@ -77,7 +80,7 @@ def kind_of(seed: int, number: int) -> tuple[str, int]:
 
 
 def _dealt(names: list[str], seed: int, turn: int) -> str:
-    """Every name once before any comes again, each round in another order."""
+    """Deal the names in rounds: each name once per round, in a random order."""
     turned, place = divmod(turn, len(names))
     return names[np.random.default_rng([seed, turned, len(names), 3]).permutation(len(names))[place]]
 
@@ -91,18 +94,18 @@ def _mechanism(name: str) -> Mechanism:
 
 
 def _pair(rng: Rng) -> tuple[str, list[str]]:
-    """A scenario and two mechanisms that it shows and that do not undo each other."""
+    """A scenario and two compatible mechanisms that it shows."""
     scenario = _choice(rng, PAIRS)
     regimes = LIFTED.get(scenario, ())
     able = [name for name, one in MECHANISMS.items() if scenario in one.scenarios or one.regime in regimes]
     while True:
         names = [str(name) for name in rng.choice(able, 2, replace=False)]
-        if not any(set(names) <= rivals for rivals in RIVALS):
+        if not any(set(names) <= group for group in INCOMPATIBLE):
             return scenario, names
 
 
 def _table(rng: Rng) -> Law:
-    """Sizes of a table, its puck and mallets; all else as the simulator's own numbers."""
+    """Draw the sizes of a table, its puck and mallets; other parameters are the simulator's defaults."""
     return Law(
         length=_about(rng, 1.8, 2.4, 3),
         width=_about(rng, 0.9, 1.2, 3),
@@ -117,7 +120,7 @@ def _about(rng: Rng, low: float, high: float, digits: int) -> float:
 
 
 def _other_parameters(rng: Rng, law: Law) -> Law:
-    """The same law with other numbers: friction, drag, restitutions, and the gantry's six."""
+    """Draw other parameters: friction, drag, restitutions, and the gantry's six coefficients."""
     gantry = {name: getattr(law, name) * float(rng.uniform(0.85, 1.15)) for name in ("a1", "a2", "a3", "b1", "b2")}
     return replace(
         law,
@@ -130,7 +133,7 @@ def _other_parameters(rng: Rng, law: Law) -> Law:
 
 
 def _camera(rng: Rng) -> Camera:
-    """A camera with its small faults. None repeats a position: that would be a mechanism."""
+    """Draw a camera with small errors; none repeats a position, because that is a mechanism."""
     return Camera(
         rate=float(round(rng.uniform(100.0, 150.0))),
         noise=_about(rng, 0.0003, 0.001, 5),
@@ -142,7 +145,7 @@ def _camera(rng: Rng) -> Camera:
 
 
 def _with(rng: Rng, kind: str, scenario: str, law: Law, names: list[str], camera: Camera | None) -> Case:
-    """The case with its mechanisms put in, and the key written; with some camera, if none is given."""
+    """Make the case with its mechanisms and its key; the camera is drawn if none is given."""
     camera = camera or _camera(rng)
     hand = Hand(patience=4.0, at_posts=True) if scenario == "posts" else Hand()
     values, where, shares = {}, {}, {}

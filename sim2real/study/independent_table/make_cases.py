@@ -1,7 +1,7 @@
 """Make cases for a diagnosis: `python -m sim2real.study.independent_table.make_cases --cases 20 --seed 1 --out DIR`.
 
-DIR/recordings/case_0001/ is what the diagnosis may see, DIR/heldout/case_0001/ another recording of the same table, and
-DIR/key/case_0001.json the truth. Cases that are there already are left as they are.
+DIR/recordings/case_0001/ is the input of the diagnosis, DIR/heldout/case_0001/ another recording of the same table, and
+DIR/key/case_0001.json the truth. Existing cases are kept.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from sim2real.study.independent_table.recorder.record import make_recording
 from sim2real.study.independent_table.simulate import run
 
 STEP = 1e-4  # s; at ten times the usual step the paths still agree to 1e-8 m between two jumps of a force
-HELDOUT_SHARE = 0.5  # of the seconds
+HELDOUT_SHARE = 0.5  # length of the holdout recording by that of the recording
 
 
 def key_file(out: Path, number: int) -> Path:
-    """Where the truth about a case is; its stem is the case's name."""
+    """The key file of a case; its stem is the case's name."""
     return out / "key" / f"case_{number + 1:04d}.json"
 
 
@@ -52,7 +52,7 @@ def make_case(
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Make the cases in several processes; each line printed is a case that is ready."""
+    """Make the cases in several processes; print the name of each finished case."""
     parser = argparse.ArgumentParser(description="write labelled recordings of randomly drawn tables")
     parser.add_argument("--cases", type=int, required=True, metavar="N")
     parser.add_argument("--seed", type=int, default=0, metavar="S")

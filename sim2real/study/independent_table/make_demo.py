@@ -1,7 +1,7 @@
 """Make the bundled demo recording: `python -m sim2real.study.independent_table.make_demo sim2real/demo_recording`.
 
 A minute of a robot that rallies with a puck on a table that is slightly tilted and whose walls spin the puck:
-two things that the simulator's baseline law leaves out.
+two effects that the simulator's baseline law does not contain.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ NOTE = "demo: a robot rallies with a puck; synthetic, made by sim2real/study/ind
 
 
 def make_demo(folder: Path) -> Scene:
-    """Write the recording and return the truth behind it."""
+    """Write the recording and return the true scene."""
     camera = Camera(rate=120.0, noise=0.0005)
     return make_recording(folder, LAW, "rally", SEED, SECONDS, camera, encoder_rate=200.0, note=NOTE)
 

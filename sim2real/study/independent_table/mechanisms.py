@@ -1,8 +1,8 @@
-"""The vocabulary of mechanisms, from the side of who hides them: what each changes, how large, and where it shows.
+"""The listed mechanisms of the concealed cases: the change of each, its size, and the scenarios that show it.
 
-A mechanism draws its own size: the `share` that it is given times what is typical, so that 0.5 is a weak one and 2 a
-strong one. What it says of itself, `values`, goes into the key by the names that a diagnosis may give its numbers:
-where the format leaves the choice (the ratio e_t / e_n, or e_n and e_t), by all of them.
+A mechanism draws its own size: `share` times the typical size, so that 0.5 is weak and 2 is strong. Its `values` go
+into the key under the names that a diagnosis may use for its parameters; if the format allows several (the ratio e_t /
+e_n, or e_n and e_t), under all of them.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ Rng = np.random.Generator
 
 @dataclass(frozen=True)
 class Change:
-    """What a mechanism does to the law, the camera and the hand, and its numbers as the key states them."""
+    """The change of the law, the camera and the hand by a mechanism, and its parameters for the key."""
 
     law: dict[str, Any] = field(default_factory=dict)
     camera: dict[str, float] = field(default_factory=dict)
@@ -32,7 +32,7 @@ class Change:
 
 @dataclass(frozen=True)
 class Mechanism:
-    """`draw(rng, share, law, scenario)` gives the change; `scenarios` are those that show it, likeliest first."""
+    """`draw(rng, share, law, scenario)` draws the change; `scenarios`: those that show it, most probable first."""
 
     regime: str
     scenarios: tuple[str, ...]
@@ -72,12 +72,12 @@ def _patch(rng: Rng, share: float, law: Law, scenario: str) -> Change:
 
 
 def _air_drift(rng: Rng, share: float, law: Law, scenario: str) -> Change:
-    rate = 0.008 * share  # of a sign that leaves friction, however long the recording
+    rate = 0.008 * share  # positive, so that friction stays positive in a recording of any length
     return Change(law={"friction_drift": rate}, values={"rate": rate})
 
 
 def _anisotropy(rng: Rng, share: float, law: Law, scenario: str) -> Change:
-    """Friction along x over that along y; it points straight back, or is a vector of two components that turns."""
+    """Friction along x divided by that along y; either opposite to the motion, or a vector with two components."""
     size = 0.25 * share * _sign(rng)
     ratio = (1.0 + size) / (1.0 - size)
     if rng.uniform() < 0.5:
@@ -132,7 +132,7 @@ def _mallet_speed(rng: Rng, share: float, law: Law, scenario: str) -> Change:
 
 
 def _plain(name: str, typical: float, *labels: str) -> Callable[..., Change]:
-    """A mechanism of one number: the law's `name`, which a diagnosis may call by any of `labels`."""
+    """A mechanism with one parameter: the law's `name`, which a diagnosis may call by any of `labels`."""
 
     def draw(rng: Rng, share: float, law: Law, scenario: str) -> Change:
         value = typical * share
@@ -142,7 +142,7 @@ def _plain(name: str, typical: float, *labels: str) -> Callable[..., Change]:
 
 
 def _belt(rng: Rng, share: float, law: Law, scenario: str) -> Change:
-    hz, zeta = 14.0 / share, rng.uniform(0.05, 0.3)  # the softer the stronger
+    hz, zeta = 14.0 / share, rng.uniform(0.05, 0.3)  # a softer belt is a stronger effect
     return Change(law={"belt_hz": hz, "belt_zeta": zeta}, values={"hz": hz, "zeta": zeta})
 
 
@@ -189,8 +189,8 @@ MECHANISMS = {
     "scale_error": Mechanism("sensing", PUCK, _scale),
     "held_frames": Mechanism("sensing", ("launches", "rally"), _held),
 }
-# Not both in one law: one would undo or hide the other.
-RIVALS = (
+# Groups that must not occur in one law, because one mechanism cancels or hides the other
+INCOMPATIBLE = (
     {"tangential_restitution", "wall_friction_spin"},
     {"belt_compliance", "backlash"},
 )

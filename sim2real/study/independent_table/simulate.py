@@ -1,4 +1,4 @@
-"""The face of the reference: one call from a start state and plans to a trace."""
+"""The interface of the reference: one call from a start state and plans to a trace."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from sim2real.study.independent_table.physics.table import GOAL, MALLET, NAMES, 
 from sim2real.study.independent_table.physics.volts import Plans, schedule
 
 LOG_ROWS = 10_000
-LONG_AGO = 1e3  # s since its last contact, for a puck that is let go
+LONG_AGO = 1e3  # s since the last contact of a released puck
 
 
 class Contact(NamedTuple):
     """One contact. `kind` is wall, post, mallet or goal; `which` names it: "x0", "yW", post "x0y0", mallet "0".
 
-    `x`, `y` and `speed` are the puck's at contact, before the impulse; `closing` is the part of the relative speed
-    along the normal (nx, ny), which points from the obstacle to the puck.
+    `x`, `y` and `speed` are the puck's at contact, before the impulse; `closing` is the component of the relative
+    velocity along the normal (nx, ny), which points from the obstacle to the puck.
     """
 
     t: float
@@ -38,18 +38,18 @@ class Contact(NamedTuple):
 
 @dataclass(frozen=True)
 class Trace:
-    """What happened, every `sample` seconds. After a goal the puck is NaN.
+    """The simulated motion, every `sample` seconds. After a goal the puck is NaN.
 
-    `near_miss` [m] is the smallest gap at which the puck passed a post or mallet untouched: where it is tiny, whether
-    there was a contact at all is a matter of rounding. `end_puck` and `end_mallets` start the next run.
+    `near_miss` [m] is the smallest gap at which the puck passed a post or mallet without contact; if it is tiny,
+    rounding decides whether there is a contact. `end_puck` and `end_mallets` can start the next run.
     """
 
     t: np.ndarray  # (n,)
     puck: np.ndarray  # (n, 4): x, y, vx, vy
     spin: np.ndarray  # (n,)
-    mallets: np.ndarray  # (k, n, 6): x, x', x'', y, y', y''; where belt or gap give way, its motors' six too
+    mallets: np.ndarray  # (k, n, 6): x, x', x'', y, y', y''; with a belt or gap also those of its motors
     contacts: list[Contact]
-    unlogged: int  # contacts beyond the log's LOG_ROWS; a puck jammed for long can make so many
+    unlogged: int  # contacts beyond the log's LOG_ROWS, as of a puck that is jammed for long
     near_miss: float
     end_puck: np.ndarray  # (6,): x, y, vx, vy, spin, seconds since its last contact
     end_mallets: np.ndarray  # (k, 6 or 12)
@@ -68,10 +68,10 @@ def run(
     """Simulate `duration` seconds.
 
     `puck`: (x, y, vx, vy[, spin[, seconds since its last contact]]), or None for no puck. `mallets`: up to two starts,
-    (x, y), (x, vx, ax, y, vy, ay), or those twelve numbers with which another run ended.
+    (x, y), (x, vx, ax, y, vy, ay), or the twelve numbers of the end of another run.
     `plans`: one for each mallet: (Vx, Vy, tx1, ty1, tx2, ty2) in signed volts and seconds, None (no voltage), or a
-    list of (start, plan) in order of time. `clock`: time at the start, for laws that change with time (plans and
-    trace count from the start).
+    list of (start, plan) in order of time. `clock`: time at the start, for laws that change with time (times of plans
+    and trace are relative to the start).
     """
     plans = [None] * len(mallets) if plans is None else plans
     if len(mallets) > 2 or len(plans) != len(mallets):
@@ -104,23 +104,23 @@ def run(
 
 
 def begin(law: Law, mallets: Sequence[Sequence[float]] | np.ndarray) -> np.ndarray:
-    """States (k, 6) of the mallets; (k, 12), the motors behind, where the law has something that gives between them."""
+    """States (k, 6) of the mallets; (k, 12) with the motors' states if the law has a belt or a gap between them."""
     if law.belt_hz > 0.0 and law.backlash > 0.0:
-        raise ValueError("a belt that gives and a gap in one law: expected one of belt_hz and backlash")
-    apart = law.belt_hz > 0.0 or law.backlash > 0.0
-    states = np.zeros((len(mallets), 2 * MOTOR if apart else MOTOR))
+        raise ValueError("belt_hz and backlash are both above 0 in one law: expected at most one of them")
+    separate = law.belt_hz > 0.0 or law.backlash > 0.0
+    states = np.zeros((len(mallets), 2 * MOTOR if separate else MOTOR))
     for state, start in zip(states, mallets, strict=True):
         if len(start) == 2:
             state[[0, 3]] = start
         else:
             state[: len(start)] = start
-        if apart and len(start) <= MOTOR:
+        if separate and len(start) <= MOTOR:
             state[MOTOR:] = state[:MOTOR]
     return states
 
 
 def contact(row: np.ndarray) -> Contact:
-    """A row of the log, with names."""
+    """Convert a row of the log to a `Contact`."""
     which = int(row[1])
     kind = "wall" if which < POST else "post" if which < GOAL else "goal" if which < MALLET else "mallet"
     t, _, x, y, speed, closing, nx, ny = (float(value) for value in row)

@@ -1,4 +1,4 @@
-"""Forces on a gliding puck that stand in no list of mechanisms: what a real table may have and nobody thought of."""
+"""Unlisted forces on a gliding puck, as examples of effects of a real table that no list anticipates."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def pull(law, t, x, y):
 
 @njit(error_model="numpy")
 def rub(law, t, x, y, vx, vy, since, friction):
-    """Friction [m/s^2] by time, heading, place, speed and time since the last contact, where it was `friction`."""
+    """Friction [m/s^2] by time, heading, place, speed and time since the last contact; `friction`: without these."""
     if law.breathing != 0.0:
         friction *= 1.0 + law.breathing * sin(2.0 * pi * t / law.breathing_period)
     if (law.grain != 0.0 or law.nap != 0.0) and (vx != 0.0 or vy != 0.0):

@@ -1,4 +1,4 @@
-"""`compare`: right numbers on paths that the simulator would make, and one line of words when it cannot."""
+"""`compare`: correct numbers on simulated paths, and a one-line message when it cannot compare."""
 
 import json
 from collections import Counter
@@ -33,7 +33,7 @@ SIZE = np.array([2.0, 1.0])
 
 
 def glides(friction: float, drag: float, noise: float = 0.0005, count: int = 12) -> Recording:
-    """Free slides under the simulator's law, none of which touches anything."""
+    """Free glides under the simulator's law, without contacts."""
     rng = np.random.default_rng(0)
     t = np.arange(150) / 150
     places = []
@@ -81,8 +81,8 @@ def test_glides_of_the_same_law_differ_by_noise_alone():
 def test_glides_of_another_law_show_its_distance():
     recording = glides(0.4, 0.125, noise=0.0002)
     segments = segment(recording)
-    for piece in segments.glides:
-        off = predict_glide(piece, Noise(0.0002, 0.0), MapError(SIZE, 0.0), 0.125, 0.125)
+    for one in segments.glides:
+        off = predict_glide(one, Noise(0.0002, 0.0), MapError(SIZE, 0.0), 0.125, 0.125)
         ahead = off.t[-1] - off.t[off.fitted - 1]
         # 0.275 m/s^2 more: the start's fit, centred in its part, splits the parabola as least squares does
         part = off.t[off.fitted - 1]
@@ -92,10 +92,10 @@ def test_glides_of_another_law_show_its_distance():
 
 
 def test_missing_rows_are_told(tmp_path, capsys):
-    whole = glides(0.125, 0.125)
-    assert whole.frames is not None
+    complete = glides(0.125, 0.125)
+    assert complete.frames is not None
     kept = np.r_[:700, 900:1800]  # 200 frames, 1.3 s, are missing
-    columns = {name: whole.frames[name][kept] for name in ("t", "puck_x", "puck_y", "opponent_x", "opponent_y")}
+    columns = {name: complete.frames[name][kept] for name in ("t", "puck_x", "puck_y", "opponent_x", "opponent_y")}
     write_recording(tmp_path / "gap", Recording("gap", META, Stream(columns)))
     assert command(str(tmp_path / "gap"), "--out", str(tmp_path / "o")) == 0
     printed = [line for line in capsys.readouterr().out.splitlines() if line.startswith("note: ")]
@@ -113,7 +113,7 @@ def test_prints_one_json_object_and_draws(tmp_path, capsys):
 
 def test_says_in_one_line_what_it_cannot_read_or_write(tmp_path, capsys):
     assert command(str(tmp_path / "none"), "--out", str(tmp_path / "o")) == 2
-    assert "is no folder" in capsys.readouterr().err
+    assert "is not a folder" in capsys.readouterr().err
     assert not (tmp_path / "o").exists()
     write_recording(tmp_path / "glides", glides(0.1, 0.1, count=2))
     (tmp_path / "file").write_text("")
@@ -127,7 +127,7 @@ def test_a_gantry_alone_is_nothing_to_compare_and_no_crash(tmp_path, capsys):
     write_recording(tmp_path / "g", Recording("g", META, mallet=Stream({"t": t, "mallet_x": t, "mallet_y": t})))
     assert command(str(tmp_path / "g"), "--out", str(tmp_path)) == 0
     printed = capsys.readouterr().out
-    assert "where they part most: nowhere that can be told" in printed and "puckpilot diagnose says" in printed
+    assert "largest difference: unknown" in printed and "run puckpilot diagnose" in printed
 
 
 def test_numbers_that_tell_little_are_said_to(tmp_path):
@@ -135,7 +135,7 @@ def test_numbers_that_tell_little_are_said_to(tmp_path):
     values = parameters(recording)
     found = compare_segments(recording, segments, values)
     few = summarize(recording, segments, found, values)["notes"][-1]
-    assert few.startswith("medians of fewer than 10 pieces tell little (2 of glide)")
+    assert few.startswith("medians of fewer than 10 segments are unreliable (2 of glide)")
     lost = {**found.unusable, "other": Counter({"unexplained events": 7})}
     notes = summarize(recording, segments, replace(found, unusable=lost), values)["notes"]
     assert notes[-1].startswith("7 of 7 changes of motion are unexplained")
@@ -167,7 +167,9 @@ def test_shared_recordings_are_compared(tmp_path, capsys, name):
     summary = json.loads(capsys.readouterr().out)
     if name not in ("practice/null", "practice/tilt"):
         return
-    assert summary["part_most"].startswith("wall hits") and "is 0.80 normal" in summary["part_most"]  # here it is 0.7
+    assert (
+        summary["part_most"].startswith("wall contacts") and "is 0.80 normal" in summary["part_most"]
+    )  # here it is 0.7
     recording = read_recording(SHARED / name)
     segments, values = segment(recording), parameters(recording) | {"wall_restitution": 0.8}
     found = compare_segments(recording, segments, values)

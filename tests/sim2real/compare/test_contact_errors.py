@@ -20,7 +20,7 @@ S_IN, S_OUT = 0.01, 0.02  # m/s
 
 
 def jump(kind: str, where: str, v_out: np.ndarray = V_OUT, time: float = 0.0, place: float = 0.0) -> VelocityJump:
-    """A contact at (1, 0.5) at 1 s of a puck that comes along -y, with these standard deviations [s, m]."""
+    """A contact at (1, 0.5) and 1 s of a puck that moves along -y, with these standard deviations [s, m]."""
     normal = np.array([0.0, 1.0])
     event = ContactEvent(kind, where, 1.0, 1.0, 0.5, V_IN, v_out, 0.0, (0, 1), 9.0, True, normal)
     covariance = np.diag([time, place, place, S_IN, S_IN, S_OUT, S_OUT]) ** 2

@@ -1,4 +1,4 @@
-"""Errors in units of what noise explains: about 1 where the table obeys the simulator's law, far above with effects."""
+"""Errors in units of the noise: about 1 if the table obeys the simulator's law, far above 1 with effects."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def practice(name: str) -> Recording:
 @pytest.mark.slow
 @pytest.mark.parametrize("noise", [0.0005, 0.00003])
 def test_nothing_stands_out_in_a_match_without_effects(tmp_path: Path, noise: float) -> None:
-    """Both mallets, one by encoders, one by the camera: a sharp camera shows how little they tell of a velocity."""
+    """Both mallets, one by encoders, one by the camera: a precise camera shows how uncertain their velocities are."""
     recording = made(tmp_path, Law(), "match", Camera(noise=noise, jitter=0.0))
     summary = compared(recording)
     for kind, fewest in (("glide", 30), ("wall", 20), ("mallet", 20)):
@@ -50,7 +50,7 @@ def test_nothing_stands_out_in_a_match_without_effects(tmp_path: Path, noise: fl
         assert 0.5 < summary[kind]["times_noise"]["median"] < 1.5
     for kind in ("wall", "mallet"):
         assert summary[kind]["times_noise"]["high"] < 2 * LARGEST
-    assert str(summary["part_most"]).startswith("nowhere beyond noise")
+    assert str(summary["part_most"]).startswith("none beyond noise")
 
 
 def test_a_calibration_that_states_its_error_stands_out_in_nothing(tmp_path: Path) -> None:
@@ -69,7 +69,7 @@ def test_a_practice_recording_without_effects_is_explained() -> None:
 def test_an_effect_at_the_walls_of_a_practice_recording_stands_out(name: str) -> None:
     summary = compared(practice(name), **PRACTICE_RESTITUTION)
     assert summary["wall"]["times_noise"]["median"] > 3.0 and summary["glide"]["times_noise"]["median"] < 1.2
-    assert str(summary["part_most"]).startswith("wall hits")
+    assert str(summary["part_most"]).startswith("wall contacts")
 
 
 @pytest.mark.slow

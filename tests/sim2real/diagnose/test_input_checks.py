@@ -138,7 +138,7 @@ def test_commands_may_end_when_the_mallet_rests(rally, tmp_path):
     "file, change, message",
     [
         ("frames.csv", lambda lines: [*lines[:900], lines[900][:12]], "frames.csv:901: has 2 cells, expected 5"),
-        ("frames.csv", _restamp(lambda t: t - 2.0 * (t > 15.0)), "the clock runs back"),
+        ("frames.csv", _restamp(lambda t: t - 2.0 * (t > 15.0)), "the clock goes back"),
         ("meta.json", lambda lines: lines[: len(lines) // 2], "meta.json"),
     ],
     ids=["half a row", "back in time", "half the meta data"],

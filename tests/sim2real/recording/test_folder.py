@@ -1,4 +1,4 @@
-"""Recordings: read whole or refused by file, line and reason; written whole or not at all."""
+"""Recordings are read completely or refused by file, line and reason, and written completely or not at all."""
 
 import json
 from pathlib import Path
@@ -60,8 +60,8 @@ def test_a_header_alone_and_a_gantry_alone_are_recordings(tmp_path):
         ("t,puck_x,puck_x,puck_y,opponent_x,opponent_y\n", 1, "twice"),
         (rows("0,1,0.5,,", "0.01,1,0.5,"), 3, "has 4 cells, expected 5"),
         (rows("0,1,0.5,,", "", "0.01,1,0.5,,"), 3, "has 0 cells"),
-        (rows("0,1,0.5,,", "0.01,1,0.5,,", "0.01,1,0.5,,"), 4, "stands twice"),
-        (rows("0,1,0.5,,", "0.02,1,0.5,,", "0.01,1,0.5,,"), 4, "runs back"),
+        (rows("0,1,0.5,,", "0.01,1,0.5,,", "0.01,1,0.5,,"), 4, "appears twice"),
+        (rows("0,1,0.5,,", "0.02,1,0.5,,", "0.01,1,0.5,,"), 4, "goes back"),
         (rows("0,1,0.5,,", ",1,0.5,,"), 3, "t is blank"),
         (rows("0,1,0.5,,", "0.01,one,0.5,,"), 3, "'one'"),
         (rows("0,1,0.5,,", "0.01,nan,0.5,,"), 3, "'nan'"),
@@ -146,14 +146,14 @@ def test_all_clocks_can_be_counted_from_the_earliest_stamp(tmp_path):
 
 
 def test_refuses_what_is_no_recording(tmp_path):
-    with pytest.raises(RecordingError, match="is no folder"):
+    with pytest.raises(RecordingError, match="is not a folder"):
         read_recording(tmp_path / "nowhere")
     with pytest.raises(RecordingError, match=r"meta\.json.*missing"):
         read_recording(tmp_path)
-    with pytest.raises(RecordingError, match="holds no stream"):
+    with pytest.raises(RecordingError, match="contains no stream"):
         read_recording(folder_with(tmp_path / "b"))
     (tmp_path / "b" / "frames.csv").mkdir()
-    with pytest.raises(RecordingError, match="no plain file"):
+    with pytest.raises(RecordingError, match="not a plain file"):
         read_recording(tmp_path / "b")
 
 
@@ -186,7 +186,7 @@ def test_what_is_written_is_read_back_to_the_bit(tmp_path_factory, steps):
 def test_writes_nothing_rather_than_a_part(tmp_path):
     t = np.array([0.0, 0.01])
     bad = Stream({"t": t[::-1], "mallet_x": t, "mallet_y": t})
-    with pytest.raises(RecordingError, match=r"new.mallet\.csv:3: would not be read back"):
+    with pytest.raises(RecordingError, match=r"new.mallet\.csv:3: could not be read back"):
         write_recording(tmp_path / "new", Recording("new", META, mallet=bad))
     with pytest.raises(RecordingError, match="cannot be written"):
         write_recording(tmp_path / "new", Recording("new", {**META, "x": object()}, mallet=bad))

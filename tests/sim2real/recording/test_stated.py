@@ -1,4 +1,4 @@
-"""What recordings state is taken together: each size once, said aloud where none states it."""
+"""Sizes that recordings state are merged; sizes that none states are noted."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ DRIVE = Stream({"t": T, "pwm_left": T, "pwm_right": T})
 
 
 def stating(name: str, length: float | None, **sections) -> Recording:
-    """A recording of a puck that states `length`, and whatever else is given."""
+    """A recording of a puck that states `length` and the other given sizes."""
     return Recording(name, {**META, "table": {**META["table"], "length_m": length}, **sections}, FRAMES)
 
 
@@ -59,7 +59,7 @@ def test_sizes_are_compared_past_a_recording_that_states_none():
     [
         ("table", "length_m", "length", f"{BY_NAME['length'].default:g} m"),
         ("puck", "radius_m", "puck_radius", f"{BY_NAME['puck_radius'].default:g} m"),
-        ("table", "goal_width_m", "goal_width", "left out"),
+        ("table", "goal_width_m", "goal_width", "ignored"),
     ],
 )
 def test_what_nobody_states_is_said(section, key, name, expected):

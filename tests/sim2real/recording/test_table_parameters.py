@@ -1,4 +1,4 @@
-"""The simulator's numbers from a file: a baseline's, and what a diagnosis wrote."""
+"""The simulator's parameters from a file: a baseline, and files written by a diagnosis."""
 
 from pathlib import Path
 
@@ -26,7 +26,7 @@ def test_a_baseline_is_lines_of_numbers_or_a_diagnosis_s_file_without_effects(tm
     [
         (
             WRITTEN + "[effects.table_tilt]\ntilt_x = 0.02\n",
-            r"holds effects \(table_tilt\).*\[parameters\] alone.*match",
+            r"contains effects \(table_tilt\).*\[parameters\] alone.*match",
         ),
         ("friction", "not a TOML file"),
         ("frictoin = 0.1", "did you mean 'friction'"),
@@ -34,7 +34,7 @@ def test_a_baseline_is_lines_of_numbers_or_a_diagnosis_s_file_without_effects(tm
         ("friction = 1" + "0" * 400, r"parameter 'friction' is 1000.*; expected a number in \[0, 5\] m/s\^2"),
         ('format = "puckpilot-effects/1"\nparameters = 3', "parameters is 3; expected numbers by name"),
         ('format = "puckpilot-effects/1"\neffects = 3', "effects is 3; expected numbers by name"),
-        ('format = "puckpilot-draws/1"', r"holds ranges to draw from.*\[parameters\] alone.*--draws"),
+        ('format = "puckpilot-draws/1"', r"contains ranges to draw from.*\[parameters\] alone.*--draws"),
         ("a = " + "[" * 100_000, "nest too deep"),
     ],
 )

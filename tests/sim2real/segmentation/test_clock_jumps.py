@@ -1,4 +1,4 @@
-"""Clocks that leap are told from cameras that drop frames, stamp one late, or jitter."""
+"""Clock jumps are distinguished from dropped frames, single late stamps, and jitter."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ PERIOD, NOISE = 1 / 120, 0.0005
 
 @pytest.fixture
 def path():
-    """Twenty seconds of straight motion to and fro at 0.8 m/s, turned round every 1.5 s: times (n,), places (n, 2)."""
+    """Twenty seconds of straight motion at 0.8 m/s that reverses every 1.5 s: times (n,), places (n, 2)."""
     t = np.arange(2400) * PERIOD
     x = 0.2 + 0.8 * np.abs((t + 0.4) % 3.0 - 1.5)
     noise = np.random.default_rng(3).normal(0.0, NOISE, (len(t), 2))

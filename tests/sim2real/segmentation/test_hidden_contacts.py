@@ -1,4 +1,4 @@
-"""Contacts in the shade of a beam: the motion beside them is carried on for a tenth of a second, by a sharp camera."""
+"""Contacts hidden under a beam: a precise camera; the motion is extrapolated over a tenth of a second."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from tests.sim2real.diagnose.synthetic import LENGTH, META, RADIUS, RATE
 
 DEFAULTS = {row.name: row.default for row in TABLE}
 LAUNCHES, NOISE, RESTITUTION = 24, 2e-5, 0.7
-SHADE = (0.002, 0.07)  # s before and after a contact, in which nothing is seen
+HIDDEN = (0.002, 0.07)  # s before and after a contact in which the puck is hidden
 
 
 def impacts_of(recording: Recording) -> tuple[list[ContactMotion], GlideProblem]:
@@ -34,7 +34,7 @@ def impacts_of(recording: Recording) -> tuple[list[ContactMotion], GlideProblem]
 
 
 def recorded(t: np.ndarray, place: np.ndarray) -> Recording:
-    """Places (n, 2) [m] at times (n,) [s] as a camera with NOISE sees them."""
+    """Places (n, 2) [m] at times (n,) [s], observed by a camera with NOISE."""
     x, y = (place + np.random.default_rng(2).normal(0.0, NOISE, place.shape)).T
     nobody = np.full(len(t), np.nan)
     return Recording(
@@ -59,18 +59,18 @@ def shot(number: int, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     u = np.arange(-24, 25) / RATE + 0.3 / RATE
     corner = (LENGTH - RADIUS, 0.4)
     start, speed = np.array(corner) + u[0] * velocity, velocity
-    for _ in range(30):  # until it arrives as it should
+    for _ in range(30):  # iterate until it arrives at the corner with the given velocity
         end = slid(tuple(start), speed, np.array([0.0, -u[0]]))[-1]
         start, speed = start + np.array(corner) - end[:2], speed + velocity - end[2:]
     before = slid(tuple(start), speed, np.append(u[u < 0.0] - u[0], -u[0]))[:-1, :2]
     after = slid(corner, RESTITUTION * velocity * (-1.0, 1.0), np.append(0.0, u[u > 0.0]))[1:, :2]
     place = np.concatenate([before, after])
-    place[(u > -SHADE[0]) & (u < SHADE[1])] = np.nan
+    place[(u > -HIDDEN[0]) & (u < HIDDEN[1])] = np.nan
     return number + u, place
 
 
-def test_bounces_in_the_shade_are_as_exact_as_they_say() -> None:
-    """Of fast pucks: a brake that stays what it was for the time in the shade leaves seven times the noise."""
+def test_the_stated_errors_of_hidden_bounces_are_correct() -> None:
+    """For fast pucks, extrapolation with constant deceleration would give residuals of seven times the noise."""
     rng = np.random.default_rng(4)
     speeds = np.stack([rng.uniform(3.0, 6.0, LAUNCHES), rng.uniform(-1.0, 1.0, LAUNCHES)], axis=1)
     t, place = (np.concatenate(one) for one in zip(*(shot(k, v) for k, v in enumerate(speeds)), strict=True))
@@ -78,16 +78,16 @@ def test_bounces_in_the_shade_are_as_exact_as_they_say() -> None:
     contact_motions, glides = impacts_of(recording)
     problem = WallProblem(wall_contacts(contact_motions, geometry(recording)), glides.clusters, DEFAULTS)
     assert len(problem.data) > 0.7 * LAUNCHES
-    left = problem.residuals({"wall_restitution": RESTITUTION}, (), np.arange(glides.clusters)).r
-    assert 0.6 < np.sqrt(np.mean(left**2)) < 1.4
+    r = problem.residuals({"wall_restitution": RESTITUTION}, (), np.arange(glides.clusters)).r
+    assert 0.6 < np.sqrt(np.mean(r**2)) < 1.4
 
 
 @pytest.mark.parametrize(
     ("off", "stated", "kind"), [(0.06, None, "unexplained"), (0.004, None, "wall"), (0.004, 1.8e-4, "unexplained")]
 )
-def test_a_blow_in_the_shade_is_no_bounce_of_a_wall_nearby(off: float, stated: float | None, kind: str) -> None:
-    """So far from where the puck would touch, a mallet under the beam that nobody recorded turns it round: by 4 mm a
-    calibrated camera alone can tell."""
+def test_a_hidden_mallet_contact_is_no_contact_with_a_wall_nearby(off: float, stated: float | None, kind: str) -> None:
+    """An unrecorded mallet under the beam reverses the puck `off` [m] from the wall; only a calibrated camera detects
+    a distance of 4 mm."""
     times, places = [], []
     for k in range(LAUNCHES):
         u = np.arange(-0.4, 0.4, 1.0 / RATE)
@@ -95,7 +95,7 @@ def test_a_blow_in_the_shade_is_no_bounce_of_a_wall_nearby(off: float, stated: f
         seen = (u < -0.04) | (u > 0.04)
         times.append(k + u)
         places.append(np.where(seen[:, None], np.stack([x, y], axis=1), np.nan))
-    later = np.arange(-0.4, 0.4, 1.0 / RATE) + 0.001  # and twice as many true bounces, which tell where the wall is
+    later = np.arange(-0.4, 0.4, 1.0 / RATE) + 0.001  # twice as many wall contacts determine the wall's line
     for k in range(LAUNCHES, 3 * LAUNCHES):
         times.append(k + later)
         y = RADIUS + np.where(later < 0.0, -1.6, 1.1) * later
@@ -103,11 +103,9 @@ def test_a_blow_in_the_shade_is_no_bounce_of_a_wall_nearby(off: float, stated: f
     recording = recorded(np.concatenate(times), np.concatenate(places))
     camera = {**META["camera"], "place_std_m": stated}
     recording = replace(recording, meta={**META, "camera": camera})
-    assert {contact.where for contact in segment(recording).contacts} == {
-        "y0"
-    }  # while nothing is known but parabolas beside them
+    assert {contact.where for contact in segment(recording).contacts} == {"y0"}  # by the parabolas on both sides alone
     contact_motions, _ = impacts_of(recording)
-    mallet_contacts = [one.contact.kind for one in contact_motions if one.contact.t < LAUNCHES - 0.5]
-    bounced = [one.contact.kind for one in contact_motions if one.contact.t > LAUNCHES - 0.5]
-    assert len(mallet_contacts) > LAUNCHES // 2 and set(mallet_contacts) == {kind}
-    assert len(bounced) > LAUNCHES // 2 and set(bounced) == {"wall"}
+    kinds_of_mallet = [one.contact.kind for one in contact_motions if one.contact.t < LAUNCHES - 0.5]
+    kinds_of_wall = [one.contact.kind for one in contact_motions if one.contact.t > LAUNCHES - 0.5]
+    assert len(kinds_of_mallet) > LAUNCHES // 2 and set(kinds_of_mallet) == {kind}
+    assert len(kinds_of_wall) > LAUNCHES // 2 and set(kinds_of_wall) == {"wall"}

@@ -1,4 +1,4 @@
-"""Motions of a mallet from noisy samples of a known path."""
+"""Estimated motions of a mallet from noisy samples of a known path."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a puck can have touched, where the recording leaves something open."""
+"""Attribution of contacts when the recording does not state all sizes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ BLANK = np.full(10, np.nan)
 
 
 def test_goals_of_unknown_width_leave_the_middle_of_the_ends_unexplained():
-    """Balls shot at the ends, at the sides and where a goal may be: nobody can tell a wall from a post there."""
+    """Pucks shot at the ends, at the sides and where a goal may be: wall and post are indistinguishable there."""
     across = np.linspace(0.08, 0.92, 28) * WIDTH
     launches = np.stack([np.full(28, 0.6), across, np.full(28, 2.0), np.zeros(28)], axis=1)
     recording, _ = recorded(*bouncing(launches, 1.0), np.random.default_rng(1), 0.0005)

@@ -1,4 +1,4 @@
-"""Pieces of paths whose events are known: nothing invented, nothing swallowed."""
+"""Segments of paths with known events: no false and no missed events."""
 
 from dataclasses import replace
 

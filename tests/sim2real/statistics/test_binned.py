@@ -1,4 +1,4 @@
-"""Means in bins, with errors that hold."""
+"""Bin means and their errors."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Piecewise linear functions, by values that can be read off a drawing."""
+"""Piecewise linear functions, against values computed by hand."""
 
 import numpy as np
 import pytest
@@ -37,7 +37,7 @@ def test_nothing_is_remembered_for_long_or_of_no_contact() -> None:
 
 
 def test_a_stiff_law_goes_straight_on_where_it_saw_nothing() -> None:
-    """Least squares with a ridge of a line that was seen from 0 to 20 of 50 s only: hats alone fall back to nothing."""
+    """A ridge fit of a line observed from 0 to 20 of 50 s continues the line; with hats alone it would return to 0."""
     knots, seen = np.linspace(0.0, 50.0, 20), np.linspace(0.0, 20.0, 200)
     line = 0.5 - 0.06 * seen
 
@@ -51,7 +51,7 @@ def test_a_stiff_law_goes_straight_on_where_it_saw_nothing() -> None:
 
 
 def test_a_stiff_law_is_a_spline_s_prior() -> None:
-    """Variances by hand: a level and a slope of 1 at the ends, and bends of 100 (1 / 3) at the far one."""
+    """Variances by hand: a level and a slope of 1 at the ends, and a curvature of 100 (1 / 3) at the far one."""
     shape = spline_basis(np.array([0.0, 1.0, 2.0]))
     covariance = shape @ shape.T
     assert np.diag(covariance) == pytest.approx([2.0, 1.0 + 100.0 / 24.0, 2.0 + 100.0 / 3.0])

@@ -1,4 +1,4 @@
-"""Robust losses: their weights are their slopes, and noise alone meets no tail."""
+"""Robust losses: weights are derivatives of the losses, and noise alone does not reach the tail."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Noise in common is taken out, held against scipy's root of the whole covariance."""
+"""Whitening of common noise, against scipy's root of the full covariance."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from sim2real.statistics.whitening import whitened
     ("rows", "shared", "size"), [(30, 4, 1.0), (30, 4, 1e4), (3, 8, 2.0), (12, 0, 1.0), (6, 2, 0.0)]
 )
 def test_shared_noise_is_taken_out_by_the_root_of_its_covariance(rows: int, shared: int, size: float) -> None:
-    """More shared columns than rows, none, and such as are nothing, too."""
+    """Also with more shared columns than rows, without columns, and with zero columns."""
     rng = np.random.default_rng(rows + shared)
     columns, some = size * rng.normal(size=(rows, shared)), rng.normal(size=(rows, 2))
     expected = inv(sqrtm(np.eye(rows) + columns @ columns.T)) @ some

@@ -1,4 +1,4 @@
-"""PySINDy as the peer: it finds a strong effect in clean data, and answers in the form of a diagnosis."""
+"""PySINDy as the comparison method: it finds a strong effect in clean data and writes a diagnosis."""
 
 from __future__ import annotations
 

@@ -73,8 +73,8 @@ def test_wrong_names_wrong_places_and_one_name_too_many():
     assert (elsewhere.named, elsewhere.located, elsewhere.within) == (False, False, False)
     more = score("a", truth, answer(finding("table_tilt"), finding("wall_friction_spin", "wall")))
     assert (more.named, more.located, more.within) == (False, False, True)
-    silent = score("a", truth, answer(verdict="undetermined"))
-    assert (silent.named, silent.within, silent.set_size) == (False, False, None)
+    scored = score("a", truth, answer(verdict="undetermined"))
+    assert (scored.named, scored.within, scored.set_size) == (False, False, None)
     two = key("two", "table_tilt", "mallet_give", regimes=("glide", "mallet"))
     assert score("a", two, answer(finding("mallet_give", "mallet"), finding("table_tilt"))).named
     assert not score("a", two, answer(finding("table_tilt"))).named
@@ -94,8 +94,8 @@ def test_a_number_of_another_wall_is_held_against_nothing_there():
 
 def test_the_excess_counts_whatever_was_said_of_it():
     heldout = {"before_m": 0.002, "after_m": 0.002, "floor_m": 0.0005, "pieces": 9}
-    silent = answer(verdict="parameters_only", heldout=heldout)
-    assert score("a", key("one", "table_tilt"), silent).excess_removed == 0.0
+    no_finding = answer(verdict="parameters_only", heldout=heldout)
+    assert score("a", key("one", "table_tilt"), no_finding).excess_removed == 0.0
     wrong = answer(finding("side_force"), heldout={**heldout, "after_m": 0.00125})
     assert score("a", key("one", "table_tilt"), wrong).excess_removed == pytest.approx(0.5)
     assert score("a", key("one", "table_tilt"), answer(verdict="undetermined")).excess_removed is None
@@ -203,7 +203,7 @@ def test_the_table_counts_each_question_where_it_arises():
     assert {f.name: f for f in figures(made(), 30.0)}["named right, one effect"].least == 0.93
     assert table["false alarms where nothing is missing"].value == pytest.approx(1 / 3)
     assert (table["both of two effects named"].value, table["both of two effects named"].count) == (0.0, 1)
-    assert table["truth in winner + also_possible"].value == pytest.approx(2 / 4)
+    assert table["truth in findings + also_possible"].value == pytest.approx(2 / 4)
     (tilt,) = by_mechanism(made())
     assert (tilt.name, tilt.value, tilt.count) == ("table_tilt", 1 / 3, 3)
 

@@ -1,4 +1,4 @@
-"""`puckpilot study` from end to end, with a diagnosis that is a script and writes down what it could see."""
+"""`puckpilot study` from end to end, with a script as the diagnosis that logs the files that it can see."""
 
 from __future__ import annotations
 
@@ -56,15 +56,17 @@ def test_a_study_asks_blindly_scores_and_goes_on_where_it_stopped(tmp_path: Path
     call(*words)
     words_said = capsys.readouterr().out
     assert "named right, one effect" in words_said and "confusion.png" in words_said
-    assert len(log.read_text().splitlines()) == 3 + 2  # the case that was diagnosed is not asked again
+    assert len(log.read_text().splitlines()) == 3 + 2  # a case with a diagnosis is not diagnosed again
     written = json.loads((out / "study.json").read_text())
     assert [case["verdict"] for case in written["cases"]] == ["agrees"] * 3
     assert (out / "confusion.png").stat().st_size > 5000
     with pytest.raises(ValueError, match=r"another study \(mechanism None\)"):
         call(*words, "--mechanism", "table_tilt")
     capsys.readouterr()
-    call("--cases", "4", *words[2:], "--json")  # more of the same is welcome
-    assert "holds this study with 3 cases: study.json and confusion.png will tell 4" in capsys.readouterr().err
+    call("--cases", "4", *words[2:], "--json")  # the study continues with more cases
+    assert (
+        "contains this study with 3 cases: study.json and confusion.png are rewritten for 4" in capsys.readouterr().err
+    )
     assert len(log.read_text().splitlines()) == 6
     plan = json.loads((out / "plan.json").read_text())
     (out / "plan.json").write_text(json.dumps({**plan, "code": "older"}))
@@ -87,7 +89,7 @@ def test_a_study_of_one_kind_counts_silence_as_right(tmp_path: Path, capsys: pyt
 
 @pytest.mark.parametrize(
     "said, title",
-    [("undetermined", "said to be undetermined"), ("side_force", "taken for something else (rows truth, columns")],
+    [("undetermined", "diagnosed as undetermined"), ("side_force", "diagnosed as something else (rows: truth,")],
 )
 def test_silence_is_no_mistaken_name(said: str, title: str):
     counts = Confusion(("table_tilt",), (said, "table_tilt"), ((2, 3),))

@@ -1,4 +1,4 @@
-"""The digest of the code changes with every source that a study leans on, and with nothing else."""
+"""The digest of the code changes with every source that a study depends on, and with nothing else."""
 
 from __future__ import annotations
 

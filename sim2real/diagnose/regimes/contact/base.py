@@ -1,4 +1,4 @@
-"""What walls and mallet share as regimes: contacts are known by the glides before and after them."""
+"""The base class of the wall and mallet regimes: contacts are measured by the glides before and after them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from sim2real.diagnose.regimes.sliding.regime import law_of_glides, states_of, s
 
 
 class ContactRegime(Regime):
-    """A regime of contacts; it rests on what is known of the glides."""
+    """A regime of contacts; it uses the identified law of the glides."""
 
     after = ("glide",)
     measured_at = " in 0.1 s after a contact"
@@ -28,7 +28,7 @@ class ContactRegime(Regime):
         return SLIDING.parts(glides_of(known), evidence, known)
 
     def parameters(self, evidence: Evidence, known: Known) -> dict[str, float]:
-        """See `Regime.parameters`: with the law of the glides."""
+        """See `Regime.parameters`; the law of the glides is included."""
         return law_of_glides(known["glide"], evidence.values)
 
     def premises(self, evidence: Evidence, known: Known) -> tuple[bool, bool]:
@@ -37,33 +37,33 @@ class ContactRegime(Regime):
         return sliding.clear, sliding.clear and not sliding.regime_result.misfit
 
     def size(self, problem: Problem, found: SearchResult, other: SearchResult) -> float:
-        """By the velocity after a contact, as the distance that it makes in `CONTACT.flight_time`."""
+        """See `Regime.size`: the rms difference of the velocity after a contact, times `CONTACT.flight_time`."""
         assert isinstance(problem, ContactProblem)
         moved = problem.predicted(found.all_values) - problem.predicted(other.all_values)
         return CONTACT.flight_time * float(np.sqrt(np.mean(np.sum(moved[:, :2] ** 2, axis=1))))
 
 
 def glides_of(known: Known) -> GlideProblem:
-    """The glides of which the sliding regime was identified."""
+    """The glides from which the sliding regime was identified."""
     problem = known["glide"].problem
     assert isinstance(problem, GlideProblem)
     return problem
 
 
 def has_glides(known: Known) -> bool:
-    """Whether there are glides by which contacts can be known."""
+    """Whether there are glides to measure contacts by."""
     return "glide" in known and known["glide"].problem is not None
 
 
 def motions(evidence: Evidence, known: Known) -> list[list[ContactMotion]]:
-    """The contacts of each recording, with the motion before and after as the identified law of the glides has it."""
+    """The contacts of each recording, with the motion before and after under the identified law of the glides."""
     sliding, glides = known["glide"], glides_of(known)
     states = states_of(glides, sliding.final, law_of_glides(sliding, evidence.values))
     return [find_contact_motions(some, glides, states, k) for k, some in enumerate(evidence.segments)]
 
 
 def holdout_motions(evidence: Evidence, known: Known) -> tuple[list[list[ContactMotion]], int]:
-    """`motions` of evidence that was not fitted, and how many launches it has; none where it has no glides."""
+    """`motions` of evidence that was not fitted, and the number of its launches; ([], 0) without glides."""
     if not sum(part.glides for part in evidence.glides):
         return [], 0
     sliding, glides = known["glide"], GlideProblem(join(evidence.glides), evidence.values)

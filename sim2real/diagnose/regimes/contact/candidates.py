@@ -1,4 +1,4 @@
-"""What a contact may lack, as columns of its residuals: friction at a few sizes, and smooth laws of any shape."""
+"""Candidate laws of contacts as columns of the design matrix: friction at several sizes, and smooth laws."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from sim2real.diagnose.regimes.contact.tuned import CONTACT
 
 # The components of a velocity on which a smooth law acts: normal (0), tangential (1), or both like the baseline's e.
 COMPONENTS = {"restitution": (0,), "tangential ratio": (1,), "share kept": (0, 1)}
-# The same as the simulator numbers them in its tables of numbers
+# The simulator's numbers for the same components
 SHARE_NUMBERS = {"restitution": OF_NORMAL, "tangential ratio": OF_TANGENT, "share kept": OF_BOTH}
 
-# By name: what a family depends on (`Law.family`), and its basis functions (n, k) of the contacts
+# By name: the quantity that a law depends on (`Law.family`), and its basis functions (n, k) of the contacts
 BasisLibrary = Mapping[str, tuple[str, Callable[[Any], np.ndarray]]]
 
 
 @dataclass
 class _ColumnBlocks:
-    """Columns of a design matrix: their names, and blocks of them side by side."""
+    """The columns of a design matrix: their names, and their values in blocks."""
 
     names: list[str]
     blocks: list[np.ndarray] = field(default_factory=list)
@@ -48,10 +48,10 @@ def contact_design_matrix(
     basis_library: BasisLibrary,
     prefix: str = "",
 ) -> DesignMatrix:
-    """All columns of a problem at the law `values`; those of parameters are the base's and `free`.
+    """All columns of a problem at the parameters `values`; parameter columns are those of the base and `free`.
 
     derivatives: listed effects whose columns are derivatives; friction: its mechanism, its parameter, and the sizes at
-    which it is linearised where it is 0; prefix: what stands before the name of a family.
+    which it is linearised if it is 0; prefix: comes before the name of each smooth law.
     """
     free = tuple(dict.fromkeys((*problem.base, *(name for law in derivatives for name in law.columns), *free)))
     exact = problem.residuals(values, free, np.arange(problem.clusters))
@@ -72,7 +72,7 @@ def _add_frictions(
     friction: tuple[str, str, Sequence[float]],
     columns: _ColumnBlocks,
 ) -> list[Law]:
-    """Laws of two columns for each size of the friction: its effect, and the change of that with the size."""
+    """One law of two columns for each size of the friction: its effect, and the derivative of that by the size."""
     mechanism, name, sizes = friction
     laws = []
     for mu in sizes if values.get(name, 0.0) == 0.0 else ():
@@ -91,7 +91,7 @@ def _add_families(
     prefix: str,
     columns: _ColumnBlocks,
 ) -> list[Law]:
-    """A law for each basis of the library and each of COMPONENTS."""
+    """One smooth law for each basis of the library and each entry of COMPONENTS."""
     laws = []
     for name, (depends, basis) in basis_library.items():
         for component, axes in COMPONENTS.items():
@@ -116,7 +116,7 @@ def basis_name_of(law: Law) -> str:
 
 
 def _velocity_changes(data: Contacts, basis: np.ndarray, axes: Sequence[int], each: int) -> np.ndarray:
-    """Changes (n, each, k) [m/s] of the puck's velocity after by shares `basis` (n, k) of those components before."""
+    """Changes (n, each, k) [m/s] of the velocity after a contact: shares `basis` (n, k) of the components before it."""
     changes = np.zeros((len(data), each, basis.shape[1]))
     for axis in axes:
         changes[:, axis] = CONTACT.coefficient_unit * data.approach[:, axis, None] * basis

@@ -19,11 +19,11 @@ class Contacts:
 
     `normal` (n, 2): unit vector towards the puck; `t` (n,) [s]; `place` (n, 2) [m] of the puck's centre;
     `velocity_before`, `velocity_after` (n, 2) [m/s] of the puck, in the table's frame.
-    `velocity_covariance` (n, 2, 2, 2) [m^2/s^2]: of the velocity before and of that after, by the sensor's noise, in
-    axes along the normal and the tangent; `common_errors` (n, 2, 2, k) [m/s]: changes of both velocities in the same
-    axes by one standard deviation of each of k errors that all contacts share.
-    `normal_std` (n,) [rad]: standard deviation of the normal's angle; `spin_chain` (n,): the puck's spin carries over
-    between contacts of one number; `spin_unknown` (n,): the chain begins with an unknown spin; `cluster` (n,): the
+    `velocity_covariance` (n, 2, 2, 2) [m^2/s^2]: covariances of the velocity before and of the velocity after due to
+    sensor noise, in axes along the normal and the tangent. `common_errors` (n, 2, 2, k) [m/s]: changes of both
+    velocities, in the same axes, by one standard deviation of each of k errors that all contacts share.
+    `normal_std` (n,) [rad]: standard deviation of the normal's angle. `spin_chain` (n,): contacts with the same number
+    share the puck's spin. `spin_unknown` (n,): whether the chain begins with an unknown spin. `cluster` (n,): the
     launch.
     """
 
@@ -87,9 +87,9 @@ def make_contacts(
     contact_motions: Sequence[ContactMotion],
     shapes: dict[str, tuple[int, ...]],
 ) -> AnyContacts:
-    """Contacts of a class `record` from their fields, a dict for each contact.
+    """Make contacts of the class `record` from their fields, one dict for each contact.
 
-    `contact_motions`: where the rows come from; `shapes`: of the fields that the class adds and that are not scalars.
+    `contact_motions`: the source of the rows; `shapes`: shapes of the non-scalar fields that the class adds.
     """
     common = contact_motions[0].before.common_errors.shape[1] if contact_motions else 0
     pair = dict.fromkeys(("normal", "place", "velocity_before", "velocity_after"), (2,))
@@ -107,13 +107,13 @@ def select_contacts(contacts: AnyContacts, which: np.ndarray) -> AnyContacts:
 
 
 def join_contacts(parts: Sequence[AnyContacts]) -> AnyContacts:
-    """The contacts of several recordings, whose clusters are already counted through all of them."""
+    """Concatenate the contacts of several recordings; their clusters must already be numbered over all of them."""
     names = [one.name for one in fields(parts[0])]
     return type(parts[0])(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
 
 
 def common_place_variance(before: ContactSide, after: ContactSide) -> float:
-    """Variance [m^2] of each coordinate of a contact's place by the errors that all contacts share."""
+    """Variance [m^2] of each coordinate of a contact's place due to the errors that all contacts share."""
     return float(np.sum((0.5 * (before.common_errors[:2] + after.common_errors[:2])) ** 2)) / 2.0
 
 

@@ -1,4 +1,4 @@
-"""The readable formula of an unlisted law of contacts: how the share of its speed that a puck keeps varies."""
+"""The readable formula of an unlisted contact law: how the share of the speed that the puck keeps varies."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ CHANGES = ("added to the restitution", "added to the share of the tangential spe
 
 @dataclass(frozen=True)
 class ContactProjection:
-    """The share kept of one `component` of the velocity, over a `coordinate` (n,); nan leaves a contact out.
+    """The kept share of one velocity `component` over a `coordinate` (n,); contacts with nan are omitted.
 
-    `label`: of the coordinate, with its unit; `ticks`: names of its values 0, 1, …, where it has names.
+    `label`: of the coordinate, with its unit; `ticks`: names of the values 0, 1, … if the coordinate is categorical.
     """
 
     label: str
@@ -40,9 +40,9 @@ def contact_formula(
     axis: Axis,
     places: Mapping[str, np.ndarray],
 ) -> tuple[Formula, np.ndarray]:
-    """The formula over a coordinate `axis`, fitted to the clusters `use`, and the contacts (n,) bool at which it acts.
+    """Fit a formula over `axis` to the clusters `use`; return it and the contacts (n,) bool that it applies to.
 
-    places: the contacts (n,) bool at each place that may have a law of its own, by its name; "" for all places.
+    places: by name, the contacts (n,) bool of each place that may have its own law; "" for all places.
     """
     component, forms = components_of(law)[0], {}
     speeds = np.zeros((len(problem.data), problem.each))
@@ -60,7 +60,7 @@ def contact_formula(
 
 
 def _formula_problem(problem: ContactProblem, found: SearchResult, use: np.ndarray) -> FormulaProblem:
-    """What the final law leaves of the contacts, and how changes (n, each, k) of velocities after change that."""
+    """The residuals under the final law, and their response to changes (n, each, k) of the velocities after."""
     values = found.final.values
     rest = problem.residuals(values, found.final.free, np.arange(problem.clusters))
     predicted = problem.predicted(values)

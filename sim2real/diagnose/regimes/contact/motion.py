@@ -1,4 +1,4 @@
-"""Contacts with the puck's motion on both sides, extrapolated from the whole glides before and after them."""
+"""Contacts with the puck's motion on both sides, extrapolated from the glides before and after them."""
 
 from __future__ import annotations
 
@@ -14,15 +14,16 @@ from sim2real.segmentation.events import ContactEvent
 from sim2real.segmentation.segments import Segments
 from sim2real.segmentation.tuned import SEGMENTATION
 
-SPIN_UNPREDICTED = ("post", "unexplained")  # kinds of contact whose normal, and so the spin after them, is uncertain
+SPIN_UNPREDICTED = ("post", "unexplained")  # contacts whose normal, and therefore the spin after them, is uncertain
 
 
 @dataclass(frozen=True)
 class ContactSide:
     """The puck's motion on one side of a contact, at its time: `place` (2,) [m] and `velocity` (2,) [m/s].
 
-    `covariance` (4, 4): of place and velocity, by the sensor's noise. `common_errors` (4, k): their changes by one
-    standard deviation of each of k errors that all contacts share: the fitted glide law's and the calibration's.
+    `covariance` (4, 4): of place and velocity due to sensor noise. `common_errors` (4, k): their changes by one
+    standard deviation of each of k errors that all contacts share: those of the fitted glide law and of the
+    calibration.
     """
 
     place: np.ndarray
@@ -35,10 +36,10 @@ class ContactSide:
 class ContactMotion:
     """A contact between two glides, with the motion `before` and `after` it; `cluster`: its launch.
 
-    `spin_chain`: contacts of one number follow each other without a gap, so that the puck's spin carries over;
-    `spin_unknown`: the launch had a contact before this chain, so that the chain begins with an unknown spin.
-    `time_since_contact` [s]: since the contact before, nan where that is unknown. `glide`: index of the glide that
-    follows, among those of the recording.
+    `spin_chain`: contacts with the same number follow each other without a gap, so the puck's spin carries over.
+    `spin_unknown`: the launch had a contact before this chain, so the chain begins with an unknown spin.
+    `time_since_contact` [s]: time since the previous contact, nan if unknown. `glide`: index of the following glide in
+    the recording.
     """
 
     contact: ContactEvent
@@ -54,9 +55,9 @@ class ContactMotion:
 def find_contact_motions(
     segments: Segments, problem: GlideProblem, states: States, recording: int = 0
 ) -> list[ContactMotion]:
-    """The contacts of `segments` that lie between two fitted glides, in order of time.
+    """Find the contacts of `segments` that lie between two fitted glides, in order of time.
 
-    `segments` are those of recording number `recording` of the problem; `states` are the ends of all its glides.
+    `segments`: of recording number `recording` of the problem; `states`: at the ends of all glides of the problem.
     """
     data = problem.data
     here = np.flatnonzero(data.recording == recording)
@@ -65,7 +66,7 @@ def find_contact_motions(
     begin, finish = data.t[data.first[here]], data.t[data.first[here + 1] - 1]
     near = (
         CONTACT.outlier_deviations * problem.place_error_m or SEGMENTATION.place_slack
-    )  # a wall's line is where the camera sees it
+    )  # contact lines are in the camera's coordinates
     found: list[ContactMotion] = []
     for k, contact in enumerate(segments.contacts):
         before = glide_before(segments, begin, finish, k)
@@ -89,9 +90,9 @@ def find_contact_motions(
 
 
 def glide_before(segments: Segments, begin: np.ndarray, finish: np.ndarray, k: int) -> int | None:
-    """Index of the glide that leads to contact `k` of `segments`, of glides from `begin` to `finish` (n,) [s].
+    """Index of the glide that ends at contact `k` of `segments`; the glides last from `begin` to `finish` (n,) [s].
 
-    None where the contact lacks a glide right before or right after it, or another contact lies in the same gap.
+    None if there is no glide directly before or after the contact, or if another contact lies in the same gap.
     """
     contact = segments.contacts[k]
     before = int(np.searchsorted(begin, contact.t)) - 1
@@ -117,10 +118,10 @@ def _has_neighbour(segments: Segments, k: int, start: float, stop: float) -> boo
 def _check_wall(
     before: ContactSide, after: ContactSide, contact: ContactEvent, lines: dict[str, float], near: float
 ) -> ContactEvent:
-    """The contact, its kind changed to "unexplained" where both motions do not meet at its wall.
+    """Change the kind of a wall contact to "unexplained" if the motions before and after do not meet at the wall.
 
-    They meet there if their weighted mean lies within `near` [m] and the noise of the wall's contact line in `lines`
-    [m]. A beam may hide something else, such as a contact with a mallet under it.
+    They meet there if their weighted mean lies within `near` [m] plus its noise of the wall's contact line in `lines`
+    [m]. A beam may hide another event, such as a contact with a mallet under it.
     """
     if contact.kind != "wall":
         return contact
@@ -135,7 +136,7 @@ def _check_wall(
 
 
 def _extrapolate(states: States, glide: int, end: int, duration: float) -> ContactSide:
-    """The motion `duration` [s] after an end (0 first, 1 last frame) of a glide, or before it where it is negative."""
+    """The motion `duration` [s] after the first (`end` 0) or last (1) frame of a glide; before it if negative."""
     place, velocity, beyond = np.split(states.motion[glide, end], 3)
     moved = np.eye(4)
     moved[0, 2] = moved[1, 3] = duration

@@ -1,4 +1,4 @@
-"""Contacts as a problem for the engine: velocities after each, predicted from those before it, in units of noise."""
+"""Contacts as an estimation problem: whitened residuals of the velocity after each contact given the one before."""
 
 from __future__ import annotations
 
@@ -16,25 +16,25 @@ from sim2real.diagnose.regimes.contact.tuned import CONTACT
 
 
 class ContactProblem(ABC, Generic[AnyContacts]):
-    """Contacts of one kind with `each` residuals for every one, named `unit_name` in advice to the user.
+    """Contacts of one kind with `each` residuals per contact; `unit_name` names them in advice to the user.
 
-    Parameters that `values` leave out have their defaults.
+    Parameters that are missing from `values` have their defaults.
     """
 
     base: tuple[str, ...]
     each: int
     unit_name: str
-    place_error_m = 0.0  # the glides, by which velocities are known, account for it
+    place_error_m = 0.0  # included in the velocities' errors, which come from the glides
 
     def __init__(self, data: AnyContacts, clusters: int, common: Mapping[str, float]) -> None:
-        """`clusters`: how many launches the recordings have; `common`: the table's sizes and the glide law."""
+        """`clusters`: number of launches in the recordings; `common`: the table's sizes and the glide law."""
         self.data, self.clusters, self._common = data, clusters, dict(common)
         self._pucks = np.zeros(1, PUCK)
         self.units = Units(data.cluster, np.full(len(data), float(self.each)), self.unit_name, _kinds(data))
         self.freedom = self.each * np.bincount(data.cluster, minlength=clusters).astype(float)
 
     def _set_noise(self, covariance: np.ndarray, by_before: np.ndarray) -> None:
-        """Set the noise of observed less predicted velocities: its `covariance` (n, each, each) [m^2/s^2].
+        """Set the `covariance` (n, each, each) [m^2/s^2] of the velocity residuals (observed minus predicted).
 
         `by_before` (n, each, 2): derivative of the prediction by the velocity before.
         """
@@ -52,21 +52,21 @@ class ContactProblem(ABC, Generic[AnyContacts]):
 
     @abstractmethod
     def predicted(self, values: Mapping[str, float]) -> np.ndarray:
-        """Velocities (n, each) [m/s] after each contact under a law: along the normal, the tangent, and others."""
+        """Predicted velocities (n, each) [m/s] after each contact: along the normal, the tangent, and others."""
 
     @abstractmethod
     def with_common_noise(self, values: Mapping[str, float], predicted: np.ndarray, rows: np.ndarray) -> np.ndarray:
-        """Residuals or columns (each n, k), whitened also for the noise that contacts share: common errors and spin.
+        """Whiten `rows` (each n, k) of residuals or columns for the noise that contacts share: common errors and spin.
 
-        predicted: what `predicted` returns for `values`.
+        predicted: the result of `predicted` for `values`.
         """
 
     def with_recoil(self, values: Mapping[str, float], changes: np.ndarray) -> np.ndarray:
-        """Changes (n, each, k) [m/s] of the prediction, completed from those of the puck's velocity."""
+        """Changes (n, each, k) [m/s] of the whole prediction, from `changes` of the puck's velocity in it."""
         return changes
 
     def residuals(self, values: Mapping[str, float], free: Sequence[str], clusters: np.ndarray) -> Residuals:
-        """See `Problem.residuals`: velocities after each contact, observed less predicted."""
+        """See `Problem.residuals`: velocities after each contact, observed minus predicted."""
         predicted = self.predicted(values)
         columns = np.empty((len(self.data), self.each, len(free)))
         for k, name in enumerate(free):
@@ -82,13 +82,13 @@ class ContactProblem(ABC, Generic[AnyContacts]):
 
     @property
     def std(self) -> np.ndarray:
-        """Standard deviation (n, each) [m/s] of observed less predicted velocities."""
+        """Standard deviation (n, each) [m/s] of observed minus predicted velocities."""
         inverse = np.linalg.inv(self._whitening)
         return np.sqrt(np.einsum("nij,nij->ni", inverse, inverse))
 
     @property
     def unit_of_rows(self) -> np.ndarray:
-        """Index (each n,) of the contact to which each residual belongs."""
+        """Index (each n,) of the contact of each residual."""
         return np.repeat(np.arange(len(self.data)), self.each)
 
     def whitened(self, velocities: np.ndarray) -> np.ndarray:
@@ -102,7 +102,7 @@ class ContactProblem(ABC, Generic[AnyContacts]):
 
 
 def _kinds(data: Contacts) -> dict[str, np.ndarray]:
-    """Slow, fast, steep and flat contacts (n,) bool: the halves on either side of a median."""
+    """Slow, fast, steep and flat contacts (n,) bool, each split at the median."""
     if not len(data):
         return {}
     fast, flat = (size > np.median(size) for size in (data.closing_speed, data.incidence_angle))

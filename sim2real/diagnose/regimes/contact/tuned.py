@@ -1,4 +1,4 @@
-"""Tuned numbers of what the wall and mallet regimes share."""
+"""Tuned numbers that the wall and mallet regimes share."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from sim2real.statistics.tuned import tuned
 
 @dataclass(frozen=True)
 class ContactNumbers:
-    """Tuned numbers of contacts: which are used, how they are differentiated, and what may be missing from them."""
+    """Tuned numbers of contacts: selection, difference steps, and candidate laws."""
 
     longest_gap: float = tuned(
         0.12,

@@ -1,7 +1,7 @@
-"""The basis library of the gantry: smooth laws of any shape, as extra volts on an axis over something recorded.
+"""The basis library of the gantry: smooth laws as extra volts on an axis that depend on a recorded quantity.
 
-What an axis loses to its speed is volts as well, so a law of the losses is a curve times the speed. What the baseline's
-own terms (volts, speed, acceleration) can do is projected out.
+Losses proportional to speed are expressed as volts, so a law of the losses is a curve times the speed. Components that
+the baseline's own terms (volts, speed, acceleration) can represent are projected out.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from sim2real.diagnose.regimes.gantry.response import sampled_response
 from sim2real.diagnose.regimes.gantry.tuned import GANTRY_LAW
 from sim2real.statistics.piecewise import hats, spread_knots
 
-# By name: what a law depends on (`Law.family`)
+# By name: the quantity that a law depends on (`Law.family`)
 DEPENDS_ON = {
     "force by place": "position",
     "loss by place": "position",
@@ -35,11 +35,10 @@ DEPENDS_ON = {
 
 @dataclass(frozen=True)
 class Signals:
-    """What an axis did through all runs, each (n,).
+    """The signals of an axis over all runs, each (n,).
 
-    `t` [s]; `place` [m]; `velocity` [m/s]; `acceleration` [m/s^2]; `voltage` [V] of the drive input; `load` [V]: the
-    sizes of both axes' volts together; `heading` [°] of the mallet; `history` (n, k): exponential averages of voltage
-    [V] and velocity [m/s].
+    `t` [s]; `place` [m]; `velocity` [m/s]; `acceleration` [m/s^2]; `voltage` [V] of the drive input; `load` [V]: |V_x|
+    + |V_y|; `heading` [°] of the mallet; `history` (n, k): exponential averages of voltage [V] and velocity [m/s].
     """
 
     t: np.ndarray
@@ -63,18 +62,18 @@ class Signals:
 
     @property
     def ones(self) -> np.ndarray:
-        """Ones (n,), for volts that are proportional to nothing."""
+        """Ones (n,), for volts that are not proportional to a signal."""
         return np.ones(len(self.t))
 
 
 def families(problem: GantryResiduals, p: np.void) -> tuple[list[Law], np.ndarray]:
-    """The smooth laws, and their columns (rows, k) of the residuals at the law `p`."""
+    """The smooth laws, and their columns (rows, k) of the design matrix at the parameters `p`."""
     volts, laws = _voltages(problem.runs, problem.basis_runs)
     return laws, -path_responses(problem, p, volts)
 
 
 def path_responses(problem: GantryResiduals, p: np.void, volts: np.ndarray) -> np.ndarray:
-    """What extra volts (n, 2, k) [V] on the axes through all runs add to the path: (rows, k), in units of the noise."""
+    """The whitened response (rows, k) of the path to extra volts (n, 2, k) [V] on the axes over all runs."""
     blocks, first = [], 0
     for run in problem.runs:
         own, paths = volts[first : first + len(run.t)], np.zeros((len(run.t), *volts.shape[1:]))
@@ -88,14 +87,14 @@ def path_responses(problem: GantryResiduals, p: np.void, volts: np.ndarray) -> n
 
 
 def voltages_of(runs: Sequence[GantryRecording], law: Law) -> np.ndarray:
-    """Volts (n, 2, k) [V] of the columns of one smooth law."""
+    """Volts (n, 2, k) [V] for the columns of one smooth law."""
     volts, laws = _voltages(runs, runs)
     first = sum(len(one.columns) for one in laws[: [one.name for one in laws].index(law.name)])
     return volts[:, :, first : first + len(law.columns)]
 
 
 def _voltages(runs: Sequence[GantryRecording], basis_runs: Sequence[GantryRecording]) -> tuple[np.ndarray, list[Law]]:
-    """Volts (n, 2, k) of every column through all runs, of rms 1 V in `basis_runs`; and the laws that they make up."""
+    """Volts (n, 2, k) of every column over all runs, scaled to rms 1 V in `basis_runs`; and the laws of the columns."""
     columns, laws = [], []
     both = [signals(runs, axis) for axis in range(2)]
     reference = both if runs is basis_runs else [signals(basis_runs, axis) for axis in range(2)]
@@ -113,7 +112,7 @@ def _voltages(runs: Sequence[GantryRecording], basis_runs: Sequence[GantryRecord
 
 
 class _Basis:
-    """The basis functions on an axis, with knots and sizes by what it did in the signals `reference`."""
+    """The basis functions on an axis; their knots and scales come from the signals `reference`."""
 
     def __init__(self, reference: Signals) -> None:
         self._reference = reference
@@ -122,7 +121,7 @@ class _Basis:
         self._times = np.linspace(reference.t.min(), reference.t.max(), GANTRY_LAW.time_knots)
 
     def of(self, name: str, s: Signals) -> np.ndarray:
-        """Volts (n, k) [V] of a law's basis functions through all runs."""
+        """Volts (n, k) [V] of a law's basis functions over all runs."""
         v, u = s.velocity[:, None], s.voltage[:, None]
         match name:
             case "force by place":
@@ -147,7 +146,7 @@ class _Basis:
         return hats(getattr(s, coordinate), self._knots[coordinate])
 
     def independent(self, name: str, s: Signals) -> np.ndarray:
-        """Combinations (n, k) of a law's basis functions, less the baseline's own terms, of rms 1 V in `reference`."""
+        """Combinations (n, k) of basis functions orthogonal to the baseline's terms, of rms 1 V in `reference`."""
         baseline, basis = _baseline(self._reference), self.of(name, self._reference)
         sizes, widths = (np.maximum(np.sqrt(np.mean(one**2, axis=0)), 1e-12) for one in (baseline, basis))
         shares = np.linalg.lstsq(baseline / sizes, basis / widths, rcond=None)[0]
@@ -168,7 +167,7 @@ def _baseline(s: Signals) -> np.ndarray:
 
 
 def signals(runs: Sequence[GantryRecording], axis: int) -> Signals:
-    """What an axis did through all runs, in order."""
+    """The signals of an axis over all runs, in order."""
     return Signals(*(np.concatenate(part) for part in zip(*(_signals(run, axis) for run in runs), strict=True)))
 
 
@@ -183,7 +182,7 @@ def _signals(run: GantryRecording, axis: int) -> list[np.ndarray]:
 
 @array_kernel
 def _exponential_average(t, q, tau):
-    """The average (n,) of the past of `q` (n,) at the times `t` (n,) [s], its weight falling by exp(-age / tau)."""
+    """The average (n,) of the past of `q` (n,) at the times `t` (n,) [s], weighted by exp(-age / tau)."""
     held = q.copy()
     for i in range(1, len(q)):
         keep = math.exp(-(t[i] - t[i - 1]) / tau)

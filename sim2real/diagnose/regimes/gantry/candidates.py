@@ -1,4 +1,4 @@
-"""What a gantry may lack, as columns of its residuals: the listed effects, and smooth laws of any shape."""
+"""Candidate laws of the gantry as columns of the design matrix: listed effects and smooth laws."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from sim2real.diagnose.regimes.gantry.residuals import GantryResiduals
 def gantry_design_matrix(
     problem: GantryResiduals, effects: Sequence[Candidate], values: Mapping[str, float], free: Sequence[str]
 ) -> DesignMatrix:
-    """All columns of the gantry at the law `values`: its derivatives, the listed `effects` found, the smooth laws."""
+    """All columns of the gantry at the parameters `values`: derivatives, the supported `effects`, and smooth laws."""
     rows = [row for name in STARTS for row in EFFECTS[name].row_names]
     on = [row for row in rows if row in free or values.get(row, BY_NAME[row].default) != BY_NAME[row].default]
-    off = [row for row in rows if row not in on]  # where a fit ended with them off, they stay so
+    off = [row for row in rows if row not in on]  # parameters that a fit left at zero stay at zero
     exact = problem.residuals(values, (*problem.base, *on), np.arange(problem.clusters))
     laws, smooth = families(problem, problem.record(values))
     smooth = np.vstack([smooth, np.zeros((len(exact.r) - len(smooth), smooth.shape[1]))])  # a prior does not change

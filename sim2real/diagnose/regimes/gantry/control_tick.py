@@ -1,7 +1,7 @@
-"""The motors' control loop: whether it obeys a plan at once, or at the next tick, and of which period.
+"""Identify the period of the motors' control loop: whether a plan takes effect immediately or at the next tick.
 
-A switch that comes up to a tick late is no missing physics, but looks like some: the period is found first, with every
-law of the volts free at once so that none of them is mistaken for it.
+A switch that takes effect up to one tick late is not missing physics but looks like it. The period is therefore
+estimated first, with all laws of the volts free, so that none of them absorbs it.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from sim2real.diagnose.regimes.gantry.listed_effects import linearised_loss
 from sim2real.diagnose.regimes.gantry.residuals import LOW_ORDER, GantryResiduals
 from sim2real.diagnose.regimes.gantry.tuned import CONTROL_TICK
 
-# Laws beneath which a period is looked for: of the volts, then of belt or backlash, each from a few starts
+# Laws that are free while the period is searched: those of the volts, then belt or backlash, each from a few starts
 STARTS = (
     ({"voltage_sag": 0.0, "motor_deadband": 0.0, "command_delay": 0.0, "encoder_clock": 0.0},),
     tuple({"belt_hz": hz, "belt_zeta": 0.15} for hz in (7.0, 12.0, 20.0, 35.0)),
@@ -24,7 +24,7 @@ STARTS = (
 
 
 def find_tick(problem: GantryResiduals) -> float:
-    """The period [s] of the control loop that best explains the first run with switches; 0: it obeys at once."""
+    """The control loop's period [s] that best explains the first run with switches; 0 if plans act immediately."""
     run = next((one for one in problem.runs if one.drive_inputs.switch.any()), None)
     if run is None:
         return 0.0
@@ -40,9 +40,9 @@ def find_tick(problem: GantryResiduals) -> float:
 
 
 def _best_tick(part: GantryResiduals, law: Mapping[str, float], rows: tuple[str, ...]) -> tuple[float, float]:
-    """The period [s] that best explains the windows with the parameters `rows` free, and its excess, as in `_fitted`.
+    """The period [s] that best explains the windows with the parameters `rows` free, and its excess (see `_fitted`).
 
-    A delay is no free parameter here: with ticks it acts in steps.
+    The delay is searched on a grid because its effect is discontinuous with ticks.
     """
     parts = {tick: part.of([part.runs[0].with_tick(tick)]) for tick in CONTROL_TICK.periods}
     found = law.get("command_delay", 0.0)
@@ -64,7 +64,7 @@ def _best_tick(part: GantryResiduals, law: Mapping[str, float], rows: tuple[str,
 def _fitted(
     problem: GantryResiduals, start: Mapping[str, float], rows: tuple[str, ...]
 ) -> tuple[Mapping[str, float], float]:
-    """The law fitted from `start`, `rows` and LOW_ORDER free; and its excess: the mean log of windows' mean squares."""
+    """Fit `rows` and LOW_ORDER from `start`; return the parameters and the mean log of the windows' mean squares."""
     everywhere = np.arange(problem.clusters)
     law = fit(problem, start, (*LOW_ORDER, *rows), everywhere, CONTROL_TICK.rounds)
     last = problem.residuals(law.values, (), everywhere)

@@ -1,4 +1,4 @@
-"""The data of the gantry: the mallet's path beside its drive inputs, and its residuals under their response."""
+"""The data of the gantry: the mallet's path, its drive inputs, and the residuals of the simulated response."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from sim2real.diagnose.regimes.gantry.windows import StreamWindows, cut_windows
 from sim2real.recording.folder import Recording
 from sim2real.segmentation.sensor_noise import Noise, estimate_noise
 
-START_COLUMNS = 3  # of a window and axis: rest, slow and fast mode, projected out of its residuals
-ARRAYS = ("t", "observed", "place", "velocity", "noise")  # of a recording, an entry for each sample
+START_COLUMNS = 3  # free starting modes of a window and axis: rest, slow, fast; projected out of the residuals
+ARRAYS = ("t", "observed", "place", "velocity", "noise")  # fields with one entry per sample
 
 
 @dataclass(frozen=True)
 class GantryRecording:
-    """A mallet's path beside its drive inputs, in the recording of that `name`.
+    """A mallet's path and its drive inputs in the recording `name`.
 
     `observed` (n, 2) [m]: positions at `t` (n,) [s], with standard deviations `noise` (n, 2) [m]; `place` (n, 2) [m],
-    `velocity` (n, 2) [m/s]: the path smoothed.
+    `velocity` (n, 2) [m/s]: the smoothed path.
     """
 
     name: str
@@ -37,30 +37,31 @@ class GantryRecording:
     windows: StreamWindows
 
     def with_tick(self, tick: float) -> GantryRecording:
-        """The same with motors that obey a change at whole ticks [s] of their control loop."""
+        """A copy in which changes take effect at multiples of the control loop's period `tick` [s]."""
         return replace(self, drive_inputs=replace(self.drive_inputs, tick=tick))
 
     def first_windows(self, count: int) -> GantryRecording:
-        """The first `count` windows alone, each a cluster."""
+        """A copy with only the first `count` windows, each a cluster."""
         begin, end = self.windows.begin[:count], self.windows.end[:count]
         kept = {name: getattr(self, name)[: end[-1]] for name in ARRAYS}
         return replace(self, windows=StreamWindows(begin, end, np.arange(len(begin))), **kept)
 
     def thinned(self, samples: int) -> GantryRecording:
-        """The same with every k-th sample, so that about `samples` are left."""
+        """A copy with every k-th sample, about `samples` in total."""
         k = max(1, len(self.t) // samples)
         windows = StreamWindows(-(-self.windows.begin // k), -(-self.windows.end // k), self.windows.cluster)
         return replace(self, windows=windows, **{name: getattr(self, name)[::k].copy() for name in ARRAYS})
 
     def freedom(self) -> np.ndarray:
-        """Degrees of freedom (clusters,): residuals of each cluster less the columns of its windows' starts."""
+        """Degrees of freedom (clusters,): residuals of each cluster minus the starting columns of its windows."""
         sizes = 2 * (self.windows.end - self.windows.begin - START_COLUMNS)
         return np.bincount(self.windows.cluster, sizes, self.windows.clusters)
 
     def residuals(self, p: np.void, delay: float = 0.0, extra: np.ndarray | None = None) -> np.ndarray:
-        """Residuals (2 rows, 1 + k) of all windows, x before y, in units of the noise, starts projected out.
+        """Whitened residuals (2 rows, 1 + k) of all windows, x before y, with the starts projected out.
 
-        `delay` [s]: by which all changes come later. `extra` (n, 2, k) [m]: further columns of the path, treated alike.
+        `delay` [s]: delay of all changes. `extra` (n, 2, k) [m]: further columns of the path, transformed in the same
+        way.
         """
         extra = np.zeros((len(self.t), 2, 0)) if extra is None else extra
         changes, volts = self.drive_inputs.at_motors(p)
@@ -82,8 +83,11 @@ class GantryRecording:
 
 
 def read_gantry(recording: Recording, supply: float, breaks: np.ndarray) -> GantryRecording:
-    """The gantry in `recording` under `supply` [V]; `breaks` (k,) [s]: times at which something else pushed the mallet.
-    Errors: UnusableError."""
+    """Read the gantry's data from `recording`.
+
+    `supply` [V]; `breaks` (k,) [s]: times at which the puck pushed the mallet. Raises UnusableError if the data are too
+    few or incomplete.
+    """
     if recording.mallet is None:
         raise UnusableError("the mallet's path was not recorded (mallet.csv)")
     drive_inputs = find_drive_inputs(recording, supply)
@@ -110,11 +114,13 @@ def read_gantry(recording: Recording, supply: float, breaks: np.ndarray) -> Gant
 def _check_enough(windows: StreamWindows) -> None:
     if len(windows.begin) < GANTRY_DATA.fewest_windows:
         seconds, expected = (GANTRY_DATA.window * count for count in (len(windows.begin), GANTRY_DATA.fewest_windows))
-        raise UnusableError(f"mallet and orders overlap for {seconds:.1f} s, expected {expected:g} s or more")
+        raise UnusableError(
+            f"mallet path and drive inputs overlap for {seconds:.1f} s, expected {expected:g} s or more"
+        )
 
 
 def find_drive_inputs(recording: Recording, supply: float) -> DriveInputs:
-    """The motors' drive inputs: of the plans, else of the motors' log. Errors: UnusableError."""
+    """The motors' drive inputs from the plans, or else from the motors' log. Raises UnusableError if neither exists."""
     sources = (
         ("commands", recording.commands, from_commands),
         ("drive", recording.drive, lambda drive: from_drive(drive, supply)),
@@ -129,8 +135,10 @@ def find_drive_inputs(recording: Recording, supply: float) -> DriveInputs:
 
 
 def smoothed(t: np.ndarray, observed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Place [m] and velocity [m/s], each (n, 2), of positions `observed` (n, 2) [m] at `t` (n,) [s], averaged over
-    `GANTRY_DATA.smoothing` but not across holes."""
+    """Smooth positions `observed` (n, 2) [m] at `t` (n,) [s] by a moving average over `GANTRY_DATA.smoothing`.
+
+    Returns place [m] and velocity [m/s], each (n, 2). No average extends across a hole in the stream.
+    """
     period = float(np.median(np.diff(t)))
     edges = [0, *(np.flatnonzero(np.diff(t) > GANTRY_DATA.longest_hole * period) + 1), len(t)]
     parts = [
@@ -149,14 +157,14 @@ def _smoothed(t: np.ndarray, observed: np.ndarray, half: int) -> tuple[np.ndarra
 
 
 def encoder_noise(t: np.ndarray, p: np.ndarray) -> Noise:
-    """Noise of the positions `p` (n, 2) [m] at `t` (n,) [s], at least that of rounding to the encoders' steps, which is
+    """Noise of the positions `p` (n, 2) [m] at `t` (n,) [s], at least the rounding error of the encoders,
     step / sqrt(12)."""
     noise = estimate_noise(t, p)
     return replace(noise, position=max(noise.position, smallest_step(p) / np.sqrt(12.0)))
 
 
 def smallest_step(p: np.ndarray) -> float:
-    """The step [m] to which positions (n, 2) are rounded: the smallest usual difference of neighbours; 0 if none."""
+    """The step [m] to which positions (n, 2) are rounded: a low quantile of neighbours' differences; 0 if unknown."""
     moves = np.abs(np.diff(p, axis=0)).ravel()
     moves = moves[moves > GANTRY_DATA.same_step]
     return float(np.quantile(moves, 0.01)) if len(moves) else 0.0

@@ -1,4 +1,4 @@
-"""What a report shows of the gantry: an unlisted law as a curve."""
+"""The gantry figures of a report: an unlisted law as a curve."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from sim2real.statistics.binned import binned, half_band, over
 
 
 def smooth_curve(problem: GantryProblem, found: SearchResult, formula: Formula, view: GantryProjection) -> Curve:
-    """An unlisted law and its formula over a coordinate, both less what the baseline's own terms can do.
+    """An unlisted law and its formula over a coordinate, both orthogonal to the baseline's own terms.
 
-    Drawn is the ratio of extra volts and driver, by least squares in each bin. The path has no volts of its own to draw
-    beside them.
+    The curve is the ratio of extra volts to driver, by least squares in each bin. There are no data points, because
+    the path does not measure volts directly.
     """
     law = found.unlisted
     assert law is not None
@@ -28,7 +28,7 @@ def smooth_curve(problem: GantryProblem, found: SearchResult, formula: Formula, 
     acts = np.concatenate([np.full(len(part), part.any()) for part in np.split(volts, 2)])
     here = acts & (np.abs(view.driver) > GANTRY_LAW.least_driver * np.sqrt(np.mean(view.driver**2)))
     x, driver, by_formula = view.coordinate[here], view.driver[here], _beyond_baseline(problem, volts)[here]
-    std = 1.0 / np.abs(driver)  # of the ratio, where all volts have the same error
+    std = 1.0 / np.abs(driver)  # of the ratio, if all volts have the same error
     rows = columns[here] / driver[:, None]
     shape = binned(x, rows @ found.coefficients, std, GANTRY_LAW.bins)
     half = half_band(shape, std, rows, covariance, found.law.clusters)
@@ -40,9 +40,9 @@ def smooth_curve(problem: GantryProblem, found: SearchResult, formula: Formula, 
 
 
 def _beyond_baseline(problem: GantryProblem, volts: np.ndarray) -> np.ndarray:
-    """Volts (2 n,) [V], x before y, less what the baseline's own terms can do of them on each axis."""
-    left = []
+    """Volts (2 n,) [V], x before y, minus their projection on the baseline's own terms on each axis."""
+    rest = []
     for axis, part in enumerate(np.split(volts, 2)):
         baseline = baseline_voltages(problem.runs, axis)
-        left.append(part - baseline @ np.linalg.lstsq(baseline, part, rcond=None)[0])
-    return np.concatenate(left)
+        rest.append(part - baseline @ np.linalg.lstsq(baseline, part, rcond=None)[0])
+    return np.concatenate(rest)

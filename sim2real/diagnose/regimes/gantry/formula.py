@@ -28,7 +28,7 @@ COORDINATES = {
     "heading": (("heading", "heading", "deg", "heading [°]"),),
 }
 # By the first word: the field of `Signals` to which the volts are proportional, the unit and name of their ratio, and
-# how the proportion is said
+# the words for the proportion
 DRIVERS = {
     "force": ("ones", "V", "volts", "volts"),
     "loss": ("velocity", "V s/m", "volts for each m/s of speed", "times the speed"),
@@ -38,8 +38,11 @@ DRIVERS = {
 
 @dataclass(frozen=True)
 class GantryProjection:
-    """A `coordinate` (2 n,) of both axes, x before y, and the `driver` (2 n,) to which the volts are proportional;
-    `symbol`, `unit` and `label` of the coordinate, `ratio_label` of volts by driver."""
+    """A projection of extra volts.
+
+    `coordinate` (2 n,): of both axes, x before y; `driver` (2 n,): the signal to which the volts are proportional;
+    `symbol`, `unit`, `label`: of the coordinate; `ratio_label`: of volts per driver.
+    """
 
     symbol: str
     unit: str
@@ -50,14 +53,14 @@ class GantryProjection:
 
 
 def is_readable(law: Law) -> bool:
-    """Whether a law of the gantry has a coordinate over which a formula can be written."""
+    """Whether a law of the gantry has a coordinate that a formula can be written over."""
     return law.name.split()[-1] in COORDINATES
 
 
 def readable_formula(
     problem: GantryProblem, found: SearchResult, law: Law, use: np.ndarray
 ) -> tuple[Formula, GantryProjection]:
-    """The formula of an unlisted law, fitted to the clusters `use`, and the projection that shows it."""
+    """Fit the formula of an unlisted law to the clusters `use`; return it and the projection that shows it."""
     kind, coordinate = law.name.split()[0], law.name.split()[-1]
     _, unit, _, proportion = DRIVERS[kind]
     views = [_projection(problem, kind, *one) for one in COORDINATES[coordinate]]
@@ -80,7 +83,7 @@ def readable_formula(
 def _formula_problem(
     problem: GantryProblem, found: SearchResult, use: np.ndarray, moved: Mapping[str, float]
 ) -> FormulaProblem:
-    """What the fitted parameters leave, each `moved` from where it was found, and how extra volts change that."""
+    """The residuals with the fitted parameters changed by `moved`, and their response to extra volts."""
     values = {name: value + moved.get(name, 0.0) for name, value in found.final.values.items()}
     p = problem.record(values)
     rest = problem.residuals(values, found.final.free, np.arange(problem.clusters))
@@ -94,17 +97,17 @@ def _formula_problem(
 
 
 def _refitted(problem: GantryProblem, found: SearchResult, use: np.ndarray, first: Formula) -> Formula:
-    """The same form, linearised anew about the baseline's parameters beside it, which are far from those alone."""
+    """Refit the same form, linearised about the baseline's parameters that were fitted together with it."""
     best, moved = first, dict.fromkeys(found.final.free, 0.0)
     for _ in range(GANTRY_LAW.formula_rounds):
         moved = {name: moved[name] + float(by) for (name, by) in zip(moved, best.moved, strict=True)}
         best = find_formula(_formula_problem(problem, found, use, moved), [best.form])
-    whole = np.array(list(moved.values())) + best.moved
-    return replace(best, moved=whole, gained=first.gained)
+    total = np.array(list(moved.values())) + best.moved
+    return replace(best, moved=total, gained=first.gained)
 
 
 def _projection(problem: GantryProblem, kind: str, name: str, symbol: str, unit: str, label: str) -> GantryProjection:
-    """The projection of laws of a `kind` over a field of `Signals`."""
+    """The projection of laws of a `kind` over the field `name` of `Signals`."""
     driver_name, _, ratio_label, _ = DRIVERS[kind]
     both = [signals(problem.runs, axis) for axis in range(2)]
     coordinate, driver = (np.concatenate([getattr(one, field) for one in both]) for field in (name, driver_name))

@@ -1,7 +1,8 @@
-"""Listed effects that the mallet's path may support, each fitted as it is, with the baseline beside it.
+"""Fit listed effects to the mallet's path, each by nonlinear least squares together with the baseline.
 
-The encoders are so exact that no effect is a small change: its column is the difference of the residuals between the
-best fit without it and the best fit with it. On top of the best effect every other is tried, while anything is left.
+The encoders are so precise that no effect is a small perturbation. The column of an effect is therefore the difference
+of the residuals between the best fits without and with it. Further effects are tried in addition to the best one while
+misfit remains.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from sim2real.diagnose.engine.tuned import ENGINE
 from sim2real.diagnose.regimes.gantry.residuals import LOW_ORDER, GantryResiduals
 from sim2real.diagnose.regimes.gantry.tuned import GANTRY_FIT
 
-# Where fits of an effect start; of several, the most promising by their derivatives are followed up
+# Starting values of an effect; of several, those with the smallest linearised loss are fitted
 STARTS: dict[str, tuple[dict[str, float], ...]] = {
     "voltage_sag": ({},),
     "motor_deadband": ({},),
@@ -28,15 +29,16 @@ STARTS: dict[str, tuple[dict[str, float], ...]] = {
     "backlash": tuple({"backlash_gap": gap} for gap in (2e-4, 7e-4, 2e-3)),
     "clock_drift": tuple({"encoder_clock": ppm} for ppm in (-1000.0, -300.0, 300.0, 1000.0)),
 }
-ALTERNATIVES = {"belt_compliance": "backlash", "backlash": "belt_compliance"}  # both let the mallet lag its motor
+ALTERNATIVES = {"belt_compliance": "backlash", "backlash": "belt_compliance"}  # both make the mallet lag its motor
 ONCE = 1  # step of a fit that only estimates the covariance
 
 
 @dataclass(frozen=True)
 class StagedFit:
-    """A law fitted with the jerk's coefficients at their defaults, `low_order`, and from there with them free, `law`.
+    """A law fitted in two stages: `low_order` with the jerk's coefficients at their defaults, then `law` with them
+    free.
 
-    Free at once, these absorb whatever else delays or softens the path.
+    If these coefficients were free from the start, they would absorb any other effect that delays or smooths the path.
     """
 
     low_order: LeastSquaresFit
@@ -45,7 +47,7 @@ class StagedFit:
 
 @dataclass(frozen=True)
 class Candidate:
-    """An effect on top of those `beside` it: the best fit `law`, and its change `column` (n,) of the residuals."""
+    """An effect in addition to those in `beside`: its best fit `law`, and the `column` (n,) of residual changes."""
 
     name: str
     beside: tuple[str, ...]
@@ -54,14 +56,14 @@ class Candidate:
 
     @property
     def label(self) -> str:
-        """A name for the column, unlike any parameter's."""
+        """A name for the column that differs from all parameters' names."""
         return " beside ".join((f"+ {self.name}", *self.beside))
 
 
 def candidates(problem: GantryResiduals, values: Mapping[str, float]) -> list[Candidate]:
-    """The effects that fits from `values` support; none where the best of them leave much of the baseline's excess.
+    """The effects that fits from `values` support; empty if the best of them leave much of the baseline's excess.
 
-    An effect whose fit ends at a bound of its range, or whose size is not significant, stands for something else.
+    An effect is not supported if its fit ends at a bound of its range or its size is not significant.
     """
     thin = problem.thinned(GANTRY_FIT.samples)
     freedom = float(thin.freedom.sum())
@@ -81,24 +83,24 @@ def candidates(problem: GantryResiduals, values: Mapping[str, float]) -> list[Ca
         before = _residuals(problem, now.law)
         found += [Candidate(name, chosen, one.law, _residuals(problem, one.law) - before) for name, one in fits.items()]
         chosen, now = (*chosen, best), fits[best]
-    before, left = (_mean_square(problem, one.law) for one in (base, now))  # of all samples: backlash is in reversals
-    much = left > GANTRY_FIT.much_left and left - 1.0 > (1.0 - GANTRY_FIT.later_share) * (before - 1.0)
+    before, after = (_mean_square(problem, one.law) for one in (base, now))  # all samples: backlash shows in reversals
+    much = after > GANTRY_FIT.much_left and after - 1.0 > (1.0 - GANTRY_FIT.later_share) * (before - 1.0)
     return [] if much else found
 
 
 def is_supported(problem: GantryResiduals, without: LeastSquaresFit, law: LeastSquaresFit, name: str) -> bool:
-    """Whether an effect's fit `law` lies inside its range, is significant, and gains more than chance would."""
+    """Whether the fit `law` of an effect lies inside its range, is significant, and improves more than by chance."""
     rows = EFFECTS[name].row_names
     if set(law.bound) & set(rows):
         return False
     sizes = [abs(law.values[row] - BY_NAME[row].default) > GANTRY_FIT.significance * _std(law, row) for row in rows]
-    by_starts = 4.0 * problem.windows if name == "belt_compliance" else 0.0  # of its ringing, two on each axis
+    by_starts = 4.0 * problem.windows if name == "belt_compliance" else 0.0  # two ringing columns on each axis
     noise = max(law.loss / float(problem.freedom.sum()), 1.0)
     return any(sizes) and (without.loss - law.loss) / noise > ENGINE.fit_gain + 2.0 * len(rows) + by_starts
 
 
 def best_fit(problem: GantryResiduals, without: StagedFit, name: str) -> StagedFit:
-    """The best fit of an effect on top of others, all of whose parameters stay free."""
+    """The best fit of an effect in addition to others, with all their parameters free."""
     rows = (*(row for row in without.low_order.free if row not in problem.base), *EFFECTS[name].row_names)
     starts = [{**without.low_order.values, **start} for start in STARTS[name]]
     if len(starts) > GANTRY_FIT.followed:
@@ -107,7 +109,7 @@ def best_fit(problem: GantryResiduals, without: StagedFit, name: str) -> StagedF
 
 
 def _fit_in_stages(problem: GantryResiduals, starts: Sequence[Mapping[str, float]], rows: tuple[str, ...]) -> StagedFit:
-    """The best of the low-order fits from `starts`, and from there the fit of all parameters."""
+    """The best low-order fit from `starts`, followed by the fit of all parameters."""
     low_order = [fit(problem, start, (*LOW_ORDER, *rows), problem.everything, GANTRY_FIT.rounds) for start in starts]
     best = min(low_order, key=lambda one: one.loss)
     if "command_delay" in rows:
@@ -116,7 +118,7 @@ def _fit_in_stages(problem: GantryResiduals, starts: Sequence[Mapping[str, float
 
 
 def _delay_in_steps(problem: GantryResiduals, law: LeastSquaresFit) -> LeastSquaresFit:
-    """The fit with the best delay near the one found: where motors obey a plan at ticks, a delay acts in steps."""
+    """The fit with the best delay on a grid near the fitted one; with ticks, the effect of a delay is discontinuous."""
     tick = max(run.drive_inputs.tick for run in problem.runs)
     free = tuple(row for row in law.free if row != "command_delay")
     delays = [max(law.values["command_delay"] + share * tick, 0.0) for share in GANTRY_FIT.delay_steps]
@@ -135,8 +137,8 @@ def _std(law: LeastSquaresFit, row: str) -> float:
 
 def _mean_square(problem: GantryResiduals, law: LeastSquaresFit) -> float:
     """Mean square residual in units of the noise."""
-    left = problem.residuals(law.values, (), problem.everything).r
-    return float(left @ left) / float(problem.freedom.sum())
+    r = problem.residuals(law.values, (), problem.everything).r
+    return float(r @ r) / float(problem.freedom.sum())
 
 
 def _residuals(problem: GantryResiduals, law: LeastSquaresFit) -> np.ndarray:
@@ -144,7 +146,7 @@ def _residuals(problem: GantryResiduals, law: LeastSquaresFit) -> np.ndarray:
 
 
 def linearised_loss(problem: GantryResiduals, start: Mapping[str, float], free: Sequence[str]) -> float:
-    """The loss of the best law with `free` parameters, by the derivatives at `start`."""
+    """The least loss with the parameters `free`, from the linearisation at `start`."""
     found = problem.residuals(start, free, problem.everything)
     sums = normal_equations.make_equations(free, found.r, found.jacobian, found.cluster, problem.clusters)
     columns = np.arange(len(free))

@@ -1,4 +1,4 @@
-"""The gantry as a problem for the engine: its residuals, with all that its law may lack."""
+"""The gantry as an estimation problem: its residuals with candidate laws."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from sim2real.recording.folder import Recording
 
 
 class GantryProblem(GantryResiduals):
-    """`GantryResiduals` with candidates: smooth laws, and the listed `effects`, which are searched for where None."""
+    """`GantryResiduals` with candidate laws: smooth laws, and the listed `effects`, which are searched if None."""
 
     def __init__(
         self,
@@ -31,12 +31,12 @@ class GantryProblem(GantryResiduals):
         self._effects = effects
 
     def for_holdout(self, runs: Sequence[GantryRecording]) -> GantryProblem:
-        """The same laws for the runs of holdout data, in which no effect is searched for."""
+        """The same laws for runs of holdout data; no effects are searched in them."""
         with_tick = [run.with_tick(self.runs[0].drive_inputs.tick) for run in runs]
         return GantryProblem(with_tick, self.common, self.runs, [])
 
     def with_found_tick(self) -> GantryProblem:
-        """The same with the period of the control loop at whose ticks the motors obey plans."""
+        """A copy with the identified period of the control loop."""
         tick = find_tick(self)
         return GantryProblem([run.with_tick(tick) for run in self.runs], self.common)
 
@@ -50,10 +50,10 @@ class GantryProblem(GantryResiduals):
 def gantry_problem(
     recordings: Sequence[Recording], common: Mapping[str, float], breaks: Sequence[np.ndarray] = ()
 ) -> tuple[GantryProblem, list[int]]:
-    """The gantry in those of `recordings` that show it, and their indices.
+    """The gantry problem of the usable `recordings`, and their indices.
 
-    `common`: what they share, by the names of `recording.table_parameters`; `breaks`: for each recording, the times
-    (k,) [s] at which something else pushed the mallet. Errors: UnusableError, why no recording shows it.
+    `common`: shared parameters, by the names of `recording.table_parameters`; `breaks`: for each recording, the times
+    (k,) [s] at which the puck pushed the mallet. Raises UnusableError with the reason if no recording is usable.
     """
     times_of = breaks or [np.zeros(0)] * len(recordings)
     runs: dict[int, GantryRecording] = {}

@@ -18,13 +18,13 @@ from sim2real.segmentation.segments import Segments
 
 
 class Gantry(Regime):
-    """How the mallet follows the motors' volts."""
+    """The mallet's response to the motors' volts."""
 
     name = "gantry"
-    after = ("glide", "wall", "mallet")  # in reports; it reads nothing of them
+    after = ("glide", "wall", "mallet")  # only the order of reports; it does not use their results
     more_of = "plans of the gantry, a minute or more over its whole area"
-    unit = ("stretch of some seconds", "stretches of some seconds")
-    least_size = 5e-5  # paths are compared half a second at a time, from starts that are fitted anew
+    unit = ("segment of some seconds", "segments of some seconds")
+    least_size = 5e-5  # small, because paths are compared over half a second from refitted starts
 
     def problem(self, evidence: Evidence, known: Known) -> GantryProblem | None:
         """See `Regime.problem`."""
@@ -50,7 +50,7 @@ class Gantry(Regime):
         return [RecordingPart(run.name, clusters) for run, clusters in pairs]
 
     def premises(self, evidence: Evidence, known: Known) -> tuple[bool, bool]:
-        """See `Regime.premises`: whether the mallet moved without touching the puck."""
+        """See `Regime.premises`: both hold if no contact with the puck disturbed the mallet."""
         alone = not any(len(times) for times in _contact_times(evidence.segments))
         return alone, alone
 
@@ -69,7 +69,7 @@ class Gantry(Regime):
 
 
 def _contact_times(segments: Sequence[Segments]) -> list[np.ndarray]:
-    """When [s] the puck struck the robot's mallet, in each recording."""
+    """Times [s] of the contacts with the robot's mallet, for each recording."""
     return [np.array([contact.t for contact in part.contacts if contact.where == "robot"]) for part in segments]
 
 

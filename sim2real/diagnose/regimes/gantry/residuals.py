@@ -1,4 +1,4 @@
-"""Residuals of the mallet's paths: observed positions less those that the drive inputs predict under a law."""
+"""Residuals of the mallet's paths: observed positions minus those predicted from the drive inputs under a law."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from sim2real.diagnose.engine.problem import Residuals, Units, record_of
 from sim2real.diagnose.regimes.gantry.data import GantryRecording
 from sim2real.diagnose.regimes.gantry.tuned import GANTRY_FIT
 
-PRIOR_PARAMETERS = ("a1", "b1")  # coefficients of the jerk: nearly a delay of the path, so they have a prior
+PRIOR_PARAMETERS = ("a1", "b1")  # coefficients of the jerk: almost equivalent to a delay, so they have a prior
 LOW_ORDER = ("a2", "a3", "b2", "b3")  # the baseline's other parameters
 MIRRORED = {"b1": "a1", "b2": "a2", "b3": "a3"}  # x depends on the difference a - b, y on the sum a + b
 
 
 class GantryResiduals:
-    """The mallet's paths of some recordings. Parameters that `values` leave out are `common`, or at default."""
+    """Residuals of the mallet's paths; parameters missing from `values` are those of `common`, or the defaults."""
 
     regime = "gantry"
     base: tuple[str, ...] = ("a1", "a2", "a3", "b1", "b2", "b3")
@@ -30,10 +30,10 @@ class GantryResiduals:
         common: Mapping[str, float],
         basis_runs: Sequence[GantryRecording] = (),
     ) -> None:
-        """`common`: what every law shares, e.g. the pulley's radius; `basis_runs`: the runs to which smooth laws were
-        fitted, where those are others.
+        """`common`: parameters that all laws share, e.g. the pulley's radius; `basis_runs`: the runs to which smooth
+        laws were fitted, if not `runs`.
 
-        Clusters are blocks of seconds, numbered through the runs in order.
+        Clusters are blocks of some seconds, numbered over the runs in order.
         """
         self.runs, self.common = tuple(runs), dict(common)
         self.basis_runs = tuple(basis_runs) or self.runs
@@ -58,16 +58,16 @@ class GantryResiduals:
         return GantryResiduals(runs, self.common)
 
     def thinned(self, samples: int) -> GantryResiduals:
-        """The same with about so many samples of the encoders in all, for fast fits."""
+        """A copy with about `samples` encoder samples in total, for fast fits."""
         share = samples / sum(len(run.t) for run in self.runs)
         runs = [run.thinned(max(1, int(share * len(run.t)))) for run in self.runs]
         return GantryResiduals(runs, self.common)
 
     def residuals(self, values: Mapping[str, float], free: Sequence[str], clusters: np.ndarray) -> Residuals:
-        """See `Problem.residuals`. They are `GANTRY_FIT.impossible` where an axis would not be overdamped.
+        """See `Problem.residuals`. They are `GANTRY_FIT.impossible` if an axis is not overdamped.
 
-        The last rows, two of each cluster, are the prior of PRIOR_PARAMETERS: with a delay of the plans, the path alone
-        hardly determines them.
+        The last two rows of each cluster are the prior of PRIOR_PARAMETERS, which the path alone hardly determines if
+        the plans are delayed.
         """
         p = self.record(values)
         r = self._path(p)
@@ -90,18 +90,18 @@ class GantryResiduals:
         step = _step(name, float(p[name]))
         moved, delay = p.copy(), 0.0
         if name == "command_delay":
-            delay = step  # of the changes themselves, since a delay acts in steps where there are ticks
+            delay = step  # shifts the changes themselves: with ticks, the effect of the parameter is discontinuous
         else:
             moved[name] += step
         return (self._path(moved, delay) - r) / step
 
     def defaults(self, name: str) -> float:
-        """The value of a parameter before any fit."""
+        """The default value of a parameter."""
         return float(self.common.get(name, BY_NAME[name].default))
 
     @property
     def windows(self) -> int:
-        """How many windows all runs have."""
+        """Number of windows of all runs."""
         return sum(len(run.windows.cluster) for run in self.runs)
 
     @property
@@ -110,11 +110,11 @@ class GantryResiduals:
         return np.arange(self.clusters)
 
     def record(self, values: Mapping[str, float]) -> np.void:
-        """The simulator's record of all parameters under the law `values`."""
+        """The simulator's parameter record for `values`."""
         return record_of({**self.common, **values})
 
     def _path(self, p: np.void, delay: float = 0.0) -> np.ndarray:
-        """Residuals (rows,) of the path, run by run, in units of the noise."""
+        """Whitened residuals (rows,) of the path, run by run."""
         r = np.concatenate([run.residuals(p, delay)[:, 0] for run in self.runs])
         return np.where(np.isfinite(r), r, GANTRY_FIT.impossible)
 

@@ -1,7 +1,7 @@
-"""One axis of the gantry through a recording: its response to volts in each window, and the residuals.
+"""The response of one axis of the gantry to volts in each window, and the residuals.
 
 Every window starts from an unknown state: the modes of the axis and of the belt's ringing. These enter linearly, so
-they are projected out of the residual, with a column for every switch whose tick is uncertain.
+they are projected out of the residuals, together with one column for each switch whose tick is uncertain.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from puckpilot_env.physics.effects import backlash, belt_compliance
 from puckpilot_env.physics.gantry.decay import fade
 from puckpilot_env.physics.gantry.mallet import axis_coefficients, axis_constants
 
-MOST_UNCERTAIN = 24  # uncertain switches within one window that get a column
+MOST_UNCERTAIN = 24  # most uncertain switches of one window that get a column
 STARTS = 5  # columns of a start: rest, slow and fast mode, and two of the ringing
-PLAY_ROUNDS = 3  # of alternation, age path and play depend on each other
-NOTHING_LEFT = 1e-7  # of a column's norm, after the ones before it are projected out: it is dependent
+PLAY_ROUNDS = 3  # iterations, because path and play depend on each other
+NOTHING_LEFT = 1e-7  # share of a column's norm that remains after projection, below which it is linearly dependent
 
 
 @kernel
@@ -31,7 +31,7 @@ def axis_of(p, axis):
 
 @kernel
 def drive_on(c, state, volts, duration):
-    """The state (rest, slow, fast, x, v) [m, m/s] after `duration` [s] of constant `volts` [V]; `c` from `axis_of`."""
+    """Advance a state (rest, slow, fast, x, v) [m, m/s] by `duration` [s] at constant `volts`; `c` from `axis_of`."""
     slow_rate, fast_rate, rest_gain, slow_gain, fast_gain, w, zeta = c
     rest, slow, fast, x, v = state
     slow_end, fast_end = -slow_gain * volts, fast_gain * volts
@@ -59,7 +59,7 @@ def place(c, state):
 def drive_window(c, changes, volts, now, t, path):
     """Write to `path` (n,) [m] the positions at the times `t` (n,) [s] of one window, from rest at 0.
 
-    `changes` (k,) [s]: from when on each of `volts` (k,) [V] holds; `now`: index of the one that holds at the start.
+    `changes` (k,) [s]: start of each of `volts` (k,) [V]; `now`: index of the volts at the start of the window.
     """
     state, moment = (0.0, 0.0, 0.0, 0.0, 0.0), t[0]
     for i in range(len(t)):
@@ -74,7 +74,7 @@ def drive_window(c, changes, volts, now, t, path):
 
 @kernel
 def start_columns(c, t, columns):
-    """Write to `columns` (n, STARTS) the responses to a start's modes at the times `t` (n,) [s] of a window."""
+    """Write to `columns` (n, STARTS) the free responses of the starting modes at the times `t` (n,) [s] of a window."""
     for i in range(len(t)):
         age = t[i] - t[0]
         columns[i, 0] = 1.0
@@ -98,7 +98,7 @@ def uncertain_switch_column(c, moment, t, column):
 
 @kernel
 def project_out(columns, count, targets):
-    """Project the first `count` of `columns` (n, k) out of `targets` (n, m), by Gram-Schmidt in place, done twice."""
+    """Project the first `count` of `columns` (n, k) out of `targets` (n, m) in place, by Gram-Schmidt applied twice."""
     n = columns.shape[0]
     for k in range(count):
         before = 0.0
@@ -127,8 +127,8 @@ def project_out(columns, count, targets):
 
 @kernel
 def turning_point(before, here, after):
-    """Place and time (in samples, negative before the middle one) of the extreme of the parabola through three samples
-    around a reversal; the middle one and 0 where there is none."""
+    """Place and time (in samples relative to the middle one) of the vertex of the parabola through three samples around
+    a reversal; the middle sample and 0 if there is none."""
     if (here - before) * (after - here) >= 0.0:
         return here, 0.0
     bend, slope = before - 2.0 * here + after, 0.5 * (after - before)
@@ -137,9 +137,9 @@ def turning_point(before, here, after):
 
 @kernel
 def shift_by_play(gap, motor, play):
-    """Write to `play` (n,) [m] the mallet's position less that of the `motor` (n,) [m] with a backlash of `gap` [m].
+    """Write to `play` (n,) [m] the mallet's position minus that of the `motor` (n,) [m] with a backlash of `gap` [m].
 
-    `play[0]` holds on entry its last value.
+    On entry, `play[0]` must hold the last value.
     """
     mallet = motor[0] + play[0]
     for i in range(len(motor)):
@@ -156,11 +156,11 @@ def shift_by_play(gap, motor, play):
 
 @array_kernel
 def axis_residuals(p, axis, changes, volts, uncertain, t, observed, weight, begin, end, extra, out):
-    """Write to `out` (samples, 1 + m) the weighted residual and columns of `extra` (samples, m) [m], starts projected
-    out.
+    """Write to `out` (samples, 1 + m) the weighted residual and columns of `extra` (samples, m) [m], with the starts
+    projected out.
 
     changes (k,) [s], volts (k,) [V]: at the motors; uncertain: indices of uncertain switches; t [s], observed [m],
-    weight [1/m] (samples,): of the encoders; begin, end (windows,): first sample of each window, and after its last.
+    weight [1/m] (samples,): of the encoders; begin, end (windows,): first sample of each window, and one past its last.
     """
     c, gap = axis_of(p, axis), p.backlash_gap
     carried, next_uncertain = 0.0, 0
@@ -206,8 +206,8 @@ def axis_residuals(p, axis, changes, volts, uncertain, t, observed, weight, begi
 
 @kernel
 def sampled_response(p, axis, inputs, t, begin, end, out):
-    """Write to `out` (samples, m) [m] the responses of a rigid axis to `inputs` (samples, m) [V], each held till
-    the next sample."""
+    """Write to `out` (samples, m) [m] the responses of a rigid axis to `inputs` (samples, m) [V], held constant between
+    samples."""
     slow_rate, fast_rate, rest_gain, slow_gain, fast_gain, _, _ = axis_of(p, axis)
     c = (slow_rate, fast_rate, rest_gain, slow_gain, fast_gain, 0.0, 0.0)
     for w in range(len(begin)):

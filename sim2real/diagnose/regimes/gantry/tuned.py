@@ -9,7 +9,7 @@ from sim2real.statistics.tuned import tuned
 
 @dataclass(frozen=True)
 class GantryDataNumbers:
-    """Tuned numbers of the data: which samples of the encoders are used, and how they are cut into windows."""
+    """Tuned numbers of the data: selection of encoder samples, and windows."""
 
     window: float = tuned(
         0.5,
@@ -47,7 +47,7 @@ class GantryDataNumbers:
     most_samples: int = tuned(
         10_000,
         "samples",
-        "more cost time and say no more: neighbours repeat each other",
+        "more cost time without more information: neighbours are redundant",
         "choice: a fit of some seconds",
     )
     spare_samples: float = tuned(
@@ -106,12 +106,12 @@ class GantryFitNumbers:
         1e-3,
         "range of the parameter",
         "the size of a parameter that is zero, for `difference_step`",
-        "choice: a small value that can be told from none",
+        "choice: a small value that can be distinguished from zero",
     )
     impossible: float = tuned(
         1e6,
         "standard deviations",
-        "the residual where an axis is not overdamped: less may look better than a bad law",
+        "the residual if an axis is not overdamped: less may look better than a bad law",
         "choice: far beyond any residual",
     )
     followed: int = tuned(
@@ -130,11 +130,11 @@ class GantryFitNumbers:
         "coarser steps about a delay miss its plateau between two ticks",
         "choice: an eighth of a tick",
     )
-    most_effects: int = tuned(3, "effects", "more stand for each other's errors", "choice: as few tables lack more")
+    most_effects: int = tuned(3, "effects", "more compensate each other's errors", "choice: few tables lack more")
     little_left: float = tuned(
         1.1,
         "1",
-        "mean square residual in units of the noise below which no effect is tried: less names accidents",
+        "mean square residual in units of the noise below which no effect is tried: less names effects by chance",
         "choice: a tenth above the noise",
     )
     much_left: float = tuned(
@@ -146,14 +146,14 @@ class GantryFitNumbers:
     first_share: float = tuned(
         0.3,
         "1",
-        "of the excess that the first effect must explain: less names effects that stand for others",
+        "share of the excess that the first effect must explain: less names wrong effects that imitate others",
         "choice: about a third",
     )
     later_share: float = tuned(
-        0.9, "1", "of the excess that an effect on top of others must explain", "choice: nearly all of it"
+        0.9, "1", "share of the excess that a further effect must explain", "choice: nearly all of it"
     )
     significance: float = tuned(
-        3.0, "standard deviations", "less names effects whose size may be none", "choice: once in 400 by chance"
+        3.0, "standard deviations", "less names effects whose size may be zero", "choice: once in 400 by chance"
     )
 
 
@@ -175,7 +175,7 @@ class ControlTickNumbers:
         0.05,
         "1",
         "log of a window's mean square in units of the noise below which nothing is "
-        "missing: less finds ticks by accident",
+        "missing: less finds ticks by chance",
         "choice: a twentieth above the noise",
     )
     followed: int = tuned(
@@ -191,7 +191,7 @@ class ControlTickNumbers:
     least_share: float = tuned(
         0.3,
         "1",
-        "of the excess that a period must explain to be accepted: less mistakes missing physics for a tick",
+        "share of the excess that a period must explain to be accepted: less mistakes missing physics for a tick",
         "choice: about a third",
     )
 
@@ -216,7 +216,7 @@ class GantryLawNumbers:
     friction_speed: float = tuned(
         0.03,
         "m/s",
-        "the speed above which dry friction is full: less is a step that no "
+        "the speed above which dry friction is constant: less is a step that no "
         "smoothed speed shows, more looks like damping",
         "choice: a slow crawl",
     )
@@ -229,16 +229,16 @@ class GantryLawNumbers:
     independent: float = tuned(
         0.03,
         "1",
-        "of the largest direction of a family: less keeps what the baseline's own "
-        "terms can do, more loses parts of a law",
+        "share of a family's largest singular value: less keeps directions that the baseline's own "
+        "terms can represent, more loses parts of a law",
         "choice: as the noise of a column",
     )
     bins: int = tuned(30, "bins", "fewer blur the curve of a law, more make it rough", "choice: a law has no noise")
     least_driver: float = tuned(
-        0.1, "1", "of the rms of what the volts are proportional to: less divides by nothing", "choice: a tenth"
+        0.1, "1", "share of the rms of the driver of the volts: less divides by nearly zero", "choice: a tenth"
     )
     formula_rounds: int = tuned(
-        3, "steps", "fewer leave a formula beside parameters that it moves", "choice: it converges sooner"
+        3, "steps", "fewer leave parameters inconsistent with the formula", "choice: it converges sooner"
     )
 
 

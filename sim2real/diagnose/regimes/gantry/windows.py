@@ -1,4 +1,4 @@
-"""Windows of the encoders' stream, each with a free start: so short that small errors of the model do not add up."""
+"""Windows of the encoder stream with free starts, so short that small model errors do not accumulate."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from sim2real.diagnose.regimes.gantry.tuned import GANTRY_DATA
 
 @dataclass(frozen=True)
 class StreamWindows:
-    """`begin`, `end` (w,): first sample of each window, and the one after its last; `cluster` (w,): the block of a few
-    windows to which it belongs."""
+    """`begin`, `end` (w,): first sample of each window, and one past its last; `cluster` (w,): its block of a few
+    windows."""
 
     begin: np.ndarray
     end: np.ndarray
@@ -27,12 +27,12 @@ class StreamWindows:
 
     @property
     def clusters(self) -> int:
-        """How many clusters there are."""
+        """Number of clusters."""
         return int(self.cluster[-1]) + 1 if len(self.cluster) else 0
 
 
 def cut_windows(t: np.ndarray, breaks: np.ndarray) -> StreamWindows:
-    """Windows of the samples at `t` (n,) [s]; none reaches across a hole in the stream or a time in `breaks` [s]."""
+    """Cut samples at `t` (n,) [s] into windows; no window spans a hole in the stream or a time in `breaks` (k,) [s]."""
     if len(t) < GANTRY_DATA.fewest_samples:
         return StreamWindows(*(np.zeros(0, np.int64) for _ in range(3)))
     period = float(np.median(np.diff(t)))

@@ -1,4 +1,4 @@
-"""A smooth law of the mallet as parameters of the simulator's effect `unlisted_blow`, so that players can meet it."""
+"""Convert a smooth mallet law to parameters of the simulator's effect `unlisted_blow`, so that it can be simulated."""
 
 from __future__ import annotations
 
@@ -25,8 +25,10 @@ EFFECT_KINDS = {
 
 
 def effect_parameters(law: str, data: MalletContacts, theta: np.ndarray) -> dict[str, float]:
-    """Parameters of `unlisted_blow` by name, for a law such as "mallet's restitution by speed" with coefficients
-    `theta` (k,). data: the contacts to which the law was fitted."""
+    """Parameters of `unlisted_blow` by name, for a law such as "mallet's restitution by speed".
+
+    data: the contacts to which the law was fitted; theta: its coefficients (k,).
+    """
     share, basis = law.removeprefix(PREFIX).split(" by ", 1)
     numbers = knots_and_values(COORDINATES[basis][1](data), CONTACT.coefficient_unit * theta, KNOTS)
     found = [float(EFFECT_KINDS[basis]), float(SHARE_NUMBERS[share]), *map(float, numbers)]

@@ -1,4 +1,4 @@
-"""The basis library of the mallet: what smooth laws may add to the share of a speed that each contact keeps."""
+"""The basis library of the mallet: smooth changes of the share of a speed that each contact keeps."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from sim2real.diagnose.regimes.contact.tuned import CONTACT
 from sim2real.diagnose.regimes.mallet.data import MalletContacts
 from sim2real.statistics.piecewise import spread_hats
 
-# By name: what a law depends on, and its coordinate (n,) of each contact
+# By name: the quantity that a law depends on, and the coordinate (n,) of each contact
 COORDINATES: dict[str, tuple[str, Callable[[MalletContacts], np.ndarray]]] = {
     "speed": ("speed", lambda d: d.closing_speed),
     "angle": ("heading", lambda d: d.incidence_angle),
@@ -27,10 +27,10 @@ def _hats(coordinate: Callable[[MalletContacts], np.ndarray]) -> Callable[[Malle
     return lambda data: spread_hats(coordinate(data), KNOTS)
 
 
-# By name: what a law depends on, and its basis functions (n, k)
+# By name: the quantity that a law depends on, and its basis functions (n, k)
 BASIS_LIBRARY = {name: (depends, _hats(coordinate)) for name, (depends, coordinate) in COORDINATES.items()}
 
 
 def added_shares(data: MalletContacts, law: Law) -> np.ndarray:
-    """What each coefficient of a smooth law adds (n, k) to the share of a speed that each contact keeps."""
+    """The change (n, k) of each contact's kept share of a speed by each coefficient of a smooth law."""
     return CONTACT.coefficient_unit * BASIS_LIBRARY[basis_name_of(law)][1](data)

@@ -1,4 +1,4 @@
-"""What a contact with the mallet may lack, as columns of its residuals: the listed effects, and smooth laws."""
+"""Candidate laws of mallet contacts as columns of the design matrix: listed effects and smooth laws."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ FRICTION = "mallet_friction"
 def mallet_design_matrix(
     problem: ContactProblem[MalletContacts], values: Mapping[str, float], free: Sequence[str]
 ) -> DesignMatrix:
-    """All columns of a mallet problem at the law `values`; those of parameters are the base's and `free`."""
+    """All columns of a mallet problem at the parameters `values`; parameter columns: those of the base and `free`."""
     friction = (FRICTION, "mallet_mu", MALLET.frictions)
     columns = contact_design_matrix(problem, values, free, _derivative_laws(), friction, BASIS_LIBRARY, PREFIX)
     return replace(columns, families=[_with_effect(law, problem) for law in columns.families])
 
 
 def _with_effect(law: Law, problem: ContactProblem[MalletContacts]) -> Law:
-    """The law with the effect that plays it."""
+    """Add the simulator's effect to the law."""
     return replace(law, switch=partial(effect_parameters, law.name, problem.data), linear=True)
 
 

@@ -19,9 +19,9 @@ from sim2real.segmentation.mallet_path import MalletPath
 class MalletContacts(Contacts):
     """Contacts with the robot's mallet.
 
-    `mallet_velocity` (n, 2) [m/s]: of the mallet just before, in the table's frame; `mallet_step` (n,) [m/s]: by which
-    it changes at the contact, along the normal; `mallet_covariance` (n, 3, 3) [m^2/s^2]: of the velocity along the
-    normal and the tangent, and of the step.
+    `mallet_velocity` (n, 2) [m/s]: velocity of the mallet just before, in the table's frame; `mallet_step` (n,) [m/s]:
+    its change at the contact, along the normal; `mallet_covariance` (n, 3, 3) [m^2/s^2]: covariance of the velocity
+    along the normal and the tangent, and of the step.
     """
 
     mallet_velocity: np.ndarray
@@ -35,8 +35,8 @@ class MalletContacts(Contacts):
 
 
 def mallet_contacts(contact_motions: Sequence[ContactMotion], path: MalletPath, geometry: Geometry) -> MalletContacts:
-    """The clear contacts with the robot's mallet among the motions of one recording, in order of time."""
-    opponent = {  # by spin chain: the time of its first contact with the opponent's mallet, after which spin is unknown
+    """Select the clear contacts with the robot's mallet among the motions of one recording, in order of time."""
+    opponent = {  # first contact of each spin chain with the opponent's mallet; the spin after it is unknown
         motion.spin_chain: motion.contact.t
         for motion in reversed(contact_motions)
         if motion.contact.where == "opponent"
@@ -51,7 +51,7 @@ def mallet_contacts(contact_motions: Sequence[ContactMotion], path: MalletPath, 
 
 
 def _fields(motion: ContactMotion, path: MalletPath, geometry: Geometry) -> dict[str, Any] | None:
-    """The fields of a contact with the robot's mallet but `spin_unknown`; None where it is not a clear one."""
+    """The fields of a contact with the robot's mallet except `spin_unknown`; None if it is not a clear one."""
     if motion.contact.where != "robot":
         return None
     before, after = motion.before, motion.after
@@ -82,8 +82,8 @@ def _fields(motion: ContactMotion, path: MalletPath, geometry: Geometry) -> dict
 
 
 def _covariance(normal: np.ndarray, by_axis: np.ndarray) -> np.ndarray:
-    """`mallet_covariance` (3, 3) from the covariances `by_axis` (2, 2, 2) of velocity and step along x and along y, of
-    which the encoders' errors are independent."""
+    """`mallet_covariance` (3, 3) from the covariances `by_axis` (2, 2, 2) of velocity and step along x and along y,
+    whose encoder errors are independent."""
     axes = np.array([normal, [-normal[1], normal[0]]])
     covariance = np.zeros((3, 3))
     for axis in (0, 1):

@@ -1,4 +1,4 @@
-"""What a report shows of the mallet: an unlisted law as a curve."""
+"""The mallet figures of a report: an unlisted law as a curve."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from sim2real.statistics.binned import binned, half_band, over, singles
 
 
 def smooth_curve(problem: MalletProblem, found: SearchResult, formula: Formula, view: ContactProjection) -> Curve:
-    """The share that an unlisted law adds to what is kept, beside its readable formula.
+    """The change of the kept share under an unlisted law, together with its readable formula.
 
-    The data differ from the curve by as much as they differ from all that was fitted.
+    Data points are the curve plus the residuals of the final law.
     """
     law, component, values = found.unlisted, view.component, found.final.values
     assert law is not None

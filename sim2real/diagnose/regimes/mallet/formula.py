@@ -26,7 +26,7 @@ SYMBOLS = {
 def readable_formula(
     problem: MalletProblem, found: SearchResult, law: Law, use: np.ndarray
 ) -> tuple[Formula, ContactProjection]:
-    """The formula of an unlisted law, fitted to the clusters `use`, and the projection that shows it."""
+    """Fit the formula of an unlisted law to the clusters `use`; return it and the projection that shows it."""
     symbol, unit, label = SYMBOLS[basis_name_of(law)]
     values = COORDINATES[basis_name_of(law)][1](problem.data)
     values = np.degrees(values) if unit == "deg" else values

@@ -1,7 +1,7 @@
-"""Contacts with the mallet as a problem: the puck's velocity after each and the mallet's recoil, by `strike`.
+"""Mallet contacts as an estimation problem: the simulator's `strike` predicts puck velocity and mallet recoil.
 
 The puck alone determines (1 + e) / (1 + give); the mallet's recoil, give times the puck's change of velocity, separates
-the two. Walls are assumed to leave the puck's spin alone, so that it carries over from one contact to the next.
+the two. Walls are assumed not to change the puck's spin, so that it carries over from one contact to the next.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from sim2real.statistics.whitening import whitened
 
 @kernel
 def _predict_contacts(p, normal, t, place, spin_chain, mallet_velocity, before, pucks, after):
-    """Velocities after (n, 2) [m/s] of contacts in order of time; each chain begins without spin."""
+    """Write to `after` (n, 2) the velocities [m/s] after contacts in order of time; each chain begins without spin."""
     puck = pucks[0]
     for i in range(len(normal)):
         if i == 0 or spin_chain[i] != spin_chain[i - 1]:
@@ -37,8 +37,8 @@ def _predict_contacts(p, normal, t, place, spin_chain, mallet_velocity, before, 
 
 
 class MalletProblem(ContactProblem[MalletContacts]):
-    """Contacts with the robot's mallet: the puck's velocity after each along the normal and the tangent, and the step
-    of the mallet's velocity."""
+    """Contacts with the robot's mallet: the puck's velocity after each, along the normal and the tangent, and the
+    step of the mallet's velocity."""
 
     regime = "mallet"
     base: tuple[str, ...] = ("mallet_restitution",)
@@ -56,16 +56,16 @@ class MalletProblem(ContactProblem[MalletContacts]):
 
     @property
     def observed(self) -> np.ndarray:
-        """Velocity after along the normal and the tangent, and the mallet's step: (n, 3) [m/s]."""
+        """Puck velocity after, along the normal and the tangent, and the mallet's step: (n, 3) [m/s]."""
         return np.concatenate([self.data.components(self.data.velocity_after), self.data.mallet_step[:, None]], axis=1)
 
     def predicted(self, values: Mapping[str, float]) -> np.ndarray:
-        """Velocity after along the normal and the tangent, and the mallet's step along the normal: (n, 3) [m/s]."""
+        """Predicted puck velocity after, along the normal and the tangent, and the mallet's step: (n, 3) [m/s]."""
         return self._predicted(self._record(values), self.data.velocity_before, self.data.mallet_velocity)
 
     def with_common_noise(self, values: Mapping[str, float], predicted: np.ndarray, rows: np.ndarray) -> np.ndarray:
-        """See `ContactProblem.with_common_noise`: the noise along the tangent grows, where the spin is unknown, up to
-        the most that friction can do."""
+        """See `ContactProblem.with_common_noise`: if the spin is unknown, the noise along the tangent grows by the
+        largest effect of friction."""
         d = self.data
         e = values.get("mallet_restitution", BY_NAME["mallet_restitution"].default)
         reach = values.get("mallet_mu", 0.0) * (1.0 + e) * d.closing_speed
@@ -75,7 +75,7 @@ class MalletProblem(ContactProblem[MalletContacts]):
         return whitened(self._common_errors / growth, rows / growth)
 
     def with_recoil(self, values: Mapping[str, float], changes: np.ndarray) -> np.ndarray:
-        """See `ContactProblem.with_recoil`: the mallet recoils by the puck's change along the normal."""
+        """See `ContactProblem.with_recoil`: the mallet recoils in proportion to the puck's change along the normal."""
         recoiling = changes.copy()
         recoiling[:, 2] = -values.get("mallet_give", 0.0) * changes[:, 0]
         return recoiling
@@ -93,8 +93,8 @@ class MalletProblem(ContactProblem[MalletContacts]):
         return np.concatenate([d.components(after), -float(record["mallet_give"]) * change], axis=1)
 
     def _noise(self, record: np.void) -> tuple[np.ndarray, np.ndarray]:
-        """Covariance (n, 3, 3) [m^2/s^2] of observed less predicted values at the law `record`; and the derivative
-        (n, 3, 2) of the prediction by the velocity before."""
+        """Covariance (n, 3, 3) [m^2/s^2] of observed minus predicted values at the parameters `record`, and the
+        derivative (n, 3, 2) of the prediction by the velocity before."""
         d, step = self.data, CONTACT.velocity_step
         before, mallet = d.velocity_before, d.mallet_velocity
         now = self._predicted(record, before, mallet)

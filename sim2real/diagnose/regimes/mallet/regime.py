@@ -24,13 +24,13 @@ from sim2real.segmentation.mallet_path import robot_path
 
 
 class Mallet(ContactRegime):
-    """How the robot's mallet sends the puck off."""
+    """Contacts of the puck with the robot's mallet."""
 
     name = "mallet"
     after = ("glide", "wall")
-    lacks = "no blow of the robot's mallet was seen"
-    more_of = "blows of the robot's mallet, thirty or more, some of them with the mallet at rest"
-    shown_by = "blows"
+    lacks = "no contact of the puck with the robot's mallet was seen"
+    more_of = "contacts with the robot's mallet, thirty or more, some of them with the mallet at rest"
+    shown_by = "mallet contacts"
 
     def problem(self, evidence: Evidence, known: Known) -> MalletProblem | None:
         """See `Regime.problem`."""
@@ -62,7 +62,7 @@ class Mallet(ContactRegime):
 
 
 def _contacts(recordings: Sequence[Recording], found: Sequence[list[ContactMotion]]) -> MalletContacts | None:
-    """The contacts in all recordings that know where the mallet was; None where there are none."""
+    """The contacts in all recordings that contain the mallet's path; None if there are none."""
     read = [(robot_path(one), geometry(one), some) for one, some in zip(recordings, found, strict=True)]
     parts = [mallet_contacts(some, path, g) for path, g, some in read if path is not None]
     parts = [part for part in parts if len(part)]

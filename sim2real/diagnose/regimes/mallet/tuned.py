@@ -9,13 +9,13 @@ from sim2real.statistics.tuned import tuned
 
 @dataclass(frozen=True)
 class MalletNumbers:
-    """Tuned numbers of contacts with the mallet: which are clear, and at which sizes friction is looked for."""
+    """Tuned numbers of contacts with the mallet: selection, and the sizes at which friction is linearised."""
 
     least_closing_speed: float = tuned(
         0.1,
         "m/s",
         "less takes a puck that leans on the mallet for a contact; more loses slow contacts",
-        "choice: twice that of the walls, since the mallet's velocity errs as well",
+        "choice: twice that of the walls, since the mallet's velocity has an error as well",
     )
     longest_delay: float = tuned(
         0.012,

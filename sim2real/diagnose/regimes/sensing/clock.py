@@ -1,8 +1,8 @@
-"""How late the camera stamps its frames against the encoders' clock, by contacts of the puck with the robot's mallet.
+"""Estimate the camera's delay and drift against the encoders' clock from contacts with the robot's mallet.
 
-At a contact the distance of their centres is the sum of their radii. Read too late, a moving mallet is elsewhere by its
-velocity times the delay, so each contact with a moving mallet measures the delay, and all of them its drift. A constant
-error of the radii or of the camera's map differs from a delay at contacts with slow and otherwise moving mallets.
+At a contact the distance between the centres equals the sum of the radii. A delay shifts a moving mallet by velocity
+times delay, so each contact with a moving mallet measures the delay, and all of them together the drift. Contacts with
+slow mallets and with other directions of motion separate the delay from errors of the radii and of the camera's map.
 """
 
 from __future__ import annotations
@@ -20,9 +20,11 @@ from sim2real.statistics.robust import ROBUST, t_weights, typical
 
 @dataclass(frozen=True)
 class TimedContacts:
-    """Contacts with the robot's mallet in one recording: `t` (n,) [s] on the camera's clock, `place` (n, 2) [m] of the
-    puck, the unit vector `impulse` (n, 2), `covariance` (n, 3, 3) [s, m] of time and place, and `launch` (n,); the
-    mallet's `encoders`, and the sum of both radii, `radii` [m]."""
+    """Contacts with the robot's mallet in one recording.
+
+    `t` (n,) [s] on the camera's clock; `place` (n, 2) [m] of the puck; `impulse` (n, 2): unit vector; `covariance`
+    (n, 3, 3) [s, m] of time and place; `launch` (n,); `encoders`: the mallet's path; `radii` [m]: sum of both radii.
+    """
 
     t: np.ndarray
     place: np.ndarray
@@ -48,7 +50,7 @@ class Clock:
     covariance: np.ndarray
 
     def encoder_time(self, t: np.ndarray | float) -> np.ndarray | float:
-        """The encoders' time [s] of what a frame stamped `t` [s] shows."""
+        """The encoders' time [s] at which a frame stamped `t` [s] was exposed."""
         return encoder_time(t, self.delay, self.rate)
 
 
@@ -61,7 +63,7 @@ def encoder_time(t, delay, rate):
 
 
 def timed_contacts(found: list[VelocityJump], encoders: MalletPath, g: Geometry) -> TimedContacts:
-    """The velocity jumps that may be contacts with the robot's mallet: no wall, post or opponent explains them."""
+    """Select the velocity jumps that may be contacts with the robot's mallet: nothing else explains them."""
     own = [s for s in found if s.contact.where in ("robot", "nothing near") and _within_reach(s, encoders, g)]
     change = np.array([s.v_out - s.v_in for s in own]).reshape(-1, 2)
     return TimedContacts(
@@ -76,7 +78,7 @@ def timed_contacts(found: list[VelocityJump], encoders: MalletPath, g: Geometry)
 
 
 def _within_reach(jump: VelocityJump, encoders: MalletPath, g: Geometry) -> bool:
-    """Whether the mallet was near enough at any time that a clock in the range of the search gives the jump."""
+    """Whether the mallet was close enough to the jump for any clock in the range of the search."""
     leeway = CLOCK.longest_delay + CLOCK.largest_rate * abs(jump.t)
     place = encoders.at(np.arange(jump.t - leeway, jump.t + leeway, CLOCK.grid))
     gap = np.linalg.norm(jump.place - place, axis=1) - g.puck_radius - g.mallet_radius
@@ -84,7 +86,7 @@ def _within_reach(jump: VelocityJump, encoders: MalletPath, g: Geometry) -> bool
 
 
 def search_clock(tables: list[TimedContacts]) -> tuple[float, float]:
-    """The likeliest delay [s] and rate [1] on a grid: most gaps vanish, with impulses along the line of centres."""
+    """The maximum-likelihood delay [s] and rate [1] on a grid; gaps vanish, impulses point along the centres' line."""
     span, most = max(float(np.ptp(each.t)) for each in tables), CLOCK.largest_rate
     rates = np.linspace(-most, most, 2 * max(1, round(most * span / (4 * CLOCK.grid))) + 1)
     delays = np.arange(-CLOCK.longest_delay, CLOCK.longest_delay + CLOCK.grid / 2, CLOCK.grid)
@@ -104,10 +106,13 @@ def search_clock(tables: list[TimedContacts]) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class ClockFit:
-    """A fitted clock. `residual`, `std` (n,) [m]: of the gaps of all contacts, nan where the encoders have a hole;
-    `launch` (n,); `touches` (n,): whether the gap is small enough for a contact; `in_fit` (n,): whether the launch is
-    in the fit; `dispersion`: the scatter of those that are both, in units of their errors; `freedom`: their degrees of
-    freedom; `nuisances` (6,): those of `CLOCK.nuisance_std`, as fitted."""
+    """A fitted clock.
+
+    `residual`, `std` (n,) [m]: of the gaps of all contacts, nan in holes of the encoder stream; `launch` (n,);
+    `touches` (n,): whether the gap is small enough for a contact; `in_fit` (n,): whether the launch was fitted;
+    `dispersion`, `freedom`: scatter, in units of the errors, and degrees of freedom of the contacts with both;
+    `nuisances` (6,): the fitted nuisance parameters, in the order of `CLOCK.nuisance_std`.
+    """
 
     clock: Clock
     residual: np.ndarray
@@ -121,7 +126,7 @@ class ClockFit:
 
 
 def linearise(each: TimedContacts, delay: float, rate: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Gaps (n,) [m], their Jacobian (n, 8) by delay, rate and the six nuisances, and their variances (n,) [m^2]."""
+    """Gaps (n,) [m], their Jacobian (n, 8) by delay, rate and six nuisance parameters, and their variances [m^2]."""
     when = encoder_time(each.t, delay, rate)
     gap, away = each.gaps(np.array(delay), np.array(rate))
     velocity = (each.encoders.at(when + CLOCK.half_span) - each.encoders.at(when - CLOCK.half_span)) / (
@@ -139,9 +144,9 @@ def linearise(each: TimedContacts, delay: float, rate: float) -> tuple[np.ndarra
 def fit_clock(
     tables: list[TimedContacts], start: tuple[float, float], free: tuple[bool, bool], skip=()
 ) -> ClockFit | None:
-    """Delay and rate, where `free`, and the nuisances by robust least squares from `start`; None with too few contacts.
+    """Fit delay and rate, if `free`, and the nuisance parameters by robust least squares, beginning at `start`.
 
-    `skip`: launches left out of the fit; their residuals are returned all the same.
+    `skip`: launches left out of the fit, whose residuals are returned too. None if there are too few contacts.
     """
     theta = np.concatenate([np.where(free, start, 0.0), np.zeros(len(CLOCK.nuisance_std))])
     prior = 1 / np.square(CLOCK.nuisance_std)
@@ -179,8 +184,8 @@ def fit_clock(
 def gaps_of_others(
     tables: list[TimedContacts], found: ClockFit
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Gaps [m] of other contacts as recorded and under a fitted clock, their errors [m], and their launches, each (n,);
-    nan where the mallet was not touched."""
+    """Gaps [m] of holdout contacts as recorded and under a fitted clock, their errors [m], and their launches, each
+    (n,); nan if the mallet was not touched."""
     rows = [linearise(each, found.clock.delay, found.clock.rate) for each in tables]
     gap, jacobian, variance = (np.concatenate(part) for part in zip(*rows, strict=True))
     after = gap + jacobian[:, 2:] @ found.nuisances

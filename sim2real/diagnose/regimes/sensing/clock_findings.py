@@ -1,4 +1,4 @@
-"""Whether the camera's clock is late or drifts: of four fitted clocks, the simplest one that is not rejected."""
+"""Decide whether the camera's clock has a delay or a drift: select the simplest of four clocks that is not rejected."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scipy import stats
 from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.regimes.sensing.clock import EXACT, Clock, ClockFit, TimedContacts, fit_clock, search_clock
 from sim2real.diagnose.regimes.sensing.held_out import held_out_errors
-from sim2real.diagnose.regimes.sensing.tuned import CLOCK, SURE
+from sim2real.diagnose.regimes.sensing.tuned import CLOCK, SIGNIFICANCE_LEVEL
 from sim2real.diagnose.result.result import Alternative, Estimate, Finding, Proof
 from sim2real.statistics.intervals import reach
 
@@ -21,10 +21,9 @@ FORMULAS = {"camera_delay": "a frame stamped t shows the encoders' time t - dela
 
 @dataclass(frozen=True)
 class ClockResult:
-    """The fit of a clock (None where the camera's is exact), its findings, and its errors in launches left out of the
-    fit, `selection`.
+    """The fitted clock (None if no error was found), its findings, and its cross-validated errors, `selection`.
 
-    `determined`: whether there were contacts enough to find a delay of ten times `CLOCK.least_delay`.
+    `determined`: whether the contacts suffice to find a delay of ten times `CLOCK.least_delay`.
     """
 
     fit: ClockFit | None
@@ -34,12 +33,12 @@ class ClockResult:
 
     @property
     def clock(self) -> Clock:
-        """The clock, EXACT where nothing is missing."""
+        """The clock; EXACT if no error was found."""
         return EXACT if self.fit is None else self.fit.clock
 
 
 def identify_clock(tables: list[TimedContacts]) -> ClockResult:
-    """The camera's clock, by the contacts `tables` of all recordings with the robot's mallet."""
+    """Identify the camera's clock from the contacts with the robot's mallet, `tables` of all recordings."""
     nothing = ClockResult(None, (), None, False)
     tables = [one for one in tables if len(one.t) >= 2]
     if not tables:
@@ -70,26 +69,26 @@ def identify_clock(tables: list[TimedContacts]) -> ClockResult:
 
 
 def _choose(chance: dict[str, float], full: ClockFit, span: float) -> str:
-    """The simplest clock that is not rejected in favour of the full one; "none" unless the exact clock is."""
+    """Select the simplest clock that is not rejected against the full one; "none" if the exact clock is accepted."""
     matters = abs(full.clock.delay) > CLOCK.least_delay or abs(full.clock.rate) * span > CLOCK.least_delay
-    if chance["none"] > SURE or not matters:
+    if chance["none"] > SIGNIFICANCE_LEVEL or not matters:
         return "none"
     single = max(("camera_delay", "clock_drift"), key=lambda name: chance[name])
     return single if chance[single] > CLOCK.rejected else "both"
 
 
 def _chance(reduced: ClockFit | None, full: ClockFit, fewer: int) -> float:
-    """p-value of a clock with `fewer` numbers against the full one, by an F test on their residuals."""
+    """p-value of the clock `reduced`, which has `fewer` parameters than the full one, by an F test."""
     if fewer == 0:
         return 1.0
     if reduced is None:
         return 0.0
-    left, most = _squares(full, full), _squares(reduced, full)
-    return float(stats.f.sf(max(most - left, 0.0) / fewer / max(left / full.freedom, 1.0), fewer, full.freedom))
+    least, most = _squares(full, full), _squares(reduced, full)
+    return float(stats.f.sf(max(most - least, 0.0) / fewer / max(least / full.freedom, 1.0), fewer, full.freedom))
 
 
 def _squares(each: ClockFit, full: ClockFit) -> float:
-    """Sum of squares over the contacts of the full fit, in units of their errors, each at most
+    """Sum of squares over the contacts of the full fit, in units of their errors, each clipped at
     `CLOCK.most_deviations`."""
     used = full.touches & full.in_fit
     z = np.nan_to_num(each.residual, nan=CLOCK.largest_gap)[used] / (full.std[used] * full.dispersion)
@@ -97,7 +96,7 @@ def _squares(each: ClockFit, full: ClockFit) -> float:
 
 
 def _left_out(tables, start, free: tuple[bool, bool], full: ClockFit) -> np.ndarray:
-    """Residuals (n,) [m] of the contacts, each by a fit without its launch; nan where there is none."""
+    """Cross-validated residuals (n,) [m] of the contacts: each from a fit without its launch; nan if there is none."""
     launches, found = np.unique(full.launch), np.full(len(full.launch), np.nan)
     for fold in range(CLOCK.folds):
         skip = launches[fold :: CLOCK.folds]
@@ -109,7 +108,7 @@ def _left_out(tables, start, free: tuple[bool, bool], full: ClockFit) -> np.ndar
 
 
 def _finding(name: str, named, best: ClockFit, fits, chance, full: ClockFit) -> Finding:
-    """The finding of a delay or a drift, one of those `named`, with its alternative and its p-value."""
+    """The finding `name` (delay or drift), with its p-value and its alternative; `named`: all selected ones."""
     index = 0 if name == "camera_delay" else 1
     value = (best.clock.delay, best.clock.rate * 1e6)[index]
     error = float(np.sqrt(best.clock.covariance[index, index])) * (1.0, 1e6)[index]

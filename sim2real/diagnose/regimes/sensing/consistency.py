@@ -1,4 +1,4 @@
-"""Whether recordings are of one table and one camera, by where and when the puck touches walls and mallet."""
+"""Check that recordings are of one table and one camera, by places and times of contacts with walls and mallet."""
 
 from __future__ import annotations
 
@@ -19,8 +19,7 @@ from sim2real.segmentation.velocity_jumps import velocity_jumps
 
 
 def check_sensing(recordings: Sequence[Recording], segments: Sequence[Segments]) -> None:
-    """Raise `UndeterminedError` where the puck turns round in other places in one recording than in another, or where
-    the camera is later in one than in another."""
+    """Raise `UndeterminedError` if the walls' contact lines or the camera's delays differ between recordings."""
     if len(recordings) < 2:
         return
     names = [one.name for one in recordings]
@@ -42,19 +41,19 @@ def check_sensing(recordings: Sequence[Recording], segments: Sequence[Segments])
 
 
 def _check_map(names: Sequence[str], scales: np.ndarray, std: np.ndarray) -> None:
-    """Compare the maps of n recordings: `scales` (n, 3) of NAMES, and their standard deviations `std` (n, 3)."""
+    """Compare the maps of n recordings: `scales` (n, 3), in the order of NAMES, with their errors `std` (n, 3)."""
     for one, other in combinations(range(len(names)), 2):
         difference = np.abs(scales[one] - scales[other])
         known = np.maximum(std[one], std[other]) < SCALE.known
         error = CONSISTENCY.significance * np.hypot(std[one], std[other])
-        sure = known & (difference > np.maximum(CONSISTENCY.largest_scale, error))
-        if sure.any():
-            why = f"the places where the puck turns round differ by {difference[sure].max():.1%}"
+        significant = known & (difference > np.maximum(CONSISTENCY.largest_scale, error))
+        if significant.any():
+            why = f"the places where the puck bounces differ by {difference[significant].max():.1%}"
             raise two_tables(names[one], names[other], why)
 
 
 def _check_clock(names: Sequence[str], mallet_contacts: Sequence[TimedContacts | None]) -> None:
-    """Compare the clocks of recordings by their contacts with the robot's mallet; None where encoders are missing."""
+    """Compare the clocks of recordings by their contacts with the robot's mallet; None if encoders are missing."""
     fits = [
         (name, some, each) for name, some in zip(names, mallet_contacts, strict=True) if some and (each := _clock(some))
     ]
@@ -63,14 +62,12 @@ def _check_clock(names: Sequence[str], mallet_contacts: Sequence[TimedContacts |
         difference = np.array([a.delay - b.delay, a.rate - b.rate])
         late = float(difference @ (1.0, 0.5 * min(some.t[-1], more.t[-1])))
         weight = np.linalg.pinv(a.covariance + b.covariance, hermitian=True)
-        sure = difference @ weight @ difference > CONSISTENCY.significance**2
-        if sure and abs(late) > CONSISTENCY.largest_delay:
-            raise two_tables(
-                one, other, f"the camera is later by {1e3 * abs(late):.0f} ms in the one than in the other"
-            )
+        significant = difference @ weight @ difference > CONSISTENCY.significance**2
+        if significant and abs(late) > CONSISTENCY.largest_delay:
+            raise two_tables(one, other, f"the camera's delays differ by {1e3 * abs(late):.0f} ms")
 
 
 def _clock(some: TimedContacts) -> ClockFit | None:
-    """The clock of one recording alone; None where its contacts do not determine it."""
+    """Fit the clock of one recording alone; None if its contacts do not determine it."""
     found = fit_clock([some], search_clock([some]), (True, True)) if len(some.t) > CONSISTENCY.fewest_free else None
     return found if found is not None and found.freedom >= CONSISTENCY.fewest_free else None

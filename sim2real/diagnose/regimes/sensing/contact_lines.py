@@ -1,4 +1,4 @@
-"""The lines on which the puck's centre turns round at the walls, in the camera's coordinates: place and slant."""
+"""The walls' contact lines, where the puck's centre bounces, in the camera's coordinates: place and slant."""
 
 from __future__ import annotations
 
@@ -11,16 +11,17 @@ from sim2real.segmentation.causes import WALLS, Geometry, nominal_lines, turned_
 from sim2real.segmentation.velocity_jumps import VelocityJump
 from sim2real.statistics.robust import t_weights, typical
 
-# Slants [rad] of a wall against the camera's axes, at which the line is searched for
+# Slants [rad] of a wall against the camera's axes at which the line is searched
 SLANTS = np.linspace(-CONTACT_LINES.most_slant, CONTACT_LINES.most_slant, CONTACT_LINES.slants)
 
 
 @dataclass(frozen=True)
 class ContactLine:
-    """A wall's line: `values` (2,) are its place [m] at the middle of the wall and its slant [1]; their `covariance`.
+    """The contact line of a wall.
 
-    Of each contact on it: `along` (n,) [m], its place along the wall from the middle; its `place` (n,) [m] across, with
-    standard deviation `std` (n,) [m]; and its `launch` (n,).
+    `values` (2,): place [m] at the middle of the wall, and slant [1]; `covariance` (2, 2) of these. For each contact on
+    the line: `along` (n,) [m]: place along the wall from its middle; `place` (n,) [m]: across, with standard deviation
+    `std` (n,) [m]; `launch` (n,).
     """
 
     values: np.ndarray
@@ -32,9 +33,9 @@ class ContactLine:
 
 
 def contact_lines(found: list[VelocityJump], g: Geometry, skip=()) -> dict[str, ContactLine]:
-    """The walls' lines by the velocity jumps `found`, less those of the launches `skip`; by the name of the wall.
+    """Estimate the contact lines, by name of the wall, from the velocity jumps `found` except those of launches `skip`.
 
-    Walls with too few contacts are left out.
+    Walls with too few contacts are omitted.
     """
     found = [s for s in found if s.launch not in skip and s.contact.where not in ("robot", "opponent")]
     each = {wall: _line(wall, found, g) for wall in WALLS}
@@ -42,7 +43,7 @@ def contact_lines(found: list[VelocityJump], g: Geometry, skip=()) -> dict[str, 
 
 
 def _line(wall: str, found: list[VelocityJump], g: Geometry) -> ContactLine | None:
-    """The line of one wall; None where too few contacts lie on it."""
+    """The line of one wall; None if too few contacts lie on it."""
     axis, _ = wall_axis(wall)
     size, middle = ((g.length, g.width / 2), (g.width, g.length / 2))[axis]
     near = [s for s in found if abs(s.place[axis] - nominal_lines(g)[wall]) < CONTACT_LINES.farthest * size]
@@ -61,7 +62,7 @@ def _line(wall: str, found: list[VelocityJump], g: Geometry) -> ContactLine | No
 
 
 def _densest(along: np.ndarray, place: np.ndarray) -> np.ndarray:
-    """Whether each contact (n,) bool lies in the slanted band of width `CONTACT_LINES.band` that holds most of them."""
+    """Whether each contact (n,) bool lies in the slanted band of width `CONTACT_LINES.band` with the most contacts."""
     best = np.zeros(len(place), bool)
     for slant in SLANTS[np.argsort(np.abs(SLANTS))]:
         level = place - slant * along

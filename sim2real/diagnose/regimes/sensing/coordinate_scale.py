@@ -1,7 +1,8 @@
-"""Whether the map from image to table is stretched or sheared, by the lines on which the puck turns round at the walls.
+"""Identify a stretch or shear of the map from image to table, from the walls' contact lines.
 
-A stretch moves the far lines outwards and leaves the near ones; a wrong radius of the puck moves all inwards alike; a
-shear slants the short walls. In glides a stretch is a change of drag and friction, so that only the lines are used.
+A stretch moves the far lines outwards and not the near ones; a wrong radius of the puck moves all lines inwards
+equally; a shear slants the short walls. In glides a stretch is equivalent to a change of drag and friction, so only the
+lines are used.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from scipy import stats
 from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.regimes.sensing.contact_lines import ContactLine, contact_lines
 from sim2real.diagnose.regimes.sensing.held_out import held_out_errors
-from sim2real.diagnose.regimes.sensing.tuned import SCALE, SURE
+from sim2real.diagnose.regimes.sensing.tuned import SCALE, SIGNIFICANCE_LEVEL
 from sim2real.diagnose.result.result import Estimate, Finding, Proof, explained
 from sim2real.segmentation.causes import Geometry, nominal_lines, wall_axis
 from sim2real.segmentation.velocity_jumps import VelocityJump
@@ -26,8 +27,8 @@ NAMES = ("scale_x", "scale_y", "shear")
 
 @dataclass(frozen=True)
 class ScaleResult:
-    """`values` (3,) of NAMES, 0 where nothing is missing; or why the lines contradict the table's size, `undetermined`.
-    `selection`: the errors in launches left out of the fit."""
+    """`values` (3,) in the order of NAMES, 0 where no error was found; `selection`: the cross-validated errors;
+    `undetermined`: why the lines contradict the table's size, "" if they do not."""
 
     values: np.ndarray
     findings: tuple[Finding, ...]
@@ -36,10 +37,10 @@ class ScaleResult:
 
 
 def identify_scale(found: list[VelocityJump], g: Geometry, calibrated: bool = False) -> ScaleResult:
-    """The camera's map by the velocity jumps `found` at the walls, cross-validated over launches.
+    """Identify the camera's map error from the velocity jumps `found` at the walls, cross-validated over launches.
 
-    Of a `calibrated` camera, only a map that explains nearly all is named: what looks like contacts with a wall may be
-    contacts with a mallet under the gantry.
+    For a `calibrated` camera, an error is reported only if it explains nearly all of the misfit, because apparent wall
+    contacts may be contacts with a mallet under the gantry.
     """
     values, covariance = fitted_map(found, g)
     std = np.sqrt(np.diag(covariance))
@@ -48,7 +49,7 @@ def identify_scale(found: list[VelocityJump], g: Geometry, calibrated: bool = Fa
         return ScaleResult(np.zeros(3), (), None, wrong)
     p_values = 2 * stats.norm.sf(np.abs(values) / std)
     chance = float(stats.chi2.sf(values @ np.linalg.solve(covariance, values), len(NAMES)))
-    if chance > SURE or not np.any(
+    if chance > SIGNIFICANCE_LEVEL or not np.any(
         (p_values < SCALE.significance) & (np.abs(values) > SCALE.least_scale) & (std < SCALE.known)
     ):
         return ScaleResult(np.zeros(3), (), None)
@@ -80,33 +81,33 @@ def identify_scale(found: list[VelocityJump], g: Geometry, calibrated: bool = Fa
 
 
 def fitted_map(found: list[VelocityJump], g: Geometry) -> tuple[np.ndarray, np.ndarray]:
-    """Estimates (3,) of NAMES and their covariance (3, 3), which is large where the jumps do not determine them."""
+    """Estimates (3,) of NAMES and their covariance (3, 3), which is large if the jumps do not determine them."""
     return _solve(contact_lines(found, g), g)
 
 
 def wrong_size(values: np.ndarray, std: np.ndarray, g: Geometry) -> str:
-    """Why the table's size cannot be right: a large scale, or any where the size is a guess; "" where it may be."""
+    """The reason why the table's size is wrong: a large scale, or any scale if the size is assumed; "" if it is not."""
     most = SCALE.most_warped_scale if _is_warped(values, std) else SCALE.most_scale
     for axis, (name, size) in enumerate((("length", g.length), ("width", g.width))):
-        off, guessed = abs(values[axis]), name in g.assumed
-        surely = off > SCALE.least_scale + 3 * std[axis] if guessed else off > most
+        off, assumed = abs(values[axis]), name in g.assumed
+        surely = off > SCALE.least_scale + 3 * std[axis] if assumed else off > most
         if (surely and std[axis] < SCALE.known) or (off > most + 2 * std[axis] and std[axis] < SCALE.roughly_known):
-            measured, how = (1 + values[axis]) * size, "guessed" if guessed else "stated"
+            measured, how = (1 + values[axis]) * size, "assumed" if assumed else "stated"
             return (
-                f"the {how} {name} of {size:.3f} m is {off:.1%} off the {measured:.3f} m seen: "
+                f"the {how} {name} of {size:.3f} m differs by {off:.1%} from the observed {measured:.3f} m: "
                 "measure the table and state its size, or calibrate the camera"
             )
     return ""
 
 
 def _is_warped(values: np.ndarray, std: np.ndarray) -> bool:
-    """Whether a map is significantly sheared, or stretched by different shares along both axes.
+    """Whether a map is significantly sheared, or stretched by different factors along both axes.
 
-    A wrong measurement of the table errs in one size, or in both alike.
+    A wrong measurement of the table affects one size, or both by the same factor.
     """
     x, y, _ = values
-    sure = np.abs(values) > SCALE.least_warp + 3 * std
-    return bool(sure[2] or (sure[0] and sure[1] and abs(x - y) > SCALE.least_scale + 3 * np.hypot(std[0], std[1])))
+    clear = np.abs(values) > SCALE.least_warp + 3 * std
+    return bool(clear[2] or (clear[0] and clear[1] and abs(x - y) > SCALE.least_scale + 3 * np.hypot(std[0], std[1])))
 
 
 def _design(walls: dict[str, ContactLine], g: Geometry) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -131,34 +132,34 @@ def _design(walls: dict[str, ContactLine], g: Geometry) -> tuple[np.ndarray, np.
 
 
 def _solve(walls: dict[str, ContactLine], g: Geometry) -> tuple[np.ndarray, np.ndarray]:
-    """Estimates (3,) of NAMES and their covariance (3, 3), with a good calibration's own errors as a prior."""
+    """Estimates (3,) of NAMES and their covariance (3, 3), with the errors of a good calibration as a prior."""
     moved, jacobian, covariance = _design(walls, g)
     weight = np.linalg.inv(covariance)
     radius, offset, turn = (std**-2 for std in (SCALE.radius_std, SCALE.offset_std, SCALE.turn_std))
-    prior = np.diag([1.0, 1.0, 1.0, radius, offset, offset, turn])  # of a scale: standard deviation 100 %
+    prior = np.diag([1.0, 1.0, 1.0, radius, offset, offset, turn])  # the prior of a scale has a std of 100 %
     inverse = np.linalg.inv(jacobian.T @ weight @ jacobian + prior)
     return (inverse @ (jacobian.T @ (weight @ moved)))[:3], inverse[:3, :3]
 
 
 def distances_of_others(found: list[VelocityJump], values: np.ndarray, g: Geometry) -> np.ndarray:
-    """Distances (n, 4) of other contacts, under the map `values`: see `_distances`."""
+    """Distances (n, 4) of holdout contacts under the map `values`; see `_distances`."""
     return _distances(contact_lines(found, g), values, {s.launch for s in found}, g)
 
 
 def _left_out(found: list[VelocityJump], g: Geometry) -> np.ndarray:
-    """`_distances` (n, 4) of all contacts, each by a map fitted without its launch."""
+    """Cross-validated `_distances` (n, 4) of all contacts: each under a map fitted without its launch."""
     launches = sorted({s.launch for s in found})
-    whole, rows = contact_lines(found, g), [np.zeros((0, 4))]
+    lines, rows = contact_lines(found, g), [np.zeros((0, 4))]
     for fold in range(min(SCALE.folds, len(launches))):
         skip = set(launches[fold :: SCALE.folds])
         values, covariance = _solve(contact_lines(found, g, skip), g)
-        rows.append(_distances(whole, np.where(np.sqrt(np.diag(covariance)) < SCALE.known, values, 0.0), skip, g))
+        rows.append(_distances(lines, np.where(np.sqrt(np.diag(covariance)) < SCALE.known, values, 0.0), skip, g))
     return np.concatenate(rows)
 
 
 def _distances(walls: dict[str, ContactLine], values: np.ndarray, launches: Set[int], g: Geometry) -> np.ndarray:
-    """Of the contacts in `launches`: distances [m] from their lines by the camera's own map and by the map `values`,
-    their errors [m], and their launches, as (n, 4)."""
+    """Distances (n, 4) of the contacts in `launches`: from their lines under the camera's own map and under the map
+    `values` [m], standard deviation [m], and launch."""
     rows = [np.zeros((0, 4))]
     for wall, line in walls.items():
         here = np.isin(line.launch, list(launches))

@@ -1,4 +1,4 @@
-"""How large the sensing's errors are in launches left out of the fit."""
+"""The size of sensor errors in launches that were left out of the fit."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from sim2real.diagnose.result.result import Proof
 
 @dataclass(frozen=True)
 class HeldOutErrors:
-    """Rms of errors as recorded, `before`, and as corrected, `after`, in units of the noise; and in metres, `proof`."""
+    """Rms of errors as recorded, `before`, and as corrected, `after`, in units of the noise; `proof`: in metres."""
 
     before: float
     after: float
@@ -19,9 +19,10 @@ class HeldOutErrors:
 
 
 def held_out_errors(before: np.ndarray, after: np.ndarray, std: np.ndarray, launch: np.ndarray) -> HeldOutErrors | None:
-    """The rms of errors (n,) [m] with standard deviations `std` (n,) [m] that are known before and after correction.
+    """The rms of errors (n,) [m] before and after correction, with standard deviations `std` (n,) [m].
 
-    `launch` (n,): the launch of each, the unit of the proof. None where no error is known both ways.
+    Only errors that are finite in both are used. `launch` (n,): the launch of each error, the unit of the proof. None
+    if no error is finite in both.
     """
     both = np.isfinite(before) & np.isfinite(after)
     if not both.any():

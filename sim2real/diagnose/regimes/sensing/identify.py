@@ -1,4 +1,4 @@
-"""What the sensing lacks, by all recordings of one table; and those recordings as an exact camera gives them."""
+"""Identify the sensor errors from all recordings of one table, and correct the recordings for them."""
 
 from __future__ import annotations
 
@@ -37,8 +37,7 @@ PLACES = (("puck_x", "puck_y"), ("opponent_x", "opponent_y"))  # columns of fram
 
 
 def corrected(recording: Recording, scale: np.ndarray, clock: Clock = EXACT) -> Recording:
-    """`recording` as a camera without the error `scale` (3,) of its map, by `coordinate_scale.NAMES`, and with an exact
-    clock in place of `clock` would have given it."""
+    """Correct `recording` for the map error `scale` (3,), in the order of `coordinate_scale.NAMES`, and for `clock`."""
     if recording.frames is None:
         return recording
     columns = dict(recording.frames.columns)
@@ -51,9 +50,9 @@ def corrected(recording: Recording, scale: np.ndarray, clock: Clock = EXACT) -> 
 
 @dataclass(frozen=True)
 class IdentifiedSensing:
-    """The result of the sensing, and the recordings and their segments as an exact camera would have given them.
+    """The result of the sensing regime, and the corrected recordings with their segments.
 
-    `scale` (3,): the map's error by `coordinate_scale.NAMES`; `clock`: None where the camera's is exact.
+    `scale` (3,): the map error, in the order of `coordinate_scale.NAMES`; `clock`: None if no clock error was found.
     """
 
     regime_result: RegimeResult
@@ -63,7 +62,7 @@ class IdentifiedSensing:
     clock: ClockFit | None
 
     def correct(self, recording: Recording) -> Recording:
-        """Another recording by the same camera, as an exact one would have given it."""
+        """Correct another recording of the same camera."""
         mapped = corrected(recording, self.scale) if self.scale.any() else recording
         return mapped if self.clock is None else corrected(mapped, np.zeros(3), self.clock.clock)
 
@@ -71,7 +70,7 @@ class IdentifiedSensing:
 def identify_sensing(
     recordings: Sequence[Recording], segments: Sequence[Segments], launch: Launch
 ) -> IdentifiedSensing:
-    """The sensing of recordings of one table: the map first, then the clock, then the repeated frames."""
+    """Identify the sensor errors in recordings of one table: the map, then the clock, then the repeated frames."""
     recordings, segments = list(recordings), list(segments)
     found = _velocity_jumps(recordings, segments, launch)
     calibrated = any(stated_map_error(one) for one in recordings)
@@ -97,7 +96,7 @@ def identify_sensing(
 def prove_sensing(
     sensed: IdentifiedSensing, recordings: Sequence[Recording], segments: Sequence[Segments], launch: Launch
 ) -> RegimeResult:
-    """The result with the errors in holdout `recordings` and their `segments`, before and after correction."""
+    """Add to the result the errors in holdout `recordings` and their `segments`, before and after correction."""
     g, recordings, segments = geometry(recordings[0]), list(recordings), list(segments)
     found = _velocity_jumps(recordings, segments, launch)
     errors = {
@@ -128,7 +127,7 @@ def _with(finding, sizes: HeldOutErrors | None):
 def _velocity_jumps(
     recordings: Sequence[Recording], segments: Sequence[Segments], launch: Launch
 ) -> list[list[VelocityJump]]:
-    """The velocity jumps of each recording, with the number of the launch in which each happens."""
+    """The velocity jumps of each recording, with the number of their launch."""
     found = []
     for one, part, of_row in zip(recordings, segments, launch, strict=True):
         found.append([replace(s, launch=int(of_row[s.contact.frames[0]])) for s in velocity_jumps(one, part)])
@@ -145,5 +144,5 @@ def _next_recording(recordings: list[Recording], clock: ClockResult, scale: Scal
         return "measure the table's length and width: a wrong stated size looks like a stretched map"
     has_mallet = any(one.mallet is not None for one in recordings)
     if not clock.determined and has_mallet and any(one.frames is not None and one.frames.rows for one in recordings):
-        return "to see the camera's delay, record a minute in which the robot strikes the puck with a moving mallet"
+        return "to measure the camera's delay, record a minute in which the moving mallet of the robot hits the puck"
     return ""

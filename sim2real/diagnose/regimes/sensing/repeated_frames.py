@@ -1,4 +1,4 @@
-"""How many frames repeat the position before them while the puck moves."""
+"""Estimate the share of frames that repeat the previous position while the puck moves."""
 
 from __future__ import annotations
 
@@ -8,19 +8,21 @@ import numpy as np
 from scipy import stats
 
 from sim2real.diagnose.regimes.sensing.held_out import HeldOutErrors, rms
-from sim2real.diagnose.regimes.sensing.tuned import REPEATED_FRAMES, SURE
+from sim2real.diagnose.regimes.sensing.tuned import REPEATED_FRAMES, SIGNIFICANCE_LEVEL
 from sim2real.diagnose.result.result import Estimate, Finding, Proof
 from sim2real.recording.folder import Recording
 from sim2real.segmentation.segments import Segments
 
-FORMULA = "a frame repeats the position before it, with this probability"
+FORMULA = "a frame repeats the previous position with this probability"
 
 
 @dataclass(frozen=True)
 class MovingFrames:
-    """Frames of a moving puck: whether each is `held` (n,) bool, its `launch` (n,), its `deviation` (n,) [m] from the
-    straight line between its neighbours, nan where a contact is between them, and the standard deviation of that by
-    noise, `std` (n,) [m]."""
+    """Frames of a moving puck.
+
+    `held` (n,) bool: whether the frame is a repeat; `launch` (n,); `deviation` (n,) [m]: from the straight line between
+    the neighbours, nan if a contact lies between them; `std` (n,) [m]: its standard deviation due to noise.
+    """
 
     held: np.ndarray
     launch: np.ndarray
@@ -29,10 +31,10 @@ class MovingFrames:
 
 
 def moving_frames(recording: Recording, segments: Segments, launch: np.ndarray) -> MovingFrames:
-    """The frames of a moving puck, with the exact repeats of a position from which it moves on afterwards.
+    """Select the frames of a moving puck, including exact repeats of a position if the puck moves on afterwards.
 
-    `launch` (frames,): the number of each row's launch. Frames do not count in which the puck rests or comes to rest,
-    or is not detected, or is detected wrongly.
+    `launch` (frames,): the launch number of each row. Frames with a resting or stopping puck, without a detection, or
+    with an outlier are excluded.
     """
     frames = recording.frames
     nothing = MovingFrames(np.zeros(0, bool), np.zeros(0, int), np.zeros(0), np.zeros(0))
@@ -42,26 +44,26 @@ def moving_frames(recording: Recording, segments: Segments, launch: np.ndarray) 
     fresh = np.flatnonzero(np.isfinite(p).all(axis=1) & ~segments.held & ~segments.wild)
     if len(fresh) < 3:
         return nothing
-    came, here, left = fresh[:-2], fresh[1:-1], fresh[2:]
+    before, here, after = fresh[:-2], fresh[1:-1], fresh[2:]
     total = np.concatenate([[0], np.cumsum(segments.held)])
-    repeated = total[left] - total[here]
-    arrived = np.linalg.norm(p[here] - p[came], axis=1) / (here - came)
-    went = np.linalg.norm(p[left] - p[here], axis=1)
+    repeated = total[after] - total[here]
+    step_before = np.linalg.norm(p[here] - p[before], axis=1) / (here - before)
+    step_after = np.linalg.norm(p[after] - p[here], axis=1)
     moved = REPEATED_FRAMES.moved * segments.noise_std + REPEATED_FRAMES.rounding
-    counted = (arrived > moved) & (went > moved) & (left - here - 1 == repeated)
-    came, here, left, repeated = came[counted], here[counted], left[counted], repeated[counted]
+    counted = (step_before > moved) & (step_after > moved) & (after - here - 1 == repeated)
+    before, here, after, repeated = before[counted], here[counted], after[counted], repeated[counted]
     held = np.concatenate([np.arange(a + 1, a + 1 + m) for a, m in zip(here, repeated, strict=True)] or [here[:0]])
-    first, last = np.repeat(here, repeated), np.repeat(left, repeated)
+    first, last = np.repeat(here, repeated), np.repeat(after, repeated)
     rows = np.concatenate([here, held])
     deviation, std = _deviations(
-        frames.t, p, segments, rows, np.concatenate([came, first]), np.concatenate([left, last])
+        frames.t, p, segments, rows, np.concatenate([before, first]), np.concatenate([after, last])
     )
     return MovingFrames(np.arange(len(rows)) >= len(here), launch[rows], deviation, std)
 
 
 def _deviations(t: np.ndarray, p: np.ndarray, segments: Segments, row, before, after) -> tuple[np.ndarray, np.ndarray]:
-    """Deviations (n,) [m] of the rows from the straight line between the rows `before` and `after`, nan where a contact
-    or a new launch is between these; and their standard deviations (n,) [m] by noise."""
+    """Deviations (n,) [m] of the rows from the straight line between the rows `before` and `after`, nan if a contact or
+    a new launch lies between these; and their standard deviations (n,) [m] due to noise."""
     share = ((t[row] - t[before]) / (t[after] - t[before]))[:, None]
     deviation = np.linalg.norm(p[row] - (1 - share) * p[before] - share * p[after], axis=1)
     speed = np.linalg.norm(p[after] - p[before], axis=1) / (t[after] - t[before])
@@ -76,12 +78,12 @@ def _deviations(t: np.ndarray, p: np.ndarray, segments: Segments, row, before, a
 
 
 def repeated_frames_finding(counts: list[MovingFrames]) -> tuple[Finding | None, Proof | None]:
-    """The finding `held_frames`, and the deviations of frames with the repeats and without them. None where repeats are
-    rare, or without effect."""
+    """The finding `held_frames`, and the deviations of frames with and without the repeats; None if repeats are rare or
+    have no effect."""
     held = np.concatenate([each.held for each in counts])
     n, repeated = len(held), int(held.sum())
     chance = float(stats.binom.sf(repeated - 1, n, REPEATED_FRAMES.rare)) if n else 1.0
-    errors = deviation_errors(counts) if chance <= SURE else None
+    errors = deviation_errors(counts) if chance <= SIGNIFICANCE_LEVEL else None
     if errors is None or errors.after >= errors.before:
         return None, None
     interval = stats.binomtest(repeated, n).proportion_ci(0.95, "wilson")
@@ -101,7 +103,7 @@ def repeated_frames_finding(counts: list[MovingFrames]) -> tuple[Finding | None,
 
 
 def deviation_errors(counts: list[MovingFrames]) -> HeldOutErrors | None:
-    """Rms deviations of all frames, and of those that are no repeats; None where none is known."""
+    """Rms deviations of all frames, and of frames that are not repeats; None if no deviation is known."""
     held, launch, deviation, std = (
         np.concatenate([getattr(each, name) for each in counts]) for name in ("held", "launch", "deviation", "std")
     )

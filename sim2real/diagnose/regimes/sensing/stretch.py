@@ -1,4 +1,4 @@
-"""A camera's map whose stretch along one axis is undetermined, and an anisotropy of friction that looks the same."""
+"""Reject a friction anisotropy that an undetermined stretch of the camera's map explains as well."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ SCALES = {"scale_x": "x", "scale_y": "y"}
 
 
 def without_stretch(glides: RegimeResult, sensing: RegimeResult) -> RegimeResult:
-    """The result of the glides without an anisotropy of friction that a stretch of the map explains.
+    """Remove a friction anisotropy from the result of the glides if a stretch of the map explains it.
 
-    Through a camera that stretches x by s, friction along x is (1 + s) times that along y: a grain of s / 2. It applies
-    only where the map is stretched along one axis and the walls do not determine the other; no stretch beyond
-    `SCALE.most_scale` is taken for the camera's.
+    If the camera stretches x by s, friction along x appears (1 + s) times that along y, a grain of s / 2. The
+    anisotropy is removed only if the map is stretched along one axis, the walls do not determine the other axis, and
+    the stretch is at most `SCALE.most_scale`.
     """
     stretch = next((one for one in sensing.findings if one.mechanism == "scale_error"), None)
     anisotropy = next((one for one in glides.findings if one.mechanism == ANISOTROPY), None)
@@ -29,5 +29,5 @@ def without_stretch(glides: RegimeResult, sensing: RegimeResult) -> RegimeResult
     return replace(
         glides,
         findings=tuple(one for one in glides.findings if one is not anisotropy),
-        doubt=f"{ANISOTROPY} would fit, but so would a map stretched along {axes}, which these bounces do not tell",
+        doubt=f"{ANISOTROPY} fits, but so does a map stretched along {axes}, which these bounces do not determine",
     )

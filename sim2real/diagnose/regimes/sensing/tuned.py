@@ -14,11 +14,11 @@ class ClockNumbers:
     longest_delay: float = tuned(
         0.12,
         "s",
-        "less misses slow cameras, more finds accidental ones",
+        "less misses slow cameras, more finds delays by chance",
         "choice: 7 frames of a camera of 60 frames a second",
     )
     largest_rate: float = tuned(
-        0.001, "1", "less misses bad clocks, more finds accidental ones", "choice: ten times a bad quartz"
+        0.001, "1", "less misses bad clocks, more finds drifts by chance", "choice: ten times a bad quartz"
     )
     grid: float = tuned(
         0.0015,
@@ -72,7 +72,7 @@ class ClockNumbers:
     rejected: float = tuned(
         1e-3,
         "1",
-        "p-value below which delay or drift alone is not enough: more names both by accident",
+        "p-value below which delay or drift alone is not enough: more names both by chance",
         "choice: once in a thousand",
     )
     least_delay: float = tuned(
@@ -96,7 +96,7 @@ class ClockNumbers:
 
 @dataclass(frozen=True)
 class ContactLineNumbers:
-    """Tuned numbers of the lines on which the puck's centre turns round at the walls."""
+    """Tuned numbers of the walls' contact lines."""
 
     farthest: float = tuned(
         0.06,
@@ -116,14 +116,14 @@ class ContactLineNumbers:
     least_share: float = tuned(
         0.4,
         "1",
-        "of the candidates that lie in the band: less finds lines in other contacts",
+        "share of the candidates in the band: less finds lines in other contacts",
         "choice: hardly fewer than half",
     )
 
 
 @dataclass(frozen=True)
 class ScaleNumbers:
-    """Tuned numbers of the camera's map, by those lines."""
+    """Tuned numbers of the camera's map, estimated from the contact lines."""
 
     radius_std: float = tuned(
         0.001,
@@ -138,9 +138,9 @@ class ScaleNumbers:
         0.002, "rad", "prior of the map's rotation, likewise", "choice: what a good calibration may leave"
     )
     wall_place_std: float = tuned(
-        0.0003, "m", "how true a wall's place is: less trusts single walls too much", "choice: a good cushion"
+        0.0003, "m", "error of a wall's place: less gives single walls too much weight", "choice: a good cushion"
     )
-    wall_slant_std: float = tuned(0.0005, "rad", "how straight a wall is, likewise", "choice: a good cushion")
+    wall_slant_std: float = tuned(0.0005, "rad", "error of a wall's direction, likewise", "choice: a good cushion")
     significance: float = tuned(
         1e-3, "1", "p-value of one of the scales, where together they are significant", "choice: once in a thousand"
     )
@@ -164,7 +164,7 @@ class ScaleNumbers:
         1e-12,
         "1",
         "p-value below which a few outliers may hide how much a map explains",
-        "choice: far below any accident",
+        "choice: far below chance",
     )
     known: float = tuned(
         0.003,
@@ -195,13 +195,13 @@ class RepeatedFrameNumbers:
         5e-5, "m", "smaller steps repeat by the rounding of a file", "choice: half of the last digit of 0.1 mm"
     )
     rare: float = tuned(
-        0.002, "1", "a share that any camera may have: less names it", "choice: one frame in ten seconds"
+        0.002, "1", "a share that any camera may have: less reports it", "choice: one frame in ten seconds"
     )
 
 
 @dataclass(frozen=True)
 class SensingConsistencyNumbers:
-    """Tuned numbers of whether recordings are of one table and one camera."""
+    """Tuned numbers of the check that recordings are of one table and one camera."""
 
     largest_scale: float = tuned(
         0.01,
@@ -212,15 +212,13 @@ class SensingConsistencyNumbers:
     largest_delay: float = tuned(
         0.002, "s", "difference of clocks: less refuses one camera, more accepts two", "choice: a fraction of a frame"
     )
-    significance: float = tuned(
-        5.0, "standard deviations", "less refuses recordings by noise", "choice: beyond any accident"
-    )
+    significance: float = tuned(5.0, "standard deviations", "less refuses recordings by noise", "choice: beyond chance")
     fewest_free: int = tuned(
         5, "contacts", "beyond the numbers of a clock: fewer do not determine it", "choice: as many again"
     )
 
 
-SURE = 1e-5  # p-value of exact sensors, below which an error of theirs is named
+SIGNIFICANCE_LEVEL = 1e-5  # p-value of exact sensors below which a sensor error is reported
 CLOCK = ClockNumbers()
 CONTACT_LINES = ContactLineNumbers()
 SCALE = ScaleNumbers()

@@ -1,4 +1,4 @@
-"""A nonparametric force as parameters of the simulator's `unlisted_force`, so that players play on it too."""
+"""Convert a nonparametric force to parameters of the simulator's `unlisted_force`, so that it can be simulated."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def _over_place(motion: Motion, theta: np.ndarray) -> np.ndarray:
 
 
 def _ripples(axis: int) -> Callable[[Motion, np.ndarray], np.ndarray]:
-    """Numbers for each direction, padded with zeros to as many as the simulator has."""
+    """A function for the numbers of each direction, padded with zeros to the simulator's count."""
 
     def numbers(motion: Motion, theta: np.ndarray) -> np.ndarray:
         each = SLIDING.unit * theta.reshape(-1, SLIDING.ripples[axis]) * ripple_sizes(axis)
@@ -41,7 +41,7 @@ def _ripples(axis: int) -> Callable[[Motion, np.ndarray], np.ndarray]:
 
 
 def _by_speed(motion: Motion, theta: np.ndarray) -> np.ndarray:
-    """Knots and values, the last ones repeated up to as many as the simulator has."""
+    """Knots and values, both padded with their last entry to the simulator's count."""
     knots = motion.speeds
     more = (0, unlisted_force.SPEED_KNOTS - len(knots))
     return np.concatenate(
@@ -50,7 +50,7 @@ def _by_speed(motion: Motion, theta: np.ndarray) -> np.ndarray:
 
 
 def _by_time(motion: Motion, theta: np.ndarray) -> np.ndarray:
-    """The first and last knot, and the values at all of them along each direction."""
+    """The first and last knot, and the values at all knots along each direction."""
     knots = time_knots(motion)
     values = SLIDING.unit * theta.reshape(-1, len(knots)) @ spline_basis(knots).T
     return np.concatenate([knots[[0, -1]], values.ravel()])
@@ -78,9 +78,9 @@ SWITCHES: Mapping[str, tuple[int, Callable[[Motion, np.ndarray], np.ndarray]]] =
 
 
 def effect_parameters(family: str, motion: Motion, theta: np.ndarray) -> dict[str, float]:
-    """Parameters of `unlisted_force` by name for the coefficients `theta` of a family on the `motion` it was fitted to.
+    """Parameters of `unlisted_force` by name, for the coefficients `theta` of a family fitted to `motion`.
 
-    Empty for a family of which the simulator has none: forces by the time since a contact.
+    Empty for forces by the time since a contact, which the simulator does not support.
     """
     if family not in SWITCHES:
         return {}

@@ -1,6 +1,6 @@
-"""Nonparametric forces on a gliding puck, by what they depend on: candidates for what no listed effect explains.
+"""The basis library of the glides: nonparametric forces on the puck, candidates where no listed effect fits.
 
-Each family is a set of accelerations (n, 2, k) [m/s^2] of a motion, to be weighted by coefficients of order 1.
+Each family is a set of accelerations (n, 2, k) [m/s^2] along a motion; its coefficients are of order 1.
 """
 
 from __future__ import annotations
@@ -21,9 +21,12 @@ SPIN = "side force by each launch's spin"
 
 @dataclass(frozen=True)
 class Motion:
-    """What forces may depend on: `t` (n,) [s], `place` (n, 2) [m], `velocity` (n, 2) [m/s], the time `since` (n,) [s]
-    the last contact (nan where none is known), the number `launch` (n,) of the launch and its `age` (n,) [s], the
-    table's `size` (2,) [m], and the knots `speeds` (k,) [m/s] between which a force by speed is linear."""
+    """The quantities that forces may depend on.
+
+    `t` (n,) [s]; `place` (n, 2) [m]; `velocity` (n, 2) [m/s]; `since` (n,) [s]: time since the last contact, nan if
+    unknown; `launch` (n,): number of the launch; `age` (n,) [s]: time since its start; `size` (2,) [m] of the table;
+    `speeds` (k,) [m/s]: the knots of forces by speed, which are piecewise linear.
+    """
 
     t: np.ndarray
     place: np.ndarray
@@ -46,12 +49,12 @@ class Motion:
 
 
 def cosine_sizes() -> np.ndarray:
-    """Sizes (WAVES_X WAVES_Y,) of `cosines`."""
+    """Expected sizes (WAVES_X WAVES_Y,) of `cosines`."""
     return expected_size(np.hypot(*np.meshgrid(np.arange(WAVES_X), np.arange(WAVES_Y), indexing="ij"))).ravel()
 
 
 def ripple_sizes(axis: int) -> np.ndarray:
-    """Sizes (SLIDING.ripples[axis],) of the waves along one axis."""
+    """Expected sizes (SLIDING.ripples[axis],) of the cosines along one axis."""
     return expected_size(np.arange(SLIDING.ripples[axis]))
 
 
@@ -69,13 +72,13 @@ def _ripples(motion: Motion, axis: int) -> np.ndarray:
 
 
 def harmonics(motion: Motion) -> np.ndarray:
-    """Cosines and sines (n, 2 HARMONICS) of multiples of the heading, in turn."""
+    """Cosines and sines (n, 2 HARMONICS) of multiples of the heading, alternating."""
     angle = np.arctan2(motion.velocity[:, 1], motion.velocity[:, 0])
     return np.stack([f(k * angle) for k in range(1, HARMONICS + 1) for f in (np.cos, np.sin)], axis=1)
 
 
 def _along(weights: np.ndarray, *vectors: np.ndarray) -> np.ndarray:
-    """Accelerations (n, 2, …) [m/s^2]: every weight (n, k) along every vector (n, 2)."""
+    """Accelerations (n, 2, …) [m/s^2]: each weight (n, k) times each vector (n, 2)."""
     return SLIDING.unit * np.concatenate([weights[:, None, :] * vector[:, :, None] for vector in vectors], axis=2)
 
 
@@ -86,34 +89,34 @@ def _axes(motion: Motion) -> tuple[np.ndarray, np.ndarray]:
 
 
 def time_knots(motion: Motion) -> np.ndarray:
-    """Times (k,) [s] between which a force by time is linear."""
+    """The knots (k,) [s] of forces by time, which are piecewise linear."""
     return np.linspace(motion.t.min(), motion.t.max(), TIME_KNOTS)
 
 
 def _speeds(motion: Motion) -> np.ndarray:
-    """Functions (n, k) of the speed."""
+    """Basis functions (n, k) of the speed."""
     return hats(np.linalg.norm(motion.velocity, axis=1), motion.speeds) @ spline_basis(motion.speeds)
 
 
 def _moments(motion: Motion) -> np.ndarray:
-    """Functions (n, k) of the time."""
+    """Basis functions (n, k) of the time."""
     knots = time_knots(motion)
     return hats(motion.t, knots) @ spline_basis(knots)
 
 
 def _histories(motion: Motion) -> np.ndarray:
-    """Functions (n, k) of the time since the last contact."""
+    """Basis functions (n, k) of the time since the last contact."""
     return after_contact_hats(motion.since, SLIDING.history_knots)
 
 
 def _spins(motion: Motion) -> np.ndarray:
-    """Speeds (n, launches) [m/s], each launch's in a column of its own, times the share of its spin that is left."""
+    """Speed times the remaining share of the launch's spin (n, launches) [m/s], one column for each launch."""
     speed = np.linalg.norm(motion.velocity, axis=1) * np.exp(-SLIDING.spin_decay * motion.age)
     return speed[:, None] * (motion.launch[:, None] == np.arange(motion.launch.max(initial=0.0) + 1.0))
 
 
 def _waving(period: float, motion: Motion) -> np.ndarray:
-    """Brakes (n, 2, 2) [m/s^2] by a sine and a cosine of the time."""
+    """Decelerations (n, 2, 2) [m/s^2] proportional to a sine and a cosine of the time."""
     turns = 2.0 * np.pi * motion.t / period
     return _along(np.stack([np.sin(turns), np.cos(turns)], axis=1), -motion.along)
 

@@ -18,13 +18,13 @@ from sim2real.diagnose.regimes.sliding.residuals import GlideResiduals
 from sim2real.diagnose.regimes.sliding.tuned import SLIDING
 
 MOVES = (-1, 0, 1)  # steps to places nearby
-BY_SPIN = "spin_side_force"  # acts on a puck whose spin the camera does not measure: a family stands for it
+BY_SPIN = "spin_side_force"  # depends on the spin, which the camera does not measure: the family SPIN represents it
 
 Columns = Callable[[np.ndarray], np.ndarray]  # accelerations (n, 2, k) [m/s^2] to columns (2n, k) of the residuals
 
 
 def listed_laws() -> list[Law]:
-    """The listed effects of the glide whose columns are derivatives at the baseline; a patch is searched for."""
+    """The listed effects of the glide whose columns are derivatives at the baseline; patches need a search."""
     found = []
     for name, effect in EFFECTS.items():
         if effect.regime != "glide" or not effect.listed or name == "friction_patch":
@@ -37,8 +37,10 @@ def listed_laws() -> list[Law]:
 def glide_columns(
     problem: GlideResiduals, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None
 ) -> DesignMatrix:
-    """Every column of a glide problem at the law of `values`, with those of the parameters `free`; patches of other
-    friction are searched for in the clusters `use`, and not at all where these are None."""
+    """All columns of a glide problem at the parameters `values`, including those of the parameters `free`.
+
+    Friction patches are searched in the clusters `use`; not at all if `use` is None.
+    """
     path, by_start = problem.linearized(values)
     motion = problem.motion(path)
 
@@ -72,9 +74,11 @@ def glide_columns(
 def _patches(
     motion: Motion, columns: Columns, exact: Residuals, base: int, used: np.ndarray
 ) -> tuple[list[Law], np.ndarray]:
-    """The discs of other friction that explain most of the residuals that are `used` (n,) bool, one at a time, beside
-    the first `base` parameters, and beside all, whose columns may hide a disc's; with their columns (n, k) for all
-    residuals."""
+    """Search the friction discs that explain most of the `used` (n,) bool residuals, one disc at a time.
+
+    The search is done twice: with the first `base` parameters free, and with all of them free, whose columns may be
+    collinear with a disc's. Returns the laws and their columns (n, k) for all residuals.
+    """
     rests = [_Rest.of(exact.r[used], exact.jacobian[used, :known]) for known in (base, exact.jacobian.shape[1])]
 
     def gains(discs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -97,8 +101,7 @@ def _patches(
 
 @dataclass(frozen=True)
 class _Rest:
-    """Residuals `r` (n,) less their projection on known columns, whose space has the orthonormal basis `basis`
-    (n, k)."""
+    """Residuals `r` (n,) minus their projection on known columns, which span the orthonormal `basis` (n, k)."""
 
     basis: np.ndarray
     r: np.ndarray
@@ -110,14 +113,14 @@ class _Rest:
         return cls(basis, r - basis @ (basis.T @ r))
 
     def gains(self, block: np.ndarray) -> np.ndarray:
-        """The drop (k,) of the sum of squares by each column of `block` (n, k) beside the known ones."""
+        """The decrease (k,) of the sum of squares by each column of `block` (n, k) in addition to the known ones."""
         alone = block - self.basis @ (self.basis.T @ block)
         size = np.einsum("ik,ik->k", alone, alone)
         return np.where(size > 1e-9, (alone.T @ self.r) ** 2 / np.maximum(size, 1e-9), 0.0)
 
 
 def _near(disc: np.ndarray, share: float) -> np.ndarray:
-    """Discs (k, 3) near one, that itself included, at steps of a `share` of the grid's."""
+    """The disc and its neighbours (k, 3), at steps of a `share` of the grid's steps."""
     x, y, radius = disc
     step = share * _spacing(radius)
     near = [
@@ -130,14 +133,14 @@ def _near(disc: np.ndarray, share: float) -> np.ndarray:
 
 
 def _patch(column: str, disc: np.ndarray, searched: int) -> Law:
-    """The law of a patch found at a disc (3,), the best of `searched`."""
+    """The law of a friction patch at a disc (3,), selected among `searched` discs."""
     x, y, radius = map(float, disc)
     start = {"patch_x": x, "patch_y": y, "patch_radius": radius}
     return Law("friction_patch", (column,), start=start, searched=searched)
 
 
 def _discs(size: np.ndarray) -> np.ndarray:
-    """Centres and radii (k, 3) [m] of discs that cover a table of `size` (2,) [m], small ones closer together."""
+    """Centres and radii (k, 3) [m] of discs that cover a table of `size` (2,) [m]; small discs are closer together."""
     found = []
     for radius in SLIDING.patch_radii:
         step = _spacing(radius)
@@ -153,7 +156,7 @@ def _spacing(radius: float) -> float:
 
 
 def _inside(motion: Motion, discs: np.ndarray) -> np.ndarray:
-    """Accelerations (n, 2, k) [m/s^2] of a brake of one unit inside each disc (k, 3)."""
+    """Accelerations (n, 2, k) [m/s^2] of one unit of additional friction inside each disc (k, 3)."""
     offset = motion.place[:, None, :] - discs[None, :, :2]
     inside = (offset**2).sum(axis=2) < discs[:, 2] ** 2
     return -SLIDING.unit * motion.along[:, :, None] * inside[:, None, :]

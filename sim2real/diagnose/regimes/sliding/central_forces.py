@@ -1,4 +1,4 @@
-"""Forces about a point of the table as candidates of a formula: vortices, sources, and a patch that brakes."""
+"""Central forces as candidate formulas: vortices, sources, and a patch of friction about a point of the table."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ ROUND, OUTWARD = "round", "away from"
 
 
 def pushes(motion: Motion) -> list[Form]:
-    """Forces that turn round a point or point away from it, in proportion to the distance, or near the point alone."""
+    """Forces around a point or away from it, either proportional to the distance or local to the point."""
     return [make(motion, direction) for make in (_rigid, _local) for direction in (ROUND, OUTWARD)]
 
 
 def brake(motion: Motion) -> Form:
-    """A brake that is strongest at a point."""
+    """A friction force that is largest at a point."""
 
     def at(x: float, y: float, width: float) -> np.ndarray:
         offset = motion.place - (x, y)
@@ -34,7 +34,7 @@ def brake(motion: Motion) -> Form:
 
 
 def _offsets(motion: Motion, x: float, y: float, direction: str) -> np.ndarray:
-    """Vectors (n, 2) [m] from a point to each place, turned a quarter to the left for ROUND."""
+    """Vectors (n, 2) [m] from a point to each place, rotated by 90 degrees to the left for ROUND."""
     offset = motion.place - (x, y)
     return np.stack([-offset[:, 1], offset[:, 0]], axis=1) if direction == ROUND else offset
 

@@ -1,4 +1,4 @@
-"""The glides of a recording as flat arrays, grouped by launch, without those that are no smooth motion."""
+"""The glides of a recording as flat arrays, grouped by launch; glides that are not smooth are omitted."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from sim2real.segmentation.sensor_noise import Noise
 
 @dataclass(frozen=True)
 class GlideData:
-    """`n` frames in `g` glides, of which number i has the frames first[i] … first[i + 1] − 1.
+    """`n` frames in `g` glides; glide i has the frames first[i] … first[i + 1] − 1.
 
     `t` (n,) [s], `place` (n, 2) [m], and the standard deviation `std` (n, 2) [m] of the noise of each coordinate. For
-    each glide: its `cluster` (launch), its `recording`, and `since` [s], the time of the contact before it (nan where
-    none was recorded). For each recording: the `noise` of its camera.
+    each glide: its `cluster` (launch), its `recording`, and `since` [s], the time of the contact before it (nan if none
+    was recorded). For each recording: the `noise` of its camera.
     """
 
     t: np.ndarray
@@ -35,12 +35,12 @@ class GlideData:
 
     @property
     def glides(self) -> int:
-        """How many glides there are."""
+        """Number of glides."""
         return len(self.cluster)
 
     @property
     def clusters(self) -> int:
-        """How many launches there are."""
+        """Number of launches."""
         return int(self.cluster.max()) + 1 if len(self.cluster) else 0
 
     @property
@@ -49,16 +49,16 @@ class GlideData:
         return [self.noise[recording] for recording in self.recording]
 
     def of_frame(self, values: np.ndarray) -> np.ndarray:
-        """Values of the glides (g, …) repeated for each of their frames (n, …)."""
+        """Repeat values of the glides (g, …) for each of their frames (n, …)."""
         return np.repeat(values, np.diff(self.first), axis=0)
 
 
 def glide_data(segments: Segments, g: Geometry, tracks: Mapping[str, Track], map_error_std: float = 0.0) -> GlideData:
-    """The glides of `segments` that move and are smooth; launches in order of time are the clusters.
+    """Select the glides of `segments` that move and are smooth; the clusters are the launches in order of time.
 
     `g` and `tracks` (of the mallets, at the recording's frames) give the places where a slow contact may be hidden;
-    `map_error_std` [m]: the stated error of the camera's calibration. Where most glides are rougher than the sensor's
-    white noise explains, the noise is as large as their roughness.
+    `map_error_std` [m]: the stated error of the camera's calibration. If most glides are rougher than the white sensor
+    noise explains, the noise is scaled up to their roughness.
     """
     free = [_clear_part(glide, segments, g, tracks) for glide in segments.glides]
     long = [k for k, glide in enumerate(free) if _moves(glide)]
@@ -82,7 +82,7 @@ def glide_data(segments: Segments, g: Geometry, tracks: Mapping[str, Track], map
 
 
 def join(parts: Sequence[GlideData]) -> GlideData:
-    """The glides of several recordings of one table, numbered on; no launch of one is that of another."""
+    """Concatenate the glides of several recordings of one table; launches are numbered over all recordings."""
     frames = np.cumsum([0, *(len(part.t) for part in parts)])
     launches = np.cumsum([0, *(part.clusters for part in parts)])
     return GlideData(
@@ -98,7 +98,7 @@ def join(parts: Sequence[GlideData]) -> GlideData:
 
 
 def _clear_part(glide: Glide, segments: Segments, g: Geometry, tracks: Mapping[str, Track]) -> Glide:
-    """The longest part of a glide away from walls, posts and mallets, by more than a slow contact may be hidden in."""
+    """The longest part of a glide so far from walls, posts and mallets that no slow contact can be hidden in it."""
     p = np.stack([glide.x, glide.y], axis=1)
     reach = SLIDING.clearance + SLIDING.clearance_stds * segments.noise.position
     near = (
@@ -138,7 +138,7 @@ def _roughness(glide: Glide, noise: Noise) -> tuple[float, int]:
 
 
 def _clusters(segments: Segments, glides: list[Glide]) -> np.ndarray:
-    """Number of the launch of each glide; one that lasts longer than `longest_cluster` is cut at a glide's start."""
+    """Number of the launch of each glide; launches longer than `longest_cluster` are cut at the start of a glide."""
     found = np.zeros(len(glides), int)
     cluster, launch, begun = -1, -1, 0.0
     starts = np.array([start for start, _ in segments.launches])
@@ -151,6 +151,6 @@ def _clusters(segments: Segments, glides: list[Glide]) -> np.ndarray:
 
 
 def _last_contact(glide: Glide, contacts: np.ndarray) -> float:
-    """Time [s] of the contact, of those at the times `contacts`, with which a glide begins; nan where there is none."""
+    """Time [s] of the contact at which a glide begins, among the times `contacts`; nan if there is none."""
     before = contacts[contacts < glide.t[0] + 1e-9]
     return float(before[-1]) if len(before) and glide.t[0] - before[-1] < SLIDING.contact_gap else np.nan

@@ -1,4 +1,4 @@
-"""The report's figures of the glides: the accelerations that laws leave unexplained, and each finding as a curve."""
+"""The glide figures of a report: residual accelerations before and after the fit, and a curve for each finding."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from sim2real.statistics.intervals import reach_of_launches
 
 
 def mismatch(problem: GlideProblem, found: SearchResult) -> Mismatch:
-    """Accelerations of windows that the refitted baseline and the final law do not predict."""
+    """Residual accelerations of windows under the refitted baseline and under the final law."""
     windows = acceleration_windows(problem.data)
     at_windows = mean_motion(problem, windows, found.baseline.values)
     before = missing_acceleration(problem, windows, found.baseline.values)
@@ -46,17 +46,19 @@ def mismatch(problem: GlideProblem, found: SearchResult) -> Mismatch:
 
 
 def listed_curve(problem: GlideProblem, found: SearchResult, mechanism: str) -> Curve:
-    """The acceleration that a listed mechanism adds over the coordinate that shows it best, with all else that it
-    depends on held fixed; the data are as far from it as from the whole law."""
+    """The acceleration that a listed mechanism adds, over the coordinate that shows it best.
+
+    All other coordinates are held fixed; data points are the curve plus the residuals of the final law.
+    """
     values = dict(found.final.values)
     free = [name for name in found.final.free if name in EFFECTS[mechanism].row_names]
     windows = acceleration_windows(problem.data)
     at_windows, look = mean_motion(problem, windows, found.all_values), listed_view(mechanism, values)
-    left = look.of(
+    rest = look.of(
         at_windows, missing_acceleration(problem, windows, found.all_values, _force_without_effect(problem, found))
     )
     x, std = look.coordinate(at_windows), np.hypot(*(look.direction(at_windows) * windows.std).T)
-    points = binned(x, left, std)
+    points = binned(x, rest, std)
     index = [found.final.free.index(name) for name in free]
     spread = found.final.covariance[np.ix_(index, index)]
 
@@ -80,8 +82,10 @@ def listed_curve(problem: GlideProblem, found: SearchResult, mechanism: str) -> 
 def smooth_curve(
     problem: GlideProblem, found: SearchResult, law: Law, formula: Formula, looks: list[Projection]
 ) -> Curve:
-    """An unlisted law and its readable formula in that projection of `looks` in which the law is largest; the data are
-    as far from the curve as from the whole law, which changes within a window as no mean of it does."""
+    """An unlisted law and its readable formula, in the projection of `looks` in which the law is largest.
+
+    Data points are the curve plus the residuals of the final law, because the law may vary within a window.
+    """
     frames = problem.motion(problem.linearized(found.all_values)[0])
     block = FAMILIES[law.name][1](frames)
     spread = found.theta_covariance[-len(law.columns) :, -len(law.columns) :]
@@ -90,8 +94,8 @@ def smooth_curve(
     windows = acceleration_windows(problem.data, SLIDING.short_window if law.family == "history" else None)
     at_windows = mean_motion(problem, windows, found.all_values)
     std = np.hypot(*(look.direction(at_windows) * windows.std).T)
-    left = missing_acceleration(problem, windows, found.all_values, _force_without_effect(problem, found))
-    points = binned(look.coordinate(at_windows), look.of(at_windows, left), std)
+    rest = missing_acceleration(problem, windows, found.all_values, _force_without_effect(problem, found))
+    points = binned(look.coordinate(at_windows), look.of(at_windows, rest), std)
     x = look.coordinate(frames)
     shape = binned(x, look.of(frames, added), equal, SLIDING.law_bins)
     points = replace(points, y=points.y + np.interp(points.x, shape.x, shape.y))
@@ -104,7 +108,7 @@ def smooth_curve(
 
 
 def _beside(found: SearchResult, formula: Formula, frames: Motion) -> np.ndarray:
-    """The force (n, 2) [m/s^2] by which the fitted parameters change beside a formula."""
+    """The force (n, 2) [m/s^2] due to the changes of the other fitted parameters when the formula is fitted."""
     moved = dict(zip(found.final.free, map(float, formula.moved), strict=True))
     values = {**found.final.values, **{name: found.final.values[name] + by for name, by in moved.items()}}
     change = accelerations(values, frames) - accelerations(found.final.values, frames)
@@ -112,7 +116,7 @@ def _beside(found: SearchResult, formula: Formula, frames: Motion) -> np.ndarray
 
 
 def _force_without_effect(problem: GlideProblem, found: SearchResult) -> np.ndarray | None:
-    """The force (n, 2) [m/s^2] at each frame of an unlisted law that the simulator has no effect for, else None."""
+    """The force (n, 2) [m/s^2] of an unlisted law at each frame if the simulator has no effect for it, else None."""
     if found.unlisted is None or found.effect_parameters():
         return None
     frames = problem.motion(problem.linearized(found.final.values)[0])
@@ -120,13 +124,13 @@ def _force_without_effect(problem: GlideProblem, found: SearchResult) -> np.ndar
 
 
 def _near(name: str, value: float, size: float) -> float:
-    """A value near that of a parameter, within its range."""
+    """A value near that of a parameter and within its range, for a difference."""
     step = max(0.1 * size, 1e-6)
     return value + step if value + step < BY_NAME[name].high else value - step
 
 
 def _size(look: Projection, frames: Motion, force: np.ndarray) -> float:
-    """Mean square [m^2/s^4] of a binned force (n, 2) in a projection."""
+    """Mean square [m^2/s^4] of the binned projection of a force (n, 2)."""
     shape = binned(look.coordinate(frames), look.of(frames, force), np.ones(len(frames.t)), SLIDING.law_bins)
     return float(np.mean(shape.y**2)) if len(shape.y) else 0.0
 

@@ -18,35 +18,35 @@ from sim2real.diagnose.regimes.sliding.views import COORDINATES, DIRECTIONS, Pro
 
 UNIT = "m/s^2"
 NAMES = {"x": ("x", "m"), "y": ("y", "m"), "speed": ("v", "m/s"), "heading": ("heading", "deg"), "time": ("t", "s"),
-         "history": ("t_since_hit", "s")}  # fmt: skip
+         "history": ("t_since_contact", "s")}  # fmt: skip
 SYMBOLS = {"along": "along", "across": "left", "x": "x", "y": "y"}
 
 
 def readable_formula(
     problem: GlideProblem, found: SearchResult, law: Law, use: np.ndarray
 ) -> tuple[Formula, list[Projection]]:
-    """The formula of a family of forces that was found, fitted to the clusters `use`; and projections that show it."""
+    """Fit the formula of a selected family of forces to the clusters `use`; return it and projections that show it."""
     values = found.all_values
     path, by_start = problem.linearized(values)
     motion = problem.motion(path)
 
     def respond(forces: np.ndarray) -> np.ndarray:
-        """Residuals (2n, k) that forces (n, 2, k) [m/s^2] explain."""
+        """The response (2n, k) of the residuals to forces (n, 2, k) [m/s^2]."""
         return -problem.profiled(path, by_start, problem.displacements(path, values, forces)[0])[1]
 
-    left = problem.residuals(values, found.final.free, np.arange(problem.clusters))
-    r = left.r
-    if found.effect_parameters():  # it is in the path, and the formula replaces it
+    rest = problem.residuals(values, found.final.free, np.arange(problem.clusters))
+    r = rest.r
+    if found.effect_parameters():  # the path includes the effect, which the formula replaces
         r = r + respond(force(law.name, motion, found.coefficients)[:, :, None])[:, 0]
     candidates = FormulaCandidates(motion, law)
     best = find_formula(
-        FormulaProblem(r, left.jacobian, left.cluster, use, respond), candidates.single, candidates.joined
+        FormulaProblem(r, rest.jacobian, rest.cluster, use, respond), candidates.single, candidates.joined
     )
     return best, candidates.views(best)
 
 
 class FormulaCandidates:
-    """The forms that a family's formula may have: `single` ones, along one direction each, and `joined` ones."""
+    """The candidate forms of a family's formula: `single` ones along one direction, and `joined` ones along two."""
 
     def __init__(self, motion: Motion, law: Law) -> None:
         kind = law.name.split()[0]
@@ -60,7 +60,7 @@ class FormulaCandidates:
             self.single += central_forces.pushes(motion) if kind == "push" else [central_forces.brake(motion)]
 
     def joined(self, one: Form, shape: np.ndarray) -> Sequence[Form]:
-        """The shape of `one`, with its parameters `shape` (k,), along both directions of the family, if it has two."""
+        """The form `one` with its parameters `shape` (k,) along both directions of the family, if it has two."""
         if one.name not in self._of or len(self._sides) == 1:
             return []
         profile, name, _ = self._of[one.name]
@@ -79,7 +79,7 @@ class FormulaCandidates:
 
     def _axis(self, name: str, side: str) -> Axis:
         symbol, unit = NAMES[name]
-        offset = side != "along" and name != "history"  # along the motion the baseline's friction is one
+        offset = side != "along" and name != "history"  # along the motion, the baseline's friction is the offset
         return Axis(symbol, unit, COORDINATES[name][1](self._motion), offset)
 
     def _profiles(self, name: str, side: str) -> list[Profile]:
@@ -88,7 +88,7 @@ class FormulaCandidates:
         return profiles(self._axis(name, side), UNIT)
 
     def _form(self, profile: Profile, name: str, sides: tuple[str, ...]) -> Form:
-        """The form of a profile over the coordinate `name`, which is kept to find its projections by."""
+        """The form of a profile over the coordinate `name`; it is stored so that `views` can find its projections."""
         directions = [
             Direction("a", SYMBOLS[side], DIRECTIONS[side][0], DIRECTIONS[side][1](self._motion)) for side in sides
         ]

@@ -1,4 +1,4 @@
-"""Short windows of glides, and the acceleration of each beyond what a law predicts."""
+"""Short windows of glides, and the residual acceleration of each under a law."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from sim2real.diagnose.regimes.sliding.tuned import SLIDING
 
 @dataclass(frozen=True)
 class AccelerationWindows:
-    """`w` windows, of which number i has the frames first[i] … first[i + 1] − 1 of the glides.
+    """`w` windows; window i has the frames first[i] … first[i + 1] − 1 of the glides.
 
-    `weight` (n, 2) [1/s^2]: the acceleration of a window is the sum of its frames' places times these. `std` (w, 2)
-    [m/s^2]: its standard deviation by the sensor's noise.
+    `weight` (n, 2) [1/s^2]: the acceleration of a window is the weighted sum of its frames' places. `std` (w, 2)
+    [m/s^2]: its standard deviation due to sensor noise.
     """
 
     first: np.ndarray
@@ -36,7 +36,7 @@ class AccelerationWindows:
 
 
 def acceleration_windows(data: GlideData, span: float | None = None) -> AccelerationWindows:
-    """All glides in windows of about `span` [s], `SLIDING.window` by default; a shorter glide is one window."""
+    """Divide glides into windows of about `span` [s], by default `SLIDING.window`; a shorter glide is one window."""
     first, weights, stds = [], [], []
     for a, b, recording in zip(data.first[:-1], data.first[1:], data.recording, strict=True):
         duration = float(data.t[b - 1] - data.t[a])
@@ -54,8 +54,10 @@ def acceleration_windows(data: GlideData, span: float | None = None) -> Accelera
 def missing_acceleration(
     problem: GlideProblem, windows: AccelerationWindows, values: Mapping[str, float], force: np.ndarray | None = None
 ) -> np.ndarray:
-    """Accelerations (w, 2) [m/s^2] of the windows less those that the law of `values` predicts, with a small further
-    `force` (n, 2) [m/s^2]."""
+    """Accelerations (w, 2) [m/s^2] of the windows minus those that the parameters `values` predict.
+
+    `force` (n, 2) [m/s^2]: a small additional force of the prediction.
+    """
     data = problem.data
     path = problem.linearized(values)[0]
     rest = data.place - path[:, :2]
@@ -73,7 +75,7 @@ def mean_motion(problem: GlideProblem, windows: AccelerationWindows, values: Map
 
 
 def _second_derivative(t: np.ndarray, std: np.ndarray) -> np.ndarray:
-    """Weights (k, 2) that take places at `t` (k,), of noise `std` (k, 2), to the acceleration of the parabola."""
+    """Weights (k, 2) of places at `t` (k,) with noise `std` (k, 2) for the acceleration of the fitted parabola."""
     u = t - t.mean()
     design = np.vander(u, 3)
     return np.stack([2.0 * np.linalg.pinv(design / s[:, None])[0] / s for s in std.T], axis=1)

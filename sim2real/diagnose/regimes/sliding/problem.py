@@ -1,4 +1,4 @@
-"""The glides as a problem for the engine, and the states at their ends, between which the contacts are."""
+"""The glides as an estimation problem, and the states at their ends, from which contacts are measured."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from sim2real.diagnose.regimes.sliding.tuned import SLIDING
 
 @dataclass(frozen=True)
 class States:
-    """The ends of glides, first and last frame.
+    """The states of glides at their first and last frames.
 
-    `motion` (g, 2, 6): place [m], velocity [m/s], and the acceleration [m/s^2] beyond that by `friction` [m/s^2] and
-    `drag` [1/m]; `spread` (g, 2, 4, 4): covariance of place and velocity by the noise of the frames; `drift`
+    `motion` (g, 2, 6): place [m], velocity [m/s], and the acceleration [m/s^2] in addition to that by `friction`
+    [m/s^2] and `drag` [1/m]; `spread` (g, 2, 4, 4): covariance of place and velocity due to the frames' noise; `drift`
     (g, 2, 4, k): changes of place and velocity by each independent standard deviation of the law and of the camera's
     calibration, common to all glides.
     """
@@ -35,22 +35,22 @@ class States:
 
 
 class GlideProblem(GlideResiduals):
-    """`GlideResiduals` with candidate laws, and states at the ends of glides."""
+    """`GlideResiduals` with candidate laws and the states at the ends of glides."""
 
     def columns(self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None) -> DesignMatrix:
         """See `Problem.columns`."""
         return glide_columns(self, values, free, use)
 
     def distance_of_ends(self, values: Mapping[str, float], others: Mapping[str, float]) -> float:
-        """Distance [m], rms over the glides, of their ends under two laws from one start, fitted under the first."""
+        """Rms distance [m] between the glides' ends under two laws, from starts fitted under the first."""
         starts, path, _ = self._fit_starts(self._record(values))
         other = self._trace(self._record(others), starts)
         last = self.data.first[1:] - 1
         return float(np.sqrt(np.mean(np.sum((path[last, :2] - other[last, :2]) ** 2, axis=1))))
 
     def states(self, law: LeastSquaresFit, smooth: str = "", theta: np.ndarray | None = None) -> States:
-        """The states at the ends of all glides under a fitted law, and the family `smooth` on top of it with the
-        coefficients `theta`, if there are any."""
+        """The states at the ends of all glides under a fitted law plus the family `smooth` with coefficients `theta`,
+        if given."""
         data, record = self.data, self._record(law.values)
         _, path, by_start = self._fit_starts(record)
         whitened = self.errors.white(by_start[:, :2])
@@ -77,12 +77,12 @@ class GlideProblem(GlideResiduals):
         )
 
     def _excess(self, path: np.ndarray, by_start: np.ndarray) -> np.ndarray:
-        """Variance (g,) of each glide about its path, in units of what the sensor's noise and calibration explain; 1
-        where it is not significantly larger."""
+        """Residual variance (g,) of each glide in units of that of the sensor noise and calibration error; 1 if it is
+        not significantly larger."""
         rest = self.profiled(path, by_start, np.zeros((len(path), 2, 0)))[0]
-        left, freedom = np.add.reduceat(rest**2, 2 * self.data.first[:-1]), self.units.freedom
+        squares, freedom = np.add.reduceat(rest**2, 2 * self.data.first[:-1]), self.units.freedom
         return np.where(
-            left > freedom + SLIDING.excess_stds * np.sqrt(2.0 * freedom), left / np.maximum(freedom, 1.0), 1.0
+            squares > freedom + SLIDING.excess_stds * np.sqrt(2.0 * freedom), squares / np.maximum(freedom, 1.0), 1.0
         )
 
     def _drift(self, law: LeastSquaresFit, ends: Sequence[np.ndarray]) -> np.ndarray:
@@ -99,8 +99,8 @@ class GlideProblem(GlideResiduals):
 
 
 def _beyond(t: np.ndarray, velocity: np.ndarray, at: np.ndarray, step: int, friction: float, drag: float) -> np.ndarray:
-    """Acceleration (k, 2) [m/s^2] at the frames `at` (k,), by the velocity at the frames `step` from them, less that
-    by friction and drag."""
+    """Acceleration (k, 2) [m/s^2] at the frames `at` (k,) minus that of friction and drag, by the difference of the
+    velocity to the frames `at + step`."""
     beside = at + step
     slope = (velocity[beside] - velocity[at]) / (t[beside] - t[at])[:, None]
     return slope - braking(0.5 * (velocity[beside] + velocity[at]), friction, drag)

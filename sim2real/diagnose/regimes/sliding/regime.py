@@ -32,9 +32,9 @@ class Sliding(Regime):
     """Free glides of the puck between two contacts."""
 
     name = "glide"
-    lacks = "no free slide of the puck was seen"
+    lacks = "no free glide of the puck was seen"
     more_of = "launches of the puck, twenty or more in all directions and from slow to fast"
-    shown_by = "whole stretches of motion"
+    shown_by = "glides"
     measured_at = " at the ends of glides"
     least_size = 5e-4
 
@@ -59,7 +59,7 @@ class Sliding(Regime):
         return [RecordingPart(name, np.unique(data.cluster[data.recording == k])) for k, name in enumerate(names)]
 
     def size(self, problem: Problem, found: SearchResult, other: SearchResult) -> float:
-        """Where glides end, from the same starts with one law and the other."""
+        """See `Regime.size`: the distance between the glides' ends under both laws, from the same starts."""
         assert isinstance(problem, GlideProblem)
         return problem.distance_of_ends(found.all_values, other.all_values)
 
@@ -72,7 +72,7 @@ class Sliding(Regime):
         """See `Regime.illustrated`."""
         assert isinstance(problem, GlideProblem)
         if found.unlisted is not None and finding.mechanism == found.unlisted.mechanism != "unlisted":
-            return finding  # a number for each launch is no curve
+            return finding  # one coefficient for each launch is not a curve
         if found.unlisted is None or finding.mechanism != "unlisted":
             return replace(finding, curve=figures.listed_curve(problem, found, finding.mechanism))
         formula, looks = readable_formula(problem, found, found.unlisted, use)
@@ -85,12 +85,12 @@ def _sees_a_puck(x: np.ndarray) -> bool:
 
 
 def law_of_glides(sliding: IdentifiedRegime, values: Mapping[str, float]) -> dict[str, float]:
-    """The simulator's parameters with what was identified of the glides."""
+    """The simulator's parameters updated by the identified law of the glides."""
     return {**values, **({} if sliding.final is None else sliding.final.final.values)}
 
 
 def states_of(glides: GlideProblem, found: SearchResult | None, law: Mapping[str, float]) -> States:
-    """The states at the ends of glides under the model `found`, or under the numbers `law` where there is none."""
+    """The states at the ends of glides under the model `found`, or under the parameters `law` if `found` is None."""
     if found is None:
         return glides.states(given(law))
     if found.unlisted is None or found.effect_parameters():
@@ -99,7 +99,7 @@ def states_of(glides: GlideProblem, found: SearchResult | None, law: Mapping[str
 
 
 def states_of_others(glides: GlideProblem, found: SearchResult | None, law: Mapping[str, float]) -> States:
-    """`states_of` glides that were not fitted: launches with a number of their own get it from their own glides."""
+    """`states_of` for glides that were not fitted; coefficients of single launches are estimated from their glides."""
     if found is None or found.unlisted is None or not found.unlisted.each_launch:
         return states_of(glides, found, law)
     columns = glides.columns(found.law.values, found.law.free, None)

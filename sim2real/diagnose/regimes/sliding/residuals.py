@@ -21,8 +21,8 @@ STEP = np.array(SLIDING.start_step)
 
 
 class FittedStarts(NamedTuple):
-    """`starts` (g, 5) under a law, the `path` (n, 4) from them, and its derivatives `by_start` (n, 4, 4) by each place
-    and velocity at a start, taken within the last step of the fit."""
+    """Fitted `starts` (g, 5) under a law, the `path` (n, 4) from them, and its derivatives `by_start` (n, 4, 4) by
+    place and velocity of the start, from the last step of the fit."""
 
     starts: np.ndarray
     path: np.ndarray
@@ -30,15 +30,17 @@ class FittedStarts(NamedTuple):
 
 
 class GlideResiduals:
-    """Free glides. `values` passed to its methods are parameters of the simulator by name; those that are missing are
-    at their defaults."""
+    """Residuals of free glides.
+
+    The `values` of its methods are simulator parameters by name; missing ones have their defaults.
+    """
 
     regime = "glide"
     base: tuple[str, ...] = ("friction", "drag")
     first_fitted: tuple[str, ...] = base
 
     def __init__(self, data: GlideData, values: Mapping[str, float]) -> None:
-        """`values`: sizes of the table, and other parameters that all laws have in common."""
+        """`values`: the table's sizes and other parameters that all laws share."""
         self.data = data
         self.clusters = data.clusters
         self._common = dict(values)
@@ -55,7 +57,7 @@ class GlideResiduals:
         self.place_error_m = max(one.map_error_std for one in data.noise)
 
     def motion(self, path: np.ndarray) -> Motion:
-        """The motion along a path (n, 4) of places [m] and velocities [m/s], on which forces depend."""
+        """The quantities that forces depend on, along a path (n, 4) of places [m] and velocities [m/s]."""
         data = self.data
         since, launch = data.t - data.of_frame(data.since), data.of_frame(data.cluster)
         begun = np.full(data.clusters, np.inf)
@@ -79,10 +81,10 @@ class GlideResiduals:
         return Residuals(r[here], jacobian[here], cluster[here])
 
     def profiled(self, path, by_start, columns) -> tuple[np.ndarray, np.ndarray]:
-        """Residuals (2n,) of a path (n, 4) and their derivatives (2n, k), in units of the noise, with the derivatives
-        of the places by each glide's start, `by_start` (n, 2, 4), projected out.
+        """Whitened residuals (2n,) of a path (n, 4) and their derivatives (2n, k), with the starts profiled out.
 
-        `columns` (n, 2, k) [m]: derivatives of the predicted places by each parameter.
+        `by_start` (n, 2, 4): derivatives of the places by the starts, which are projected out; `columns` (n, 2, k) [m]:
+        derivatives of the predicted places by each parameter.
         """
         data, white = self.data, self.errors.white
         changes = [(data.place - path[:, :2])[:, :, None], -columns, self.errors.modes(path[:, :2])]
@@ -103,8 +105,8 @@ class GlideResiduals:
     def displacements(
         self, path: np.ndarray, values: Mapping[str, float], force: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Displacements (n, 2, k) [m] of a path (n, 4) by small accelerations `force` (n, 2, k) [m/s^2], and their
-        rates (n, 2, k) [m/s]; `values`: a law with its friction and drag."""
+        """Displacements (n, 2, k) [m] of a path (n, 4) due to small accelerations `force` (n, 2, k) [m/s^2], and their
+        rates (n, 2, k) [m/s]; `values`: parameters with friction and drag."""
         moved, moving = np.empty_like(force), np.empty_like(force)
         force = np.ascontiguousarray(force)
         linear_response(self.data.first, self.data.t, path, values["friction"], values["drag"], force, moved, moving)
@@ -120,12 +122,12 @@ class GlideResiduals:
         return path
 
     def _fit_starts(self, record: np.void) -> FittedStarts:
-        """Fit each glide's start under a law, from the common law's: no fit depends on those before it."""
+        """Fit each glide's start under a law, beginning at the common law's starts, so that fits are independent."""
         return self._refined(record, self._common_starts)
 
     def _refined(self, record: np.void, near: FittedStarts) -> FittedStarts:
-        """Fit each glide's start by Gauss-Newton: first steps from `near` with the derivatives there, which lead close,
-        then steps with its own derivatives until all are small."""
+        """Fit each glide's start by Gauss-Newton: first steps use the derivatives of `near`, later ones the law's own,
+        until all steps are small."""
         starts, by_start = near.starts.copy(), near.by_start
         path = self._trace(record, starts)
         for step in range(SLIDING.start_steps):
@@ -150,14 +152,14 @@ class GlideResiduals:
         return found
 
     def _start_changes(self, whitened: np.ndarray, changes: np.ndarray) -> np.ndarray:
-        """Changes (g, 4, k) of the fitted starts by changes of all measured places (n, 2, k) [m]; `whitened`
-        (n, 2, 4): derivatives of the places by the starts in units of white noise."""
+        """Changes (g, 4, k) of the fitted starts due to `changes` (n, 2, k) [m] of all measured places; `whitened`
+        (n, 2, 4): derivatives of the places by the starts, whitened."""
         products = np.einsum("nai,nak->nik", whitened, self.errors.white(changes))
         right = np.add.reduceat(products, self.data.first[:-1], axis=0)
         return np.linalg.solve(self._normal(whitened), right)
 
     def _normal(self, j: np.ndarray) -> np.ndarray:
-        """Normal matrices (g, 4, 4) of the starts from whitened derivatives by them (n, 2, 4), with a small ridge."""
+        """Normal matrices (g, 4, 4) of the starts from the whitened derivatives `j` (n, 2, 4), with a small ridge."""
         normal = np.add.reduceat(np.einsum("nai,naj->nij", j, j), self.data.first[:-1], axis=0)
         return normal + SLIDING.start_ridge * np.eye(4) * np.trace(normal, axis1=1, axis2=2)[:, None, None]
 
@@ -167,14 +169,14 @@ class GlideResiduals:
 
 
 def _kinds(velocity: np.ndarray) -> dict[str, np.ndarray]:
-    """Glides by their starts' `velocity` (g, 2): slower and faster than the median, along the table and across it."""
+    """Kinds of glides by `velocity` (g, 2) at the start: below or above median speed, lengthwise or crosswise."""
     speed = np.hypot(*velocity.T)
     fast, along = speed > np.median(speed), np.abs(velocity[:, 0]) > np.abs(velocity[:, 1])
     return {"slow": ~fast, "fast": fast, "lengthwise": along, "crosswise": ~along}
 
 
 def _first_guess(data: GlideData) -> tuple[np.ndarray, np.ndarray]:
-    """Starts (g, 5) of parabolas through the glides, without spin, and the speed (n,) [m/s] of each frame."""
+    """Starts (g, 5) from parabolas through the glides, without spin, and the speed (n,) [m/s] of each frame."""
     starts, speed = np.zeros((data.glides, 5)), np.zeros(len(data.t))
     for g, (a, b) in enumerate(zip(data.first[:-1], data.first[1:], strict=True)):
         u = data.t[a:b] - data.t[a]

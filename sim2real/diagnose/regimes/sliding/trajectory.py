@@ -1,5 +1,5 @@
-"""Paths of glides under a law, by the simulator's own sliding; the accelerations of a law; the linear response of a
-path to small accelerations; and the motion beyond a glide's frames, to a contact that was not recorded."""
+"""Simulate glides: paths and accelerations under a law by the simulator's own sliding, the linear response of a path to
+small accelerations, and the extrapolation beyond a glide's frames to an unobserved contact."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ X, Y, VX, VY, SPIN = range(5)
 def trace(p, first, t, starts, pucks, path):
     """Write the motion of each glide at its frames.
 
-    `path` (n, 4): place [m] and velocity [m/s], from the `starts` (g, 5): place, velocity and spin [rad/s]; `first`
-    (g + 1,): the first frame of each glide, and n; `t` (n,) [s]; `p`: a record of parameters; `pucks`: an array of at
-    least one record of `advance.PUCK`, which is overwritten.
+    `path` (n, 4): place [m] and velocity [m/s]; `starts` (g, 5): place, velocity and spin [rad/s]; `first` (g + 1,):
+    the first frame of each glide, and n; `t` (n,) [s]; `p`: a record of parameters; `pucks`: an array of at least one
+    record of `advance.PUCK`, which is overwritten.
     """
     puck = pucks[0]
     for g in range(len(first) - 1):
@@ -36,7 +36,7 @@ def trace(p, first, t, starts, pucks, path):
 
 
 def accelerations(values: Mapping[str, float], motion: Motion) -> np.ndarray:
-    """Accelerations (n, 2) [m/s^2] of a puck without spin by friction and all effects of a law, without drag."""
+    """Accelerations (n, 2) [m/s^2] of a puck without spin due to friction and all effects of a law, without drag."""
     found = np.empty_like(motion.velocity)
     size = {"length": float(motion.size[0]), "width": float(motion.size[1])}
     _accelerations(record_of({**values, **size}), motion.t, motion.place, motion.velocity, found)
@@ -55,11 +55,11 @@ def _accelerations(p, t, place, velocity, found):
 
 @array_kernel
 def linear_response(first, t, path, friction, drag, force, moved, moving):
-    """Write the displacements `moved` (n, 2, k) [m] of a `path` (n, 4), and their rates `moving` (n, 2, k) [m/s], by
+    """Write the displacements `moved` (n, 2, k) [m] of a `path` (n, 4) and their rates `moving` (n, 2, k) [m/s] due to
     small accelerations `force` (n, 2, k) [m/s^2].
 
-    The linearized motion about the path, d'' = (da/dv) d' + force with the baseline's da/dv, from rest at each glide's
-    first frame, by the trapezoidal rule between frames.
+    The linearized motion is d'' = (da/dv) d' + force with the baseline's da/dv, from rest at each glide's first frame;
+    it is integrated by the trapezoidal rule between frames.
     """
     k = force.shape[2]
     dvx, dvy = np.zeros(k), np.zeros(k)
@@ -77,7 +77,7 @@ def linear_response(first, t, path, friction, drag, force, moved, moving):
             axx = -across * (1.0 - ux * ux) - along * ux * ux
             axy = (across - along) * ux * uy
             ayy = -across * (1.0 - uy * uy) - along * uy * uy
-            limit = 1.0 / (1.0 + 0.5 * h * across)  # implicit where a slow puck's heading is hard to turn
+            limit = 1.0 / (1.0 + 0.5 * h * across)  # implicit: the equation of the heading is stiff for a slow puck
             for j in range(k):
                 fx, fy = 0.5 * (force[i, 0, j] + force[i + 1, 0, j]), 0.5 * (force[i, 1, j] + force[i + 1, 1, j])
                 ax = (axx * dvx[j] + axy * dvy[j] + fx) * limit
@@ -99,8 +99,8 @@ def braking(velocity: np.ndarray, friction: float, drag: float) -> np.ndarray:
 def extrapolated(
     place: np.ndarray, velocity: np.ndarray, beyond: np.ndarray, friction: float, drag: float, duration: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Place (2,) [m] and velocity (2,) [m/s] `duration` [s] later, or earlier where it is negative, under `braking`
-    and a constant acceleration `beyond` (2,) [m/s^2], by the Runge-Kutta method of fourth order."""
+    """Place (2,) [m] and velocity (2,) [m/s] `duration` [s] later (earlier if negative), under `braking` and a constant
+    acceleration `beyond` (2,) [m/s^2], by the Runge-Kutta method of fourth order."""
     steps = max(int(np.ceil(abs(duration) / SLIDING.runge_kutta_step)), 1)
     h = duration / steps
     for _ in range(steps):

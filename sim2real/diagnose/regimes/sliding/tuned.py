@@ -9,7 +9,7 @@ from sim2real.statistics.tuned import tuned
 
 @dataclass(frozen=True)
 class SlidingNumbers:
-    """Which glides are used, how starts are fitted, what candidates there are, and how figures are drawn."""
+    """Tuned numbers of the selection of glides, the fit of starts, the candidates, and the figures."""
 
     # data
     smooth_order: int = tuned(
@@ -38,7 +38,7 @@ class SlidingNumbers:
         4.0,
         "1",
         "standard deviations of the noise that are added to it, for the same reason",
-        "choice: hardly by chance",
+        "choice: rarely exceeded by chance",
     )
     longest_cluster: float = tuned(
         6.0, "s", "a longer launch counts as several: few long ones leave too few clusters to resample",
@@ -56,8 +56,8 @@ class SlidingNumbers:
         8, "1", "Gauss-Newton of the start states that does not end", "choice: twice what a usual law needs"
     )
     spin_decay: float = tuned(
-        0.3, "1/s", "the side force of a spin that decays slowly taken for a grain of friction", "choice: between the "
-        "decays of the independent table; with 0.5, one in four of its recordings with a slow decay was misread",
+        0.3, "1/s", "the side force of a slowly decaying spin is identified as anisotropic friction", "choice: between "
+        "the decays of the independent table; with 0.5, one in four of its recordings with a slow decay was wrong",
     )  # fmt: skip
     start_steps_near: int = tuned(
         2, "1", "first steps with the common law's derivatives: without them a step with a law's own, which costs five "
@@ -69,14 +69,14 @@ class SlidingNumbers:
     )  # fmt: skip
     start_step: tuple[float, float, float, float] = tuned(
         (1e-6, 1e-6, 1e-5, 1e-5), "m, m/s",
-        "differences for derivatives by the start: smaller ones are rounding, larger ones bend",
+        "differences for derivatives by the start: smaller ones are rounding, larger ones see the curvature",
         "choice: far below the sensor's noise",
     )  # fmt: skip
     start_ridge: float = tuned(
         1e-9, "1", "share of the trace added to normal equations: starts that no frame determines", "choice: rounding"
     )
     parameter_step: float = tuned(
-        1e-5, "1", "share of a parameter's range for derivatives: smaller ones are rounding, larger ones bend",
+        1e-5, "1", "share of a parameter's range for derivatives: smaller ones are rounding, larger ones see curvature",
         "choice: between rounding and curvature",
     )  # fmt: skip
     narrowest_range: float = tuned(1e-3, "1", "a range that is too narrow for such a share", "choice: in its own unit")
@@ -110,7 +110,7 @@ class SlidingNumbers:
         "choice: between a launch and a drift",
     )  # fmt: skip
     patch_radii: tuple[float, ...] = tuned(
-        (0.05, 0.1, 0.15, 0.2, 0.3), "m", "radii at which patches of other friction are looked for",
+        (0.05, 0.1, 0.15, 0.2, 0.3), "m", "radii at which friction patches are searched",
         "choice: from the puck's to a third of the width",
     )  # fmt: skip
     patch_spacing: float = tuned(

@@ -1,5 +1,4 @@
-"""Projections of a force on a gliding puck: a coordinate over which it is drawn, and a direction along which it is
-taken."""
+"""Projections of a force on a gliding puck: the coordinate of the figure, and the direction of the component."""
 
 from __future__ import annotations
 
@@ -15,7 +14,11 @@ Column = Callable[[Motion], np.ndarray]
 
 @dataclass(frozen=True)
 class Projection:
-    """`coordinate` (n,) of a motion with its `label` and unit; `direction`: unit vectors (n, 2), called `component`."""
+    """A projection of forces.
+
+    `coordinate`: function for values (n,) of a motion; `label`: its name with unit; `direction`: function for unit
+    vectors (n, 2) of the component; `component`: its name.
+    """
 
     label: str
     coordinate: Column
@@ -48,8 +51,8 @@ def fixed(x: float, y: float) -> Column:
 
 
 def around(x: float, y: float, turning: bool, braking: bool) -> Projection:
-    """The projection of a force about the point (x, y) [m]: along the motion if it is `braking`, round the point if it
-    is `turning`, else away from it."""
+    """The projection of a force about the point (x, y) [m]: along the motion if `braking`, around the point if
+    `turning`, otherwise away from it."""
 
     def outward(motion: Motion) -> np.ndarray:
         offset = motion.place - (x, y)
@@ -85,12 +88,12 @@ LISTED = {  # mechanism: coordinate and direction that show it best
 
 
 def view(coordinate: str, direction: str) -> Projection:
-    """The projection of a coordinate and a direction by their names in COORDINATES and DIRECTIONS."""
+    """The projection with a coordinate and a direction, given by their names in COORDINATES and DIRECTIONS."""
     return Projection(*COORDINATES[coordinate], *DIRECTIONS[direction])
 
 
 def listed_view(mechanism: str, values: Mapping[str, float]) -> Projection:
-    """The projection that shows best a listed mechanism of the glide with the parameters `values`."""
+    """The projection that shows a listed mechanism of the glide best, for the parameters `values`."""
     if mechanism == "friction_patch":
         x, y = float(values["patch_x"]), float(values["patch_y"])
         return Projection("distance from the middle of the patch [m]", distance(x, y), *DIRECTIONS["along"])
@@ -108,8 +111,8 @@ def _names(mechanism: str, values: Mapping[str, float]) -> tuple[str, str]:
 
 
 def varied(mechanism: str, values: Mapping[str, float], usual: Motion, x: np.ndarray) -> Motion:
-    """A motion that has `x` (n,) as the coordinate of the mechanism's projection and is the same in all else: at the
-    table's centre, along its x, with the median speed and time of `usual`."""
+    """A motion with `x` (n,) as the coordinate of the mechanism's projection; all other coordinates are fixed: the
+    table's centre, heading along x, median speed and time of `usual`."""
     n = len(x)
     place, velocity = np.tile(0.5 * usual.size, (n, 1)), np.tile([float(np.median(speed(usual))), 0.0], (n, 1))
     t = np.full(n, float(np.median(usual.t)))

@@ -1,4 +1,4 @@
-"""A smooth law of the walls as parameters of the simulator's effect `unlisted_bounce`, so that players can meet it."""
+"""Convert a smooth wall law to parameters of the simulator's effect `unlisted_bounce`, so that it can be simulated."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from sim2real.statistics.piecewise import expected_size, knots_and_values
 
 PARAMETERS = unlisted_bounce.EFFECT.row_names
 
-EffectNumbers = Callable[[WallContacts, np.ndarray], np.ndarray]  # of shares (k,) that the basis functions add
+EffectNumbers = Callable[[WallContacts, np.ndarray], np.ndarray]  # from the coefficients (k,) as shares of a speed
 
 
 def _over(coordinate: Callable[[WallContacts], np.ndarray]) -> EffectNumbers:
@@ -48,8 +48,8 @@ EFFECT_TABLES: Mapping[str, tuple[int, EffectNumbers]] = {
 def effect_parameters(law: str, data: WallContacts, theta: np.ndarray) -> dict[str, float]:
     """Parameters of `unlisted_bounce` by name, for a law such as "restitution by speed" with coefficients `theta` (k,).
 
-    data: the contacts to which the law was fitted. Empty for a law that depends on the time since a contact, for which
-    the simulator has no table.
+    data: the contacts to which the law was fitted. Empty for a law that depends on the time since a contact, which the
+    simulator does not support.
     """
     share, basis = law.split(" by ", 1)
     if basis not in EFFECT_TABLES:

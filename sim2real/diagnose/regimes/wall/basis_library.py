@@ -1,4 +1,4 @@
-"""The basis library of the walls: what smooth laws may add to the share of a speed that each contact keeps."""
+"""The basis library of the walls: smooth changes of the share of a speed that each contact keeps."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from sim2real.diagnose.regimes.wall.data import KINDS, WallContacts
 from sim2real.diagnose.regimes.wall.tuned import WALL
 from sim2real.statistics.piecewise import after_contact_hats, cosine_basis, spread_hats
 
-# Lengths [m] of a single wave along all walls; it has so few numbers that few contacts determine it
+# Lengths [m] of a single wave along all walls; few contacts determine it, since it has few coefficients
 WAVE_LENGTHS = 2.0 / np.arange(1.0, WALL.most_waves + 0.01, WALL.wave_step)
 
 
 def wall_lengths(data: WallContacts) -> np.ndarray:
-    """How far along each of the walls KINDS (4,) [m] contacts reach; 1 where there are none."""
+    """Largest place (4,) [m] of a contact along each of the walls KINDS; 1 for a wall without contacts."""
     s = place_along_wall(data)
     here = [data.kind == kind for kind in KINDS.values()]
     return np.array([max(float(s[some].max()), WALL.least_length) if some.any() else 1.0 for some in here])
 
 
 def table_lengths(data: WallContacts) -> np.ndarray:
-    """How far along x and y (2,) [m] contacts reach."""
+    """Largest place (2,) [m] of a contact along x and y."""
     return np.maximum(data.place.max(axis=0, initial=0.0), WALL.least_length)
 
 
@@ -44,7 +44,7 @@ def _at_walls(data: WallContacts) -> np.ndarray:
 
 
 def _by_place_on_each_wall(data: WallContacts) -> np.ndarray:
-    """Cosines (n, 4 WAVES) of the place along each wall; nothing at a post."""
+    """Cosines (n, 4 WAVES) of the place along each wall; 0 at a post."""
     columns, s = [], place_along_wall(data)
     for kind, length in zip(KINDS.values(), wall_lengths(data), strict=True):
         columns += [np.where(data.kind == kind, np.cos(np.pi * k * s / length), 0.0) for k in range(WAVES)]
@@ -52,15 +52,14 @@ def _by_place_on_each_wall(data: WallContacts) -> np.ndarray:
 
 
 def _by_place_on_all_walls(data: WallContacts) -> np.ndarray:
-    """Ripples (n, RIPPLES) of the place along a wall, by x at the long walls, by y at the short ones; nothing at a
-    post."""
+    """Cosines (n, RIPPLES) of the place along a wall: x at the long walls, y at the short ones; 0 at a post."""
     x, y = table_lengths(data)
     share = np.where(_at_short_walls(data), data.place[:, 1] / y, data.place[:, 0] / x)
     return cosine_basis(share, RIPPLES) * _at_walls(data)[:, None]
 
 
 def _by_single_wave(length: float) -> Callable[[WallContacts], np.ndarray]:
-    """Sine and cosine (n, 2) of one wave of this length [m] along every wall; nothing at a post."""
+    """A function for the sine and cosine (n, 2) of a wave of `length` [m] along every wall; 0 at a post."""
 
     def wave(data: WallContacts) -> np.ndarray:
         phase = 2.0 * np.pi * place_along_wall(data) / length
@@ -71,7 +70,7 @@ def _by_single_wave(length: float) -> Callable[[WallContacts], np.ndarray]:
 
 SINGLE_WAVES = {f"a wave of {length:.3f} m along the walls": length for length in WAVE_LENGTHS}
 
-# By name: what a law depends on, and its basis functions (n, k)
+# By name: the quantity that a law depends on, and its basis functions (n, k)
 BASIS_LIBRARY: dict[str, tuple[str, Callable[[WallContacts], np.ndarray]]] = {
     "speed": ("speed", lambda d: spread_hats(d.closing_speed, KNOTS)),
     "angle": ("heading", lambda d: spread_hats(d.incidence_angle, KNOTS)),
@@ -84,5 +83,5 @@ BASIS_LIBRARY: dict[str, tuple[str, Callable[[WallContacts], np.ndarray]]] = {
 
 
 def added_shares(data: WallContacts, law: Law) -> np.ndarray:
-    """What each coefficient of a smooth law adds (n, k) to the share of a speed that each contact keeps."""
+    """The change (n, k) of each contact's kept share of a speed by each coefficient of a smooth law."""
     return CONTACT.coefficient_unit * BASIS_LIBRARY[basis_name_of(law)][1](data)

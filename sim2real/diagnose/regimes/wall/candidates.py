@@ -1,4 +1,4 @@
-"""What a contact with a wall may lack, as columns of its residuals: the listed effects, and smooth laws."""
+"""Candidate laws of wall contacts as columns of the design matrix: listed effects and smooth laws."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ ONE_LAW_PER_PARAMETER = ("wall_to_wall_restitution", "speed_dependent_restitutio
 def wall_design_matrix(
     problem: ContactProblem[WallContacts], values: Mapping[str, float], free: Sequence[str]
 ) -> DesignMatrix:
-    """All columns of a wall problem at the law `values`; those of parameters are the base's and `free`."""
+    """All columns of a wall problem at the parameters `values`; parameter columns: those of the base and `free`."""
     friction = (FRICTION, "wall_mu", WALL.frictions)
     columns = contact_design_matrix(problem, values, free, _derivative_laws(), friction, BASIS_LIBRARY)
     return replace(columns, families=[_with_effect(law, problem) for law in columns.families])
 
 
 def _with_effect(law: Law, problem: ContactProblem[WallContacts]) -> Law:
-    """The law with the effect that plays it; a single wave also with the number of lengths of which it is the best."""
+    """Add the simulator's effect to the law; for a single wave also the number of lengths that were searched."""
     law = replace(law, switch=partial(effect_parameters, law.name, problem.data), linear=True)
     if basis_name_of(law) not in SINGLE_WAVES:
         return law
@@ -40,7 +40,7 @@ def _with_effect(law: Law, problem: ContactProblem[WallContacts]) -> Law:
 def _derivative_laws() -> list[Law]:
     """Listed effects whose columns are derivatives at the baseline.
 
-    Each wall's own restitution is a law, and so is each form of the fall with speed.
+    Each wall's own restitution is a separate law, and so is each form of the dependence on speed.
     """
     found = []
     for name, effect in EFFECTS.items():

@@ -26,8 +26,8 @@ KINDS = {"x0": bounce.WALL_X0, "x1": bounce.WALL_X1, "y0": bounce.WALL_Y0, "y1":
 class WallContacts(Contacts):
     """Contacts with walls and posts.
 
-    `kind` (n,): the simulator's number of the wall, or `bounce.POST`; `time_since_contact` (n,) [s]: since the contact
-    before, nan where that is unknown.
+    `kind` (n,): the simulator's number of the wall, or `bounce.POST`; `time_since_contact` (n,) [s]: time since the
+    previous contact, nan if unknown.
     """
 
     kind: np.ndarray
@@ -37,9 +37,9 @@ class WallContacts(Contacts):
 def wall_contacts(
     contact_motions: list[ContactMotion], geometry: Geometry, known: WallContacts | None = None
 ) -> WallContacts:
-    """The clear contacts with walls and posts among `contact_motions`, in order of time.
+    """Select the clear contacts with walls and posts among `contact_motions`, in order of time.
 
-    Outliers are judged against the contacts `known`, if there are any, and else against these themselves.
+    Outliers are detected relative to the contacts `known`, or relative to these contacts if `known` is empty.
     """
     rows = {k: row for k, motion in enumerate(contact_motions) if (row := _fields(motion, geometry)) is not None}
     every = make_contacts(WallContacts, list(rows.values()), contact_motions, {})
@@ -50,10 +50,10 @@ def wall_contacts(
 
 
 def is_usual(every: WallContacts, known: WallContacts) -> np.ndarray:
-    """Whether each contact (n,) bool has a restitution near the median of its wall, or is one with a post.
+    """Whether each contact (n,) bool has a restitution near the median of its wall; True for every post contact.
 
-    At a wall of another restitution something else was touched as well. A wall with few contacts among those `known`
-    is judged by the median of all walls.
+    A contact with an outlying restitution touched something else as well. For a wall with few contacts in `known` the
+    median of all walls is used.
     """
     restitution, known_restitution = (
         some.components(some.velocity_after)[:, 0] / some.closing_speed for some in (every, known)
@@ -68,7 +68,7 @@ def is_usual(every: WallContacts, known: WallContacts) -> np.ndarray:
 
 
 def split_spin_chains(contacts: WallContacts, number: np.ndarray, spin_chains: np.ndarray) -> WallContacts:
-    """The contacts with spin chains that end where a contact of theirs is left out, since the spin after it is unknown.
+    """Split the spin chains at omitted contacts, because the spin after an omitted contact is unknown.
 
     number: index (n,) of each contact among all motions; spin_chains: the chain (m,) of each motion.
     """
@@ -83,7 +83,7 @@ def split_spin_chains(contacts: WallContacts, number: np.ndarray, spin_chains: n
 
 
 def _fields(motion: ContactMotion, geometry: Geometry) -> dict[str, Any] | None:
-    """The fields of a contact with a wall or post, None where it is not a clear one."""
+    """The fields of a contact with a wall or post; None if it is not a clear one."""
     contact, before, after = motion.contact, motion.before, motion.after
     weights = [np.linalg.inv(side.covariance[:2, :2]) for side in (before, after)]
     covariance = np.linalg.inv(weights[0] + weights[1])
@@ -112,14 +112,14 @@ def _fields(motion: ContactMotion, geometry: Geometry) -> dict[str, Any] | None:
 
 
 def _sides_meet(before: ContactSide, after: ContactSide) -> bool:
-    """Whether the motions before and after lead to one place; if not, something else happened between them."""
+    """Whether the motions before and after meet at one place; if not, something else happened between them."""
     jump = after.place - before.place
     covariance = before.covariance[:2, :2] + after.covariance[:2, :2] + 1e-7 * np.eye(2)
     return float(jump @ np.linalg.solve(covariance, jump)) < WALL.most_unusual_place**2
 
 
 def _place_touching(side: ContactSide, post: np.ndarray, radius: float) -> np.ndarray:
-    """Place (2,) [m] of the motion when it is `radius` [m] from the post, near the time of the contact."""
+    """Place (2,) [m] at which the motion is `radius` [m] from the post, near the time of the contact."""
     away = side.place - post
     distance = float(np.linalg.norm(away))
     rate = float(side.velocity @ away) / distance

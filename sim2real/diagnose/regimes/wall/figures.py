@@ -1,4 +1,4 @@
-"""What a report shows of the walls: where the law fails before and after, and each finding as a curve."""
+"""The wall figures of a report: residuals before and after the fit, and a curve for each finding."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ TICKS = (*KINDS, "posts")
 
 @dataclass(frozen=True)
 class _KeptShare:
-    """The share (n,) of a component that the final law keeps, its slopes (n, f) by what was fitted, and the covariance
-    (f, f) of that."""
+    """The share (n,) of a component that is kept under the final law, its derivatives (n, f) by the fitted
+    coefficients, and their covariance (f, f)."""
 
     law: np.ndarray
     slopes: np.ndarray
@@ -35,7 +35,7 @@ class _KeptShare:
 
 
 def mismatch(problem: WallProblem, found: SearchResult) -> Mismatch:
-    """Velocities after each contact, observed less predicted by the refitted baseline and by the final law."""
+    """Velocity residuals (observed minus predicted) after each contact, for the refitted baseline and the final law."""
     d, std = problem.data, problem.std
     before, after = (_residuals(problem, values) * std for values in (found.baseline.values, found.final.values))
     if found.unlisted is not None:
@@ -49,15 +49,15 @@ def mismatch(problem: WallProblem, found: SearchResult) -> Mismatch:
 
 
 def listed_curve(problem: WallProblem, found: SearchResult, mechanism: str) -> Curve:
-    """The share kept by the final law and in the data, over the coordinate that shows the mechanism.
+    """The kept share under the final law and in the data, over the coordinate that shows the mechanism best.
 
-    Where the law depends on more than that coordinate: the observed share over the predicted one.
+    If the law depends on more than that coordinate, the observed share is drawn over the predicted one.
     """
     return _curve(problem, found, _listed_projection(problem.data, mechanism))
 
 
 def smooth_curve(problem: WallProblem, found: SearchResult, formula: Formula, view: ContactProjection) -> Curve:
-    """The same for an unlisted law, beside its readable formula."""
+    """The kept share under an unlisted law and in the data, together with its readable formula."""
     return _curve(problem, found, view, formula)
 
 
@@ -76,7 +76,7 @@ def _listed_projection(d: WallContacts, mechanism: str) -> ContactProjection:
 
 
 def coordinates(d: WallContacts) -> dict[str, tuple[str, np.ndarray]]:
-    """By what a law may depend on (`Law.family`): the label and the values (n,) of its coordinate."""
+    """Label and values (n,) of each coordinate, by the quantity that a law may depend on (`Law.family`)."""
     return {
         "speed": ("normal speed before [m/s]", d.closing_speed),
         "heading": ("angle from the normal [°]", np.degrees(d.incidence_angle)),
@@ -92,20 +92,20 @@ def _residuals(problem: WallProblem, values: Mapping[str, float]) -> np.ndarray:
 
 
 def _curve(problem: WallProblem, found: SearchResult, view: ContactProjection, formula: Formula | None = None) -> Curve:
-    """The share kept by the final law, its smooth term included, and in the data."""
+    """The kept share under the final law with its smooth term, and in the data."""
     d, component = problem.data, view.component
     speed = d.approach[:, component]
     use = np.isfinite(view.coordinate) & (np.abs(speed) > CONTACT.least_speed)
     if found.final.values.get("wall_mu", 0.0) > 0.0 and (use & ~d.spin_unknown).any():
-        use &= ~d.spin_unknown  # pucks whose spin is known, if there are any
+        use &= ~d.spin_unknown  # contacts with a known spin, if there are any
     speed, rows, x = np.where(use, speed, np.nan), np.flatnonzero(use), view.coordinate[use]
     kept = _kept_share(problem, found, component, speed)
     law, std = kept.law[rows], (problem.std[:, component] / np.abs(speed))[rows]
     observed = (d.components(d.velocity_after)[:, component] / speed)[rows]
     rough = not view.ticks and is_rough(x, law, std)
     x_label, y_label = view.label, KEPT[component]
-    if rough and formula is None:  # a law of more than one thing is no curve over any
-        x, x_label, y_label = law, f"{y_label}, by the law", f"{y_label}, as seen"
+    if rough and formula is None:  # a law of more than one coordinate is not a curve over one of them
+        x, x_label, y_label = law, f"{y_label}, predicted", f"{y_label}, observed"
     points = binned(x, observed, std)
     if view.ticks:
         points = over(np.array([x == k for k in range(len(view.ticks)) if (x == k).any()]), x, observed, std)
@@ -124,7 +124,7 @@ def _curve(problem: WallProblem, found: SearchResult, view: ContactProjection, f
 def _share_of_formula(
     problem: WallProblem, found: SearchResult, formula: Formula, component: int, speed: np.ndarray
 ) -> np.ndarray:
-    """The share (n,) of a component that a formula keeps, with the law's parameters refitted beside it."""
+    """The share (n,) of a component that is kept under a formula, with the law's other parameters refitted."""
     moved = zip(found.final.free, formula.moved, strict=True)
     refitted = {name: found.final.values[name] + float(by) for name, by in moved}
     without = problem.predicted({**found.final.values, **refitted})[:, component]
@@ -132,7 +132,7 @@ def _share_of_formula(
 
 
 def _kept_share(problem: WallProblem, found: SearchResult, component: int, speed: np.ndarray) -> _KeptShare:
-    """What the final law keeps of a component with the `speed` (n,) [m/s] before."""
+    """The kept share of a component with the `speed` (n,) [m/s] before, under the final law."""
     values, covariance = found.final.values, found.final.covariance
     law = problem.predicted(values)[:, component] / speed
     slopes = []

@@ -16,15 +16,15 @@ from sim2real.diagnose.regimes.wall.figures import coordinates
 from sim2real.diagnose.regimes.wall.problem import WallProblem
 from sim2real.diagnose.regimes.wall.tuned import WALL
 
-# By what a law depends on: the symbol and unit of its coordinate in a formula
+# Symbol and unit of the coordinate in a formula, by the quantity that a law depends on
 SYMBOLS = {"speed": ("v_n", "m/s"), "heading": ("angle", "deg"), "position": ("s", "m"), "time": ("t", "s"),
-           "history": ("t_since_hit", "s")}  # fmt: skip
+           "history": ("t_since_contact", "s")}  # fmt: skip
 
 
 def readable_formula(
     problem: WallProblem, found: SearchResult, law: Law, use: np.ndarray
 ) -> tuple[Formula, ContactProjection]:
-    """The formula of an unlisted law, fitted to the clusters `use`, and the projection that shows it."""
+    """Fit the formula of an unlisted law to the clusters `use`; return it and the projection that shows it."""
     d = problem.data
     label, values = coordinates(d)[law.family]
     places = {"": np.ones(len(d), bool)}

@@ -1,4 +1,4 @@
-"""Contacts with walls as a problem: the velocity after each, from that before it, by the simulator's `rebound`."""
+"""Wall contacts as an estimation problem: the velocity after each, predicted by the simulator's `rebound`."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from sim2real.statistics.whitening import whitened
 
 @kernel
 def _predict_contacts(p, kind, normal, t, place, spin_chain, before, spin, pucks, after):
-    """Velocities after (n, 2) [m/s] of contacts in order of time; each chain begins with `spin` [rad/s]."""
+    """Write to `after` (n, 2) the velocities [m/s] after contacts in order of time; chains begin with `spin`."""
     puck = pucks[0]
     for i in range(len(kind)):
         if i == 0 or spin_chain[i] != spin_chain[i - 1]:
@@ -45,8 +45,8 @@ class WallProblem(ContactProblem[WallContacts]):
     def __init__(
         self, data: WallContacts, clusters: int, common: Mapping[str, float], scatter: tuple[float, float] = (0.0, 0.0)
     ) -> None:
-        """`scatter`: standard deviation of the velocity after along the normal and the tangent from contact to contact,
-        as shares of the closing speed. The rest as in `ContactProblem`."""
+        """See `ContactProblem`; `scatter`: standard deviation between contacts of the velocity after, along the normal
+        and the tangent, as shares of the closing speed."""
         super().__init__(data, clusters, common)
         self.scatter = np.array(scatter)
         self._covariance, by_before = self._noise(self._record({}))
@@ -55,12 +55,12 @@ class WallProblem(ContactProblem[WallContacts]):
         self.noise_m = CONTACT.flight_time * float(np.sqrt(noise.mean() / 2)) if len(data) else 0.0
 
     def with_scatter(self, scatter: tuple[float, float]) -> WallProblem:
-        """The same contacts with another scatter."""
+        """A copy with another scatter."""
         return WallProblem(self.data, self.clusters, self._common, scatter)
 
     @property
     def sensor_variance(self) -> np.ndarray:
-        """Variance (n, 2) [m^2/s^2] of the normal and the tangential residual without any scatter."""
+        """Variance (n, 2) [m^2/s^2] of the normal and tangential residuals without scatter."""
         return np.diagonal(self._covariance, axis1=1, axis2=2) - self._scatter_std**2
 
     @property
@@ -87,7 +87,7 @@ class WallProblem(ContactProblem[WallContacts]):
         return whitened(common_errors, rows)
 
     def _with_spin_noise(self, values: Mapping[str, float], predicted: np.ndarray, rows: np.ndarray) -> np.ndarray:
-        """Rows (2 n, k), whitened also for the spin at the start of each chain, where there is friction."""
+        """Whiten `rows` (2 n, k) also for the spin at the start of each chain, if there is friction."""
         if values.get("wall_mu", 0.0) <= 0.0 or not len(self.data):
             return rows
         d, record = self.data, self._record(values)
@@ -104,12 +104,12 @@ class WallProblem(ContactProblem[WallContacts]):
         return rows
 
     def _tangential_growth(self, values: Mapping[str, float]) -> np.ndarray:
-        """The factor (n,) by which the tangential noise grows where spin or normal are unknown: up to the most that
-        friction can do."""
+        """The factor (n,) by which the tangential noise grows if spin or normal are unknown; the largest effect of
+        friction bounds it."""
         d = self.data
         reach = values["wall_mu"] * (1.0 + values["wall_restitution"]) * d.closing_speed
         unknown = d.kind == bounce.POST
-        if not self.scatter.any():  # a scatter includes what unobserved spins do
+        if not self.scatter.any():  # a scatter includes the effect of unobserved spins
             unknown |= d.spin_unknown
         return np.where(unknown, np.hypot(1.0, reach * self._whitening[:, 1, 1]), 1.0)
 
@@ -118,14 +118,14 @@ class WallProblem(ContactProblem[WallContacts]):
         return wall_design_matrix(self, values, free)
 
     def _velocity_after(self, record: np.void, before: np.ndarray, spin: float = 0.0) -> np.ndarray:
-        """Velocities after (n, 2) [m/s] in the table's frame, from those before (n, 2) and the chains' first spin."""
+        """Velocities after (n, 2) [m/s] in the table's frame, given those before (n, 2) and the chains' first spin."""
         d = self.data
         after = np.empty_like(before)
         _predict_contacts(record, d.kind, d.normal, d.t, d.place, d.spin_chain, before, spin, self._pucks, after)
         return after
 
     def _noise(self, record: np.void) -> tuple[np.ndarray, np.ndarray]:
-        """Covariance (n, 2, 2) [m^2/s^2] of observed less predicted velocities at the law `record`; and the derivative
+        """Covariance (n, 2, 2) [m^2/s^2] of the velocity residuals at the parameters `record`, and the derivative
         (n, 2, 2) of the prediction by the velocity before."""
         d, step = self.data, CONTACT.velocity_step
         now = self._velocity_after(record, d.velocity_before)

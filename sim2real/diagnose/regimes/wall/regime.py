@@ -22,10 +22,10 @@ from sim2real.segmentation.causes import geometry
 
 
 class Wall(ContactRegime):
-    """How walls and posts throw the puck back."""
+    """Contacts of the puck with walls and goal posts."""
 
     name = "wall"
-    lacks = "too few free slides to tell bounces by"
+    lacks = "too few glides to measure bounces"
     more_of = "bounces off all four walls, thirty or more, slow and fast, steep and flat"
     shown_by = "bounces"
 
@@ -38,7 +38,7 @@ class Wall(ContactRegime):
         return WallProblem(contacts, glides_of(known).clusters, self.parameters(evidence, known))
 
     def holdout_problem(self, evidence: Evidence, known: Known) -> WallProblem | None:
-        """See `Regime.holdout_problem`; outliers and scatter are judged by the bounces that were fitted."""
+        """See `Regime.holdout_problem`; outlier limits and scatter come from the fitted contacts."""
         fitted, (found, launches) = known["wall"].problem, holdout_motions(evidence, known)
         if not launches or not isinstance(fitted, WallProblem):
             return None
@@ -50,7 +50,7 @@ class Wall(ContactRegime):
     def search(
         self, problem: Problem, defaults: Mapping[str, float], use: np.ndarray, clear: bool
     ) -> tuple[Problem, SearchResult]:
-        """See `Regime.search`; bounces may scatter by more than the sensor's noise."""
+        """See `Regime.search`; wall contacts may scatter by more than the sensor noise."""
         assert isinstance(problem, WallProblem)
         return search_wall_model(problem, defaults, use, clear)
 
@@ -69,14 +69,14 @@ class Wall(ContactRegime):
         return with_formula(finding, problem, found, formula, curve, use)
 
     def note(self, problem: Problem) -> str:
-        """See `Regime.note`: how far bounces scatter beyond the sensors' errors."""
+        """See `Regime.note`: the scatter of bounces beyond the sensor noise."""
         assert isinstance(problem, WallProblem)
         if not problem.scatter.any():
             return ""
         along, across = 100.0 * problem.scatter
         return (
-            f"no two bounces are alike: beyond what the sensors err, they scatter by {along:.2g} % of the closing "
-            f"speed along the normal and {across:.2g} % along the wall, which counts as noise here"
+            f"bounces scatter beyond the sensor noise: by {along:.2g} % of the closing speed along the normal and "
+            f"{across:.2g} % along the wall, which counts as noise here"
         )
 
 

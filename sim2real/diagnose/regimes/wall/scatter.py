@@ -1,9 +1,9 @@
-"""Contacts that scatter by more than the sensor's noise: the scatter is estimated from what the law itself leaves.
+"""Estimate the scatter of wall contacts beyond the sensor noise, and search the model under that scatter.
 
-No real wall is ideal: rims have seams, spins go unobserved, an opponent touches the puck as well. Where even the law
-found leaves most contacts far outside the sensor's noise, a standard deviation for each component, a share of the
-closing speed, is added to that noise, so that half of the contacts lie within the middle half of what is expected; and
-laws are compared anew. A median ignores the other half, so that contacts with something else do not count.
+No real wall is ideal: rims have seams, spins are not observed, an opponent may touch the puck as well. If the selected
+model still leaves most residuals far outside the sensor noise, a standard deviation for each component, proportional to
+the closing speed, is added to the noise, and the laws are compared again. The scatter is chosen so that the median
+squared residual equals its expectation; the median makes it robust to contacts with something else.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from sim2real.diagnose.regimes.wall.basis_library import added_shares
 from sim2real.diagnose.regimes.wall.problem import WallProblem
 from sim2real.diagnose.regimes.wall.tuned import WALL
 
-MEDIANS = (float(chi2.median(1)), float(chi2.median(2)))  # of the sum of squares of one component, and of both
+MEDIANS = (float(chi2.median(1)), float(chi2.median(2)))  # of chi-square: one component, and both
 
 
 def search_wall_model(
     problem: WallProblem, defaults: Mapping[str, float], use: np.ndarray, clear: bool
 ) -> tuple[WallProblem, SearchResult]:
-    """The result of the engine's `search_model`, and the problem with the scatter under which it was found."""
+    """The result of `search_model`, after the problem with the scatter under which the model was selected."""
     found = search_model(problem, defaults, use, clear)
     if found.unlisted is not None or _typical_loss(problem, found, use) < WALL.rough * MEDIANS[1]:
         return problem, found
@@ -39,11 +39,11 @@ def search_wall_model(
             finer = problem.with_scatter(_scatter(problem, _predicted_velocities(problem, anew), use))
         if np.all(np.abs(finer.scatter - rough.scatter) < WALL.scatter_tolerance):
             break
-    return (rough, anew) if anew.model.laws else (problem, found)  # a scatter explains nothing by itself
+    return (rough, anew) if anew.model.laws else (problem, found)  # a scatter alone is no finding
 
 
 def _typical_loss(problem: WallProblem, found: SearchResult, use: np.ndarray) -> float:
-    """Median over the contacts of the sum of squares, in units of the noise, that the law leaves."""
+    """Median over the contacts of the residual sum of squares in units of the noise."""
     rest = problem.residuals(found.final.values, (), use)
     assert rest.unit is not None
     return float(np.median(np.bincount(rest.unit, rest.r**2)[np.unique(rest.unit)]))
@@ -52,7 +52,7 @@ def _typical_loss(problem: WallProblem, found: SearchResult, use: np.ndarray) ->
 def _with_fitted_scatter(
     problem: WallProblem, values: Mapping[str, float], free: Sequence[str], use: np.ndarray
 ) -> WallProblem:
-    """The problem with the scatter that the parameters `free` leave when they are fitted under it."""
+    """The problem with the scatter that remains when the parameters `free` are fitted under it."""
     rough = problem.with_scatter((1.0, 1.0))
     for _ in range(WALL.scatter_rounds):
         values = fit(rough, values, free, use).values
@@ -64,7 +64,7 @@ def _with_fitted_scatter(
 
 
 def _predicted_velocities(problem: WallProblem, found: SearchResult) -> np.ndarray:
-    """Velocities after (n, 2) [m/s] that the final law predicts, its smooth term included."""
+    """Velocities after (n, 2) [m/s] that the final law with its smooth term predicts."""
     d = problem.data
     after = problem.predicted(found.final.values)
     if found.unlisted is not None:
@@ -74,7 +74,7 @@ def _predicted_velocities(problem: WallProblem, found: SearchResult) -> np.ndarr
 
 
 def _scatter(problem: WallProblem, predicted: np.ndarray, use: np.ndarray) -> tuple[float, float]:
-    """The scatter of both components at which the median squared residual from `predicted` (n, 2) is as expected."""
+    """The scatter of both components that gives the median squared residual from `predicted` (n, 2) its expectation."""
     d = problem.data
     here = np.isin(d.cluster, use)
     square = (d.components(d.velocity_after) - predicted)[here] ** 2

@@ -9,7 +9,7 @@ from sim2real.statistics.tuned import tuned
 
 @dataclass(frozen=True)
 class WallNumbers:
-    """Tuned numbers of contacts with walls: which are clear, what may be missing, and how they scatter."""
+    """Tuned numbers of contacts with walls: selection, candidate laws, and scatter."""
 
     least_closing_speed: float = tuned(
         0.05,
@@ -68,7 +68,7 @@ class WallNumbers:
     most_waves: float = tuned(
         7.0,
         "waves in 2 m",
-        "fewer miss short waves of a restitution; more find one by accident",
+        "fewer miss short waves of a restitution; more find one by chance",
         "choice: beyond it few contacts lie on each wave",
     )
     wave_step: float = tuned(
@@ -80,13 +80,13 @@ class WallNumbers:
     least_length: float = tuned(
         1e-3,
         "m",
-        "the way along a wall on which contacts are: less divides by nothing",
-        "choice: far below the distance of any two contacts that tell of a place",
+        "extent of the contacts along a wall: less divides by zero",
+        "choice: far below the distance of any two contacts that show a dependence on place",
     )
     fewest_of_place: int = tuned(
         12,
         "contacts",
-        "fewer let a formula name a wall by accident; more hide a wall unlike the others",
+        "fewer let a formula select a single wall by chance; more hide a wall that differs from the others",
         "choice: several for each number of a formula",
     )
     rough: float = tuned(
@@ -100,7 +100,7 @@ class WallNumbers:
         2.0,
         "1",
         "share of the closing speed at which the search for a scatter ends",
-        "choice: beyond it a contact says nothing",
+        "choice: beyond it a contact carries no information",
     )
     scatter_tolerance: float = tuned(
         0.002,
@@ -112,7 +112,7 @@ class WallNumbers:
     search_rounds: int = tuned(
         4,
         "1",
-        "times that laws are compared anew: fewer leave a law chosen under another scatter, more cost minutes",
+        "times that laws are compared again: fewer leave a law selected under another scatter, more cost minutes",
         "choice: it converges sooner",
     )
     halvings: int = tuned(40, "1", "fewer leave the scatter coarse", "choice: to 2e-12 of `most_scatter`")

@@ -1,4 +1,4 @@
-"""Impulses: what a contact does to velocity and spin. All per unit puck mass."""
+"""Impulses: the change of velocity and spin by a contact. All per unit puck mass."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from numba import njit
 from sim2real.study.independent_table.physics.puck import SINCE, SPIN, VX, VY, X, Y
 from sim2real.study.independent_table.physics.table import MALLET, POST
 
-RESTING = 1e-6  # m/s, a slower approach than this is not a bounce but a contact that lasts
+RESTING = 1e-6  # m/s, speed of approach below which a contact is a lasting one
 
 
 @njit(error_model="numpy")
 def approach(which, puck, mallets, nx, ny):
-    """Speed [m/s] at which puck and obstacle close along the normal; negative when they part."""
+    """Closing speed [m/s] of puck and obstacle along the normal; negative when they separate."""
     vx, vy = puck[VX], puck[VY]
     if which >= MALLET:
         vx -= mallets[which - MALLET, 1]
@@ -34,7 +34,7 @@ def bounce(law, t, which, puck, mallets, nx, ny):
 
 @njit(error_model="numpy")
 def rub(law, mu, pressure, along, spin):
-    """Coulomb impulse along the tangent: grip stops the slip at the rim, slip is capped at mu times the normal impulse.
+    """Coulomb impulse along the tangent: it stops the slip at the rim, at most mu times the normal impulse.
 
     The rim point at -r n moves with u = v_t - r w; an impulse j changes u by j (1 + 1/kappa) and w by -j/(kappa r).
     (Stronge, Impact Mechanics, ch. 3, for a disc of inertia kappa m r^2.) Returns j and the new spin.
@@ -48,7 +48,7 @@ def rub(law, mu, pressure, along, spin):
 
 @njit(error_model="numpy")
 def off_wall(law, t, which, puck, nx, ny):
-    """Eq. (10): v_n -> -e v_n, v_t -> e v_t; or, as effects, other constants and friction with spin."""
+    """Eq. (10): v_n -> -e v_n, v_t -> e v_t; effects are other constants and friction with spin."""
     closing = -(puck[VX] * nx + puck[VY] * ny)
     along = -puck[VX] * ny + puck[VY] * nx
     e = law.wall_restitution
@@ -76,7 +76,7 @@ def off_wall(law, t, which, puck, nx, ny):
 
 @njit(error_model="numpy")
 def off_mallet(law, t, k, puck, mallets, nx, ny):
-    """Reflect the velocity relative to the mallet: normal part with e, tangent kept. By `mallet_give`, it yields."""
+    """Reflect the velocity relative to the mallet: normal component with e, tangential kept; see `mallet_give`."""
     wx, wy = puck[VX] - mallets[k, 1], puck[VY] - mallets[k, 4]
     closing = -(wx * nx + wy * ny)
     e = law.mallet_restitution + law.mallet_warming * t - law.mallet_restitution_slope * closing

@@ -1,7 +1,7 @@
 """The mallet on its gantry: third order in each axis, one small Runge-Kutta step at constant voltage.
 
-A mallet's state is (x, x', x'', y, y', y''). Where something gives between motor and mallet (a belt, a gap), the motors
-have a state of their own in the next six columns, and the first six are the mallet's.
+A mallet's state is (x, x', x'', y, y', y''). With a belt or a gap between motor and mallet, the motors have a separate
+state in the next six columns, and the first six are the mallet's.
 """
 
 from __future__ import annotations
@@ -10,12 +10,12 @@ from math import pi, sin
 
 from numba import njit
 
-MOTOR = 6  # the first column of the motors, where they move apart from the mallet
+MOTOR = 6  # the first column of the motors' state, if that is separate from the mallet's
 
 
 @njit(error_model="numpy")
 def loss(law, p, v):
-    """How much more of the voltage is lost to speed at position p and speed v than C7 v: 1 in the baseline."""
+    """The factor of the speed loss C7 v at position p and speed v: 1 in the baseline."""
     factor = 1.0 + law.cubic_loss * v * v
     if law.rough != 0.0:
         factor += law.rough * sin(2.0 * pi * p / law.rough_length)
@@ -41,10 +41,11 @@ def advance_axis(law, c5, c6, c7, force, mallet, first, h, out):
 
 @njit(error_model="numpy")
 def follow(law, mallet, first, h, out):
-    """One axis of the mallet after h seconds in which its motor went from `mallet` to `out`.
+    """Advance one axis of the mallet by h seconds, in which its motor moves from its state in `mallet` to that in
+    `out`.
 
-    The belt: m'' = w^2 (p - m) + 2 zeta w (p' - m'), by RK4 along a parabola of the motor. The motor does not feel it.
-    The gap: the mallet is dragged when the motor reaches either end of it, and stands still between.
+    The belt: m'' = w^2 (p - m) + 2 zeta w (p' - m'), by RK4 along a parabola of the motor, without reaction on the
+    motor. The gap: the motor drags the mallet at either end of it; the mallet rests in between.
     """
     m, u = mallet[first], mallet[first + 1]
     p, v, a = mallet[MOTOR + first], mallet[MOTOR + first + 1], mallet[MOTOR + first + 2]
@@ -74,15 +75,15 @@ def follow(law, mallet, first, h, out):
 
 @njit(error_model="numpy")
 def advance_mallets(law, mallets, volts, h, out):
-    """Every mallet through h seconds; `mallets` (k, 6 or 12), `volts` (k, 2) at the motors."""
+    """Advance all mallets by h seconds; `mallets` (k, 6 or 12), `volts` (k, 2) at the motors."""
     half_radius = 0.5 * law.pulley_radius
-    apart = mallets.shape[1] > MOTOR
-    driven = MOTOR if apart else 0
+    separate = mallets.shape[1] > MOTOR
+    driven = MOTOR if separate else 0
     for k in range(mallets.shape[0]):
         c5, c6, c7 = law.a1 - law.b1, law.a2 - law.b2, law.a3 - law.b3
         advance_axis(law, c5, c6, c7, half_radius * volts[k, 0], mallets[k], driven, h, out[k])
         c5, c6, c7 = law.a1 + law.b1, law.a2 + law.b2, law.a3 + law.b3
         advance_axis(law, c5, c6, c7, half_radius * volts[k, 1], mallets[k], driven + 3, h, out[k])
-        if apart:
+        if separate:
             follow(law, mallets[k], 0, h, out[k])
             follow(law, mallets[k], 3, h, out[k])

@@ -1,9 +1,8 @@
-"""The law of the reference table: every number of its world, and every effect that the baseline leaves out.
+"""The law of the reference table: all parameters, and all effects that the baseline does not contain.
 
-The first block has the names and the defaults of a table of parameters kept elsewhere; they are written out again
-here on purpose, because the reference shares no code with what it checks. The other blocks are effects: each is off
-at its default, and each is read by exactly one function, named beside it. The last blocks are laws that nobody listed:
-`unlisted.LAWS` says what each depends on.
+The first block repeats names and defaults of the simulator's parameters on purpose, because the reference shares no
+code with what it checks. The other blocks are effects: each is off at its default, and exactly one function, named
+beside it, reads it. The last blocks are unlisted laws: `unlisted.LAWS` states what each depends on.
 """
 
 from __future__ import annotations
@@ -15,7 +14,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Law:
-    """Numbers in SI units. `None` means "as the baseline"."""
+    """Parameters in SI units; `None` means "as the baseline"."""
 
     # Baseline: the report's sections 2.3, E, F, G.
     length: float = 2.0
@@ -88,7 +87,7 @@ class Law:
     camera_shear: float = 0.0
     encoder_clock: float = 0.0  # 1, the clock of mallet.csv and drive.csv runs fast by this; `record.make_recording`
 
-    # Laws that have no name. Glide: `strange.pull` and `strange.rub`.
+    # Unlisted laws. Glide: `strange.pull` and `strange.rub`.
     vortex: float = 0.0  # m/s^2, greatest pull round a point (at `vortex_size` from it)
     vortex_x: float = 1.0  # m
     vortex_y: float = 0.5

@@ -1,4 +1,4 @@
-"""The small-step loop: advance everything, and where the step ran into something, go back to the instant of contact."""
+"""The small-step loop: advance all bodies; if a step ends in an overlap, go back to the time of contact."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from sim2real.study.independent_table.physics.gantry import advance_mallets
 from sim2real.study.independent_table.physics.puck import VX, VY, X, Y, advance_puck
 from sim2real.study.independent_table.physics.table import GOAL, MALLET, POST, gap, normal
 
-HALVINGS = 60  # of a step, to find the instant of a contact
-MOST_CONTACTS = 20  # in one step; more, and the puck counts as jammed until nothing pushes it any more
-TOUCHING = 1e-12  # m, a gap that counts as none
-OVERLAP = 1e-9  # m, more than this is pushed apart (a pinched puck, a lasting contact)
-# Columns of the contact log: time, obstacle, then the puck before: x, y, speed, closing speed, nx, ny.
+HALVINGS = 60  # halvings of a step to find the time of a contact
+MOST_CONTACTS = 20  # in one step; with more, the puck counts as jammed until nothing pushes it
+TOUCHING = 1e-12  # m, largest gap that counts as contact
+OVERLAP = 1e-9  # m, larger overlaps are separated (a pinched puck, a lasting contact)
+# Columns of the contact log: time, obstacle, then the state before: x, y, speed, closing speed, nx, ny
 LOG_COLUMNS = 8
 
 
@@ -25,8 +25,8 @@ def march(law, puck, mallets, times, volts, clock, duration, dt, sample, out_puc
     """Fill `out_puck` (n, 6), `out_mallets` (n, k, 6 or 12) every `sample` seconds, and `log` (rows, 8).
 
     `clock` is the time at the start, for laws that change with time. `puck` (6,) and `mallets` (k, 6 or 12) are the
-    start and become the end. Returns the number of contacts (more than the log has rows: the rest was not written) and
-    the nearest miss [m]: the smallest gap at which the puck passed a post or a mallet without touching it.
+    start and are overwritten with the end. Returns the number of contacts, which may exceed the rows of the log, and
+    the nearest miss [m]: the smallest gap at which the puck passed a post or a mallet without contact.
     """
     obstacles = MALLET + mallets.shape[0]
     now = np.empty(obstacles)  # gaps at the start of the step
@@ -87,7 +87,7 @@ def march(law, puck, mallets, times, volts, clock, duration, dt, sample, out_puc
         copy_rows(next_mallets, mallets)
         if not alive:
             continue
-        jammed = part(law, puck, mallets, held) and jammed
+        jammed = separate_all(law, puck, mallets, held) and jammed
         for which in range(POST, obstacles):
             if which >= GOAL and which < MALLET:
                 continue
@@ -100,7 +100,7 @@ def march(law, puck, mallets, times, volts, clock, duration, dt, sample, out_puc
 
 @njit(error_model="numpy")
 def step_end(t, dt, duration, next_sample, times, change):
-    """End of the step: no further than dt, the next sample, or the next change of a voltage."""
+    """The end of the step: at most dt, the next sample, or the next change of a voltage."""
     limit = min(duration, next_sample) if next_sample > t else duration
     if change + 1 < times.shape[0]:
         limit = min(limit, times[change + 1])
@@ -109,7 +109,7 @@ def step_end(t, dt, duration, next_sample, times, change):
 
 @njit(error_model="numpy")
 def first_contact(law, t, h, puck, mallets, volts, held, next_puck, next_mallets):
-    """The obstacle first run into within h and when (or -1, h); the `next_*` states are left at that moment."""
+    """The first obstacle in contact within h, and the time (or -1, h); sets the `next_*` states to that time."""
     first, moment = -1, h
     for which in range(MALLET + mallets.shape[0]):
         if held[which]:
@@ -123,7 +123,7 @@ def first_contact(law, t, h, puck, mallets, volts, held, next_puck, next_mallets
         low, high = (
             0.0,
             moment if start_gap > TOUCHING else 0.0,
-        )  # `next_*` stands at `moment`: so a later obstacle counts only if it is met before
+        )  # `next_*` is at `moment`, so a later obstacle counts only if its contact is earlier
         for _ in range(HALVINGS if high > 0.0 else 0):
             middle = 0.5 * (low + high)
             advance_puck(law, t, puck, middle, next_puck)
@@ -139,25 +139,25 @@ def first_contact(law, t, h, puck, mallets, volts, held, next_puck, next_mallets
 
 
 @njit(error_model="numpy")
-def part(law, puck, mallets, held):
-    """End of a step: a lasting contact closes no further, and what overlaps is pushed apart. Walls have the last word.
+def separate_all(law, puck, mallets, held):
+    """End a step: stop the closing motion of lasting contacts, and separate overlaps; walls are last.
 
-    A puck pinched between a mallet and a wall may go on overlapping the mallet: it cannot leave the table. Returns
-    whether anything pushed.
+    A puck pinched between a mallet and a wall may still overlap the mallet, so that it cannot leave the table. Returns
+    whether any obstacle pushed the puck.
     """
     pushed = False
     for k in range(mallets.shape[0] - 1, -1, -1):
-        pushed |= keep_apart(law, MALLET + k, puck, mallets, held)
+        pushed |= separate(law, MALLET + k, puck, mallets, held)
     for which in range(POST, GOAL):
-        pushed |= keep_apart(law, which, puck, mallets, held)
+        pushed |= separate(law, which, puck, mallets, held)
     for which in range(POST):
-        pushed |= keep_apart(law, which, puck, mallets, held)
+        pushed |= separate(law, which, puck, mallets, held)
     return pushed
 
 
 @njit(error_model="numpy")
-def keep_apart(law, which, puck, mallets, held):
-    """One obstacle of `part`."""
+def separate(law, which, puck, mallets, held):
+    """`separate_all` for one obstacle."""
     distance = gap(law, which, puck, mallets)
     if not held[which] and distance >= -OVERLAP:
         return False
@@ -174,21 +174,21 @@ def keep_apart(law, which, puck, mallets, held):
 
 @njit(error_model="numpy")
 def copy(source, target):
-    """`target[:] = source`, which takes far longer to compile."""
+    """Do `target[:] = source`, which numba compiles far more slowly."""
     for i in range(source.shape[0]):
         target[i] = source[i]
 
 
 @njit(error_model="numpy")
 def copy_rows(source, target):
-    """The same for mallets."""
+    """`copy` for the states of mallets."""
     for k in range(source.shape[0]):
         copy(source[k], target[k])
 
 
 @njit(error_model="numpy")
 def write_log(row, t, which, puck, closing, nx, ny):
-    """One contact as LOG_COLUMNS."""
+    """Write one contact to a row of the log."""
     row[0], row[1], row[2], row[3] = t, which, puck[X], puck[Y]
     row[4] = sqrt(puck[VX] ** 2 + puck[VY] ** 2)
     row[5], row[6], row[7] = closing, nx, ny

@@ -13,7 +13,7 @@ X, Y, VX, VY, SPIN, SINCE = range(6)  # columns of a puck state; SINCE: seconds 
 
 @njit(error_model="numpy")
 def push(law, t, x, y, vx, vy, spin):
-    """Acceleration of everything but friction and drag: tilt, warp, and forces across the velocity."""
+    """Acceleration [m/s^2] without friction and drag: tilt, warp, and forces across the velocity."""
     dx = x - 0.5 * law.length
     dy = y - 0.5 * law.width
     across = law.side_force + law.spin_side_force * spin
@@ -39,7 +39,7 @@ def grip(law, t, x, y, vx, vy, since):
 
 @njit(error_model="numpy")
 def acceleration(law, t, x, y, vx, vy, spin, since):
-    """Eq. (6) per unit mass, dv/dt = -(friction + drag v^2) along v, plus `push`. Rest holds while push <= friction."""
+    """Eq. (6) per unit mass, dv/dt = -(friction + drag v^2) along v, plus `push`; a puck rests if push <= friction."""
     ax, ay = push(law, t, x, y, vx, vy, spin)
     friction = grip(law, t, x, y, vx, vy, since)
     speed = sqrt(vx * vx + vy * vy)
@@ -56,7 +56,7 @@ def acceleration(law, t, x, y, vx, vy, spin, since):
 
 @njit(error_model="numpy")
 def advance_puck(law, t, puck, h, out):
-    """One RK4 step of length h without contacts. A puck that friction stops inside the step stays where it stops."""
+    """One RK4 step of length h without contacts; a puck that friction stops within the step stays there."""
     x, y, vx, vy, spin, since = puck[X], puck[Y], puck[VX], puck[VY], puck[SPIN], puck[SINCE]
     out[SINCE] = since + h
     out[SPIN] = spin * (1.0 - law.spin_decay * h * (1.0 - 0.5 * law.spin_decay * h))

@@ -1,4 +1,4 @@
-"""What a puck can touch: walls, posts, mallets, and the two goal lines, each as a gap that is negative when overlapped.
+"""The obstacles of a puck: walls, posts, mallets, and the two goal lines, each with a gap that is negative in overlap.
 
 Obstacles are numbered: walls 0..3 (x = 0, x = length, y = 0, y = width), posts 4..7 (x0 low y, x0 high y, xL low y,
 xL high y), goal lines 8..9, mallets from 10.
@@ -14,12 +14,12 @@ from sim2real.study.independent_table.physics.puck import X, Y
 
 POST, GOAL, MALLET = 4, 8, 10
 NAMES = ("x0", "xL", "y0", "yW", "x0y0", "x0yW", "xLy0", "xLyW", "x0", "xL", "0", "1")
-FAR = 1e3  # m, the gap to something that cannot be touched here
+FAR = 1e3  # m, the gap to an obstacle that is out of reach
 
 
 @njit(error_model="numpy")
 def gap(law, which, puck, mallets):
-    """Distance [m] that the puck may still travel towards obstacle `which` before touching it."""
+    """Distance [m] that the puck can still move towards obstacle `which` before contact."""
     x, y = puck[X], puck[Y]
     if which < 2:  # a short wall has no surface inside the mouth
         if abs(y - 0.5 * law.width) < 0.5 * law.goal_width:
@@ -53,7 +53,7 @@ def normal(law, which, puck, mallets):
         from_x, from_y = mallets[which - MALLET, 0], mallets[which - MALLET, 3]
     dx, dy = puck[X] - from_x, puck[Y] - from_y
     distance = sqrt(dx * dx + dy * dy)
-    if distance == 0.0:  # centre on centre: any direction is as good
+    if distance == 0.0:  # coincident centres: choose any direction
         return 1.0, 0.0
     return dx / distance, dy / distance
 

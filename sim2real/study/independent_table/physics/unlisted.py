@@ -1,5 +1,7 @@
-"""Laws that stand in no vocabulary: what each changes in the law, and the truth about it, its regime and what it
-depends on. A diagnosis should say "none that I know", where, and on what it depends."""
+"""Unlisted laws: their changes of the law, their regimes, and the quantities that they depend on.
+
+A diagnosis should report them as unlisted, with regime and dependence.
+"""
 
 from __future__ import annotations
 
@@ -74,7 +76,7 @@ def _cubic_loss(rng: Rng, share: float, law: Law, scenario: str) -> Change:
     return Change(law={"cubic_loss": 0.1 * share})
 
 
-# name: the law and what it depends on
+# name: the law and the quantities that it depends on
 LAWS: dict[str, tuple[Mechanism, tuple[str, ...]]] = {
     "vortex": (Mechanism("glide", PUCK, _vortex), ("position",)),
     "washboard": (Mechanism("glide", PUCK, _washboard), ("position",)),

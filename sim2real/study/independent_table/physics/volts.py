@@ -1,6 +1,6 @@
-"""Plans as voltages in time: Eq. (4)-(5) flattened into one list of moments at which some voltage changes.
+"""Plans as voltages in time: Eq. (4)-(5) as one list of times at which a voltage changes.
 
-What reaches the motors is also decided here, once a plan: a sagging supply, lost volts, a late start.
+The effects between plan and motors are also applied here, once per plan: supply sag, deadband, and delay.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ Plans: TypeAlias = "Plan | Sequence[tuple[float, Plan | None]] | None"  # one, n
 
 
 def schedule(law: Law, plans: Sequence[Plans]) -> tuple[np.ndarray, np.ndarray]:
-    """Times (m,) and the volts at the motors (m, k, 2) that hold from each of them on. The first time is 0."""
+    """Times (m,), of which the first is 0, and the volts at the motors (m, k, 2) from each of them on."""
     changes = [sorted_changes(law, each) for each in plans]
     times = sorted({0.0} | {time for one in changes for time, _ in one})
     volts = np.zeros((len(times), len(plans), 2))
@@ -29,7 +29,7 @@ def schedule(law: Law, plans: Sequence[Plans]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def sorted_changes(law: Law, plans: Plans) -> list[tuple[float, tuple[float, float]]]:
-    """Moments at which one mallet's pair of volts changes; a new plan cuts the one before it."""
+    """The times at which one mallet's pair of volts changes; a new plan replaces the one before it."""
     if plans is None:
         return []
     if len(plans) == 6 and not isinstance(plans[0], Sequence):
@@ -50,12 +50,12 @@ def sorted_changes(law: Law, plans: Plans) -> list[tuple[float, tuple[float, flo
 
 
 def profile(volts: float, t1: float, t2: float, t: float) -> float:
-    """Eq. (4): +V before t1, -V before t2, nothing after."""
+    """Eq. (4): +V before t1, -V before t2, 0 after."""
     return volts if t < t1 else -volts if t < t2 else 0.0
 
 
 def at_the_motors(law: Law, volts_x: float, volts_y: float) -> tuple[float, float]:
-    """A plan's signed volts less the deadband, and sagging by V / (1 + sag (|Vx| + |Vy|)) with the plan's two volts."""
+    """A plan's signed volts minus the deadband, divided by 1 + sag (|Vx| + |Vy|) with the plan's two volts."""
     sag = 1.0 + law.voltage_sag * (abs(volts_x) + abs(volts_y))
     kept_x, kept_y = (max(0.0, abs(volts) - law.deadband) / sag for volts in (volts_x, volts_y))
     return (kept_x if volts_x > 0.0 else -kept_x), (kept_y if volts_y > 0.0 else -kept_y)

@@ -1,1 +1,1 @@
-"""What happens on the independent table while it is recorded, and what a camera says of it."""
+"""Scenes on the independent table, and their recordings by a simulated camera and encoders."""

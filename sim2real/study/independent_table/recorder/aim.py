@@ -19,7 +19,7 @@ from scipy.optimize import brentq
 from sim2real.study.independent_table.physics.law import Law
 from sim2real.study.independent_table.physics.volts import Plan
 
-NOTHING = 1e-9  # s, so little of the voltage is rounding: a mallet on its way or at rest is not told to turn round
+NOTHING = 1e-9  # s, shorter voltages are rounding errors and are omitted
 
 
 def plan_to(law: Law, mallet: Sequence[float], target: tuple[float, float], volts: tuple[float, float]) -> Plan:

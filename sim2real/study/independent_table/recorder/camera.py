@@ -1,4 +1,4 @@
-"""What a camera says about a scene: when it looks, what it sees, and how it errs."""
+"""A simulated camera: times of exposure, observed positions, and errors."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from sim2real.study.independent_table.recorder.scene import FINE, Scene
 
 @dataclass(frozen=True)
 class Camera:
-    """Noise on each coordinate, a jittered clock, and fractions of frames held, dropped or wild; and what a calibrated
-    camera beside the table has besides (`sim2real.study.independent_table.recorder.film`)."""
+    """Noise of each coordinate, jitter of the clock, and shares of frames that are held, dropped or wild; and the
+    errors of a calibrated camera beside the table (`sim2real.study.independent_table.recorder.film`)."""
 
     rate: float = 120.0  # Hz
     noise: float = 0.0005  # m
@@ -23,14 +23,14 @@ class Camera:
     dropped: float = 0.0  # of the frames see no puck
     wild: float = 0.0  # of the frames are wrong by centimetres
     wild_by: float = 0.05  # m, the size of such an error
-    memory: float = 0.0  # s, for which film.SLOW of the noise's variance hangs together; 0: the noise is white
-    place_error: float = 0.0  # m, by which the calibration has all places wrong, and says so
-    calibration: int = 0  # its number: another one errs elsewhere
+    correlation_time: float = 0.0  # s, of the share film.SLOW of the noise's variance; 0: the noise is white
+    place_error: float = 0.0  # m, stated standard deviation of the calibration's error
+    calibration: int = 0  # seed of the calibration's error
     beam: float = 0.0  # m on either side of the robot's mallet, along the table, that its gantry hides
 
 
 def look_up(t: np.ndarray, path: np.ndarray) -> np.ndarray:
-    """Positions (m, 2) at times t (m,) on a path (n, 2) sampled every FINE seconds; NaN off its ends or beside NaN."""
+    """Positions (m, 2) at times t (m,) on a path (n, 2) sampled every FINE seconds; NaN outside and next to NaN."""
     at = t / FINE
     left = np.clip(np.floor(at).astype(int), 0, len(path) - 2)
     share = (at - left)[:, None]
@@ -40,7 +40,7 @@ def look_up(t: np.ndarray, path: np.ndarray) -> np.ndarray:
 
 
 def see(law: Law, camera: Camera, scene: Scene, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Time stamps (m,), the puck (m, 2) and the opponent's mallet (m, 2; NaN where there is none) as seen."""
+    """Time stamps (m,), observed positions of the puck (m, 2) and of the opponent's mallet (m, 2; NaN without one)."""
     seconds = len(scene.t) * FINE
     taken = np.arange(1, int(seconds * camera.rate)) / camera.rate
     taken = taken + np.clip(camera.jitter * rng.standard_normal(len(taken)), -0.3 / camera.rate, 0.3 / camera.rate)
@@ -49,7 +49,7 @@ def see(law: Law, camera: Camera, scene: Scene, rng: np.random.Generator) -> tup
     puck, opponent = (distort(law, look_up(taken, path)) for path in paths)
     if camera.place_error:
         puck = puck + camera.place_error * film.field(puck / (law.length, law.width), camera.calibration)
-    puck = puck + camera.noise * film.noise(rng, taken, camera.memory)
+    puck = puck + camera.noise * film.noise(rng, taken, camera.correlation_time)
     opponent = opponent + camera.noise * rng.standard_normal(opponent.shape)
     if camera.beam and len(scene.mallets):
         puck[np.abs(puck[:, 0] - look_up(taken, scene.mallets[0])[:, 0]) < camera.beam] = np.nan
@@ -67,6 +67,6 @@ def see(law: Law, camera: Camera, scene: Scene, rng: np.random.Generator) -> tup
 
 
 def distort(law: Law, seen: np.ndarray) -> np.ndarray:
-    """The map from the image to the table, stretched and sheared about the origin."""
+    """Apply the camera's map error: stretch and shear about the origin."""
     x, y = seen[:, 0], seen[:, 1]
     return np.stack([(1.0 + law.camera_scale_x) * x + law.camera_shear * y, (1.0 + law.camera_scale_y) * y], axis=1)

@@ -1,8 +1,8 @@
-"""What a camera that was calibrated by photographs errs by, as `puckpilot track` does on rendered pictures.
+"""The errors of a calibrated camera, as those of `puckpilot track` on rendered pictures.
 
-Its noise is small, and hangs together for some frames. The calibration has places wrong by a field over the table,
-alike in all frames: Legendre polynomials with coefficients as calibrations of rendered tables have them, by the
-deviation that they state (`python -m tests.sim2real.vision.trial.fields`). `cases` draws such cameras.
+The noise is small and autocorrelated over some frames. The calibration error is a field over the table that is constant
+in time: Legendre polynomials whose coefficients are distributed as those of calibrations of rendered tables, relative
+to the deviation that they state (`python -m tests.sim2real.vision.trial.fields`). `cases` draws such cameras.
 """
 
 from __future__ import annotations
@@ -10,13 +10,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.polynomial.legendre import legvander2d
 
-SLOW = 0.75  # share of the noise's variance that fades with a camera's memory
-SMOOTH, ORDER = 3, 5  # orders of the polynomials: those that are large, and all
+SLOW = 0.75  # share of the noise's variance that is autocorrelated
+SMOOTH, ORDER = 3, 5  # highest order of the polynomials with large coefficients, and of all
 ALONG, ACROSS, BEYOND = 0.45, 0.2, 0.035  # std of the coefficients of x and y, and of the orders beyond
 
 
 def field(share: np.ndarray, calibration: int) -> np.ndarray:
-    """Errors (n, 2), in units of the stated deviation, at places told as shares (n, 2) of the table."""
+    """Errors (n, 2), in units of the stated deviation, at places given as shares (n, 2) of the table."""
     rng = np.random.default_rng([calibration, 11])
     x, y = np.clip(2.0 * np.nan_to_num(share) - 1.0, -1.0, 1.0).T
     order = np.add.outer(np.arange(ORDER + 1), np.arange(ORDER + 1)).ravel()
@@ -24,14 +24,14 @@ def field(share: np.ndarray, calibration: int) -> np.ndarray:
     return legvander2d(x, y, [ORDER, ORDER]) @ (sizes * rng.standard_normal(sizes.shape)).T
 
 
-def noise(rng: np.random.Generator, times: np.ndarray, memory: float) -> np.ndarray:
-    """Errors (n, 2) of unit variance at `times` (n,) [s], of which SLOW fades within `memory` [s]; white for 0."""
+def noise(rng: np.random.Generator, times: np.ndarray, correlation_time: float) -> np.ndarray:
+    """Errors (n, 2) of unit variance at `times` (n,) [s]; the share SLOW has this `correlation_time` [s]; 0: white."""
     white = rng.standard_normal((len(times), 2))
-    if not memory:
+    if not correlation_time:
         return white
     fresh, slow = rng.standard_normal(white.shape), np.zeros_like(white)
     slow[0] = fresh[0]
-    fades = np.exp(-np.diff(times) / memory)
+    correlation = np.exp(-np.diff(times) / correlation_time)
     for k in range(1, len(times)):
-        slow[k] = fades[k - 1] * slow[k - 1] + np.sqrt(1.0 - fades[k - 1] ** 2) * fresh[k]
+        slow[k] = correlation[k - 1] * slow[k - 1] + np.sqrt(1.0 - correlation[k - 1] ** 2) * fresh[k]
     return np.sqrt(SLOW) * slow + np.sqrt(1.0 - SLOW) * white

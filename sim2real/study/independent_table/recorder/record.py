@@ -15,7 +15,7 @@ from sim2real.study.independent_table.recorder.scene import FINE, Hand, Scene, p
 
 ALONE = "puck launched by hand, no mallets on the table"
 GANTRY = "robot mallet alone, no puck"
-# name: what the maker of such a recording would note. Posts: launches aimed at them. Drive: a log of the motors.
+# name: the note in such a recording. Posts: launches aimed at them. Drive: a log of the motors.
 SCENARIOS = {
     "launches": ALONE,
     "posts": ALONE,
@@ -27,7 +27,7 @@ SCENARIOS = {
 PLAYERS = {"launches": 0, "posts": 0, "rally": 1, "match": 2}
 AT_POSTS = Hand(patience=4.0, at_posts=True)
 SUPPLY = 24.0  # V
-SHARP = 1e-4  # m, of noise below which ten micrometres matter
+SHARP = 1e-4  # m, noise below which the rounding to ten micrometres matters
 
 
 def make_recording(
@@ -45,7 +45,7 @@ def make_recording(
 ) -> Scene:
     """Write meta.json, frames.csv and, where a robot moves, mallet.csv and commands.csv or drive.csv; return the truth.
 
-    `law.camera_*` and `law.encoder_clock` distort what is written; `camera` says how noisily. The encoders see the
+    `law.camera_*` and `law.encoder_clock` distort the recorded data; `camera` adds noise. The encoders measure the
     mallet itself, not its motors. The same arguments give the same bytes.
     """
     if scenario not in SCENARIOS:
@@ -75,7 +75,7 @@ def make_recording(
 
 
 def write_frames(folder: Path, seen: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None, digits: int = 5) -> None:
-    """frames.csv from stamps, puck and opponent with so many digits of metres; a header alone where no camera ran."""
+    """Write frames.csv from stamps, puck and opponent with `digits` digits of metres; a header alone without them."""
     rows = (
         f"{t:.6f},{cell(x, digits)},{cell(y, digits)},{cell(ox, digits)},{cell(oy, digits)}"
         for t, (x, y), (ox, oy) in (zip(*seen, strict=True) if seen is not None else ())
@@ -84,7 +84,7 @@ def write_frames(folder: Path, seen: tuple[np.ndarray, np.ndarray, np.ndarray] |
 
 
 def write_mallet(folder: Path, law: Law, scene: Scene, rate: float, noise: float, rng: np.random.Generator) -> None:
-    """mallet.csv: the robot's mallet `rate` times a second, and the expected path where there is one."""
+    """Write mallet.csv: the robot's mallet `rate` times a second, and the expected path if there is one."""
     t = np.arange(round((scene.t[-1] + FINE) * rate)) / rate
     t = t[t <= scene.t[-1]]
     paths = [look_up(t, scene.mallets[0]) + noise * rng.standard_normal((len(t), 2))]
@@ -101,11 +101,11 @@ def write_mallet(folder: Path, law: Law, scene: Scene, rate: float, noise: float
 
 
 def write_drive(folder: Path, law: Law, scene: Scene) -> None:
-    """drive.csv: the two motors' shares of the supply at every LOOP, held until the next."""
+    """Write drive.csv: the two motors' shares of the supply at every LOOP, held until the next."""
     assert scene.drive is not None
-    told = np.array(scene.drive)
+    drive = np.array(scene.drive)
     t = np.arange(round((scene.t[-1] + FINE) / LOOP)) * LOOP
-    held = told[np.searchsorted(told[:, 0], t + 0.5 * LOOP) - 1, 1:]
+    held = drive[np.searchsorted(drive[:, 0], t + 0.5 * LOOP) - 1, 1:]
     left, right = 0.5 * (held[:, 0] - held[:, 1]) / SUPPLY, -0.5 * (held[:, 0] + held[:, 1]) / SUPPLY
     stamps = t * (1.0 + law.encoder_clock)
     rows = (f"{time:.6f},{a:.5f},{b:.5f}" for time, a, b in zip(stamps, left, right, strict=True))
@@ -113,7 +113,7 @@ def write_drive(folder: Path, law: Law, scene: Scene) -> None:
 
 
 def meta(law: Law, camera: Camera, note: str) -> dict[str, object]:
-    """What the maker of a recording knows: sizes, and the camera's nominal figures. No law, no hidden effect."""
+    """The meta data of a recording: sizes and nominal camera data; no law and no concealed effect."""
     return {
         "format": "puckpilot-recording/1",
         "table": {"length_m": law.length, "width_m": law.width, "goal_width_m": law.goal_width},
@@ -132,7 +132,7 @@ def meta(law: Law, camera: Camera, note: str) -> dict[str, object]:
 
 
 def cell(value: float, digits: int) -> str:
-    """A number, or a blank for what was not seen."""
+    """Format a number; NaN (not seen) is a blank."""
     return "" if np.isnan(value) else f"{value:.{digits}f}"
 
 

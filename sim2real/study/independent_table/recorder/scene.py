@@ -1,6 +1,6 @@
-"""What happens on the table while a recording is made: hand launches, and a robot that rallies.
+"""The scenes of recordings: launches by hand, and a robot that rallies.
 
-A scene is a list of ticks of 0.1 s joined into arrays: the truth from which the camera and the encoders read.
+A scene is simulated in ticks of 0.1 s and joined into arrays, the truth that camera and encoders observe.
 """
 
 from __future__ import annotations
@@ -16,18 +16,18 @@ from sim2real.study.independent_table.physics.volts import Plan
 from sim2real.study.independent_table.recorder.aim import plan_to
 from sim2real.study.independent_table.simulate import Contact, run
 
-TICK = 0.1  # s, a new plan this often
-FINE = 1e-4  # s, spacing of the truth (a bounce between two of them is cut by 0.1 mm or so)
-HAND = 0.6  # s, for which the puck is out of sight when a hand takes it
-HOME = (0.22, 0.5)  # of length, of width: where the robot waits
-REACH = 0.42  # of length: the robot's side
+TICK = 0.1  # s, period of new plans
+FINE = 1e-4  # s, spacing of the truth (interpolation cuts a bounce by about 0.1 mm)
+HAND = 0.6  # s, for which the puck is hidden when a hand takes it
+HOME = (0.22, 0.5)  # shares of length and width: where the robot waits
+REACH = 0.42  # share of the length: the robot's side
 
 
 @dataclass
 class Scene:
     """The truth every FINE seconds, `commands` as sent (t, x_f, y_f, then the plan), contacts (t from the start).
 
-    Where the motors were told volt by volt: `drive`, (t, V_x, V_y) at every change, and the mallet's `expected` path.
+    If the motors got volts instead of plans: `drive`, (t, V_x, V_y) at every change, and the mallet's `expected` path.
     """
 
     t: np.ndarray  # (n,)
@@ -41,12 +41,12 @@ class Scene:
 
 @dataclass
 class Robot:
-    """A player of one mallet: waits at home, and drives through the puck when it comes within reach."""
+    """A player of one mallet that waits at home and drives through the puck when that comes within reach."""
 
     law: Law
     rng: np.random.Generator
     opponent: bool = False
-    believed: Law = field(default_factory=Law)  # the law its plans are made with
+    believed: Law = field(default_factory=Law)  # the law that its plans assume
     target: tuple[float, float] = (0.0, 0.0)
     volts: tuple[float, float] = (6.0, 6.0)
     ticks_left: int = 0
@@ -59,7 +59,7 @@ class Robot:
         return self.target, plan_to(self.believed, list(mallet[-MOTOR:]), self.target, self.volts)
 
     def choose(self, mallet: np.ndarray, puck: np.ndarray) -> None:
-        """Strike where the puck will be, or go home; a target stands for some ticks."""
+        """Choose a target for some ticks: the puck's future place if reachable, else home."""
         own = -1.0 if self.opponent else 1.0
 
         def ahead(x: float) -> float:  # as seen from this player's wall
@@ -88,18 +88,18 @@ class Robot:
 
 @dataclass(frozen=True)
 class Hand:
-    """Who lets the puck go: a puck that is slow, gone, or `patience` old is launched anew."""
+    """The person who launches the puck; a puck that is slow, gone, or older than `patience` is launched again."""
 
-    fastest: float = 3.0  # m/s; no launch is slower than 0.3 of it
+    fastest: float = 3.0  # m/s, highest speed of a launch; the lowest is 0.3 of it
     patience: float = 8.0  # s
-    spin: float = 0.0  # rad/s, standard deviation of the puck's spin when it is let go
-    at_posts: bool = False  # aims at a goal post, not just anywhere
+    spin: float = 0.0  # rad/s, standard deviation of the puck's spin at launch
+    at_posts: bool = False  # whether launches are aimed at the goal posts
 
 
 def launch(law: Law, rng: np.random.Generator, mallets: np.ndarray, hand: Hand) -> np.ndarray:
-    """A puck let go by hand, clear of walls and mallets.
+    """Draw the start of a puck launched by hand, away from walls and mallets.
 
-    With no mallet on the table it starts anywhere in any direction; else from the far half, towards the robot.
+    Without mallets it starts anywhere in any direction; otherwise in the far half, towards the robot.
     """
     nearest, spread = (0.5, 1.0) if len(mallets) else (0.1, pi)
     while True:
@@ -124,7 +124,7 @@ def play(law: Law, seed: int, seconds: float, players: int, hand: Hand | None = 
     for k in range(players):
         mallets[k, [0, 3]] = abs((k * law.length) - HOME[0] * law.length), HOME[1] * law.width
     puck, age, away = np.full(6, np.nan), 0.0, 0.0
-    pieces, commands, contacts = [], [], []
+    paths, commands, contacts = [], [], []
     last: list[Plan | None] = [None] * players
     for tick in range(round(seconds / TICK)):
         slow = hypot(puck[2], puck[3]) < 0.08
@@ -139,13 +139,13 @@ def play(law: Law, seed: int, seconds: float, players: int, hand: Hand | None = 
         for k, robot in enumerate(robots):
             target, plan = robot.act(mallets[k], puck)
             last.append(plan)
-            plans.append([(-TICK, before[k]), (0.0, plan)])  # the one before holds on until a late one starts
+            plans.append([(-TICK, before[k]), (0.0, plan)])  # the previous plan continues until a delayed one starts
             if k == 0:
                 commands.append((tick * TICK, *target, *plan))
         trace = run(law, None if np.isnan(puck[0]) else puck, mallets, plans, TICK, dt, sample=FINE, clock=tick * TICK)
         puck, mallets, age = trace.end_puck, trace.end_mallets, age + TICK
-        pieces.append((trace.puck[:-1, :2], trace.mallets[:, :-1, [0, 3]]))
+        paths.append((trace.puck[:-1, :2], trace.mallets[:, :-1, [0, 3]]))
         contacts += [c._replace(t=c.t + tick * TICK) for c in trace.contacts]
-    puck_path = np.concatenate([piece[0] for piece in pieces])
-    mallet_paths = np.concatenate([piece[1] for piece in pieces], axis=1)
+    puck_path = np.concatenate([puck for puck, _ in paths])
+    mallet_paths = np.concatenate([mallet for _, mallet in paths], axis=1)
     return Scene(np.arange(len(puck_path)) * FINE, puck_path, mallet_paths, commands, contacts)

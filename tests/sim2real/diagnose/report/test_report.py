@@ -179,7 +179,7 @@ def test_what_was_not_recorded_is_not_tested():
     read = Reader(page(Diagnosis((RegimeResult("sensing", (), {}, True, None), gantry), sensor_summaries=(blind,))))
     assert "Not tested: no camera frame shows a puck (frames.csv)." in read.text
     assert "to the noise" not in read.text and "However, residuals are 2 times the noise." in read.text
-    assert "Rms residual on 1 stretch of some seconds" in read.text and "No camera: only the gantry" in read.text
+    assert "Rms residual on 1 segment of some seconds" in read.text and "No camera: only the gantry" in read.text
     assert [row in read.text for row in ("wall not tested", "gantry not tested")] == [True, False]
     seen = Reader(
         page(Diagnosis((RegimeResult("sensing", (), {}, True, None), _glide(defaults=True)), sensor_summaries=(SIGHT,)))

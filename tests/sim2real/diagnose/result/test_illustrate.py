@@ -62,7 +62,7 @@ def test_a_decaying_deceleration_gets_its_formula_and_its_mismatch(tmp_path):
     found = _diagnosis(tmp_path / "table", Law(fading=0.25, fading_time=0.3))
     one = found.findings[0]
     assert one.mechanism == "unlisted" and one.depends_on == ("history",)
-    assert one.formula.startswith("a = -0.2") and "exp(-t_since_hit / 0.3" in one.formula
+    assert one.formula.startswith("a = -0.2") and "exp(-t_since_contact / 0.3" in one.formula
     assert one.parameters["size"].value == pytest.approx(-0.25, rel=0.05)
     assert one.parameters["decay"].value == pytest.approx(0.3, rel=0.05)
     curve = _curve(found)
@@ -72,7 +72,7 @@ def test_a_decaying_deceleration_gets_its_formula_and_its_mismatch(tmp_path):
     before, after = (np.sqrt(np.mean((some / mismatch.std) ** 2)) for some in (mismatch.before, mismatch.after))
     assert before > 2.0
     assert after**2 - 1.0 < 0.1 * (before**2 - 1.0)  # excess over the noise; an unlisted law must reduce it to 0.3
-    assert "t_since_hit" in page(found)
+    assert "t_since_contact" in page(found)
 
 
 @pytest.mark.slow
@@ -167,6 +167,6 @@ def test_residuals_are_shown_under_the_law_with_its_smooth_term():
 def test_a_law_of_speed_angle_and_spin_is_shown_as_measured_against_predicted(tmp_path):
     law = Law(wall_spin=True, wall_mu=0.15, wall_restitution=0.8)
     curve = _curve(_diagnosis(tmp_path / "table", law))
-    assert curve.x_label.endswith("by the law") and curve.y_label.endswith("as seen")
+    assert curve.x_label.endswith("predicted") and curve.y_label.endswith("observed")
     assert curve.y == pytest.approx(curve.x)
     assert np.abs(curve.data_y - curve.data_x).max() < 0.05 < np.ptp(curve.x)

@@ -1,4 +1,4 @@
-"""Labelled cases: what is drawn, that the recordings keep the secret, and that a seed is a seed."""
+"""Labelled cases: what is drawn, recordings do not reveal the truth, and a seed reproduces the cases."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import pytest
 
 from sim2real.study.independent_table import Law, make_cases
 from sim2real.study.independent_table.cases import BLOCK, KINDS, draw_case
-from sim2real.study.independent_table.mechanisms import MECHANISMS, RIVALS
+from sim2real.study.independent_table.mechanisms import INCOMPATIBLE, MECHANISMS
 from sim2real.study.independent_table.physics.puck import acceleration
 from sim2real.study.independent_table.physics.unlisted import LAWS
 from sim2real.study.independent_table.recorder.record import make_recording
@@ -30,9 +30,9 @@ def test_every_block_holds_every_kind_and_every_mechanism_comes_once_a_round():
         assert Counter(case.truth["kind"] for case in cases[start : start + BLOCK]) == KINDS
     ones = [case.truth["mechanisms"][0] for case in cases if case.truth["kind"] == "one"]
     assert Counter(ones[: len(MECHANISMS)]) == dict.fromkeys(MECHANISMS, 1)
-    strange = [case.truth["law"] for case in cases if case.truth["kind"] == "unlisted"]
-    assert set(strange) <= set(LAWS)
-    assert len(set(strange)) == len(strange)
+    unlisted = [case.truth["law"] for case in cases if case.truth["kind"] == "unlisted"]
+    assert set(unlisted) <= set(LAWS)
+    assert len(set(unlisted)) == len(unlisted)
     assert draw_case(5, 7) == cases[7]
     assert draw_case(6, 7) != cases[7]
 
@@ -57,7 +57,7 @@ def test_what_is_missing_is_in_the_law_and_nothing_else_is():
             assert changed - set(BASELINE)
         assert case.camera.held <= 0.02 or "held_frames" in names
         assert len(names) == {"nothing": 0, "parameters": 0, "two": 2}.get(kind, 1)
-        assert not any(len(names) == 2 and set(names) <= rivals for rivals in RIVALS)
+        assert not any(len(names) == 2 and set(names) <= group for group in INCOMPATIBLE)
         regimes = case.truth["regimes"]
         assert ("gantry" in regimes) <= (case.scenario in ("gantry", "drive"))
         assert bool(set(regimes) & {"glide", "wall", "corner", "mallet"}) <= (case.scenario in SENSED)
@@ -86,8 +86,8 @@ def test_each_can_be_asked_for_and_changes_the_recording(name: str, tmp_path: Pa
     "names", list(combinations(["friction_anisotropy", "air_drift", "friction_patch", "linear_drag"], 2))
 )
 def test_brakes_that_come_as_two_are_both_felt(names: tuple[str, str]):
-    """Each of two that brake a puck changes what the other leaves, by at least half of what it does alone."""
-    assert not any(set(names) <= rivals for rivals in RIVALS)
+    """In a pair of friction effects, each adds at least half of its own effect to that of the other."""
+    assert not any(set(names) <= group for group in INCOMPATIBLE)
     for seed in range(4):  # both forms of the uneven friction
         changes = [MECHANISMS[name].draw(np.random.default_rng(seed), 1.0, Law(), "launches").law for name in names]
         x, y = ({**changes[0], **changes[1]}.get(f"patch_{axis}", 0.5) for axis in "xy")

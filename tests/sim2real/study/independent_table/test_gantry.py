@@ -1,4 +1,4 @@
-"""What may give between the reference's motors and its mallet, and recordings of a mallet alone."""
+"""Belt compliance and backlash of the reference, and recordings of a mallet alone."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tests.sim2real.study.independent_table.test_recordings import columns
 X = (5.2955e-6, 0.008449, 0.05315)  # C5, C6, C7 of the x axis
 HALF = 0.017653  # of the pulley's radius
 PLAN = (9.0, 0.0, 0.1, 0.0, 0.17, 0.0)
-PIECES = ((9.0, 0.1), (-9.0, 0.07), (0.0, 0.08))
+INTERVALS = ((9.0, 0.1), (-9.0, 0.07), (0.0, 0.08))
 
 
 def test_the_belt_follows_its_motor_as_the_matrix_exponential_says():
@@ -32,7 +32,7 @@ def test_the_belt_follows_its_motor_as_the_matrix_exponential_says():
     matrix[2, [1, 2, 5]] = -c7 / c5, -c6 / c5, HALF / c5
     matrix[4, [0, 1, 3, 4]] = w * w, c, -w * w, -c
     state = np.array([0.3, 0, 0, 0.3, 0])
-    for volts, seconds in PIECES:
+    for volts, seconds in INTERVALS:
         state = (expm(matrix * seconds) @ np.array([*state, volts]))[:5]
     assert trace.mallets[0, -1, 6] == pytest.approx(state[0], abs=1e-10)
     assert trace.mallets[0, -1, [0, 1]] == pytest.approx(state[3:], abs=1e-7)
@@ -66,7 +66,7 @@ def test_a_gap_is_lost_at_the_start_and_at_each_reversal():
 
 
 def test_belt_and_gap_together_are_refused():
-    with pytest.raises(ValueError, match="one of belt_hz and backlash"):
+    with pytest.raises(ValueError, match="belt_hz and backlash"):
         run(Law(belt_hz=10.0, backlash=0.001), mallets=[(0.3, 0.5)])
 
 

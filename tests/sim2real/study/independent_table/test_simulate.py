@@ -1,4 +1,4 @@
-"""The reference table against answers worked out by hand, and against itself at half the step."""
+"""The reference table against results computed by hand, and against itself at half the step."""
 
 from __future__ import annotations
 
@@ -172,10 +172,10 @@ def test_pushed_and_pinched_pucks_stay_sane():
 # ---- gantry
 
 
-def axis_exact(c5, c6, c7, half, state, pieces):
-    """State after pieces of (volts, seconds), by the matrix exponential."""
+def axis_exact(c5, c6, c7, half, state, intervals):
+    """State after intervals of (volts, seconds), by the matrix exponential."""
     matrix = np.array([[0, 1, 0, 0], [0, 0, 1, 0], [0, -c7 / c5, -c6 / c5, half / c5], [0, 0, 0, 0.0]])
-    for volts, seconds in pieces:
+    for volts, seconds in intervals:
         state = (expm(matrix * seconds) @ np.array([*state, volts]))[:3]
     return state
 
@@ -200,11 +200,11 @@ def test_terminal_speed():
 
 def test_a_list_of_plans_carries_the_mallet_over():
     first, second = (8.0, 3.0, 0.2, 0.1, 0.3, 0.2), (-5.0, 2.0, 0.05, 0.02, 0.1, 0.03)
-    whole = run(LAW, mallets=[(0.3, 0.5)], plans=[[(0.0, first), (0.1, second), (0.15, None)]], duration=0.3)
+    full = run(LAW, mallets=[(0.3, 0.5)], plans=[[(0.0, first), (0.1, second), (0.15, None)]], duration=0.3)
     begun = run(LAW, mallets=[(0.3, 0.5)], plans=[first], duration=0.1)
     middle = run(LAW, mallets=begun.end_mallets, plans=[second], duration=0.05)
     ended = run(LAW, mallets=middle.end_mallets, plans=[None], duration=0.15)
-    assert whole.end_mallets == pytest.approx(ended.end_mallets, abs=1e-9)
+    assert full.end_mallets == pytest.approx(ended.end_mallets, abs=1e-9)
 
 
 @pytest.mark.parametrize("target", [(0.7, 0.3), (0.34, 0.52), (0.1, 0.9)])

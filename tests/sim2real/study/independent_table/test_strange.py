@@ -1,4 +1,4 @@
-"""The reference's laws without a name, and the second forms of those that have one, against sums done by hand."""
+"""The reference's unlisted laws, and the second forms of listed ones, against results computed by hand."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Contacts in the frame of their normal: components, angles, and parts put together and taken out."""
+"""Contacts in the frame of their normal: components, angles, selection and concatenation."""
 
 from dataclasses import fields
 

@@ -1,4 +1,4 @@
-"""The gantry's diagnosis on recordings of an independent table: effects named and measured, none named, or refused."""
+"""The gantry's diagnosis on recordings of an independent table: effects are identified, absent, or data are refused."""
 
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ def test_motors_that_obey_a_plan_at_the_next_tick_lack_nothing(
 
 
 def test_a_long_log_keeps_windows_with_enough_samples(baseline: Recording, monkeypatch: pytest.MonkeyPatch) -> None:
-    """However few samples of a log are used, a window keeps enough of them."""
+    """A window keeps enough samples even if few samples of a log are used."""
     monkeypatch.setattr(data, "GANTRY_DATA", replace(GANTRY_DATA, most_samples=100))
     (run,) = gantry_problem([baseline], parameters(baseline))[0].runs
     assert baseline.mallet is not None and len(run.windows.begin) >= baseline.mallet.t[-1] / GANTRY_DATA.window - 1
@@ -153,7 +153,7 @@ def blanked(stream: Stream, column: str, rows: slice) -> Stream:
 
 
 def test_plans_with_blank_cells_are_left_out(baseline: Recording) -> None:
-    """What the motors did between 3.0 s and 4.0 s is unknown; all else fits as well as before."""
+    """The drive inputs between 3.0 s and 4.0 s are unknown; the other windows fit as well as before."""
     assert baseline.commands is not None
     affected = (baseline.commands.t > 2.99) & (baseline.commands.t < 3.99)
     rows = slice(int(np.argmax(affected)), int(np.argmax(affected) + affected.sum()))

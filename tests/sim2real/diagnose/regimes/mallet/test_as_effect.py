@@ -1,4 +1,4 @@
-"""An unlisted law of the mallet: found in a recording, switched on in the simulator, and played on."""
+"""An unlisted law of the mallet is identified from a recording, switched on in the simulator, and used in games."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def random_contacts(count: int) -> MalletContacts:
 @pytest.mark.parametrize("component", COMPONENTS)
 @pytest.mark.parametrize("basis", BASIS_LIBRARY)
 def test_the_simulator_plays_the_law_that_was_fitted(basis, component):
-    """A basis times coefficients, on top of a mallet that rubs."""
+    """A basis times coefficients, in addition to the mallet's friction."""
     data = random_contacts(150)
     problem = MalletProblem(data, 1, DEFAULTS)
     shares = CONTACT.coefficient_unit * BASIS_LIBRARY[basis][1](data)
@@ -109,7 +109,7 @@ def test_every_basis_is_played_by_its_own_kind_of_effect():
         component, basis = law.name.removeprefix("mallet's ").split(" by ", 1)
         assert law.linear and (kind, share) == (EFFECT_KINDS[basis], 1 + list(COMPONENTS).index(component))
     same = effect_parameters("mallet's restitution by time", _at_once(data), np.array([0.7]))
-    assert (same["blow_03"], same["blow_07"]) == (3.0, pytest.approx(0.07))  # a single knot stands for all
+    assert (same["blow_03"], same["blow_07"]) == (3.0, pytest.approx(0.07))  # a single knot is repeated
 
 
 def _at_once(data: MalletContacts) -> MalletContacts:

@@ -1,4 +1,4 @@
-"""Contacts with a mallet of known law, recorded by an independent table, explained by the engine."""
+"""The engine identifies the law of a mallet from contacts recorded by an independent table."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ from sim2real.study.independent_table.recorder.record import make_recording
 
 
 def explained(folder, law: Law, seed: int):
-    """What the engine finds of the mallet in 60 s of a rally."""
+    """The mallet's law that the engine identifies from 60 s of a rally."""
     make_recording(folder, law, "rally", seed, 60.0, dt=5e-5)
     recording = read_recording(folder)
     segments, g = segment(recording), geometry(recording)

@@ -1,4 +1,4 @@
-"""Whether two recordings are of one table and one camera, by where and when the puck touches walls and mallet."""
+"""The check that two recordings are of one table and one camera, by places and times of contacts."""
 
 from __future__ import annotations
 
@@ -43,22 +43,24 @@ def test_one_table_and_one_camera_agree(rallies):
 
 
 def test_a_camera_that_is_later_in_one_of_them_is_another(rallies):
-    with pytest.raises(UndeterminedError, match=r"one and other are not of one table.* later by (19|20|21) ms"):
+    with pytest.raises(UndeterminedError, match=r"one and other are not of one table.* delays differ by (19|20|21) ms"):
         check(rallies[0], changed(rallies[1], t=lambda t: t + 0.02))
 
 
 def test_a_table_stretched_by_a_little_is_another(rallies):
-    with pytest.raises(UndeterminedError, match=r"turns round differ by (1\.7|1\.8|1\.9)%"):
+    with pytest.raises(UndeterminedError, match=r"bounces differ by (1\.7|1\.8|1\.9)%"):
         check(changed(rallies[0], puck_x=lambda x: 1.009 * x), changed(rallies[1], puck_x=lambda x: 0.991 * x))
 
 
 def test_a_recording_without_a_puck_contradicts_none(rallies):
-    """It determines no scale, which does not mean that the scale is exact."""
+    """Such a recording determines no scale, which does not mean that the scale is exact."""
     nothing = Stream({name: column[:0] for name, column in rallies[1].frames.columns.items()})
     check(changed(rallies[0], puck_x=lambda x: 1.012 * x), replace(rallies[1], frames=nothing))
 
 
-def test_a_guessed_size_that_is_a_little_off_is_no_stretched_map(rallies):
+def test_an_assumed_size_with_a_small_error_is_no_stretched_map(rallies):
     unknown = {**rallies[0].meta, "table": {**rallies[0].meta["table"], "length_m": None}}
-    with pytest.raises(UndeterminedError, match=r"guessed length of 2\.000 m is 1\.[0-4]% off the 2\.02\d m seen"):
+    with pytest.raises(
+        UndeterminedError, match=r"assumed length of 2\.000 m differs by 1\.[0-4]% from the observed 2\.02\d m"
+    ):
         check(*(replace(changed(one, puck_x=lambda x: 1.012 * x), meta=unknown) for one in rallies))

@@ -7,23 +7,23 @@ from sim2real.diagnose.regimes.sensing.coordinate_scale import wrong_size
 from sim2real.segmentation.causes import Geometry
 
 STATED = Geometry(2.0, 1.0, 0.32, 0.03, 0.05)
-GUESSED = Geometry(2.0, 1.0, 0.32, 0.03, 0.05, frozenset({"length"}))
+ASSUMED = Geometry(2.0, 1.0, 0.32, 0.03, 0.05, frozenset({"length"}))
 
 
 @pytest.mark.parametrize(
     "table, stretch, error, reason",
     [
-        (STATED, 0.03, 0.0005, "stated length of 2.000 m is 3.0% off the 2.060 m"),
+        (STATED, 0.03, 0.0005, "stated length of 2.000 m differs by 3.0% from the observed 2.060 m"),
         (STATED, 0.04, 0.006, "stated length"),
         (STATED, 0.012, 0.0005, ""),
         (STATED, -0.29, 0.025, ""),  # one wall alone, whose contacts are a few millimetres off, determines nothing
-        (GUESSED, 0.012, 0.0005, "guessed length of 2.000 m is 1.2% off the 2.024 m"),
-        (GUESSED, 0.0012, 0.0005, ""),
+        (ASSUMED, 0.012, 0.0005, "assumed length of 2.000 m differs by 1.2% from the observed 2.024 m"),
+        (ASSUMED, 0.0012, 0.0005, ""),
     ],
 )
 def test_a_wrong_size_differs_from_a_stretched_map_and_from_too_few_contacts(table, stretch, error, reason):
-    said = wrong_size(np.array([stretch, 0.0, 0.0]), np.array([error, 0.0005, 0.0005]), table)
-    assert said.startswith("the " + reason) if reason else said == ""
+    message = wrong_size(np.array([stretch, 0.0, 0.0]), np.array([error, 0.0005, 0.0005]), table)
+    assert message.startswith("the " + reason) if reason else message == ""
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""A law that no list has, found in a recording, then switched on in the simulator and played on."""
+"""An unlisted law is identified from a recording, switched on in the simulator, and used in games."""
 
 import math
 
@@ -27,7 +27,7 @@ VORTEX = Law(vortex=0.06, vortex_x=1.0, vortex_y=0.5, vortex_size=0.3)
 
 @pytest.mark.parametrize("family", SWITCHES)
 def test_the_simulator_s_force_is_the_family_s(family):
-    """The family's own columns times coefficients, at motions that its knots were not taken from too."""
+    """The family's columns times coefficients, also at motions outside the data that its knots come from."""
     rng = np.random.default_rng(4)
     n = 200
     motion = Motion(
@@ -63,7 +63,7 @@ def found(tmp_path_factory):
 
 @pytest.mark.slow
 def test_pucks_slide_as_on_the_table_with_the_vortex(found):
-    """A second's glide on the mended simulator, where the recording's pucks were: a tenth of the baseline's error."""
+    """Glides of one second on the corrected simulator at the recorded places have a tenth of the baseline's error."""
     rng = np.random.default_rng(8)
     miss = {"mended": [], "baseline": []}
     records = {"mended": make_records(1, effect_values(found))[0], "baseline": make_records(1)[0]}

@@ -1,4 +1,4 @@
-"""Residuals of glides depend on their law alone and on no law before it, and the fitted starts are optimal."""
+"""Residuals of glides depend only on their law, not on earlier calls, and the fitted starts are optimal."""
 
 from __future__ import annotations
 

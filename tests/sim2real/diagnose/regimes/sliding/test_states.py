@@ -1,4 +1,4 @@
-"""States at the ends of glides under a law, and how well they are known."""
+"""States at the ends of glides under a law, and their covariances."""
 
 from dataclasses import replace
 
@@ -29,7 +29,7 @@ def test_a_parameter_that_is_hardly_known_leaves_all_states_finite(tmp_path):
 
 
 def test_the_map_error_does_not_count_as_noise_as_well(tmp_path):
-    """It is in the drift; a hand that pushes a glide is noise of that glide."""
+    """The map error is in the drift; a hand that pushes a glide is noise of that glide."""
     law, stated = Law(), 1.8e-4
     make_recording(tmp_path / "film", law, "launches", 2, 30.0, replace(FILM, place_error=1e-9))
     recording = read_recording(tmp_path / "film")

@@ -1,4 +1,4 @@
-"""Laws of the glide drawn over one coordinate: nothing else changes, and the curve is the law of the formula."""
+"""Curves of glide laws over one coordinate: the other coordinates are fixed, and the curve equals the law."""
 
 import numpy as np
 import pytest

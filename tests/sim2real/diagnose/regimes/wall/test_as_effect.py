@@ -1,4 +1,4 @@
-"""An unlisted law of the walls: found in a recording, switched on in the simulator, and played on."""
+"""An unlisted law of the walls is identified from a recording, switched on in the simulator, and used in games."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ SIZE, RADIUS = (2.0, 1.0), 0.0309
 NORMALS = {"x0": (1.0, 0.0), "x1": (-1.0, 0.0), "y0": (0.0, 1.0), "y1": (0.0, -1.0)}
 WARMING = Law(wall_warming=-0.003, wall_restitution=0.85)
 WAVE = Law(wall_wave=0.07, wall_wave_length=0.61, wall_restitution=0.8)
-EACH = [name for name in EFFECT_TABLES if name not in list(SINGLE_WAVES)[1:]]  # one wave stands for all
+EACH = [name for name in EFFECT_TABLES if name not in list(SINGLE_WAVES)[1:]]  # one wave represents all
 
 
 def place_at(wall: str, rng: np.random.Generator) -> np.ndarray:
@@ -73,7 +73,7 @@ def random_contacts(count: int) -> WallContacts:
 @pytest.mark.parametrize("component", COMPONENTS)
 @pytest.mark.parametrize("basis", EACH)
 def test_the_simulator_plays_the_law_that_was_fitted(basis, component):
-    """A basis times coefficients, on top of walls that rub."""
+    """A basis times coefficients, in addition to the walls' friction."""
     data, name = random_contacts(150), f"{component} by {basis}"
     problem = WallProblem(data, 1, {row.name: row.default for row in TABLE})
     shares = added_shares(data, Candidate(name, ()))

@@ -1,4 +1,4 @@
-"""Which contacts with walls count, which spin carries over between them, and which wave they show."""
+"""Selection of wall contacts, spin chains between them, and the wave that they show."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def test_a_wall_unlike_the_others_is_kept_and_a_single_outlier_is_not() -> None:
 
 
 def test_outliers_are_judged_against_known_contacts() -> None:
-    """A third of the contacts lose much more than those known: they alone are left out."""
+    """A third of the contacts lose much more speed than the known ones; only these are rejected."""
     known = contacts_that_keep(lambda x: np.full(COUNT, 0.9))
     odd = np.arange(COUNT) % 3 == 0
     after = known.velocity_after.copy()
@@ -64,7 +64,7 @@ def test_outliers_are_judged_against_known_contacts() -> None:
 
 
 def test_no_spin_carries_over_past_a_contact_that_is_left_out() -> None:
-    """Of seven contacts in two chains, number 2 and number 5 are left out."""
+    """Contacts number 2 and 5 of seven in two chains are omitted."""
     spin_chains, number = np.array([10, 10, 10, 10, 20, 20, 20]), np.array([0, 1, 3, 4, 6])
     some = select_contacts(contacts_that_keep(lambda x: np.full(COUNT, 0.9)), np.arange(COUNT) < len(number))
     found = split_spin_chains(replace(some, spin_unknown=np.zeros(len(number), bool)), number, spin_chains)

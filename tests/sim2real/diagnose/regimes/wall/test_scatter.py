@@ -1,4 +1,4 @@
-"""Contacts with a wall that scatter by more than the sensor's noise: by how much, and which law they show."""
+"""Wall contacts that scatter by more than the sensor noise: the estimated scatter and the selected law."""
 
 from __future__ import annotations
 

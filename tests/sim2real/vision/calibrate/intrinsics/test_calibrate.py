@@ -222,7 +222,7 @@ def test_photographs_without_a_board_are_reported(tmp_path: Path, capsys):
     cv2.imwrite(paths[2], np.full((600, 800), 99, np.uint8))
     assert puckpilot.main(["calibrate", "camera", *paths, "--out", str(tmp_path / "camera.json")]) == 0
     assert (
-        f"no board is seen in {paths[2]}; a checkerboard must be in it whole\n6 photographs of 800x600"
+        f"no board is seen in {paths[2]}; a checkerboard must be completely visible\n6 photographs of 800x600"
         in capsys.readouterr().out
     )
     assert puckpilot.main(["calibrate", "camera", *paths, "--board", "8x6"]) == 2
@@ -236,7 +236,7 @@ def test_it_names_what_stands_out_and_what_is_to_be_filled_in(tmp_path: Path, ca
     cv2.imwrite(paths[3], cv2.resize(image, (816, 600))[:, 8:808])  # by another lens, as it were
     assert puckpilot.main(["calibrate", "camera", *paths, "--charuco", "DICT_4X4_50", "--out", str(out)]) == 0
     output = capsys.readouterr().out
-    assert output.count("stands out") == 1 and f"\n{paths[3]} stands out: its corners are 0." in output
+    assert output.count("is an outlier") == 1 and f"\n{paths[3]} is an outlier: its corners are 0." in output
     assert "leave it out" in output
     empty = {name for name, value in flat(json.loads(out.read_text())).items() if value is None}
     assert empty == {"aruco_dictionary", "puck_top_above_table_m", "length_m", "width_m", "goal_width_m"}
