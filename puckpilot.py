@@ -94,7 +94,7 @@ def _unknown(words: list[str]) -> str:
 
 @contextmanager
 def _orderly_end() -> Iterator[None]:
-    """Inside, being told to end (SIGTERM, or SIGHUP of a closed terminal) is as Ctrl-C: no draft of a file is left."""
+    """Inside, a request to end (SIGTERM, or SIGHUP of a closed terminal) is as Ctrl-C: no draft of a file is left."""
 
     def stop(number: int, frame: object) -> NoReturn:
         raise KeyboardInterrupt(number)

@@ -18,7 +18,7 @@ from results.raw import Raw, read_raws, write_raw
 from results.rows import Row
 
 ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
-PROGRAMS = {"puckpilot": ["-m", "puckpilot"], "python": []}  # first word of a command: what this Python is told
+PROGRAMS = {"puckpilot": ["-m", "puckpilot"], "python": []}  # first word of a command: this Python's arguments
 
 
 def chosen(root: Path, rows: Sequence[Row], ids: Collection[str], minutes: float) -> list[Row]:

@@ -123,7 +123,7 @@ def _in_words(result: MatchResult) -> str:
     if rate.value is None:
         return f"No game of {result.games} was decisive; this tells nothing about who is better."
     low, high = 100.0 * rate.low, 100.0 * rate.high
-    verdict = "better than" if rate.low > 0.5 else "worse than" if rate.high < 0.5 else "not told apart from"
+    verdict = "better than" if rate.low > 0.5 else "worse than" if rate.high < 0.5 else "not distinguishable from"
     return (
         f"{result.players[0]} won {result.wins[0]} of {decisive} decisive games, {100.0 * rate.value:.1f} % "
         f"(95 % interval {low:.1f} to {high:.1f} %, which counts the two games of a start as one where they come out "

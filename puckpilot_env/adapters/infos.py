@@ -15,7 +15,7 @@ _ENDINGS = np.array(ENDING_NAMES, dtype=object)
 
 
 def drawn_info(tables: Tables, seats: NDArray[np.integer]) -> dict[str, Any]:
-    """What was drawn for the running episodes, as told in `seats` (n,): arrays with a row a table, copies.
+    """What was drawn for the running episodes, as seen from `seats` (n,): arrays with a row a table, copies.
 
     Randomized `parameters`, the player's own `gantry_scale` (see `state.TABLE`), and the `camera_delay` [s]. Empty for
     a variant that draws nothing.

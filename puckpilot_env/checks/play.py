@@ -50,7 +50,7 @@ CHECKS = (
     ),
     Check(
         "refuses after the end",
-        "A loop that forgets to reset is told so, instead of learning from steps of no episode.",
+        "A loop that forgets to reset gets an error, instead of learning from steps of no episode.",
         "Raise an exception in step() while no agent is live.",
         _refuses_after_the_end,
     ),

@@ -36,7 +36,7 @@ def run(args: argparse.Namespace) -> int:
 
     names = args.ids or list(all_variants())
     for name in names:
-        find_maker(name)  # so that a misspelt last one is told before the others are played
+        find_maker(name)  # so that a misspelt last one is refused before the others are played
     found = _check_all(names, args.steps, args.seed)
     if args.json:
         print(json.dumps([{"id": name, "checks": _as_dicts(results)} for name, results in found.items()], indent=2))

@@ -37,11 +37,11 @@ def check_draws(draws: Sequence[Draw], nominal: np.void, *, period: float, shows
                 "draw gantry_spread, or give it as a parameter"
             )
     for name in SHOWN:
-        told = float(nominal[name])
-        if name in drawn and max(told - drawn[name].low, drawn[name].high - told) > BEYOND + 1e-9:
+        usual = float(nominal[name])
+        if name in drawn and max(usual - drawn[name].low, drawn[name].high - usual) > BEYOND + 1e-9:
             raise ValueError(
                 f"the draw of '{name}' is from {drawn[name].low:g} to {drawn[name].high:g}; expected within {BEYOND:g} "
-                f"m of the nominal {told:g}, beyond which nothing is seen; give another nominal one as a parameter"
+                f"m of the nominal {usual:g}, beyond which nothing is seen; give another nominal one as a parameter"
             )
     late = max(float(nominal["command_delay"]), drawn["command_delay"].high if "command_delay" in drawn else 0.0)
     if late >= period:

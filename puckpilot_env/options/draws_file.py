@@ -3,7 +3,7 @@
 ```toml
 format = "puckpilot-draws/1"
 
-[parameters]                  # what every table has; of what is drawn below, what players are told
+[parameters]                  # what every table has; of what is drawn below, the nominal values that players see
 length = 2.362
 
 [draws.friction]              # by the simulator's names, as on every environment's page
@@ -76,13 +76,13 @@ def on_tables(
 
     Raises ValueError, in one line, for what cannot be read.
     """
-    told, given = read_draws(draws), by_name(parameters, "parameters", "{'friction': 0.1}")
+    file, given = read_draws(draws), by_name(parameters, "parameters", "{'friction': 0.1}")
     explicit = {name: checked(name, value) for name, value in given.items()}
-    values = {**told.parameters, **effect_values(effects), **explicit}
+    values = {**file.parameters, **effect_values(effects), **explicit}
     refuse_not_simulated(values)
-    named = {draw.parameter for draw in told.draws}
+    named = {draw.parameter for draw in file.draws}
     own = [draw for draw in variant.draws if draw.parameter not in values and draw.parameter not in named]
-    found = (*own, *(draw for draw in told.draws if draw.parameter not in explicit))
+    found = (*own, *(draw for draw in file.draws if draw.parameter not in explicit))
     as_rows(found)
     for draw in found:
         nominal = {**variant.parameters, **values}.get(draw.parameter, BY_NAME[draw.parameter].default)
@@ -96,10 +96,10 @@ def described(path: str | PathLike[str], apart_from: Iterable[str] = ()) -> list
 
     Raises ValueError as `read_draws` does.
     """
-    told, given = read_draws(path), set(apart_from)
-    draws = [draw for draw in told.draws if draw.parameter not in given]
+    file, given = read_draws(path), set(apart_from)
+    draws = [draw for draw in file.draws if draw.parameter not in given]
     each = [f"{draw.parameter} {draw.low:.4g} to {draw.high:.4g}" for draw in draws]
-    plain = [f"{name} {value:.4g}" for name, value in told.parameters.items() if name not in given]
+    plain = [f"{name} {value:.4g}" for name, value in file.parameters.items() if name not in given]
     lines = [f"drawn for every episode: {', '.join(each) or 'nothing of the file'}"]
     return lines + ([f"nominal, in place of the defaults: {', '.join(plain)}"] if plain else [])
 

@@ -26,7 +26,7 @@ from puckpilot_env.physics.effects import EFFECTS
 
 FORMAT = "puckpilot-effects/1"
 NOT_SWITCHED = "# not in the simulator:"  # begins a line of a file on what was found and cannot be switched on
-FEW = 4  # numbers of an effect that are told one by one
+FEW = 4  # numbers of an effect that are listed one by one
 Effects = Mapping[str, Any] | str | PathLike[str]  # {effect: {short name: value}}, a file, or what a file holds
 
 
@@ -64,8 +64,8 @@ def described(path: str | PathLike[str], apart_from: Iterable[str] = ()) -> list
     for name, effect in EFFECTS.items():
         numbers = {key: values[row.name] for key, row in effect.rows.items() if row.name in values}
         if any(value != effect.rows[key].default for key, value in numbers.items()):
-            told = ", ".join(f"{key} {value:.4g}" for key, value in numbers.items())
-            lines.append(f"effect on: {name} ({told if len(numbers) <= FEW else f'{len(numbers)} numbers'})")
+            listed = ", ".join(f"{key} {value:.4g}" for key, value in numbers.items())
+            lines.append(f"effect on: {name} ({listed if len(numbers) <= FEW else f'{len(numbers)} numbers'})")
     others = {name for name in values if BY_NAME[name] not in EFFECT_ROWS}.difference(apart_from)
     plain = [f"{name} {value:.4g}" for name, value in values.items() if name in others]
     lines += [f"in place of the defaults: {', '.join(plain)}"] if plain else []

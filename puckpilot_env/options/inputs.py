@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-LONGEST = 60  # characters in which something that was given is told
+LONGEST = 60  # characters, of a given value in a message
 
 Index = slice | NDArray[np.integer]
 
@@ -25,7 +25,7 @@ def in_short(given: object) -> str:
 
 
 def whole_number(given: object, name: str, low: int, high: int, most: str = "") -> int:
-    """`given` as an int from `low` to `high`, told as `most`. ValueError for another and for a truth value."""
+    """`given` as an int from `low` to `high`, `most` being the words for `high`. ValueError for another and for a truth value."""
     if not isinstance(given, int | np.integer) or isinstance(given, bool) or not low <= given <= high:
         raise ValueError(f"{name} is {in_short(given)}; expected a whole number from {low} to {most or f'{high:,}'}")
     return int(given)

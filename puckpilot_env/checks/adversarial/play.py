@@ -140,7 +140,7 @@ class _Stepper:
 
 
 def play_batch(name: str, seed: int, note: Callable[[int, int], None] = no_note) -> Found:
-    """Play the batch of an id and a seed; `note` is told step and table before each step."""
+    """Play the batch of an id and a seed; `note` is called with step and table before each step."""
     tables, rng = extremes.draw_tables(name, TABLES, seed)
     stepper, found = _Stepper(tables), Found()
     styles = adversaries.choose(TABLES, rng)

@@ -57,7 +57,7 @@ def _finding(one: Finding) -> dict[str, Any]:
             "before": one.before,
             "after": one.after,
             "unit": "rms in units of the sensor's noise",
-            **{f"{name}_twin": _without_none(asdict(control)) for name, control in one.null_controls.items()},
+            **{f"{name}_control": _without_none(asdict(control)) for name, control in one.null_controls.items()},
         },
     }
     return entries if one.curve is None else {**entries, "curve": _curve(one.curve)}

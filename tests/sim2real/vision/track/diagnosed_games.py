@@ -1,7 +1,7 @@
 """The diagnosis of filmed games of the simulator, in which nothing is missing: rendered, tracked with a
 calibration that is estimated anew for each, diagnosed.
 
-    python -m tests.sim2real.vision.track.told [SECONDS [SEED…]]
+    python -m tests.sim2real.vision.track.diagnosed_games [SECONDS [SEED…]]
 """
 
 from __future__ import annotations
