@@ -25,7 +25,7 @@ def in_short(given: object) -> str:
 
 
 def whole_number(given: object, name: str, low: int, high: int, most: str = "") -> int:
-    """`given` as an int from `low` to `high`, `most` being the words for `high`. ValueError for another and for a truth value."""
+    """`given` as an int from `low` to `high` (`most`: words for it). ValueError for another and for a truth value."""
     if not isinstance(given, int | np.integer) or isinstance(given, bool) or not low <= given <= high:
         raise ValueError(f"{name} is {in_short(given)}; expected a whole number from {low} to {most or f'{high:,}'}")
     return int(given)
