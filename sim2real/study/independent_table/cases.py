@@ -25,6 +25,12 @@ PAIRS = {"launches": 0.5, "posts": 0.1, "rally": 0.2, "gantry": 0.2}
 LIFTED = {"rally": ("glide", "wall"), "posts": ("glide", "wall")}  # regimes that such a recording shows as well
 WEAKEST, STRONGEST = 0.5, 2.0
 FILM = Camera(noise=2e-5, jitter=0.0, dropped=0.005, correlation_time=0.0125, place_error=1.8e-4, beam=0.05)
+# A further kind, which no block contains: nothing is missing, but the sensor or the puck is at its worst, in turn
+DISTURBED = "disturbed"
+DISTURBANCES = ("map error", "autocorrelated noise", "spinning puck")
+MAP_ERROR = 8e-4  # m, stated standard deviation of the calibration's error
+FRAME_CORRELATION = 0.6  # of the noise in consecutive frames (AR(1))
+SPIN = 12.0  # rad/s, standard deviation at launch
 
 
 @dataclass(frozen=True)
@@ -45,8 +51,10 @@ def draw_case(seed: int, number: int, kind: str | None = None, name: str | None 
     `kind` and `name` (a mechanism or an unlisted law) restrict the draw; `filmed`: the camera is a calibrated one.
     Raises ValueError for an unknown kind or name.
     """
+    if kind == DISTURBED:
+        return _disturbed_case(np.random.default_rng([seed, number, 1]), DISTURBANCES[number % len(DISTURBANCES)])
     if kind is not None and kind not in KINDS:
-        raise ValueError(f"unknown kind {kind!r}: expected one of {', '.join(KINDS)}")
+        raise ValueError(f"unknown kind {kind!r}: expected one of {', '.join([*KINDS, DISTURBED])}")
     if name is not None and name not in {**MECHANISMS, **LAWS}:
         raise ValueError(f"unknown mechanism {name!r}: expected one of {', '.join([*MECHANISMS, *LAWS])}")
     if name is not None:
@@ -68,6 +76,21 @@ def draw_case(seed: int, number: int, kind: str | None = None, name: str | None 
         law = _other_parameters(rng, law)
     calibrated = replace(FILM, calibration=int(rng.integers(2**31))) if filmed else None
     return _with(rng, kind, scenario, law, names, calibrated)
+
+
+def _disturbed_case(rng: Rng, disturbance: str) -> Case:
+    """A table without a missing effect, with a disturbance that a diagnosis could take for one."""
+    seen = {name: weight for name, weight in PLAIN_SCENARIOS.items() if name not in ("gantry", "drive")}
+    scenario = _choice(rng, {name: weight / sum(seen.values()) for name, weight in seen.items()})
+    law, camera, spin = _table(rng), _camera(rng), 0.0
+    if disturbance == "map error":
+        camera = replace(FILM, place_error=MAP_ERROR, calibration=int(rng.integers(2**31)))
+    elif disturbance == "autocorrelated noise":
+        camera = replace(camera, correlation_time=-1.0 / (camera.rate * np.log(FRAME_CORRELATION)), correlated=1.0)
+    else:
+        spin = SPIN
+    case = _with(rng, "nothing", scenario, law, [], camera)
+    return replace(case, hand=replace(case.hand, spin=spin), truth={**case.truth, "disturbance": disturbance})
 
 
 def kind_of(seed: int, number: int) -> tuple[str, int]:

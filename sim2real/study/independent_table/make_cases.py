@@ -58,7 +58,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--seed", type=int, default=0, metavar="S")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR")
     parser.add_argument("--seconds", type=float, default=60.0, help="length of a recording (default 60)")
-    parser.add_argument("--only", metavar="KIND", help="nothing, parameters, one, two or unlisted")
+    parser.add_argument("--only", metavar="KIND", help="nothing, parameters, one, two, unlisted or disturbed")
     parser.add_argument("--mechanism", metavar="NAME", help=f"one of {', '.join([*MECHANISMS, *LAWS])}")
     parser.add_argument("--filmed", action="store_true", help="by a calibrated camera")
     parser.add_argument("--workers", type=int, default=2)

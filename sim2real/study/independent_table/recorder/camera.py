@@ -23,7 +23,8 @@ class Camera:
     dropped: float = 0.0  # of the frames see no puck
     wild: float = 0.0  # of the frames are wrong by centimetres
     wild_by: float = 0.05  # m, the size of such an error
-    correlation_time: float = 0.0  # s, of the share film.SLOW of the noise's variance; 0: the noise is white
+    correlation_time: float = 0.0  # s, of the autocorrelated part of the noise; 0: the noise is white
+    correlated: float = 0.75  # share of the noise's variance that is autocorrelated
     place_error: float = 0.0  # m, stated standard deviation of the calibration's error
     calibration: int = 0  # seed of the calibration's error
     beam: float = 0.0  # m on either side of the robot's mallet, along the table, that its gantry hides
@@ -49,7 +50,7 @@ def see(law: Law, camera: Camera, scene: Scene, rng: np.random.Generator) -> tup
     puck, opponent = (distort(law, look_up(taken, path)) for path in paths)
     if camera.place_error:
         puck = puck + camera.place_error * film.field(puck / (law.length, law.width), camera.calibration)
-    puck = puck + camera.noise * film.noise(rng, taken, camera.correlation_time)
+    puck = puck + camera.noise * film.noise(rng, taken, camera.correlation_time, camera.correlated)
     opponent = opponent + camera.noise * rng.standard_normal(opponent.shape)
     if camera.beam and len(scene.mallets):
         puck[np.abs(puck[:, 0] - look_up(taken, scene.mallets[0])[:, 0]) < camera.beam] = np.nan

@@ -10,7 +10,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.polynomial.legendre import legvander2d
 
-SLOW = 0.75  # share of the noise's variance that is autocorrelated
 SMOOTH, ORDER = 3, 5  # highest order of the polynomials with large coefficients, and of all
 ALONG, ACROSS, BEYOND = 0.45, 0.2, 0.035  # std of the coefficients of x and y, and of the orders beyond
 
@@ -24,8 +23,8 @@ def field(share: np.ndarray, calibration: int) -> np.ndarray:
     return legvander2d(x, y, [ORDER, ORDER]) @ (sizes * rng.standard_normal(sizes.shape)).T
 
 
-def noise(rng: np.random.Generator, times: np.ndarray, correlation_time: float) -> np.ndarray:
-    """Errors (n, 2) of unit variance at `times` (n,) [s]; the share SLOW has this `correlation_time` [s]; 0: white."""
+def noise(rng: np.random.Generator, times: np.ndarray, correlation_time: float, share: float) -> np.ndarray:
+    """Errors (n, 2) of unit variance at `times` (n,) [s]; a `share` of it has the `correlation_time` [s]; 0: white."""
     white = rng.standard_normal((len(times), 2))
     if not correlation_time:
         return white
@@ -34,4 +33,4 @@ def noise(rng: np.random.Generator, times: np.ndarray, correlation_time: float) 
     correlation = np.exp(-np.diff(times) / correlation_time)
     for k in range(1, len(times)):
         slow[k] = correlation[k - 1] * slow[k - 1] + np.sqrt(1.0 - correlation[k - 1] ** 2) * fresh[k]
-    return np.sqrt(SLOW) * slow + np.sqrt(1.0 - SLOW) * white
+    return np.sqrt(share) * slow + np.sqrt(1.0 - share) * white

@@ -12,10 +12,11 @@ import numpy as np
 import pytest
 
 from sim2real.study.independent_table import Law, make_cases
-from sim2real.study.independent_table.cases import BLOCK, KINDS, draw_case
+from sim2real.study.independent_table.cases import BLOCK, DISTURBANCES, KINDS, MAP_ERROR, SPIN, draw_case
 from sim2real.study.independent_table.mechanisms import INCOMPATIBLE, MECHANISMS
 from sim2real.study.independent_table.physics.puck import acceleration
 from sim2real.study.independent_table.physics.unlisted import LAWS
+from sim2real.study.independent_table.recorder.film import noise
 from sim2real.study.independent_table.recorder.record import make_recording
 from sim2real.study.independent_table.recorder.scene import Hand
 
@@ -152,3 +153,18 @@ def test_a_hand_may_spin_the_puck_and_aim_at_posts(tmp_path: Path):
     turned = make_recording(tmp_path, law, "launches", 3, 3.0, hand=Hand(spin=20.0), dt=1e-4)
     straight = make_recording(tmp_path, law, "launches", 3, 3.0, dt=1e-4)
     assert np.nanmax(abs(turned.puck - straight.puck)) > 0.01
+
+
+def test_disturbed_cases_miss_nothing_and_take_turns():
+    cases = [draw_case(4, number, "disturbed") for number in range(6)]
+    assert [case.truth["disturbance"] for case in cases] == [*DISTURBANCES, *DISTURBANCES]
+    assert all((case.truth["verdict"], case.truth["mechanisms"]) == ("agrees", []) for case in cases)
+    assert [case.camera.place_error for case in cases] == [MAP_ERROR, 0.0, 0.0] * 2
+    assert [case.hand.spin for case in cases] == [0.0, 0.0, SPIN] * 2
+    assert not {case.scenario for case in cases} & {"gantry", "drive"}
+    for case in cases[1::3]:
+        step = np.arange(40_000) / case.camera.rate
+        one = noise(np.random.default_rng(1), step, case.camera.correlation_time, case.camera.correlated)
+        assert np.var(one) == pytest.approx(1.0, abs=0.03)
+        assert np.corrcoef(one[1:, 0], one[:-1, 0])[0, 1] == pytest.approx(0.6, abs=0.02)
+        assert np.corrcoef(one[2:, 0], one[:-2, 0])[0, 1] == pytest.approx(0.36, abs=0.03)
