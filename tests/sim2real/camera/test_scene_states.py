@@ -103,7 +103,7 @@ def test_a_synthetic_source_shows_a_recording_on_a_table_of_its_size(tmp_path: P
     assert (levels[0, :2] > 100).all() and (levels[:, 2] < 30).all()  # a puck of 35 mm, and just outside of it
     assert (levels[1:, :2] < 30).all()
     assert ((levels[:, 3] > 50) == (True, False, True, False)).all()  # the ring
-    with pytest.raises(RecordingError, match="is no folder"):
+    with pytest.raises(RecordingError, match="is not a folder"):
         open_source(f"synthetic:{tmp_path / 'nothing'}")
 
 

@@ -80,7 +80,7 @@ def test_a_study_of_one_kind_counts_silence_as_right(tmp_path: Path, capsys: pyt
     words = ["--cases", "2", "--only", "nothing", "--out", str(tmp_path / "out"), "--tool", tool]
     assert call(*words, "--json") == 0
     figures = {figure["name"]: figure for figure in json.loads(capsys.readouterr().out)["figures"]}
-    assert figures["nothing missing, and says so"]["value"] == 1.0
+    assert figures["nothing missing, no finding"]["value"] == 1.0
     assert figures["false alarms where nothing is missing"]["count"] == 2
     call(*words)
     alarms = next(line for line in capsys.readouterr().out.splitlines() if "false alarms" in line)
