@@ -17,6 +17,9 @@ from contextlib import contextmanager
 from importlib.metadata import version
 from typing import NoReturn
 
+# The matrices of a diagnosis are small: a second thread of linear algebra makes it three to six times slower.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 # name, of one word or two: (module with `add_arguments` and `run`, what it does)
 COMMANDS = {
     "demo": (

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 
@@ -215,3 +216,11 @@ def test_as_a_program():
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
     done = subprocess.run([sys.executable, "puckpilot.py"], cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 2 and "puckpilot demo" in done.stdout
+
+
+@pytest.mark.parametrize(("given", "threads"), [({}, "1"), ({"OPENBLAS_NUM_THREADS": "3"}, "3")])
+def test_linear_algebra_has_one_thread_unless_the_user_says_otherwise(given: dict[str, str], threads: str):
+    script = "import puckpilot, sys, os; print('numpy' in sys.modules, os.environ['OPENBLAS_NUM_THREADS'])"
+    environment = {name: value for name, value in os.environ.items() if name != "OPENBLAS_NUM_THREADS"} | given
+    done = subprocess.run([sys.executable, "-c", script], cwd=ROOT, env=environment, capture_output=True, text=True)
+    assert done.stdout.split() == ["False", threads]

@@ -2,8 +2,8 @@
 
 The error of a coordinate is the noise of each frame plus the error of the calibration, a smooth field over the table
 that is the same in all frames (`map_error`). The noise of a frame is white noise of the position and of the time stamp
-(`segmentation.sensor_noise`), scaled up if glides show larger residuals. For a calibrated camera its variance varies
-over the table (`heteroscedastic`) and it is correlated from frame to frame (`autocorrelated`).
+(`segmentation.sensor_noise`), scaled up if glides show larger residuals. It may be correlated from frame to frame
+(`autocorrelated`); for a calibrated camera its variance also varies over the table (`heteroscedastic`).
 
 Its users are:
 
@@ -86,14 +86,14 @@ def estimate_sensor_noise(
 ) -> SensorNoise:
     """Estimate the noise of a camera from the residuals of polynomials of order `order` fitted to its smooth `glides`.
 
-    The variance over the table and the autocorrelation are estimated only for a calibrated camera: otherwise errors of
-    the map, which vary as slowly as forces, would bias them. `white`, `excess` and `map_error_std`: see `SensorNoise`.
+    The variance over the table is estimated only for a calibrated camera: otherwise errors of the map would bias it.
+    The autocorrelation is estimated for every camera; its time is limited to a few frames (`SENSOR_NOISE`), because
+    forces and map errors act for longer. `white`, `excess` and `map_error_std`: see `SensorNoise`.
     """
     noise = SensorNoise(white, excess, map_error_std=map_error_std)
-    if not noise.calibrated:
-        return noise
-    at_origin, by_x, by_y = map(float, estimate_log_variance(_excerpts(noise, glides), order))
-    noise = replace(noise, log_variance=(at_origin, by_x, by_y))
+    if noise.calibrated:
+        at_origin, by_x, by_y = map(float, estimate_log_variance(_excerpts(noise, glides), order))
+        noise = replace(noise, log_variance=(at_origin, by_x, by_y))
     found = estimate_autocorrelation(_excerpts(noise, glides), order, _period(glides))
     return replace(noise, autocorrelation=found)
 

@@ -11,7 +11,7 @@ import pytest
 from puckpilot_env.parameters import TABLE
 from sim2real.diagnose.pipeline import Diagnosis, diagnose
 from sim2real.recording.folder import read_recording
-from sim2real.study.independent_table.cases import FILM
+from sim2real.study.independent_table.cases import FILM, draw_case
 from sim2real.study.independent_table.physics.law import Law
 from sim2real.study.independent_table.recorder.record import make_recording
 
@@ -75,3 +75,12 @@ def test_errors_of_the_holdout_do_not_affect_the_fit(tmp_path: Path) -> None:
         )
         baselines.append([glide.baseline[name].value for name in ("friction", "drag")])
     assert baselines[0] == pytest.approx(baselines[1], rel=1e-6)
+
+
+def test_autocorrelated_noise_of_an_uncalibrated_camera_is_no_physics(tmp_path: Path) -> None:
+    """Noise of consecutive frames correlates by 0.6 (AR(1)); taken for white noise, contacts would not fit it."""
+    case = draw_case(901, 1, "disturbed")
+    assert case.truth["disturbance"] == "autocorrelated noise" and not case.camera.place_error
+    make_recording(tmp_path / "noisy", case.law, case.scenario, 3, SECONDS, case.camera, dt=5e-5)
+    found = diagnose([read_recording(tmp_path / "noisy")], [], DEFAULTS, lambda *_: None)
+    assert found.verdict == "agrees" and not any(one.misfit for one in found.regime_results)

@@ -21,6 +21,7 @@ from sim2real.recording.folder import read_recording
 from sim2real.segmentation.segments import segment
 from sim2real.study.independent_table.cases import FILM
 from sim2real.study.independent_table.physics.law import Law
+from sim2real.study.independent_table.recorder.camera import Camera
 from sim2real.study.independent_table.recorder.record import make_recording
 
 PERIOD, ORDER = 1.0 / 120.0, 4
@@ -95,11 +96,18 @@ def test_outlying_glides_do_not_dominate() -> None:
 
 
 @pytest.mark.parametrize("place_error", [0.0, FILM.place_error])
-def test_only_glides_of_a_calibrated_camera_have_autocorrelation(tmp_path: Path, place_error: float) -> None:
+def test_glides_of_any_camera_have_autocorrelation(tmp_path: Path, place_error: float) -> None:
     make_recording(tmp_path / "film", Law(), "launches", 1, 30.0, replace(FILM, place_error=place_error))
     recording = read_recording(tmp_path / "film")
     data = glides_of(recording, segment(recording))
     (noise,) = data.noise
     assert noise.map_error_std == place_error and noise.calibrated == (place_error > 0.0)
-    assert (noise.autocorrelation.share > 0.0) == noise.calibrated
+    assert noise.autocorrelation.share > 0.5
     assert np.median(data.std) == pytest.approx(FILM.noise, rel=0.15)
+
+
+def test_white_noise_of_an_uncalibrated_camera_stays_white(tmp_path: Path) -> None:
+    make_recording(tmp_path / "film", Law(tilt_x=0.02), "launches", 1, 30.0, Camera(noise=6e-4), dt=5e-5)
+    recording = read_recording(tmp_path / "film")
+    (noise,) = glides_of(recording, segment(recording)).noise
+    assert noise.autocorrelation == AutocorrelatedNoise()

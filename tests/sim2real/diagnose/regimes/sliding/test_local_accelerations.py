@@ -51,7 +51,5 @@ def test_the_noise_is_what_it_says():
 def test_autocorrelated_noise_is_what_it_says():
     data, rng = _glides([0.7] * 400, [(0.0, 0.0)] * 400), np.random.default_rng(2)
     drawn = NOISE * np.concatenate([film.noise(rng, t, 0.02, 0.75) for t in np.split(data.t, data.first[1:-1])])
-    windows = acceleration_windows(
-        replace(data, noise=(SensorNoise(autocorrelation=AutocorrelatedNoise(0.75, 0.02)),))
-    )
+    windows = acceleration_windows(replace(data, noise=(SensorNoise(autocorrelation=AutocorrelatedNoise(0.75, 0.02)),)))
     assert windows.of(data.place + drawn).std(axis=0) == pytest.approx(windows.std[0], rel=0.08)
