@@ -28,8 +28,8 @@ def iqm_estimate(scores: ArrayLike, seed: int = 0) -> IntervalEstimate:
     """The IQM of scores (runs, tasks) with its 95 % interval, by a bootstrap over runs, stratified by task."""
     scores, rng = np.atleast_2d(np.asarray(scores, float)), np.random.default_rng(seed)
     runs, tasks = scores.shape
-    resampled = [iqm(scores[rng.integers(runs, size=(runs, tasks)), np.arange(tasks)]) for _ in range(RESAMPLES)]
-    low, high = np.quantile(resampled, [0.025, 0.975])
+    resampled = scores[rng.integers(runs, size=(RESAMPLES, runs, tasks)), np.arange(tasks)]
+    low, high = np.quantile(trim_mean(resampled.reshape(RESAMPLES, -1), QUARTER, axis=1), [0.025, 0.975])
     return IntervalEstimate(iqm(scores), float(low), float(high))
 
 
