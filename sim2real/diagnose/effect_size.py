@@ -10,12 +10,13 @@ from sim2real.diagnose.regimes.base import Regime
 
 
 def effect_size(regime: Regime, problem: Problem, found: SearchResult, other: SearchResult) -> float:
-    """Return the rms difference [m] between the predictions of two models over all data: see `Regime.size`.
+    """Return the rms difference [m] between the predictions of the model `found` and the one without a law, `other`,
+    over all data: see `Regime.size`.
 
-    For a law that the simulator cannot represent, it is the rms of the residuals that the law explains, with initial
-    states refitted.
+    For a smooth term that the simulator cannot represent, it is the rms of the residuals that the term explains, with
+    initial states refitted.
     """
-    if all(one.unlisted is None or one.effect_parameters() for one in (found, other)):
+    if found.unlisted is None or other.unlisted is not None or found.effect_parameters():
         return regime.size(problem, found, other)
     units = problem.units.of(found.clusters)
     share = max(found.gained(units), 0.0) / max(problem.units.freedom[units].sum(), 1.0)

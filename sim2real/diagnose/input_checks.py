@@ -42,8 +42,12 @@ def check_usable(recordings: Sequence[Recording]) -> None:
 
 
 def notes(recordings: Sequence[Recording]) -> tuple[str, ...]:
-    """Return remarks on the recordings, a sentence each: outliers, pauses at which they were cut, and values that none
-    of them states."""
+    """Return remarks on the recordings, a sentence each: `stream_notes`, and values that none of them states."""
+    return (*stream_notes(recordings), *assumptions(recordings))
+
+
+def stream_notes(recordings: Sequence[Recording]) -> tuple[str, ...]:
+    """Return remarks on the recordings' streams, a sentence each: outliers, and pauses at which they were cut."""
     found = [f"{one.name}: {note}" for one in recordings for note in one.notes]
     for one in recordings:
         for name, stream in _rows(one).items():
@@ -51,7 +55,7 @@ def notes(recordings: Sequence[Recording]) -> tuple[str, ...]:
             if pauses:
                 many = counted(pauses, "pause", "pauses")
                 found.append(f"{one.name}: {name}.csv has {many} of more than {INPUT.pause:g} s and is cut there")
-    return (*found, *assumptions(recordings))
+    return tuple(found)
 
 
 def _rows(one: Recording) -> dict[str, Stream]:

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from sim2real.diagnose.identify import Progress, identify
-from sim2real.diagnose.input_checks import UndeterminedError, check_usable, notes
+from sim2real.diagnose.input_checks import UndeterminedError, check_usable, notes, stream_notes
 from sim2real.diagnose.prove import prove
 from sim2real.diagnose.regimes.sensing.stretch import without_stretch
 from sim2real.diagnose.result.pooled_proof import pooled
@@ -27,7 +27,8 @@ OPEN = (
 class Diagnosis:
     """The results of all regimes. `reason`: why there is no conclusion, "" if there is one; `remedy`: what to do then.
 
-    `notes`: remarks on the recordings, a sentence each; `sensor_summaries`: the sensor of each training recording;
+    `notes`, `holdout_notes`: remarks on the recordings and on those held out, a sentence each; `sensor_summaries`: the
+    sensor of each training recording;
     `sizes`: the stated sizes [m] of table, puck, mallet and gantry, by the simulator's names.
     """
 
@@ -35,6 +36,7 @@ class Diagnosis:
     reason: str = ""
     remedy: str = ""
     notes: tuple[str, ...] = ()
+    holdout_notes: tuple[str, ...] = ()
     sensor_summaries: tuple[SensorSummary, ...] = ()
     sizes: Mapping[str, float] = field(default_factory=dict)
 
@@ -89,7 +91,7 @@ class Diagnosis:
 
     @property
     def proof_remarks(self) -> list[str]:
-        """Findings that the holdout does not test or does not confirm, a sentence each."""
+        """Findings that the holdout does not test or does not confirm, and remarks on it, a sentence each."""
         found = [each for each in self.regime_results if each.findings]
         untested = [f"{each.regime}: the holdout does not test the findings" for each in found if each.proof is None]
         known = [(each.regime, each.proof) for each in found if each.proof is not None]
@@ -105,7 +107,7 @@ class Diagnosis:
             for one in self.findings
             if one.before is not None and one.after is not None and one.after > WORSE * one.before
         ]
-        return [*against, *untested]
+        return [*against, *untested, *self.holdout_notes]
 
     @property
     def proof(self) -> Proof | None:
@@ -127,19 +129,21 @@ def diagnose(
 
     `defaults`: parameters that replace the simulator's, by name; `progress`: called with a stage and the share done.
 
+    What the recordings held out state is refused if it contradicts the others, and else used for them alone.
+
     Errors: ValueError, in one line, for recordings that state different tables.
     """
-    every = together([*recordings, *heldout], defaults)
-    stated = every[: len(recordings)]
-    remarks = notes(every)
+    stated = together(recordings, defaults)
+    held_out = together([*stated, *heldout], defaults)[len(recordings) :]
+    remarks = notes(stated), stream_notes(held_out)
     try:
         check_usable(stated)
         progress("splitting", 0.0)
-        timed = [one.from_zero() for one in every]
-        found = diagnose_split(split_data(timed[: len(recordings)], timed[len(recordings) :]), defaults, progress)
+        split = split_data([one.from_zero() for one in stated], [one.from_zero() for one in held_out])
+        found = diagnose_split(split, defaults, progress)
     except UndeterminedError as why:
-        return Diagnosis((), why.reason, why.remedy, remarks)
-    return replace(found, notes=remarks)
+        return Diagnosis((), why.reason, why.remedy, *remarks)
+    return replace(found, notes=remarks[0], holdout_notes=remarks[1])
 
 
 def diagnose_split(split: DataSplit, defaults: Mapping[str, float], progress: Progress) -> Diagnosis:

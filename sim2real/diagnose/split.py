@@ -29,8 +29,9 @@ KINDS = (*WALLS, "nothing near", "robot")
 class DataSplit(NamedTuple):
     """Training data and holdout, split by the puck's frames and, for the gantry, by the mallet's path.
 
-    Each split affects one stream alone: the mallet's path, which the puck's regimes take as given, stays complete
-    there.
+    Each split affects one stream alone. The mallet's path is an input of the puck's regimes, not what they predict, and
+    stays complete there. The launches are found, and their contacts counted, in the complete recordings: the cut needs
+    them.
     """
 
     training: list[Recording]

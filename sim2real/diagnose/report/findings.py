@@ -86,9 +86,10 @@ def _caption(one: Finding) -> str:
 def _proof(one: Finding) -> str:
     shown = "The holdout does not test it."
     if one.before is not None and one.after is not None:
-        what = f"residuals of the {one.regime}, in units of the noise, fall"
+        change = "fall" if one.after <= one.before else "rise"
+        what = f"residuals of the {one.regime}, in units of the noise, {change}"
         if one.regime == "sensing":
-            what = "the error due to this fault, each residual in units of its own standard error, falls"
+            what = f"the error due to this fault, each residual in units of its own standard error, {change}s"
         fall = f"from {number(one.before)} without this law to {number(one.after)} with all findings"
         shown = f"On {piece_words(one.regime)} of the holdout, {what} {fall}."
     size = "" if one.size_m is None else f"Its effect is {number(1e3 * one.size_m)} mm{_regime_of(one).measured_at}. "

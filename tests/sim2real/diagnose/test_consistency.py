@@ -110,7 +110,7 @@ def test_what_is_missing_in_both_is_no_other_table(tmp_path, number, missing):
             tmp_path / name, case.law, case.scenario, seed, seconds, case.camera,
             encoder_noise=case.encoder_noise, hand=case.hand, dt=1e-4,
         )  # fmt: skip
-    found = _diagnosis([tmp_path / "long"], [tmp_path / "short"])
+    found = _diagnosis([tmp_path / "long", tmp_path / "short"])
     assert "not of one table" not in (found.reason or "")
 
 

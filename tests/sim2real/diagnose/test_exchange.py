@@ -68,13 +68,15 @@ def nothing(one: Recording) -> Recording:
 
 
 def words(found: Diagnosis) -> tuple[str, str, str]:
-    """Return all output of a diagnosis but the holdout figures."""
+    """Return all output of a diagnosis but the holdout figures (null controls use training data and are kept)."""
     return json.dumps(_without_proof(as_dict(found)), indent=1), effects_toml(found), draws_toml(found)
 
 
 def _without_proof(value: Any) -> Any:
     if isinstance(value, Mapping):
-        return {key: _without_proof(each) for key, each in value.items() if not key.startswith("heldout")}
+        kept = {key: each for key, each in value.items() if key not in ("heldout", "heldout_notes")}
+        controls = {key: each for key, each in value.get("heldout", {}).items() if key.endswith("_control")}
+        return {key: _without_proof(each) for key, each in {**kept, **controls}.items()}
     return [_without_proof(each) for each in value] if isinstance(value, list) else value
 
 
@@ -114,7 +116,18 @@ def test_a_holdout_of_another_table_changes_only_the_proof(split, found, another
 
 def test_a_held_out_recording_changes_only_the_proof(recording, another) -> None:
     every = [diagnose([recording], [one], {}, quiet) for one in (another, noise(recording), nothing(recording))]
-    assert len({words(replace(one, notes=())) for one in every}) == 1
+    assert len({words(one) for one in every}) == 1
     assert every[0].findings and every[0].proof is not None
     for unusable in every[1:]:
         assert any("the holdout does not test the findings" in remark for remark in unusable.proof_remarks)
+
+
+def test_what_a_held_out_recording_states_changes_only_the_proof(recording, another) -> None:
+    """The training data do not state the goal's width; the holdout does, or does not."""
+    unstated = [replace(one, meta={**one.meta, "table": {**one.meta["table"]}}) for one in (recording, another)]
+    for one in unstated:
+        del one.meta["table"]["goal_width_m"]
+    own, other = unstated
+    stating, silent = (diagnose([own], [one], {}, quiet) for one in (another, other))
+    assert words(stating) == words(silent)
+    assert any("goal_width_m is not stated" in note for note in stating.notes)

@@ -1,4 +1,4 @@
-"""The choice of the holdout: about every fifth launch, with some of each kind of contact."""
+"""The choice of the holdout: one of every few launches, with some of each kind of contact."""
 
 import numpy as np
 import pytest
@@ -62,7 +62,7 @@ def test_each_frame_is_in_one_part_and_a_path_goes_with_its_launches(tmp_path):
     frame = holdout.frames.t[
         np.clip(np.searchsorted(holdout.frames.t, path_holdout.mallet.t, side="right") - 1, 0, None)
     ]
-    assert np.median(path_holdout.mallet.t - frame) < 0.02  # seconds, if the launches differed
+    assert (path_holdout.mallet.t - frame).max() < 0.05  # it would be seconds if the launches differed
 
 
 def test_launches_are_counted_through_all_recordings(tmp_path):

@@ -26,8 +26,9 @@ def without_stretch(glides: RegimeResult, sensing: RegimeResult) -> RegimeResult
     if not unknown or abs(anisotropy.parameters["grain"].value) > SCALE.most_scale / 2.0:
         return glides
     axes = " and ".join(unknown)
+    doubt = f"{ANISOTROPY} fits, but so does a map stretched along {axes}, which these bounces do not determine"
     return replace(
         glides,
         findings=tuple(one for one in glides.findings if one is not anisotropy),
-        doubt=f"{ANISOTROPY} fits, but so does a map stretched along {axes}, which these bounces do not determine",
+        doubt="; ".join(filter(None, (glides.doubt, doubt))),
     )
