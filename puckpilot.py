@@ -150,7 +150,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 128 + (stop.args[0] if stop.args else signal.SIGINT)
     except OSError as error:
         place = f"{error.filename}: " if error.filename else ""
-        print(f"puckpilot {name}: {place}{error.strerror or error}; name another place", file=sys.stderr)
+        print(f"puckpilot {name}: {place}{error.strerror or error}; give another path", file=sys.stderr)
         return 2
     except ValueError as error:
         print(f"puckpilot {name}: {' '.join(str(error).split())}", file=sys.stderr)

@@ -46,7 +46,7 @@ def run(args: argparse.Namespace) -> int:
     from baselines.commands.options import progress_bar
 
     if args.games < 2 or args.games % 2:
-        raise ValueError(f"--games is {args.games}; expected an even number from 2 on: each start is played twice")
+        raise ValueError(f"--games is {args.games}; expected an even number, 2 or more: each start is played twice")
     if args.workers < 1:
         raise ValueError(f"--workers is {args.workers}; expected 1 or more")
     if len(args.policies) > 1:

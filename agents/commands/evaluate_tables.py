@@ -18,7 +18,7 @@ from baselines.ratings.intervals import IntervalEstimate
 
 TEXTS = {
     "wall_margin_m": ("nearest to an edge of its half, 1st percentile", "{:.3f} m"),
-    "voltage_share": ("voltage asked for, mean share of the most", "{:.2f}"),
+    "voltage_share": ("requested voltage, mean fraction of the maximum", "{:.2f}"),
     "voltage_most": ("voltage asked for, greatest share", "{:.2f}"),
     "acceleration_m_s2": ("greatest acceleration of a decision, 99th percentile", "{:.1f} m/s2"),
     "jitter_m": ("change of the commanded place between decisions", "{:.3f} m"),
@@ -80,7 +80,8 @@ def print_deployability(deployability: Deployability, robustness: Robustness) ->
     for field, value in deployability.as_dict().items():
         words, form = TEXTS[field]
         console.print(f"  {words:52} {form.format(value)}")
-    console.print(f"\nSeen through a camera, against {robustness.opponent}, who sees as little (decisive games won):")
+    seen = f"Through a camera, against {robustness.opponent} with the same delay and noise (decisive games won):"
+    console.print(f"\n{seen}")
     for at, rate in robustness.delays:
         console.print(f"  {1000 * at:4.0f} ms late   {_in_words(rate)}")
     for at, rate in robustness.noises:

@@ -141,11 +141,11 @@ def run_training(
         except KeyboardInterrupt:
             if not quiet:
                 kept = (
-                    f"{len(training.rows)} rounds are kept, --resume goes on after them"
+                    f"{len(training.rows)} rounds are saved; --resume continues from there"
                     if training.rows
-                    else "no round"
+                    else "no round was completed; there is nothing to resume"
                 )
-                print(f"in {folder.path} {kept}", file=sys.stderr)
+                print(f"{folder.path}: {kept}", file=sys.stderr)
             raise
         finally:
             if curves:

@@ -71,7 +71,7 @@ def load_policy(path: Path) -> Policy:
     except FileNotFoundError:
         raise ValueError(f"no policy at {path}") from None
     except Exception as error:  # a broken file breaks its readers in many ways: zlib's, zipfile's, numpy's, json's
-        words = f"{path} is no policy, or is cut short ({type(error).__name__})"
+        words = f"{path} is not a policy, or is truncated ({type(error).__name__})"
         raise ValueError(f"{words}; expected an .npz file that `puckpilot train` or `export` wrote") from None
     if not isinstance(head, dict) or head.get("format") != FORMAT:
         raise ValueError(f"{path} is not of the format {FORMAT}")

@@ -39,8 +39,8 @@ def load_checkpoint(path: Path) -> dict[str, Any]:
         raise ValueError(f"no checkpoint at {path}") from None
     except Exception as error:  # a broken file breaks torch's readers in many ways
         raise ValueError(
-            f"{path} is no checkpoint, or is cut short ({type(error).__name__}); a new run can begin with the player "
-            "beside it, by --start"
+            f"{path} is not a checkpoint, or is truncated ({type(error).__name__}); a new run can begin with the "
+            "player beside it, by --start"
         ) from None
     if not isinstance(contents, dict) or contents.pop("format", None) != FORMAT:
         raise ValueError(f"{path} is not of the format {FORMAT}")

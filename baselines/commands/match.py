@@ -121,7 +121,7 @@ def _in_words(result: MatchResult) -> str:
 
     rate, decisive = paired_win_rate(result.padded_results), sum(result.wins)
     if rate.value is None:
-        return f"No game of {result.games} was decisive; this tells nothing about who is better."
+        return f"No game of {result.games} was decisive; no conclusion about which is better."
     low, high = 100.0 * rate.low, 100.0 * rate.high
     verdict = "better than" if rate.low > 0.5 else "worse than" if rate.high < 0.5 else "not distinguishable from"
     return (

@@ -75,7 +75,7 @@ def _run_adversarial(ids: list[str], steps: int, seed: int, as_json: bool) -> in
         report = {"steps": found.steps, "median_s": found.median, "slowest": slowest}
         print(json.dumps({**report, "breaches": [dataclasses.asdict(each) for each in found.breaches]}, indent=2))
     else:
-        print(f"{found.steps:,} steps, {len(found.breaches)} broke something")
+        print(f"{found.steps:,} steps, {len(found.breaches)} broke a rule")
         print(f"a step takes {1e6 * found.median:.3g} us (median), the slowest {1e6 * found.slowest.seconds:.4g} us,")
         print(f"{ratio:.3g} times that (at most {MOST_MEDIANS:g}): {found.slowest}")
         if ratio > MOST_MEDIANS:

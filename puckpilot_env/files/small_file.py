@@ -16,10 +16,10 @@ DEEPEST = 20  # tables and lists in each other; the project's own have six
 
 
 def check_regular(path: Path, most: int = MOST_BYTES) -> None:
-    """ValueError for what is no plain file, or has more than `most` bytes; OSError where it cannot be looked at."""
+    """ValueError for a folder, a device, a pipe, or more than `most` bytes; OSError where it cannot be looked at."""
     size = path.stat().st_size
     if not path.is_file():
-        raise ValueError(f"{path}: is no plain file")
+        raise ValueError(f"{path}: is {'a folder' if path.is_dir() else 'a device or a pipe'}; expected a file")
     if size > most:
         raise ValueError(f"{path}: has {size:,} bytes; expected at most {most:,}")
 

@@ -45,7 +45,7 @@ class VideoWriter:
         if not 1.0 <= self.fps <= most:
             raise ValueError(f"fps is {fps!r}; expected a number from 1 to {most:g} for a {ending} film")
         if not self.path.parent.is_dir():
-            raise ValueError(f"cannot write {str(self.path)!r}: its folder is not there; make it first")
+            raise ValueError(f"cannot write {str(self.path)!r}: its folder does not exist; make it first")
         if self.path.is_dir():
             raise ValueError(f"cannot write {str(self.path)!r}: it is a folder; give a file name")
         self._draft = draft_of(self.path)

@@ -134,13 +134,13 @@ def _figures(checked: HoldoutCheck) -> dict[str, Any]:
 def _lines(result: dict[str, Any], fit: MultiviewFit, width: float) -> list[str]:
     """The result as lines of text."""
     points, surface = result["fit"], result["surface_per_m"]
-    heights = ", ".join(f"{name} {1e3 * one['value']:.2f} ({1e3 * one['std']:.2f})" for name, one in surface.items())
+    heights = ", ".join(f"{name} {1e3 * one['value']:.2f} ± {1e3 * one['std']:.2f}" for name, one in surface.items())
     corners = ", ".join(f"{name} {rms:.2f}" for name, rms in zip(result["views"], result["corner_rms_px"], strict=True))
     lines = [
         f"{len(result['views'])} views, {result['markers']} markers, {points['points']} points in "
         f"{result['seconds']:.1f} s: points {points['mean_mm']:.2f} mm off on average, {points['max_mm']:.2f} mm at "
         "most",
-        f"corners of markers, px rms: {corners}; placed to {result['marker_std_mm']:.1f} mm",
+        f"corners of markers, px rms: {corners}; marker position std {result['marker_std_mm']:.1f} mm",
         f"surface, mm at 1 m from the middle: {heights}; measured places bend by up to {result['bend_mm']:.1f} mm",
         *(
             f"wrong measurement: {one['view']}, point {one['point']}, {one['off_mm']:.1f} mm off"
@@ -150,9 +150,10 @@ def _lines(result: dict[str, Any], fit: MultiviewFit, width: float) -> list[str]
     step = result["step_across"]
     if step is not None and step["clear"]:
         lines.append(
-            f"points left of the middle are stated {step['mm']:.1f} ({step['std']:.1f}) mm too far left against those "
-            f"right of it: if they were measured from the left wall, the table is {width - 1e-3 * step['mm']:.4f} m "
-            f"wide, not {width:g}; coordinates here follow the stated ones as well as a smooth map can"
+            f"stated points in the left half are {step['mm']:.1f} ± {step['std']:.1f} mm too far left relative to "
+            "those in the right half: if they were measured from the left wall, the table is "
+            f"{width - 1e-3 * step['mm']:.4f} m wide, not {width:g}; coordinates here follow the stated ones as well "
+            "as a smooth map can"
         )
     weak = result["weakest"]
     if weak["matters"]:

@@ -1,4 +1,4 @@
-"""Demonstrate puckpilot in a minute or two: players meet, a game is filmed, a recording is compared and diagnosed.
+"""Demonstrate puckpilot in about three minutes: players meet, a game is filmed, a recording is compared and diagnosed.
 
 1. A trained player and a scripted one, or any two, meet in paired games on every registered environment; a table with
    95 % intervals.

@@ -1,6 +1,6 @@
 """Monitor the line to the microcontroller: print the board's status twice a second, and every event.
 
-Ctrl-C ends it. The board is neither armed nor configured; an armed one is disarmed.
+Ctrl-C ends it. This command neither arms nor configures the board; if it is armed, it disarms it.
 """
 
 from __future__ import annotations

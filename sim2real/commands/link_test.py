@@ -1,7 +1,7 @@
 """Test the line to the microcontroller: send hello and pings, and report round trip, clock, telemetry and losses.
 
-Ends with 0 if everything is good, with 1 if something is not. The board is neither armed nor configured; an armed one
-is disarmed.
+Ends with 0 if everything is good, with 1 if something is not. This command neither arms nor configures the board; if it
+is armed, it disarms it.
 """
 
 from __future__ import annotations
@@ -60,4 +60,4 @@ def _summary(found: dict) -> list[str]:
             f"board: {found['damaged_there']} damaged frames, {found['lost_there']} lost bytes, "
             f"longest tick {found['longest_tick_us']} us",
         ]
-    return [*lines, *(f"bad: {line}" for line in found["bad"])] if found["bad"] else [*lines, "all is good"]
+    return [*lines, *(f"bad: {line}" for line in found["bad"])] if found["bad"] else [*lines, "all tests passed"]

@@ -40,7 +40,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--ring-height", default="standard", metavar="H", help="of the opponent's ring: standard, low, or metres"
     )
     parser.add_argument("--puck-radius", type=float, metavar="M", help="metres (0.0309)")
-    parser.add_argument("--level", type=float, metavar="N", help="grey level above which film shines (75)")
+    parser.add_argument(
+        "--level", type=float, metavar="N", help="grey level above which a pixel is of reflective film (75)"
+    )
     parser.add_argument(
         "--rate",
         type=float,
@@ -202,7 +204,7 @@ def _lines(args: argparse.Namespace, summary: dict[str, Any]) -> list[str]:
     """The statistics as lines of text."""
     left_out = f", {summary['left_out']} left out" if summary["left_out"] else ""
     std = 1e3 * summary["place_std_m"]
-    calibrated = f"; by the calibration places are off by {std:.1f} mm along each axis, alike in all pictures"
+    calibrated = f"; calibration error {std:.1f} mm along each axis, the same in all pictures"
     return [
         f"{summary['frames']} frames: puck known in {summary['seen']}, hidden in {summary['hidden']}, not sure in "
         f"{summary['unsure']}; {summary['dropped']} dropped{left_out}",

@@ -10,7 +10,15 @@ from sim2real.diagnose.input_checks import UndeterminedError, check_usable, note
 from sim2real.diagnose.prove import prove
 from sim2real.diagnose.regimes.sensing.stretch import without_stretch
 from sim2real.diagnose.result.pooled_proof import pooled
-from sim2real.diagnose.result.result import LARGE_MISFIT, TO_THE_NOISE, Finding, Proof, RegimeResult, SensorSummary
+from sim2real.diagnose.result.result import (
+    LARGE_MISFIT,
+    TO_THE_NOISE,
+    Finding,
+    Proof,
+    RegimeResult,
+    SensorSummary,
+    times_the_noise,
+)
 from sim2real.diagnose.split import DataSplit, split_data
 from sim2real.recording.folder import Recording
 from sim2real.recording.stated import together
@@ -119,7 +127,7 @@ class Diagnosis:
 def _misfit_words(each: RegimeResult) -> str:
     """Return the size of the cross-validation residuals as a clause, "" if they are not large."""
     times = each.times_noise
-    return f"; cross-validation residuals are {times:.2g} times the noise" if times and times > LARGE_MISFIT else ""
+    return f"; cross-validation residuals are {times_the_noise(times)}" if times and times > LARGE_MISFIT else ""
 
 
 def diagnose(

@@ -46,9 +46,9 @@ def _check(link: Path) -> None:
     if not link.absolute().parent.is_dir():
         raise ValueError(f"--port is {link}; expected a place in a folder that is there")
     if link.exists():
-        raise ValueError(f"{link} is there already, of another board perhaps; name another place for the port")
+        raise ValueError(f"{link} is there already, of another board perhaps; give another path for the port")
     if link.is_symlink() and not str(link.readlink()).startswith("/dev/pts/"):
-        raise ValueError(f"{link} is a link of another kind; name another place for the port")
+        raise ValueError(f"{link} is a link of another kind; give another path for the port")
 
 
 def serve(machine: Machine, descriptor: int, going_on: Callable[[float], bool]) -> float:

@@ -20,8 +20,8 @@ _REASONS = {
     errno.EPERM: "may not be opened by this user; join the group that owns it (dialout, often)",
     errno.EBUSY: "is in use by another program; close that first",
     errno.EWOULDBLOCK: "is in use by another program; close that first",
-    errno.ENOTTY: "is no serial port; name another",
-    errno.EISDIR: "is no serial port; name another",
+    errno.ENOTTY: "is not a serial port; give another",
+    errno.EISDIR: "is not a serial port; give another",
 }
 
 

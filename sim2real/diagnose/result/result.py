@@ -20,6 +20,11 @@ def explained(before: float, after: float) -> float:
     return (before**2 - after**2) / (before**2 - 1.0) if before > 1.0 else 0.0
 
 
+def times_the_noise(times: float) -> str:
+    """Return a residual in units of the noise as words with two significant digits, or whole numbers."""
+    return f"{times:.0f} times the noise" if times > 99.5 else f"{times:.2g} times the noise"
+
+
 @dataclass(frozen=True)
 class Estimate:
     """A fitted parameter with its 95 % interval."""
@@ -207,4 +212,4 @@ class RegimeResult:
         times = self.times_noise
         if self.undetermined or self.selection is None or times is None or times < LARGE_MISFIT:
             return ""
-        return f"the remaining residual is {1e3 * self.selection.after_m:.2g} mm, {times:.2g} times the noise"
+        return f"the remaining residual is {1e3 * self.selection.after_m:.2g} mm, {times_the_noise(times)}"

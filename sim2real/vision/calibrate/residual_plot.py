@@ -31,7 +31,7 @@ def write_plot(file: Path, setup: Setup, fit: MultiviewFit, checked: HoldoutChec
         _draw_points(axes[-2], setup, fit, checked.view.places, checked.off, none)
         axes[-2].set_title(f"{checked.view.name}, not used: {_error_text(checked.off)}", fontsize=10)
     _draw_surface(figure, axes[-1], setup, fit)
-    figure.suptitle("seen less measured, on the table; arrows are drawn 60 times larger")
+    figure.suptitle("seen minus measured position, on the table; arrows magnified 60 times")
     figure.savefig(file, dpi=110)
 
 

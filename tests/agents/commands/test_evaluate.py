@@ -110,4 +110,4 @@ def test_invalid_evaluations_are_refused_in_one_line(words: list[str], capsys: p
 def test_a_file_that_is_no_policy_is_refused_in_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "a.npz").write_bytes(b"no policy")
     assert main(["evaluate", str(tmp_path / "a.npz")]) == 2
-    assert "is no policy, or is cut short" in capsys.readouterr().err
+    assert "is not a policy, or is truncated" in capsys.readouterr().err

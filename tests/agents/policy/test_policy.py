@@ -74,7 +74,7 @@ def test_a_policy_file_plays_by_its_name(saved: Path, variant: str) -> None:
 def test_a_file_cut_short_is_refused(saved: Path, tenth: int) -> None:
     whole = saved.read_bytes()
     saved.write_bytes(whole[: len(whole) * tenth // 10])
-    assert "is no policy, or is cut short" in refusal(saved)
+    assert "is not a policy, or is truncated" in refusal(saved)
 
 
 def test_a_file_with_a_flipped_byte_is_refused_or_plays(saved: Path) -> None:
@@ -133,7 +133,7 @@ def test_a_small_file_that_decompresses_to_a_vast_one_is_refused(saved: Path) ->
         for _ in range(300):
             member.write(bytes(1 << 20))
     assert saved.stat().st_size < 1 << 20
-    assert "is no policy" in refusal(saved)
+    assert "is not a policy" in refusal(saved)
 
 
 def test_members_that_are_not_stored_as_numpy_stores_them_are_refused(saved: Path) -> None:
@@ -204,7 +204,7 @@ def test_inconsistent_heads_are_refused(saved: Path, wrong: str) -> None:
 
 
 def test_a_device_is_refused() -> None:
-    assert "is no policy" in refusal(Path("/dev/zero"))
+    assert "is not a policy" in refusal(Path("/dev/zero"))
 
 
 def test_a_failed_save_leaves_the_file_as_it_was(saved: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -26,8 +26,8 @@ WRONG = {
     "policy:no/such/run": "no policy 'no/such/run'; expected 'ours', ",
     "empty": "no policy in the folder 'empty': it has no policy.npz; expected the folder of a training run, which",
     "policy:empty": "no policy in the folder 'empty': it has no policy.npz; expected the folder of a training run",
-    "broken.npz": "broken.npz is no policy, or is cut short (BadZipFile); expected an .npz file that `puckpilot train`",
-    "broken": "broken/policy.npz is no policy, or is cut short (BadZipFile); expected an .npz file",
+    "broken.npz": "broken.npz is not a policy, or is truncated (BadZipFile); expected an .npz file that `puckpilot",
+    "broken": "broken/policy.npz is not a policy, or is truncated (BadZipFile); expected an .npz file",
 }
 
 

@@ -76,9 +76,9 @@ def test_a_file_cut_short_is_refused(run: Path, tenth: int, tmp_path: Path) -> N
     path = run / "checkpoint.pt"
     whole = path.read_bytes()
     path.write_bytes(whole[: len(whole) * tenth // 10])
-    assert "is no checkpoint, or is cut short" in refusal(path)
+    assert "is not a checkpoint, or is truncated" in refusal(path)
     if tenth == 5:
-        assert "is no checkpoint, or is cut short" in refuse_to_go_on(run)
+        assert "is not a checkpoint, or is truncated" in refuse_to_go_on(run)
 
 
 @pytest.mark.parametrize("form", ["torch", "old torch", "bare"])

@@ -50,7 +50,7 @@ def test_more_mini_batches_than_samples_are_refused() -> None:
 
 
 def test_a_device_and_deep_nesting_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match=r"^preset /dev/zero: is no plain file$"):
+    with pytest.raises(ValueError, match=r"^preset /dev/zero: is a device or a pipe; expected a file$"):
         find_preset("/dev/zero")
     (tmp_path / "deep.toml").write_text("a = " + "[" * 100_000)
     with pytest.raises(ValueError, match=r"^preset .*deep.toml: tables or lists nest too deep"):

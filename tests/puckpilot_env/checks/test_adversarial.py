@@ -170,7 +170,7 @@ def test_the_command_fails_where_something_broke_or_took_long(monkeypatch, capsy
     assert (
         "it broke: table 1, step 2 of puckpilot check --adversarial 1 --seed 4 puckpilot/match-v0" in expected
     ) == broke
-    assert f"2,000 steps, {int(broke)} broke something" in expected
+    assert f"2,000 steps, {int(broke)} broke a rule" in expected
     assert ("failed: the slowest step takes too long\n" in expected) == (slowest > 1.0)
 
 

@@ -19,8 +19,9 @@ def test_a_text_is_read_with_and_without_a_mark(tmp_path: Path) -> None:
 
 def test_what_is_no_plain_file_is_not_opened(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
-    for path in (Path("/dev/zero"), tmp_path, tmp_path / "pipe"):
-        with pytest.raises(ValueError, match=f"^{path}: is no plain file$"):
+    kinds = {Path("/dev/zero"): "a device or a pipe", tmp_path: "a folder", tmp_path / "pipe": "a device or a pipe"}
+    for path, kind in kinds.items():
+        with pytest.raises(ValueError, match=f"^{path}: is {kind}; expected a file$"):
             small_file.read_text(path)
 
 

@@ -48,7 +48,7 @@ def test_its_words(terminal, capsys):
     assert puckpilot.main(["link", "test", str(terminal.path), "--pings", "10"]) == 0
     output = capsys.readouterr().out
     assert f"{terminal.path}: a board of protocol 1.0\n" in output and "pings: 10 answered, 0 lost\n" in output
-    assert "telemetry: 500 a second, 0 missing\n" in output and output.endswith("all is good\n")
+    assert "telemetry: 500 a second, 0 missing\n" in output and output.endswith("all tests passed\n")
 
 
 def test_a_noisy_line_is_bad_news(terminal, capsys):
@@ -104,7 +104,7 @@ def test_a_port_that_is_not_there(tmp_path, capsys):
 def test_what_is_no_serial_port(tmp_path, capsys):
     path = tmp_path / "file"
     path.write_text("")
-    assert refused(["test", str(path)], capsys) == f"port {path} is no serial port; name another"
+    assert refused(["test", str(path)], capsys) == f"port {path} is not a serial port; give another"
 
 
 def test_a_port_that_is_in_use(terminal, capsys):
