@@ -45,7 +45,8 @@ class NonparametricFit:
     def covariance(self, problem: Problem, use: np.ndarray) -> np.ndarray:
         """Return the covariance (n + k, n + k) of `theta`, from the clusters `use` that were fitted."""
         launches = normal_equations.gathered(self.columns.equations, problem.units.cluster, problem.clusters)
-        return normal_equations.covariance(launches, self.model.columns(self.columns.equations)[0], self.theta, use)
+        columns, ridge = self.model.columns(self.columns.equations)
+        return normal_equations.covariance(launches, columns, self.theta, use, ridge)
 
 
 def fit_nonparametric(

@@ -145,16 +145,24 @@ def losses(equations: NormalEquations, columns: np.ndarray, theta: np.ndarray, c
     return equations.s[clusters] + 2.0 * b @ theta + np.einsum("i,cij,j->c", theta, g, theta)
 
 
-def covariance(equations: NormalEquations, columns: np.ndarray, theta: np.ndarray, clusters: np.ndarray) -> np.ndarray:
-    """Return the covariance (k, k) of a least-squares `theta`.
+def covariance(
+    equations: NormalEquations,
+    columns: np.ndarray,
+    theta: np.ndarray,
+    clusters: np.ndarray,
+    ridge: np.ndarray | float = 0.0,
+) -> np.ndarray:
+    """Return the covariance (k, k) of a `theta` that `solve` found with this `ridge`.
 
     It has the larger standard deviations of two estimates and the correlations of the first. The first is model-based:
-    the inverse Fisher information G^-1 times the dispersion, at least 1. The second is the cluster-robust sandwich
-    G^-1 (sum of u u') G^-1 c / (c - 1) of the scores u = b + G theta of c clusters (CR1: Liang and Zeger, Biometrika
-    73, 1986), used if c exceeds the number of columns by more than two.
+    H = (G + R)^-1 times the dispersion, at least 1; without a ridge R it is the inverse Fisher information, with it the
+    posterior covariance under the normal prior of variances 1 / ridge. The second is the cluster-robust sandwich
+    H (sum of u u') H c / (c - 1) of the scores u = b + (G + R / c) theta of c clusters (CR1: Liang and Zeger,
+    Biometrika 73, 1986), used if c exceeds the number of columns by more than two.
     """
     g = equations.g[np.ix_(clusters, columns, columns)]
-    total = g.sum(axis=0)
+    penalty = np.broadcast_to(ridge, len(columns)).astype(float)
+    total = g.sum(axis=0) + np.diag(penalty)
     size = np.sqrt(np.maximum(np.diag(total), 0.0))
     size[size == 0.0] = 1.0  # scaled, since parameters differ by many powers of ten
     inverse = np.linalg.pinv(total / size[:, None] / size, hermitian=True) / size[:, None] / size
@@ -163,7 +171,7 @@ def covariance(equations: NormalEquations, columns: np.ndarray, theta: np.ndarra
     model = inverse * dispersion
     if c <= len(columns) + 2:
         return model
-    scores = equations.b[np.ix_(clusters, columns)] + np.einsum("cij,j->ci", g, theta)
+    scores = equations.b[np.ix_(clusters, columns)] + np.einsum("cij,j->ci", g, theta) + penalty * theta / c
     sandwich = inverse @ (scores.T @ scores) @ inverse * c / (c - 1.0)
     more = np.sqrt(np.maximum(np.diag(sandwich) / np.maximum(np.diag(model), 1e-300), 1.0))
     return model * np.outer(more, more)

@@ -70,6 +70,25 @@ def test_intervals_cover_where_launches_scatter_more_than_their_noise():
     assert 0.92 <= np.mean(inside) <= 0.98
 
 
+def test_intervals_of_a_ridge_regression_cover_coefficients_of_its_prior():
+    """Two columns are nearly collinear: their data alone determine the difference to 100, the prior to 0.2."""
+    spread, z, widest = np.array([np.inf, 0.2, 0.2]), [], 0.0
+    for seed in range(300):
+        rng = np.random.default_rng(seed)
+        one, other = rng.normal(size=(2, 400))
+        jacobian = np.stack([one, other, other + 1e-4 * rng.normal(size=400)], axis=1)
+        truth = np.array([0.5, *rng.normal(0.0, 0.2, 2)])
+        r = rng.normal(size=400) - jacobian @ truth
+        equations = normal_equations.make_equations("abc", r, jacobian, np.arange(400) // 20, 20)
+        every, ridge = np.arange(20), 1.0 / spread**2
+        theta = normal_equations.solve(equations, np.arange(3), every, ridge)
+        std = np.sqrt(np.diag(normal_equations.covariance(equations, np.arange(3), theta, every, ridge)))
+        z.append((theta - truth) / std)
+        widest = max(widest, float(std.max()))
+    assert np.all((np.abs(z) < 1.96).mean(axis=0) > 0.92) and np.all(np.sqrt(np.mean(np.square(z), axis=0)) > 0.7)
+    assert widest < 0.4
+
+
 def test_gathered_equations_are_those_of_the_larger_clusters():
     r, jacobian, cluster, _ = _problem(2)
     fine = normal_equations.make_equations("abc", r, jacobian, cluster, 8)
