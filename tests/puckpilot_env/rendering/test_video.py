@@ -99,7 +99,7 @@ def test_failing_writer_leaves_what_was_there(tmp_path, ending):
     [
         ("a.avi", 25, r"\.gif or \.mp4"),
         ("a", 25, r"\.gif or \.mp4"),
-        ("none/a.gif", 25, "folder is not there"),
+        ("none/a.gif", 25, "folder does not exist"),
         ("a.gif", 60, "from 1 to 50"),
         ("a.mp4", 0, "from 1 to 240"),
         ("a.gif", float("nan"), "from 1 to 50"),
