@@ -186,6 +186,7 @@ def test_goal_mouth(effort):
     assert min(outcomes.values()) >= 10, outcomes
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("offset", "kind"), [(1e-6, "post"), (-1e-6, "wall")])
 def test_a_hairs_breadth_decides_between_wall_and_post(offset, kind):
     """A puck straight at the end of the mouth: from a micrometre inside it meets the post, from outside the wall."""

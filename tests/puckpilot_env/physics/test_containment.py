@@ -64,6 +64,7 @@ def test_hard_scenes_of_every_length(seconds, scenes, pieces, effort):
     assert found[:, sweeps.EVENTS].max() <= MOST_EVENTS * max(1.0, 10.0 * seconds)
 
 
+@pytest.mark.slow
 def test_cutting_an_interval_changes_nothing(effort):
     units = sweeps.random_units(3, 40_000 * effort)
     found = sweeps.judge(record(), units, 0.1, 200)

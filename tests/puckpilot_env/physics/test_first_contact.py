@@ -127,6 +127,7 @@ def test_never_late_and_never_early(effort):
     check(answers.reshape(-1, 3), 300)
 
 
+@pytest.mark.slow
 def test_a_puck_behind_a_mallet_that_brakes():
     """The mallet runs at an even speed, so that nothing seems to bring them together, until its voltage turns."""
     p, law, answers = record(), Law().numbers(), []
@@ -150,6 +151,7 @@ def test_a_puck_behind_a_mallet_that_brakes():
     check(np.array(answers), 4)
 
 
+@pytest.mark.slow
 def test_scan_agrees_with_scipy_on_the_mallet():
     p, law = record(), Law()
     table, requests = new_table(p), np.zeros((2, 4))

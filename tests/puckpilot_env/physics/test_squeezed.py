@@ -33,6 +33,7 @@ def scene(p: np.record, mallet: tuple[float, float], target: tuple[float, float]
     return table
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("restitution", [{}, {"restitution_power": -1.0}, {"mallet_restitution_slope": -0.1}])
 @pytest.mark.parametrize("resistance", [0.0, 5.0])
 def test_an_elastic_puck_between_mallet_and_wall_is_never_inside_either(restitution, resistance) -> None:

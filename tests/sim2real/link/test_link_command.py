@@ -151,6 +151,7 @@ def test_a_vanished_port_tells_so_whatever_is_done_with_it(terminal):
         port.read(100)
 
 
+@pytest.mark.slow
 def test_the_monitor_outlives_a_vanished_port(terminal, capsys):
     def at(pings: int, do) -> None:
         def later() -> None:

@@ -44,6 +44,7 @@ def _places(tables: Tables) -> list[tuple[float, float]]:
     return [place_now(mallet) for mallet in tables.states.view(np.recarray)[0].mallets]
 
 
+@pytest.mark.slow
 def test_mallets_go_where_the_reference_goes() -> None:
     _, places, times, plans = played("match-v0")
     for late, apart in ((DELAY, 0.0), (0.0, 0.01)):

@@ -31,6 +31,7 @@ def planned(requests: np.ndarray, places: np.ndarray, **values: float):
     return both, asked
 
 
+@pytest.mark.slow
 def test_a_weak_supply_moves_a_mallet_as_in_the_reference() -> None:
     places = np.array([(0.2, 0.2), (1.3, 0.6)])
     mallets, asked = planned(REQUESTS, places, **WEAK)

@@ -50,6 +50,7 @@ def test_deviations_are_as_large_as_errors(ruler: float):
     assert len(found[2]) == TABLES
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ruler", [0.3e-3, 0.5e-3, 1.0e-3, 1.5e-3])
 def test_good_points_are_not_called_wrong(ruler: float):
     named = sum(int(np.concatenate(one.wrong).sum()) for one in tables(ruler))

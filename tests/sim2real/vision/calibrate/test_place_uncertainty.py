@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from sim2real.vision.calibrate.holdout_view import check_holdout
 from sim2real.vision.calibrate.multiview import MultiviewFit, solve
@@ -25,6 +26,7 @@ def test_points_all_over_the_table_suffice():
     assert not found.matters and 0.2e-3 < found.std < 1e-3 and found.away < 0.15
 
 
+@pytest.mark.slow
 def test_what_is_typical_is_what_exact_points_are_off_by():
     """Of unused views, by the root mean square along each axis; PLACE_STD is that of the ruler."""
     off, said = [], []

@@ -115,6 +115,7 @@ def test_a_map_that_is_wrong_in_one_recording_alone_does_not_help_in_another(tmp
         assert proof is not None and (proof.after_m < 0.3 * proof.before_m) == better
 
 
+@pytest.mark.slow
 def test_recordings_held_out_prove_a_clock(rally):
     late = restamped(rally, lambda t: t + 0.02)
     found = sensed(late)

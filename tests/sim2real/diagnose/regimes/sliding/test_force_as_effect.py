@@ -81,6 +81,7 @@ def test_pucks_slide_as_on_the_table_with_the_vortex(found):
     assert rms["mended"] < 0.15 * rms["baseline"]
 
 
+@pytest.mark.slow
 def test_players_meet_on_it(found, capsys):
     tables = Tables("match-v0", 1, effects=found)
     assert tables.params["unlisted_kind"][0] == 1.0
