@@ -32,7 +32,8 @@ def prove(
     as_recorded = [segment(one) for one in recordings]
     sensing = prove_sensing(identified.sensed, recordings, as_recorded, launches_of(recordings, as_recorded))
     corrected = [identified.sensed.correct(one) for one in recordings]
-    segments = [segment(one) for one in corrected]
+    every = zip(recordings, as_recorded, corrected, strict=True)
+    segments = [was if new is old else segment(new) for old, was, new in every]
     glides = [glides_of(*one) for one in zip(corrected, segments, strict=True)]
     evidence = Evidence(corrected, segments, glides, paths, values)
     problems = {name: REGIMES[name].holdout_problem(evidence, identified.regimes) for name in identified.regimes}

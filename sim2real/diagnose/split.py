@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sim2real.diagnose.regimes.contact.motion import glide_before
-from sim2real.diagnose.regimes.sliding.data import GlideData, glide_data
+from sim2real.diagnose.regimes.sliding.data import GlideData, SmoothGlides, glide_data, smooth_glides
 from sim2real.diagnose.sensor_noise.model import stated_map_error
 from sim2real.diagnose.tuned import SPLIT
 from sim2real.recording.folder import Recording, Stream
@@ -92,24 +92,24 @@ def _launches(
     """Return the launch number of each frame, for each recording, and the contact counts (launches, KINDS)."""
     launch_of_row, first, counts = [], 0, []
     for recording, own_segments in zip(recordings, segments, strict=True):
-        glides = _glide_data(recording, own_segments, 0.0)
-        _, first_glide = np.unique(glides.cluster, return_index=True)
-        starts = _start_rows(recording, glides)[first_glide]
-        frames = 0 if recording.frames is None else recording.frames.rows
-        launch_of_row.append(first + np.maximum(np.searchsorted(starts, np.arange(frames), side="right") - 1, 0))
-        first += max(glides.clusters, 1)
-        counts.append(_contact_counts(own_segments, glides))
+        t = _frame_times(recording)
+        found = smooth_glides(own_segments, geometry(recording), mallet_tracks(recording, t))
+        _, first_glide = np.unique(found.cluster, return_index=True)
+        starts = np.searchsorted(t, [found.glides[k].t[0] for k in first_glide])
+        launch_of_row.append(first + np.maximum(np.searchsorted(starts, np.arange(len(t)), side="right") - 1, 0))
+        counts.append(_contact_counts(own_segments, found))
+        first += len(counts[-1])
     return tuple(launch_of_row), np.concatenate(counts)
 
 
-def _contact_counts(segments: Segments, glides: GlideData) -> np.ndarray:
+def _contact_counts(segments: Segments, found: SmoothGlides) -> np.ndarray:
     """Return the number of contacts of each kind between two glides of each launch (launches, KINDS)."""
-    counts = np.zeros((max(glides.clusters, 1), len(KINDS)), int)
-    begin, finish = glides.t[glides.first[:-1]], glides.t[glides.first[1:] - 1]
+    counts = np.zeros((int(found.cluster.max(initial=0)) + 1, len(KINDS)), int)
+    begin, finish = (np.array([one.t[end] for one in found.glides]) for end in (0, -1))
     for k, contact in enumerate(segments.contacts):
         before = glide_before(segments, begin, finish, k)
         if before is not None and contact.where in KINDS:
-            counts[glides.cluster[before + 1], KINDS.index(contact.where)] += 1
+            counts[found.cluster[before + 1], KINDS.index(contact.where)] += 1
     return counts
 
 
@@ -153,16 +153,10 @@ def _information(counts: np.ndarray, rest: list[int], k: int) -> tuple[int, int]
 
 def glides_of(recording: Recording, segments: Segments) -> GlideData:
     """Return the glides of a recording, with the position error that its calibration states."""
-    return _glide_data(recording, segments, stated_map_error(recording))
+    tracks = mallet_tracks(recording, _frame_times(recording))
+    return glide_data(segments, geometry(recording), tracks, stated_map_error(recording))
 
 
-def _glide_data(recording: Recording, segments: Segments, stated: float) -> GlideData:
-    t = np.zeros(0) if recording.frames is None else recording.frames.t
-    return glide_data(segments, geometry(recording), mallet_tracks(recording, t), stated)
-
-
-def _start_rows(recording: Recording, glides: GlideData) -> np.ndarray:
-    """Return the frame (glides,) at which each glide begins."""
-    if recording.frames is None:
-        return np.zeros(0, int)
-    return np.searchsorted(recording.frames.t, glides.t[glides.first[:-1]])
+def _frame_times(recording: Recording) -> np.ndarray:
+    """Return the times (frames,) [s] of the frames."""
+    return np.zeros(0) if recording.frames is None else recording.frames.t

@@ -25,15 +25,14 @@ from sim2real.statistics.robust import group_loss, group_weights
 class LeastSquaresFit:
     """A fitted law: all its `values` by name, the names of the `free` parameters (k) and their `covariance` (k, k).
 
-    `loss`: see `robust_loss`; `count` and `clusters`: numbers of residuals and launches that were fitted; `bound`:
-    parameters that ended at a bound of their range.
+    `loss`: see `robust_loss`; `clusters`: number of fitted launches; `bound`: parameters that ended at a bound of their
+    range.
     """
 
     values: Mapping[str, float]
     free: tuple[str, ...]
     covariance: np.ndarray
     loss: float
-    count: int
     clusters: int
     bound: tuple[str, ...]
 
@@ -61,7 +60,7 @@ class LeastSquaresFit:
 
 def given(values: Mapping[str, float]) -> LeastSquaresFit:
     """Return a law with fixed parameters, none of them fitted."""
-    return LeastSquaresFit(dict(values), (), np.zeros((0, 0)), 0.0, 0, 0, ())
+    return LeastSquaresFit(dict(values), (), np.zeros((0, 0)), 0.0, 0, ())
 
 
 def fit(
@@ -81,7 +80,6 @@ def fit(
     low = np.array([BY_NAME[name].low for name in free])
     high = np.array([BY_NAME[name].high for name in free])
     at = np.clip([now.get(name, BY_NAME[name].default) for name in free], low, high)
-    columns = np.arange(len(free))
     loss, damping, equations, halved = np.inf, 1e-6, None, 0
     best = at
     for _ in range(rounds):
@@ -107,11 +105,12 @@ def fit(
             break
     now.update(zip(free, map(float, best), strict=True))
     assert equations is not None
-    spread = normal_equations.covariance(equations, columns, np.zeros(len(free)), np.arange(problem.clusters)[clusters])
+    freedom = float(problem.freedom[clusters].sum())
+    spread = normal_equations.covariance(equations, np.arange(len(free)), np.zeros(len(free)), clusters, freedom)
     without_data = np.diag(equations.g[clusters].sum(axis=0)) <= 0.0
     spread[without_data, without_data] = (high - low)[without_data] ** 2
     bound = tuple(n for n, a, lo, hi in zip(free, best, low, high, strict=True) if a <= lo or a >= hi)
-    return LeastSquaresFit(now, free, spread, loss, int(equations.count.sum()), len(clusters), bound)
+    return LeastSquaresFit(now, free, spread, loss, len(clusters), bound)
 
 
 def robust_loss(problem: Fittable, found: Residuals) -> tuple[float, np.ndarray]:

@@ -46,7 +46,8 @@ class NonparametricFit:
         """Return the covariance (n + k, n + k) of `theta`, from the clusters `use` that were fitted."""
         launches = normal_equations.gathered(self.columns.equations, problem.units.cluster, problem.clusters)
         columns, ridge = self.model.columns(self.columns.equations)
-        return normal_equations.covariance(launches, columns, self.theta, use, ridge)
+        freedom = float(problem.freedom[use].sum())
+        return normal_equations.covariance(launches, columns, self.theta, use, freedom, ridge)
 
 
 def fit_nonparametric(

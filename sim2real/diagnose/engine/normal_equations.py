@@ -20,14 +20,13 @@ from sim2real.statistics.robust import group_weights
 
 @dataclass(frozen=True)
 class NormalEquations:
-    """Sums over each of `c` clusters: `g` = J'J (c, k, k), `b` = J'r (c, k), `s` = r'r (c,), and the `count` (c,) of
-    residuals; `names` (k) of the columns of J."""
+    """Sums over each of `c` clusters: `g` = J'J (c, k, k), `b` = J'r (c, k), `s` = r'r (c,); `names` (k) of the columns
+    of J."""
 
     names: tuple[str, ...]
     g: np.ndarray
     b: np.ndarray
     s: np.ndarray
-    count: np.ndarray
 
     @property
     def clusters(self) -> int:
@@ -46,20 +45,20 @@ def make_equations(
     """Sum residuals `r` (n,) and their `jacobian` (n, k) by `cluster` (n,) int, in any order."""
     k = jacobian.shape[1]
     g, b = np.zeros((clusters, k, k)), np.zeros((clusters, k))
-    s, count = np.zeros(clusters), np.zeros(clusters)
+    s = np.zeros(clusters)
     order = np.argsort(cluster, kind="stable")
     edges = np.searchsorted(cluster[order], np.arange(clusters + 1))
     for c in range(clusters):
         rows = order[edges[c] : edges[c + 1]]
         j, rest = jacobian[rows], r[rows]
         g[c], b[c] = j.T @ j, j.T @ rest
-        s[c], count[c] = rest @ rest, len(rows)
-    return NormalEquations(tuple(names), g, b, s, count)
+        s[c] = rest @ rest
+    return NormalEquations(tuple(names), g, b, s)
 
 
 def gathered(equations: NormalEquations, into: np.ndarray, count: int) -> NormalEquations:
     """Sum small clusters into larger ones: cluster i is added to number `into[i]` (c,) of `count`."""
-    shapes = {"g": equations.g, "b": equations.b, "s": equations.s, "count": equations.count}
+    shapes = {"g": equations.g, "b": equations.b, "s": equations.s}
     sums = {name: np.zeros((count, *part.shape[1:])) for name, part in shapes.items()}
     for name, part in shapes.items():
         np.add.at(sums[name], into, part)
@@ -71,7 +70,7 @@ def moved(equations: NormalEquations, columns: np.ndarray, theta: np.ndarray) ->
     theta'G theta."""
     g = np.einsum("cij,j->ci", equations.g[:, :, columns], theta)
     more = 2.0 * equations.b[:, columns] @ theta + g[:, columns] @ theta
-    return NormalEquations(equations.names, equations.g, equations.b + g, equations.s + more, equations.count)
+    return NormalEquations(equations.names, equations.g, equations.b + g, equations.s + more)
 
 
 def solve(
@@ -150,9 +149,13 @@ def covariance(
     columns: np.ndarray,
     theta: np.ndarray,
     clusters: np.ndarray,
+    freedom: float,
     ridge: np.ndarray | float = 0.0,
 ) -> np.ndarray:
     """Return the covariance (k, k) of a `theta` that `solve` found with this `ridge`.
+
+    `freedom`: degrees of freedom of the residuals of `clusters`, their number minus that of the nuisance parameters
+    that were profiled out.
 
     It has the larger standard deviations of two estimates and the correlations of the first. The first is model-based:
     H = (G + R)^-1 times the dispersion, at least 1; without a ridge R it is the inverse Fisher information, with it the
@@ -166,8 +169,8 @@ def covariance(
     size = np.sqrt(np.maximum(np.diag(total), 0.0))
     size[size == 0.0] = 1.0  # scaled, since parameters differ by many powers of ten
     inverse = np.linalg.pinv(total / size[:, None] / size, hermitian=True) / size[:, None] / size
-    count, c = equations.count[clusters].sum(), len(clusters)
-    dispersion = max(losses(equations, columns, theta, clusters).sum() / max(count - len(columns), 1.0), 1.0)
+    c = len(clusters)
+    dispersion = max(losses(equations, columns, theta, clusters).sum() / max(freedom - len(columns), 1.0), 1.0)
     model = inverse * dispersion
     if c <= len(columns) + 2:
         return model

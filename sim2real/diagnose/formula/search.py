@@ -26,14 +26,15 @@ class FormulaProblem:
     """The remaining residuals of a law.
 
     `r` (m,): residuals in units of the noise; `base` (m, b): their derivatives by the fitted parameters; `cluster`
-    (m,): the launch of each; `use`: the clusters to fit. `respond`: maps k laws (n, c, k), values of c components at n
-    instants or contacts, to the columns (m, k) that they add to the prediction.
+    (m,): the launch of each; `use`: the clusters to fit, with `freedom` degrees of freedom. `respond`: maps k laws (n,
+    c, k), values of c components at n instants or contacts, to the columns (m, k) that they add to the prediction.
     """
 
     r: np.ndarray
     base: np.ndarray
     cluster: np.ndarray
     use: np.ndarray
+    freedom: float
     respond: Callable[[np.ndarray], np.ndarray]
 
 
@@ -142,7 +143,7 @@ class FormulaSearch:
         count, k = int(clusters.max()) + 1, jacobian.shape[1]
         names = [str(i) for i in range(k)]
         equations = normal_equations.make_equations(names, residuals, jacobian, clusters, count)
-        covariance = normal_equations.covariance(equations, np.arange(k), theta, np.arange(count))
+        covariance = normal_equations.covariance(equations, np.arange(k), theta, np.arange(count), rest.freedom)
         return covariance[: len(values), : len(values)], theta[len(values) :]
 
     def _columns(self, laws: np.ndarray) -> np.ndarray:

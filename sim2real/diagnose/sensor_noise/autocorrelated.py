@@ -59,17 +59,20 @@ def estimate_autocorrelation(glides: Sequence[Excerpt], order: int, period: floa
     parts = [part for glide in glides for part in glide.cut(SENSOR_NOISE.correlated_frames)]
     if not parts:
         return AutocorrelatedNoise()
-    white, _ = _likelihood(parts, AutocorrelatedNoise(), order)
-    tried = [
-        AutocorrelatedNoise(share, frames * period)
-        for share in SENSOR_NOISE.shares
-        for frames in SENSOR_NOISE.correlation_frames
-    ]
-    found = [_likelihood(parts, noise, order) for noise in tried]
-    best = int(np.argmax([likelihood for likelihood, _ in found]))
-    if found[best][0] <= white + SENSOR_NOISE.likelihood_gain:
-        return AutocorrelatedNoise()
-    return replace(tried[best], scale=found[best][1])
+    best = AutocorrelatedNoise()
+    white, _ = _likelihood(parts, best, order)
+    most = white + SENSOR_NOISE.likelihood_gain
+    for frames in SENSOR_NOISE.correlation_frames:
+        before = white
+        for share in SENSOR_NOISE.shares:
+            tried = AutocorrelatedNoise(share, frames * period)
+            likelihood, scale = _likelihood(parts, tried, order)
+            if likelihood > most:
+                most, best = likelihood, replace(tried, scale=scale)
+            if likelihood < before:  # it has one maximum over the share
+                break
+            before = likelihood
+    return best
 
 
 def polynomial_residual(part: Excerpt, order: int, root: np.ndarray | None = None) -> tuple[float, int, float]:

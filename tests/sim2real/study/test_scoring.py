@@ -108,7 +108,7 @@ def test_what_a_diagnosis_calls_its_numbers_the_key_does_too(name: str):
     known = {label for change in draws for label in change.values}
     rows = [row.name for row in EFFECTS[name].rows.values()]
     free = ("wall_restitution", "mallet_restitution", *rows)
-    fitted = LeastSquaresFit(dict.fromkeys(free, 0.5), free, 1e-8 * np.eye(len(free)), 0.0, 0, 100, ())
+    fitted = LeastSquaresFit(dict.fromkeys(free, 0.5), free, 1e-8 * np.eye(len(free)), 0.0, 100, ())
     labels = {OTHER_NAMES.get(label, label) for label in labelled(Named(name, tuple(rows[:1])), fitted)}
     assert labels & known and labels - known <= {"spin_coefficient"}  # of a spin that no camera sees
 

@@ -69,4 +69,4 @@ def _formula_problem(problem: ContactProblem, found: SearchResult, use: np.ndarr
         block = problem.whitened(problem.with_recoil(values, changes))
         return problem.with_common_noise(values, predicted, block)
 
-    return FormulaProblem(rest.r, rest.jacobian, rest.cluster, use, respond)
+    return FormulaProblem(rest.r, rest.jacobian, rest.cluster, use, float(problem.freedom[use].sum()), respond)

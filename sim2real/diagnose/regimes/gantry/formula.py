@@ -93,7 +93,7 @@ def _formula_problem(
         columns = path_responses(problem, p, np.stack(np.split(laws[:, 0], 2), axis=1))
         return np.concatenate([columns, np.zeros((priors, columns.shape[1]))])
 
-    return FormulaProblem(rest.r, rest.jacobian, rest.cluster, use, respond)
+    return FormulaProblem(rest.r, rest.jacobian, rest.cluster, use, float(problem.freedom[use].sum()), respond)
 
 
 def _refitted(problem: GantryProblem, found: SearchResult, use: np.ndarray, first: Formula) -> Formula:

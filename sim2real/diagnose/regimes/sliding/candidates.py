@@ -157,6 +157,6 @@ def _spacing(radius: float) -> float:
 
 def _inside(motion: Motion, discs: np.ndarray) -> np.ndarray:
     """Accelerations (n, 2, k) [m/s^2] of one unit of additional friction inside each disc (k, 3)."""
-    offset = motion.place[:, None, :] - discs[None, :, :2]
-    inside = (offset**2).sum(axis=2) < discs[:, 2] ** 2
-    return -SLIDING.unit * motion.along[:, :, None] * inside[:, None, :]
+    x, y, radius = discs.T
+    inside = np.subtract.outer(motion.place[:, 0], x) ** 2 + np.subtract.outer(motion.place[:, 1], y) ** 2 < radius**2
+    return (-SLIDING.unit * motion.along)[:, :, None] * inside[:, None, :]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from scipy.stats import chi2
@@ -53,12 +54,20 @@ class GlideData:
         return np.repeat(values, np.diff(self.first), axis=0)
 
 
-def glide_data(segments: Segments, g: Geometry, tracks: Mapping[str, Track], map_error_std: float = 0.0) -> GlideData:
+class SmoothGlides(NamedTuple):
+    """Glides (g) in order of time, the launch `cluster` (g,) of each, and the `excess` [1] of their variance about
+    polynomials over that of the white sensor noise, at least 1."""
+
+    glides: list[Glide]
+    cluster: np.ndarray
+    excess: float
+
+
+def smooth_glides(segments: Segments, g: Geometry, tracks: Mapping[str, Track]) -> SmoothGlides:
     """Select the glides of `segments` that move and are smooth; the clusters are the launches in order of time.
 
-    `g` and `tracks` (of the mallets, at the recording's frames) give the places where a slow contact may be hidden;
-    `map_error_std` [m]: the stated error of the camera's calibration. If most glides are rougher than the white sensor
-    noise explains, the noise is scaled up to their roughness.
+    `g` and `tracks` (of the mallets, at the recording's frames) give the places where a slow contact may be hidden. If
+    most glides are rougher than the white sensor noise explains, the others are compared with the median.
     """
     free = [_clear_part(glide, segments, g, tracks) for glide in segments.glides]
     long = [k for k, glide in enumerate(free) if _moves(glide)]
@@ -66,6 +75,15 @@ def glide_data(segments: Segments, g: Geometry, tracks: Mapping[str, Track], map
     excess = max(float(np.median(rough[:, 0] / rough[:, 1])), 1.0) if len(long) else 1.0
     smooth = rough[:, 0] < SLIDING.smooth_slack * excess * chi2.isf(SLIDING.smooth_chance, rough[:, 1])
     glides = [free[k] for k, fine in zip(long, smooth, strict=True) if fine]
+    return SmoothGlides(glides, _clusters(segments, glides), excess)
+
+
+def glide_data(segments: Segments, g: Geometry, tracks: Mapping[str, Track], map_error_std: float = 0.0) -> GlideData:
+    """The data of the `smooth_glides`, with the noise of their camera, scaled up to their roughness.
+
+    `map_error_std` [m]: the stated error of the camera's calibration.
+    """
+    glides, cluster, excess = smooth_glides(segments, g, tracks)
     measured = [GlideTrack(one.t, np.stack([one.x, one.y], axis=1), _speed(one)) for one in glides]
     noise = estimate_sensor_noise(segments.noise, excess, measured, SLIDING.smooth_order, map_error_std)
     contact_times = np.array([contact.t for contact in segments.contacts])
@@ -74,7 +92,7 @@ def glide_data(segments: Segments, g: Geometry, tracks: Mapping[str, Track], map
         np.concatenate([np.zeros((0, 2)), *(one.place for one in measured)]),
         np.concatenate([np.zeros((0, 2)), *(noise.std(one) for one in measured)]),
         np.cumsum([0, *(len(one.t) for one in measured)]),
-        _clusters(segments, glides),
+        cluster,
         np.zeros(len(glides), int),
         np.array([_last_contact(glide, contact_times) for glide in glides]),
         (noise,),

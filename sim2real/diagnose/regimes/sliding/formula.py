@@ -39,9 +39,8 @@ def readable_formula(
     if found.effect_parameters():  # the path includes the effect, which the formula replaces
         r = r + respond(force(law.name, motion, found.coefficients)[:, :, None])[:, 0]
     candidates = FormulaCandidates(motion, law)
-    best = find_formula(
-        FormulaProblem(r, rest.jacobian, rest.cluster, use, respond), candidates.single, candidates.joined
-    )
+    remaining = FormulaProblem(r, rest.jacobian, rest.cluster, use, float(problem.freedom[use].sum()), respond)
+    best = find_formula(remaining, candidates.single, candidates.joined)
     return best, candidates.views(best)
 
 

@@ -59,7 +59,8 @@ def linear_response(first, t, path, friction, drag, force, moved, moving):
     small accelerations `force` (n, 2, k) [m/s^2].
 
     The linearized motion is d'' = (da/dv) d' + force with the baseline's da/dv, from rest at each glide's first frame;
-    it is integrated by the trapezoidal rule between frames.
+    it is integrated by the implicit trapezoidal rule between frames, along and across the motion, since the equation of
+    the heading is stiff for a slow puck.
     """
     k = force.shape[2]
     dvx, dvy = np.zeros(k), np.zeros(k)
@@ -74,14 +75,12 @@ def linear_response(first, t, path, friction, drag, force, moved, moving):
             speed = np.sqrt(vx * vx + vy * vy) + 1e-9
             ux, uy = vx / speed, vy / speed
             across, along = friction / speed + drag * speed, 2.0 * drag * speed
-            axx = -across * (1.0 - ux * ux) - along * ux * ux
-            axy = (across - along) * ux * uy
-            ayy = -across * (1.0 - uy * uy) - along * uy * uy
-            limit = 1.0 / (1.0 + 0.5 * h * across)  # implicit: the equation of the heading is stiff for a slow puck
+            implicit_along, implicit_across = 1.0 / (1.0 + 0.5 * h * along), 1.0 / (1.0 + 0.5 * h * across)
             for j in range(k):
                 fx, fy = 0.5 * (force[i, 0, j] + force[i + 1, 0, j]), 0.5 * (force[i, 1, j] + force[i + 1, 1, j])
-                ax = (axx * dvx[j] + axy * dvy[j] + fx) * limit
-                ay = (axy * dvx[j] + ayy * dvy[j] + fy) * limit
+                gain_along = (ux * (fx - along * dvx[j]) + uy * (fy - along * dvy[j])) * implicit_along
+                gain_across = (ux * (fy - across * dvy[j]) - uy * (fx - across * dvx[j])) * implicit_across
+                ax, ay = ux * gain_along - uy * gain_across, uy * gain_along + ux * gain_across
                 moved[i + 1, 0, j] = moved[i, 0, j] + h * (dvx[j] + 0.5 * h * ax)
                 moved[i + 1, 1, j] = moved[i, 1, j] + h * (dvy[j] + 0.5 * h * ay)
                 dvx[j] += h * ax

@@ -16,7 +16,7 @@ from sim2real.diagnose.engine.tuned import ENGINE
 BASELINE_LOSS = (
     1000.0 * ENGINE.cv_gain / ENGINE.share_of_explained
 )  # so large that the share decides, not the least gain
-LAW = LeastSquaresFit({}, (), np.zeros((0, 0)), 0.0, 9, 3, ())
+LAW = LeastSquaresFit({}, (), np.zeros((0, 0)), 0.0, 3, ())
 SLACK = ENGINE.share_of_explained * BASELINE_LOSS
 
 

@@ -134,7 +134,7 @@ def test_identical_columns_are_both_possible():
     index = np.arange(len(equations.names))
     index[place["patch"]] = place["tilt"]
     same = normal_equations.NormalEquations(
-        equations.names, equations.g[:, index][:, :, index], equations.b[:, index], equations.s, equations.count
+        equations.names, equations.g[:, index][:, :, index], equations.b[:, index], equations.s
     )
     selection = ForwardSelection(same, UNITS, EVERY)
     model = BASE.plus(LAWS[0], np.inf)

@@ -50,7 +50,7 @@ def test_intervals_cover_the_truth():
         r, jacobian, cluster, truth = _problem(seed)
         equations = normal_equations.make_equations("abc", r, jacobian, cluster, 8)
         theta = normal_equations.solve(equations, np.arange(3), np.arange(8))
-        std = np.sqrt(np.diag(normal_equations.covariance(equations, np.arange(3), theta, np.arange(8))))
+        std = np.sqrt(np.diag(normal_equations.covariance(equations, np.arange(3), theta, np.arange(8), 200.0)))
         inside.append(np.abs(theta - truth) < 1.96 * std)
     assert 0.92 <= np.mean(inside) <= 0.99
 
@@ -65,7 +65,7 @@ def test_intervals_cover_where_launches_scatter_more_than_their_noise():
         r = rng.normal(size=len(launch)) - own[launch] * jacobian[:, 0] - 0.2 * jacobian[:, 1]
         equations = normal_equations.make_equations("ab", r, jacobian, launch, launches)
         theta = normal_equations.solve(equations, np.arange(2), np.arange(launches))
-        std = np.sqrt(np.diag(normal_equations.covariance(equations, np.arange(2), theta, np.arange(launches))))
+        std = np.sqrt(np.diag(normal_equations.covariance(equations, np.arange(2), theta, np.arange(launches), len(r))))
         inside.append(abs(theta[0] - 0.5) < student.ppf(0.975, launches - 1) * std[0])
     assert 0.92 <= np.mean(inside) <= 0.98
 
@@ -82,11 +82,30 @@ def test_intervals_of_a_ridge_regression_cover_coefficients_of_its_prior():
         equations = normal_equations.make_equations("abc", r, jacobian, np.arange(400) // 20, 20)
         every, ridge = np.arange(20), 1.0 / spread**2
         theta = normal_equations.solve(equations, np.arange(3), every, ridge)
-        std = np.sqrt(np.diag(normal_equations.covariance(equations, np.arange(3), theta, every, ridge)))
+        std = np.sqrt(np.diag(normal_equations.covariance(equations, np.arange(3), theta, every, 400.0, ridge)))
         z.append((theta - truth) / std)
         widest = max(widest, float(std.max()))
     assert np.all((np.abs(z) < 1.96).mean(axis=0) > 0.92) and np.all(np.sqrt(np.mean(np.square(z), axis=0)) > 0.7)
     assert widest < 0.4
+
+
+def test_the_dispersion_counts_the_starts_that_were_profiled_out():
+    """Three clusters of five residuals with two profiled starts each have nine degrees of freedom, not 15."""
+    rng, thetas, variances = np.random.default_rng(0), [], []
+    cluster, every = np.arange(15) // 5, np.arange(3)
+    for _ in range(2000):
+        r, jacobian = 2.0 * rng.normal(size=15), rng.normal(size=(15, 1))
+        for c in every:
+            starts = np.linalg.qr(rng.normal(size=(5, 2)))[0]
+            for rows in (r, jacobian[:, 0]):
+                rows[cluster == c] -= starts @ (starts.T @ rows[cluster == c])
+        equations = normal_equations.make_equations("a", r, jacobian, cluster, 3)
+        thetas.append(normal_equations.solve(equations, np.arange(1), every)[0] * np.sqrt(equations.g.sum()))
+        variance = normal_equations.covariance(
+            equations, np.arange(1), np.array([-equations.b.sum() / equations.g.sum()]), every, 9.0
+        )
+        variances.append(variance[0, 0] * equations.g.sum())
+    assert np.mean(variances) == pytest.approx(np.var(thetas), rel=0.1)
 
 
 def test_gathered_equations_are_those_of_the_larger_clusters():
@@ -97,7 +116,7 @@ def test_gathered_equations_are_those_of_the_larger_clusters():
         normal_equations.gathered(fine, into, 3),
         normal_equations.make_equations("abc", r, jacobian, into[cluster], 3),
     )
-    for name in ("g", "b", "s", "count"):
+    for name in ("g", "b", "s"):
         assert np.allclose(getattr(found, name), getattr(expected, name))
 
 
@@ -113,5 +132,5 @@ def test_moved_equations_are_those_of_the_moved_residuals():
     equations = normal_equations.make_equations("abc", r, jacobian, cluster, 8)
     expected = normal_equations.make_equations("abc", r + jacobian[:, [0, 2]] @ truth[[0, 2]], jacobian, cluster, 8)
     found = normal_equations.moved(equations, np.array([0, 2]), truth[[0, 2]])
-    for name in ("g", "b", "s", "count"):
+    for name in ("g", "b", "s"):
         assert np.allclose(getattr(found, name), getattr(expected, name)), name

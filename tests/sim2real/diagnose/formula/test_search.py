@@ -20,7 +20,7 @@ def _rest(seen: np.ndarray, base: np.ndarray | None = None, seed: int = 0) -> Fo
     cluster = np.repeat(np.arange(len(seen)) * CLUSTERS // len(seen), seen.shape[1])
     columns = np.zeros((len(flat), 0)) if base is None else base
     every = np.arange(CLUSTERS)
-    return FormulaProblem(flat, columns, cluster, every, lambda laws: laws.reshape(len(flat), -1) / NOISE)
+    return FormulaProblem(flat, columns, cluster, every, len(flat), lambda laws: laws.reshape(len(flat), -1) / NOISE)
 
 
 def _formula(u: np.ndarray, law: np.ndarray, made, offset: bool = False):

@@ -14,7 +14,7 @@ MANY = 100_000  # clusters, so that Student's quantile is the normal one
 
 
 def fitted(values: dict[str, float], covariance: ArrayLike) -> LeastSquaresFit:
-    return LeastSquaresFit(values, tuple(values), np.array(covariance), 0.0, 0, MANY, ())
+    return LeastSquaresFit(values, tuple(values), np.array(covariance), 0.0, MANY, ())
 
 
 @pytest.mark.parametrize(

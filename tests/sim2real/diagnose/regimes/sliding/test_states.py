@@ -23,7 +23,7 @@ def test_a_parameter_that_is_hardly_known_leaves_all_states_finite(tmp_path):
     problem = GlideProblem(glides_of(recording, segment(recording)), values)
     for std in (1e-3, 1e3):  # the second so large that one standard deviation would drive the puck
         fitted = LeastSquaresFit(
-            values, ("friction", "drag"), std**2 * np.array([[1.0, -0.9], [-0.9, 1.0]]), 0.0, 1, 1, ()
+            values, ("friction", "drag"), std**2 * np.array([[1.0, -0.9], [-0.9, 1.0]]), 0.0, 1, ()
         )
         assert np.isfinite(problem.states(fitted).drift).all()
 
