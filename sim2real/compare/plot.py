@@ -15,6 +15,7 @@ from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from sim2real.compare.contacts import ContactError
 from sim2real.compare.predict import Comparison
+from sim2real.compare.tuned import COMPARISON
 from sim2real.segmentation.segments import Segments
 
 RECORDED, TANGENT, SIMULATOR, EVENT = "#1f6fb4", "#d9822b", "#222222", "#c0392b"
@@ -89,7 +90,7 @@ def _draw_walls(ax: Axes, contacts: tuple[ContactError, ...], restitution: float
         return
     before, after = np.array([h.before for h in contacts]), np.array([h.after for h in contacts])
     for axis, sign, colour, name in ((0, -1, RECORDED, "normal"), (1, 1, TANGENT, "tangential")):
-        use = np.abs(before[:, axis]) > 0.1
+        use = np.abs(before[:, axis]) > COMPARISON.clear_speed
         ratio = sign * after[use, axis] / before[use, axis]
         std = np.array([h.std[axis] for h in contacts])[use] / np.abs(before[use, axis])
         ax.errorbar(np.abs(before[use, axis]), ratio, yerr=std, fmt=".", color=colour, ms=5, lw=0.5)

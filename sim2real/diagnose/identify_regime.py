@@ -41,7 +41,9 @@ def identify_regime(regime: Regime, problem: Problem, evidence: Evidence, known:
     elif (result.misfit or result.unexplained) and not result.next_recording:
         result = replace(result, next_recording=regime.more)
     result = replace(result, doubt="; ".join(filter(None, (result.doubt, regime.note(problem)))))
-    explained = found.unlisted is None and not found.misfit
+    explained = (
+        found.unlisted is None and not found.misfit
+    )  # of the search: a law that was rejected later leaves a doubt
     return _illustrated(regime, IdentifiedRegime(problem, result, chosen.found, chosen.without, explained))
 
 

@@ -10,22 +10,14 @@ from sim2real.diagnose.input_checks import UndeterminedError, check_usable, note
 from sim2real.diagnose.prove import prove
 from sim2real.diagnose.regimes.sensing.stretch import without_stretch
 from sim2real.diagnose.result.pooled_proof import pooled
-from sim2real.diagnose.result.result import (
-    LARGE_MISFIT,
-    TO_THE_NOISE,
-    Finding,
-    Proof,
-    RegimeResult,
-    SensorSummary,
-    times_the_noise,
-)
+from sim2real.diagnose.result.result import Finding, Proof, RegimeResult, SensorSummary, times_the_noise
 from sim2real.diagnose.split import DataSplit, split_data
+from sim2real.diagnose.tuned import RESIDUALS
 from sim2real.recording.folder import Recording
 from sim2real.recording.stated import together
 from sim2real.recording.table_parameters import parameters, stated_sizes
 
 CLOSED = "no further recording is needed; repeat it later to check that the result persists"
-WORSE = 1.02  # times the holdout residual without a law; a larger one with it does not confirm the law
 OPEN = (
     "no single recording is known to settle the open questions; record more launches all over the table, slow and fast"
 )
@@ -77,7 +69,7 @@ class Diagnosis:
     @property
     def is_open(self) -> bool:
         """Whether a question remains open."""
-        unsettled = any((each.times_noise or 0.0) > TO_THE_NOISE or each.doubt for each in self.regime_results)
+        unsettled = any((each.times_noise or 0.0) > RESIDUALS.as_noise or each.doubt for each in self.regime_results)
         return bool(self.verdict == "undetermined" or self.advice or unsettled)
 
     @property
@@ -107,13 +99,13 @@ class Diagnosis:
             f"{regime}: the holdout contradicts the findings, rms residual {1e3 * proof.after_m:.2g} mm with them and "
             f"{1e3 * proof.before_m:.2g} mm without"
             for regime, proof in known
-            if proof.after_m > WORSE * proof.before_m
+            if proof.after_m > RESIDUALS.worse * proof.before_m
         ]
         against += [
             f"{one.mechanism}: the holdout does not confirm it, rms residual {one.after:.3g} times the noise with it "
             f"and {one.before:.3g} times without"
             for one in self.findings
-            if one.before is not None and one.after is not None and one.after > WORSE * one.before
+            if one.before is not None and one.after is not None and one.after > RESIDUALS.worse * one.before
         ]
         return [*against, *untested, *self.holdout_notes]
 
@@ -127,7 +119,7 @@ class Diagnosis:
 def _misfit_words(each: RegimeResult) -> str:
     """Return the size of the cross-validation residuals as a clause, "" if they are not large."""
     times = each.times_noise
-    return f"; cross-validation residuals are {times_the_noise(times)}" if times and times > LARGE_MISFIT else ""
+    return f"; cross-validation residuals are {times_the_noise(times)}" if times and times > RESIDUALS.large else ""
 
 
 def diagnose(

@@ -7,8 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from sim2real.diagnose.engine import normal_equations
-from sim2real.diagnose.engine.law import Model
 from sim2real.diagnose.engine.model_search import SearchResult, without_laws
 from sim2real.diagnose.engine.problem import Problem
 from sim2real.diagnose.identify import Identification
@@ -60,27 +58,7 @@ def rms_residual(problem: Problem, found: SearchResult) -> float:
     if found.unlisted is None or found.effect_parameters():
         squares = float(np.sum(problem.residuals(found.all_values, (), live).r ** 2))
     else:
-        squares = _squares_with_term(problem, found, problem.units.of(live))
+        columns = problem.columns(found.law.values, found.law.free, None)
+        family = next(one for one in columns.families if one.name == found.unlisted.name)
+        squares = float(found.losses(columns.equations, family, problem.units.of(live)).sum())
     return float(np.sqrt(squares / max(float(problem.freedom[live].sum()), 1.0)))
-
-
-def _squares_with_term(problem: Problem, found: SearchResult, units: np.ndarray) -> float:
-    """Return the sum of squares of units under a smooth term that the simulator cannot represent.
-
-    Coefficients that each launch has of its own are fitted to every second unit and tested on the others.
-    """
-    assert found.unlisted is not None
-    columns = problem.columns(found.law.values, found.law.free, None)
-    family = next(one for one in columns.families if one.name == found.unlisted.name)
-    equations, n = columns.equations, len(found.law.free)
-    index, _ = Model(found.law.free, (family,), (1.0,)).columns(equations)
-    if not family.each_launch:
-        return float(normal_equations.losses(equations, index, found.theta, units).sum())
-    stepped = normal_equations.moved(equations, equations.columns(found.law.free), found.theta[:n])
-    total, odd = 0.0, np.arange(len(units)) % 2 == 1
-    for tested in (odd, ~odd):
-        own = normal_equations.solve(stepped, equations.columns(family.columns), units[~tested])
-        total += float(
-            normal_equations.losses(equations, index, np.concatenate([found.theta[:n], own]), units[tested]).sum()
-        )
-    return total

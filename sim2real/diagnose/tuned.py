@@ -68,7 +68,24 @@ class IdentificationNumbers:
     fewest_residuals: int = tuned(8, "1", "the same", "choice: two for each launch")
 
 
+@dataclass(frozen=True)
+class ResidualNumbers:
+    """How residuals are judged."""
+
+    as_noise: float = tuned(
+        1.3, "times the noise", "an error of the noise level reported as a misfit", "choice: a third"
+    )
+    large: float = tuned(
+        3.0, "times the noise", "small misfits in the summary, beside which the findings are overlooked",
+        "choice: visible in every figure",
+    )  # fmt: skip
+    worse: float = tuned(
+        1.02, "times the holdout residual without a law", "chance that seems to contradict a finding", "choice: little"
+    )
+
+
 INPUT = InputNumbers()
 SPLIT = SplitNumbers()
 CONSISTENCY = ConsistencyNumbers()
 IDENTIFICATION = IdentificationNumbers()
+RESIDUALS = ResidualNumbers()

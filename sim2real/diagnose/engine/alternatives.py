@@ -37,7 +37,7 @@ def compare(
         if other.name in {one.name for one in model.laws} or (other.variant_of and other.variant_of == law.variant_of):
             continue
         gain = selection.gain(without, other)
-        loss = float((selection.cv_loss(without) - gain.cv_loss - best).sum())
+        loss = float((selection.cv_loss(without) - gain.by_launch - best).sum())
         if loss < ENGINE.ambiguity and not other.family and not law.family and selection.passes(gain):
             also.append(other.name)
         if other.name not in alternatives or loss < alternatives[other.name].loss:

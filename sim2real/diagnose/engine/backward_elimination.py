@@ -12,7 +12,7 @@ from sim2real.diagnose.engine.law import Law, Model
 from sim2real.diagnose.engine.least_squares import LeastSquaresFit, fit, robust_loss
 from sim2real.diagnose.engine.problem import DesignMatrix, Problem
 from sim2real.diagnose.engine.tuned import ENGINE
-from sim2real.diagnose.result.result import TO_THE_NOISE
+from sim2real.diagnose.tuned import RESIDUALS
 from sim2real.statistics.robust import group_threshold
 
 
@@ -75,10 +75,10 @@ def has_misfit(problem: Problem, baseline: LeastSquaresFit, law: LeastSquaresFit
 
     The baseline alone has a misfit if the residuals of a typical launch (a typical unit, if single units may be
     outliers) or of many launches are far beyond noise. Listed laws have one if a typical launch is beyond noise, by a
-    large share of the baseline's misfit. The noise of a calibrated camera may be larger by TO_THE_NOISE, since places
-    have larger errors where the puck's outline crosses a line.
+    large share of the baseline's misfit. The noise of a calibrated camera may be larger by `RESIDUALS.as_noise`, since
+    places have larger errors where the puck's outline crosses a line.
     """
-    noise_factor = TO_THE_NOISE**2 if problem.place_error_m else 1.0
+    noise_factor = RESIDUALS.as_noise**2 if problem.place_error_m else 1.0
     before, after = (_typical(problem, one, use) - 1.0 for one in (baseline, law))
     if law is baseline:
         return after > ENGINE.misfit or _beyond_noise(problem, law, use, noise_factor).mean() > ENGINE.misfit_launches

@@ -18,7 +18,7 @@ from sim2real.diagnose.engine.least_squares import LeastSquaresFit, robust_loss
 from sim2real.diagnose.engine.model_search import SearchResult, without, without_laws
 from sim2real.diagnose.engine.problem import Problem, Residuals
 from sim2real.diagnose.engine.tuned import ENGINE
-from sim2real.diagnose.result.result import LARGE_MISFIT
+from sim2real.diagnose.tuned import RESIDUALS
 from sim2real.statistics.robust import group_loss
 
 
@@ -118,7 +118,7 @@ class CrossValidation:
 
     def leaves_most(self, found: SearchResult) -> bool:
         """Return whether the loss is far beyond noise and the laws explain less than most of the baseline's excess."""
-        large = float(self._robust_losses(LARGE_MISFIT**2 * self._freedom).sum())
+        large = float(self._robust_losses(RESIDUALS.large**2 * self._freedom).sum())
         baseline, remaining = (float(self.loss(one).sum()) for one in (without_laws(found), found))
         noise = float(self._freedom.sum()) / self._dispersion
         return remaining > large and baseline - remaining < ENGINE.proving_share * (baseline - noise)
@@ -168,7 +168,7 @@ class CrossValidation:
         """Return the sums of squares (units,) with a smooth term added, each unit predicted from the other folds."""
         assert found.smooth is not None
         if found.smooth.family.each_launch:
-            return found.final_losses(units)
+            return found.losses(found.columns.equations, found.smooth.family, units)
         equations, freedom = found.smooth.columns.equations, self._problem.units.freedom
         columns, ridge = found.smooth.model.columns(equations)
         fold, squares = self._fold[self._problem.units.cluster[units]], np.zeros(len(units))

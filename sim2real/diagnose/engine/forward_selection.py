@@ -25,25 +25,25 @@ from sim2real.statistics.robust import group_loss
 class Gain:
     """The reduction of the loss when a law is added to the model `beside` it.
 
-    `fitted`: reduction of the fitted loss; `cv_loss` (launches,): of the cross-validation loss of each launch;
+    `fitted`: reduction of the fitted loss; `by_launch` (launches,): of the cross-validation loss of each launch;
     `spread`: prior standard deviation of the law's coefficients.
     """
 
     beside: Model
     law: Law
     fitted: float
-    cv_loss: np.ndarray
+    by_launch: np.ndarray
     spread: float
 
     @property
     def total(self) -> float:
         """The reduction of the cross-validation loss of all launches."""
-        return float(self.cv_loss.sum())
+        return float(self.by_launch.sum())
 
     @property
     def without_best(self) -> float:
         """The same without the launch that gains most, so that no single launch decides."""
-        return self.total - float(self.cv_loss.max())
+        return self.total - float(self.by_launch.max())
 
 
 class ForwardSelection:
@@ -149,10 +149,10 @@ class ForwardSelection:
         """
         if not self.fits(gain) or gain.total <= ENGINE.cv_gain or gain.without_best <= ENGINE.cv_gain_elsewhere:
             return False
-        if self._significantly_positive(gain.cv_loss):
+        if self._significantly_positive(gain.by_launch):
             return True
-        two = np.argsort(gain.cv_loss)[-2:]
-        if float(gain.cv_loss[two].min()) <= ENGINE.fit_gain:
+        two = np.argsort(gain.by_launch)[-2:]
+        if float(gain.by_launch[two].min()) <= ENGINE.fit_gain:
             return False
         more = gain.beside.plus(gain.law, gain.spread)
         between = self.launch_cv_loss(gain.beside)[two] - self.launch_cv_loss(more)[two]

@@ -22,6 +22,7 @@ from sim2real.diagnose.engine.forward_selection import ForwardSelection, Gain, e
 from sim2real.diagnose.engine.law import Law, Model
 from sim2real.diagnose.engine.least_squares import LeastSquaresFit, fit, given
 from sim2real.diagnose.engine.nonparametric import NonparametricFit, fit_nonparametric
+from sim2real.diagnose.engine.normal_equations import NormalEquations
 from sim2real.diagnose.engine.problem import DesignMatrix, Problem
 from sim2real.diagnose.engine.tuned import ENGINE
 
@@ -102,26 +103,22 @@ class SearchResult:
             squares.append(float(normal_equations.losses(self.columns.equations, columns, theta, parts).sum()))
         return squares[0] - squares[1]
 
-    def losses(self, theta: np.ndarray, parts: np.ndarray) -> np.ndarray:
-        """Return the sums of squares (parts,) of units under `theta`, as in the property."""
-        assert self.unlisted is not None
-        index, _ = Model(self.law.free, (self.unlisted,), (1.0,)).columns(self.columns.equations)
-        return normal_equations.losses(self.columns.equations, index, theta, parts)
+    def losses(self, equations: NormalEquations, family: Law, parts: np.ndarray) -> np.ndarray:
+        """Return the sums of squares (parts,) of units of `equations` under the law with its smooth term.
 
-    def final_losses(self, parts: np.ndarray) -> np.ndarray:
-        """Return the sums of squares (parts,) of units under the law with its smooth term.
-
-        Coefficients that each launch has of its own are fitted to every second unit and tested on the others.
+        `family`: the term with the columns that it has in these equations. Coefficients that each launch has of its own
+        are fitted to every second unit and tested on the others.
         """
-        assert self.unlisted is not None
-        if not self.unlisted.each_launch:
-            return self.losses(self.theta, parts)
-        equations, n = self.columns.equations, len(self.law.free)
+        index, _ = Model(self.law.free, (family,), (1.0,)).columns(equations)
+        if not family.each_launch:
+            return normal_equations.losses(equations, index, self.theta, parts)
+        n = len(self.law.free)
         stepped = normal_equations.moved(equations, equations.columns(self.law.free), self.theta[:n])
         squares, odd = np.zeros(len(parts)), np.arange(len(parts)) % 2 == 1
         for tested in (odd, ~odd):
-            own = normal_equations.solve(stepped, equations.columns(self.unlisted.columns), parts[~tested])
-            squares[tested] = self.losses(np.concatenate([self.theta[:n], own]), parts[tested])
+            own = normal_equations.solve(stepped, equations.columns(family.columns), parts[~tested])
+            theta = np.concatenate([self.theta[:n], own])
+            squares[tested] = normal_equations.losses(equations, index, theta, parts[tested])
         return squares
 
     def effect_parameters(self) -> Mapping[str, float]:

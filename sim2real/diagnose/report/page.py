@@ -15,8 +15,9 @@ from sim2real.diagnose.report.regimes import regime_view
 from sim2real.diagnose.report.sensor import sensor_view
 from sim2real.diagnose.report.summary import sentence
 from sim2real.diagnose.result.context import PLAIN, ReportContext
-from sim2real.diagnose.result.result import TO_THE_NOISE, RegimeResult
+from sim2real.diagnose.result.result import RegimeResult
 from sim2real.diagnose.result.untested import untested
+from sim2real.diagnose.tuned import RESIDUALS
 
 TEMPLATES = Path(__file__).parent / "templates"
 NO_SIZES = (NOTHING, NOTHING, NOTHING)
@@ -69,5 +70,7 @@ def _sizes(each: RegimeResult) -> tuple[str, ...]:
 def _unexplained(diagnosis: Diagnosis) -> str:
     """Return the regimes with findings whose residuals exceed the noise, in a sentence; "" if there are none."""
     found = {each.regime: each.times_noise for each in diagnosis.regime_results if each.findings}
-    more = [f"the {name} {residual_words(times)}" for name, times in found.items() if times and times > TO_THE_NOISE]
+    more = [
+        f"the {name} {residual_words(times)}" for name, times in found.items() if times and times > RESIDUALS.as_noise
+    ]
     return f"The findings do not explain all: {'; '.join(more)}." if more else ""

@@ -13,8 +13,9 @@ from sim2real.diagnose.report.charts import bars_picture, map_picture, residual_
 from sim2real.diagnose.report.intervals import estimate_cells
 from sim2real.diagnose.report.plain_words import NOTHING, number, pieces, proof_sizes, residual_words, with_description
 from sim2real.diagnose.result.context import ReportContext
-from sim2real.diagnose.result.result import TO_THE_NOISE, Mismatch, RegimeResult
+from sim2real.diagnose.result.result import Mismatch, RegimeResult
 from sim2real.diagnose.result.untested import NO_PATH
+from sim2real.diagnose.tuned import RESIDUALS
 
 FEWEST = 8  # segments that a figure needs
 CONTROLS = {NULL: "simulated control", PERMUTED: "sign-flipped control"}
@@ -87,7 +88,7 @@ def _conclusion(one: RegimeResult, context: ReportContext, missing: Mapping[str,
 def _rest(one: RegimeResult, after: str) -> str:
     """Return a sentence on the cross-validation residuals, "" if they are noise."""
     times = one.times_noise
-    return f" {after}, {residual_words(times)}." if times and times > TO_THE_NOISE else ""
+    return f" {after}, {residual_words(times)}." if times and times > RESIDUALS.as_noise else ""
 
 
 def _sensing(one: RegimeResult, missing: Mapping[str, str]) -> str:

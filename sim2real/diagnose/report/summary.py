@@ -15,7 +15,8 @@ from sim2real.diagnose.report.plain_words import (
     with_description,
 )
 from sim2real.diagnose.result.context import PLAIN, ReportContext
-from sim2real.diagnose.result.result import TO_THE_NOISE, Finding, RegimeResult
+from sim2real.diagnose.result.result import Finding, RegimeResult
+from sim2real.diagnose.tuned import RESIDUALS
 
 MOST_LINES = 10
 
@@ -44,7 +45,9 @@ def _undetermined(diagnosis: Diagnosis, context: ReportContext) -> str:
 def _explained(diagnosis: Diagnosis, context: ReportContext) -> str:
     """Return that no physics is missing, and the regimes whose residuals exceed the noise."""
     times = {each.regime: each.times_noise for each in diagnosis.regime_results}
-    more = [f"the {regime} {residual_words(many)}" for regime, many in times.items() if many and many > TO_THE_NOISE]
+    more = [
+        f"the {regime} {residual_words(many)}" for regime, many in times.items() if many and many > RESIDUALS.as_noise
+    ]
     if diagnosis.verdict == "parameters_only":
         verdict = f"The simulator's laws explain {context.these} with parameters other than {context.reference}"
     else:

@@ -19,11 +19,11 @@ from sim2real.diagnose.engine.tuned import ENGINE
 from sim2real.diagnose.regimes.base import Regime
 from sim2real.diagnose.result.advice import advice
 from sim2real.diagnose.result.labels import labelled
-from sim2real.diagnose.result.result import LARGE_MISFIT, Estimate, Finding, Proof, RegimeResult
+from sim2real.diagnose.result.result import Estimate, Finding, Proof, RegimeResult
 from sim2real.diagnose.result.whereabouts import whereabouts
+from sim2real.diagnose.tuned import IDENTIFICATION, RESIDUALS
 from sim2real.statistics.intervals import reach_of_launches
 
-FEWEST_LAUNCHES = 4  # to compare the parameters of a law that does not explain the launches
 MISFIT = "an effect is missing, but these data cannot identify it"
 
 
@@ -46,7 +46,7 @@ def regime_result(regime: Regime, problem: Problem, chosen: Selection, defaults:
         doubt=_doubt(chosen),
         minor=_minor(regime, chosen),
         misfit=misfit,
-        better=len(validation.launches) >= FEWEST_LAUNCHES
+        better=len(validation.launches) >= IDENTIFICATION.fewest_launches
         and validation.loss(without_laws(found)).sum()
         < validation.loss(_with_defaults(problem, found, defaults)).sum(),
     )
@@ -60,7 +60,7 @@ def _with_defaults(problem: Problem, found: SearchResult, defaults: Mapping[str,
 def _has_large_residuals(problem: Problem, found: SearchResult, launches: np.ndarray) -> bool:
     """Return whether the robust residuals of the launches are far beyond noise."""
     loss = robust_loss(problem, problem.residuals(found.law.values, (), launches))[0]
-    return loss > LARGE_MISFIT**2 * max(float(problem.freedom[launches].sum()), 1.0)
+    return loss > RESIDUALS.large**2 * max(float(problem.freedom[launches].sum()), 1.0)
 
 
 def _findings(problem: Problem, chosen: Selection) -> tuple[Finding, ...]:

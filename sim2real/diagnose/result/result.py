@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-TO_THE_NOISE = 1.3  # times the noise, up to which residuals count as noise
-LARGE_MISFIT = 3.0  # times the noise, from which residuals are reported
+from sim2real.diagnose.tuned import RESIDUALS
 
 
 def explained(before: float, after: float) -> float:
@@ -210,6 +209,6 @@ class RegimeResult:
     def unexplained(self) -> str:
         """The remaining cross-validation residual in words, "" if it is not large."""
         times = self.times_noise
-        if self.undetermined or self.selection is None or times is None or times < LARGE_MISFIT:
+        if self.undetermined or self.selection is None or times is None or times < RESIDUALS.large:
             return ""
         return f"the remaining residual is {1e3 * self.selection.after_m:.2g} mm, {times_the_noise(times)}"

@@ -16,7 +16,8 @@ def without_stretch(glides: RegimeResult, sensing: RegimeResult) -> RegimeResult
 
     If the camera stretches x by s, friction along x appears (1 + s) times that along y, a grain of s / 2. The
     anisotropy is removed only if the map is stretched along one axis, the walls do not determine the other axis, and
-    the stretch is at most `SCALE.most_scale`.
+    the stretch is at most `SCALE.most_scale`. The fitted model keeps the law, since the paths bend either way: contacts
+    are extrapolated with it, and the proof is that of the model.
     """
     stretch = next((one for one in sensing.findings if one.mechanism == "scale_error"), None)
     anisotropy = next((one for one in glides.findings if one.mechanism == ANISOTROPY), None)

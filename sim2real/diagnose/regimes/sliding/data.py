@@ -10,6 +10,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from sim2real.diagnose.regimes.sliding.tuned import SLIDING
+from sim2real.diagnose.sensor_noise.autocorrelated import Excerpt, polynomial_residual
 from sim2real.diagnose.sensor_noise.model import GlideTrack, SensorNoise, estimate_sensor_noise
 from sim2real.segmentation.causes import Geometry, Track, near_mallets, near_posts, near_walls
 from sim2real.segmentation.segments import Glide, Segments
@@ -145,14 +146,8 @@ def _speed(glide: Glide) -> np.ndarray:
 
 def _roughness(glide: Glide, noise: Noise) -> tuple[float, int]:
     """Residual sum of squares of polynomials through a glide, in units of the noise, and its degrees of freedom."""
-    u = (glide.t - glide.t.mean()) / np.ptp(glide.t)
-    order = min(SLIDING.smooth_order, len(u) // 4)
-    design = np.vander(u, order + 1)
-    rest = 0.0
-    for q, std in zip((glide.x, glide.y), noise.std(_speed(glide)).T, strict=True):
-        a = design / std[:, None]
-        rest += np.linalg.norm(q / std - a @ np.linalg.lstsq(a, q / std, rcond=None)[0]) ** 2
-    return float(rest), 2 * (len(u) - order - 1)
+    excerpt = Excerpt(glide.t, np.stack([glide.x, glide.y], axis=1), noise.std(_speed(glide)))
+    return polynomial_residual(excerpt, SLIDING.smooth_order)[:2]
 
 
 def _clusters(segments: Segments, glides: list[Glide]) -> np.ndarray:
