@@ -10,7 +10,8 @@ from puckpilot_env.physics.sliding import glide
 from sim2real.compare.map_error import MapError
 from sim2real.compare.tuned import COMPARISON
 from sim2real.segmentation.segments import Glide
-from sim2real.segmentation.sensor_noise import Noise
+from sim2real.segmentation.sensor_noise import MotionNoise
+from sim2real.statistics.whitening import decorrelated
 
 ROUNDS = 4  # of Gauss-Newton
 
@@ -41,7 +42,7 @@ def why_not_usable(segment: Glide) -> str:
     return f"slower than {COMPARISON.slowest} m/s" if speed < COMPARISON.slowest else ""
 
 
-def predict_glide(segment: Glide, noise: Noise, map_error: MapError, friction: float, drag: float) -> GlideError:
+def predict_glide(segment: Glide, noise: MotionNoise, map_error: MapError, friction: float, drag: float) -> GlideError:
     """Fit place and velocity of the start to the first part of the glide, then predict to its end.
 
     `friction` [m/s^2] and `drag` [1/m]: s' = -(friction + drag s^2) of the speed s.
@@ -49,17 +50,19 @@ def predict_glide(segment: Glide, noise: Noise, map_error: MapError, friction: f
     t, place = segment.t - segment.t[0], np.stack([segment.x, segment.y], axis=1)
     fitted = max(COMPARISON.fewest_fitted, int(COMPARISON.fitted_part * len(t)))
     p0, v0 = segment.entry.place, segment.entry.velocity
+    correlation = noise.correlation(t)
     for _ in range(ROUNDS):
         path, axes, slopes = _law(t, p0, v0, friction, drag)
         rest = (place - path) @ axes
-        solved = [np.linalg.lstsq(_design(slopes[:fitted, k]), rest[:fitted, k], rcond=None)[0] for k in (0, 1)]
+        weights = [_weights(slopes[:fitted, k], correlation) for k in (0, 1)]
+        solved = [weights[k] @ rest[:fitted, k] for k in (0, 1)]
         p0 = p0 + axes @ [solved[0][0], solved[1][0]]
         v0 = v0 + axes @ [solved[0][1], solved[1][1]]
     path, axes, slopes = _law(t, p0, v0, friction, drag)
     speed = float(np.linalg.norm(v0))
     sigma = noise.std(np.array([speed, 0.0]))
     by_map = np.einsum("nim,ik->nkm", map_error.of_places(place), axes)
-    std = np.stack([_spread(slopes[:, k], fitted, sigma[k], by_map[:, k]) for k in (0, 1)], axis=1)
+    std = np.stack([_spread(slopes[:, k], fitted, sigma[k], correlation, by_map[:, k]) for k in (0, 1)], axis=1)
     return GlideError(t, segment.x, segment.y, (place - path) @ axes, std, fitted, speed)
 
 
@@ -81,15 +84,24 @@ def _design(slope: np.ndarray) -> np.ndarray:
     return np.stack([np.ones_like(slope), slope], axis=1)
 
 
-def _spread(slope: np.ndarray, fitted: int, sigma: float, by_map: np.ndarray) -> np.ndarray:
+def _weights(slope: np.ndarray, correlation: np.ndarray) -> np.ndarray:
+    """Weights (2, f) of the generalized least-squares fit of a start's place and velocity to the first f frames.
+
+    `slope` (f,) [s]: derivatives of these frames by the velocity; `correlation` (n, n): of all frames' noise.
+    """
+    fitted = len(slope)
+    rows = decorrelated(correlation[:fitted, :fitted], np.column_stack([_design(slope), np.eye(fitted)]))
+    return np.linalg.pinv(rows[:, :2]) @ rows[:, 2:]
+
+
+def _spread(slope: np.ndarray, fitted: int, sigma: float, correlation: np.ndarray, by_map: np.ndarray) -> np.ndarray:
     """Standard deviation (n,) [m] of recorded minus predicted, for a start fitted to the first `fitted` frames.
 
-    `sigma` [m]: white noise of each frame; `by_map` (n, m) [m]: deviations due to the map error, which the fitted start
-    absorbs in part.
+    `sigma` [m]: of the noise of each frame, with this `correlation` (n, n); `by_map` (n, m) [m]: deviations due to the
+    map error, which the fitted start absorbs in part.
     """
-    design = _design(slope)
-    cover = np.linalg.pinv(design[:fitted].T @ design[:fitted])
-    share = np.einsum("ni,ij,nj->n", design, cover, design)
-    white = 1.0 + np.where(np.arange(len(slope)) < fitted, -share, share).clip(-0.99)
-    rest = by_map - design @ cover @ (design[:fitted].T @ by_map[:fitted])
-    return np.sqrt(sigma**2 * white + (rest**2).sum(axis=1))
+    remaining = np.eye(len(slope))
+    remaining[:, :fitted] -= _design(slope) @ _weights(slope[:fitted], correlation)
+    noise = np.sum((remaining @ correlation) * remaining, axis=1)
+    rest = remaining @ by_map
+    return np.sqrt(sigma**2 * np.maximum(noise, 0.01) + (rest**2).sum(axis=1))

@@ -10,9 +10,11 @@ import numpy as np
 from sim2real.compare.contacts import ContactError, predict_mallet, predict_wall
 from sim2real.compare.glides import GlideError, predict_glide, why_not_usable
 from sim2real.compare.map_error import MapError
+from sim2real.diagnose.split import glides_of
 from sim2real.recording.folder import Recording
 from sim2real.segmentation.mallet_path import opponent_path, robot_path
 from sim2real.segmentation.segments import Segments
+from sim2real.segmentation.sensor_noise import MotionNoise
 from sim2real.segmentation.velocity_jumps import velocity_jumps
 
 UNEXPLAINED = "unexplained events"
@@ -32,6 +34,7 @@ def compare_segments(recording: Recording, segments: Segments, values: dict[str,
     """Predict every usable segment of `recording` with the parameters `values`, by name."""
     unusable: dict[str, Counter] = {"glide": Counter(), "wall": Counter(), "mallet": Counter(), "other": Counter()}
     size = np.array([values["length"], values["width"]])
+    noise = glides_of(recording, segments).noise[0].uniform
     map_error = MapError(size, recording.nominal("camera", "place_std_m") or 0.0)
     glides = []
     for segment in segments.glides:
@@ -39,8 +42,8 @@ def compare_segments(recording: Recording, segments: Segments, values: dict[str,
         if reason:
             unusable["glide"][reason] += 1
         else:
-            glides.append(predict_glide(segment, segments.noise, map_error, values["friction"], values["drag"]))
-    walls, mallets = _contacts(recording, segments, values, map_error, unusable)
+            glides.append(predict_glide(segment, noise, map_error, values["friction"], values["drag"]))
+    walls, mallets = _contacts(recording, segments, values, noise, map_error, unusable)
     return Comparison(tuple(glides), tuple(walls), tuple(mallets), unusable)
 
 
@@ -48,11 +51,12 @@ def _contacts(
     recording: Recording,
     segments: Segments,
     values: dict[str, float],
+    noise: MotionNoise,
     map_error: MapError,
     unusable: dict[str, Counter],
 ) -> tuple[list[ContactError], list[ContactError]]:
     """The contacts with walls and with mallets with their predictions; other contacts are counted in `unusable`."""
-    jumps = velocity_jumps(recording, segments, values["friction"], values["drag"])
+    jumps = velocity_jumps(recording, segments, values["friction"], values["drag"], noise)
     by_contact = {id(jump.contact): jump for jump in jumps}
     touched = {contact.where for contact in segments.of_kind("mallet")}
     read = {"robot": robot_path, "opponent": opponent_path}

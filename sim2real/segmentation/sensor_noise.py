@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Protocol
 
 import numpy as np
 
@@ -21,6 +22,22 @@ class Noise:
     def std(self, speed: np.ndarray | float) -> np.ndarray:
         """Standard deviation [m] of one coordinate that moves at `speed` [m/s]."""
         return np.hypot(self.position, self.clock * np.abs(speed))
+
+    def correlation(self, t: np.ndarray) -> np.ndarray:
+        """Correlation (n, n) of one coordinate's noise at the times `t` (n,) [s]: none between frames."""
+        return np.eye(len(t))
+
+
+class MotionNoise(Protocol):
+    """The noise of a moving puck's coordinates: standard deviation and correlation as those of `Noise`."""
+
+    def std(self, speed: np.ndarray | float) -> np.ndarray:
+        """See `Noise.std`."""
+        ...
+
+    def correlation(self, t: np.ndarray) -> np.ndarray:
+        """See `Noise.correlation`."""
+        ...
 
 
 def held_frames(x: np.ndarray, y: np.ndarray) -> np.ndarray:

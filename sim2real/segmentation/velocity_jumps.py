@@ -10,8 +10,9 @@ import numpy as np
 from sim2real.recording.folder import Recording
 from sim2real.segmentation.events import ContactEvent
 from sim2real.segmentation.segments import Segments
-from sim2real.segmentation.sensor_noise import Noise
+from sim2real.segmentation.sensor_noise import MotionNoise
 from sim2real.segmentation.tuned import SEGMENTATION
+from sim2real.statistics.whitening import decorrelated
 
 Side = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 ROUNDS = 3  # iterations, because the time of evaluation depends on where the motions meet, and vice versa
@@ -52,12 +53,16 @@ class VelocityJump:
 
 
 def velocity_jumps(
-    recording: Recording, segments: Segments, friction: float = 0.0, drag: float = 0.0
+    recording: Recording,
+    segments: Segments,
+    friction: float = 0.0,
+    drag: float = 0.0,
+    noise: MotionNoise | None = None,
 ) -> list[VelocityJump]:
     """Fit the contacts of a recording that have enough frames on both sides, in order of time.
 
     The motion on either side is a parabola plus the change of acceleration of a puck with `friction` [m/s^2] and `drag`
-    [1/m]; by default there is no such change.
+    [1/m]; by default there is no such change. `noise`: of the camera; by default the white noise of `segments`.
     """
     frames = recording.frames
     if frames is None or not segments.contacts:
@@ -77,7 +82,7 @@ def velocity_jumps(
         right = right[t[right] < contact.t + SEGMENTATION.side_time][: SEGMENTATION.side_most]
         if min(len(left), len(right)) >= SEGMENTATION.side_least:
             state, covariance = _meet(
-                t, p, left, right, contact.t, lambda u, q: _side(u, q, segments.noise, friction, drag)
+                t, p, left, right, contact.t, lambda u, q: _side(u, q, noise or segments.noise, friction, drag)
             )
             launch = int(np.searchsorted(sorted(starts), contact.frames[0], side="right"))
             found.append(VelocityJump(contact, state, covariance, launch))
@@ -130,7 +135,9 @@ def _joined(sides: np.ndarray) -> np.ndarray:
     return np.concatenate([[later], place, v_in, v_out])
 
 
-def _side(u: np.ndarray, q: np.ndarray, noise: Noise, friction: float, drag: float) -> tuple[np.ndarray, np.ndarray]:
+def _side(
+    u: np.ndarray, q: np.ndarray, noise: MotionNoise, friction: float, drag: float
+) -> tuple[np.ndarray, np.ndarray]:
     """Place and velocity (4,), and their covariance (4, 4), at u = 0 of the motion through `q` (n, 2) [m] at `u` [s].
 
     The law s' = -(friction + drag s^2) of the speed s has s'' = 2 drag s (friction + drag s^2).
@@ -139,7 +146,8 @@ def _side(u: np.ndarray, q: np.ndarray, noise: Noise, friction: float, drag: flo
     speed = float(np.linalg.norm(way)) / duration
     sigma = float(noise.std(speed))
     q = q - 2.0 * drag * (friction + drag * speed**2) * way / duration * u[:, None] ** 3 / 6.0
-    basis = np.stack([np.ones_like(u), u, u * u / 2], axis=1)
+    rows = np.column_stack([np.ones_like(u), u, u * u / 2, q])
+    basis, q = np.split(decorrelated(noise.correlation(u), rows), [3], axis=1)
     inverse = np.linalg.inv(basis.T @ basis + np.diag([0.0, 0.0, (sigma / SEGMENTATION.free_acceleration) ** 2]))
     fit = inverse @ basis.T @ q
     covariance = np.kron(inverse[:2, :2], np.eye(2)) * sigma**2

@@ -1,8 +1,13 @@
-"""Whiten residuals that share common noise."""
+"""Whiten residuals whose noise is correlated, or that share common noise."""
 
 from __future__ import annotations
 
 import numpy as np
+
+
+def decorrelated(correlation: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """Whiten `rows` (n, k) whose n entries have this `correlation` (n, n), by its inverse Cholesky factor."""
+    return np.linalg.solve(np.linalg.cholesky(correlation), rows)
 
 
 def whitened(shared: np.ndarray, rows: np.ndarray) -> np.ndarray:

@@ -14,6 +14,7 @@ Its users are:
   calibrated camera, by `Problem.place_error_m`.
 - The sensing uses only whether a camera is calibrated: if so, a scale error must explain nearly all displacements of
   the lines.
+- `compare` predicts glides and contacts with it, without its variation over the table.
 - Segmentation and the encoders use white noise alone, which they estimate before glides exist.
 """
 
@@ -44,6 +45,26 @@ LEAST, UNCORRELATED = Noise(SEGMENTATION.noise_floor, 0.0), AutocorrelatedNoise(
 
 
 @dataclass(frozen=True)
+class UniformNoise:
+    """Noise that is the same everywhere on the table, a `segmentation.sensor_noise.MotionNoise`.
+
+    `white`, with its standard deviation multiplied by `factor` [1], and an autocorrelation.
+    """
+
+    white: Noise
+    factor: float
+    autocorrelation: AutocorrelatedNoise
+
+    def std(self, speed: np.ndarray | float) -> np.ndarray:
+        """Return the standard deviation [m] of a coordinate that moves at `speed` [m/s]."""
+        return self.factor * self.white.std(speed)
+
+    def correlation(self, t: np.ndarray) -> np.ndarray:
+        """Return the correlation (n, n) of one coordinate's noise at the times `t` (n,) [s] of a segment."""
+        return self.autocorrelation.covariance(t)
+
+
+@dataclass(frozen=True)
 class SensorNoise:
     """The noise of the camera of one recording.
 
@@ -63,14 +84,18 @@ class SensorNoise:
         """Whether the recording states its camera's calibration error."""
         return self.map_error_std > 0.0
 
+    @property
+    def uniform(self) -> UniformNoise:
+        """The same noise without its variation over the table."""
+        return UniformNoise(self.white, float(np.sqrt(self.excess)) * self.autocorrelation.scale, self.autocorrelation)
+
     def std(self, track: GlideTrack) -> np.ndarray:
         """Return the standard deviation (n, 2) [m] of the noise of each frame and coordinate of a glide."""
-        white = np.sqrt(self.excess) * self.white.std(track.speed)
-        return self.autocorrelation.scale * (white * std_ratio(track.place, np.array(self.log_variance)))
+        return self.uniform.std(track.speed) * std_ratio(track.place, np.array(self.log_variance))
 
     def correlation(self, t: np.ndarray) -> np.ndarray:
         """Return the correlation (n, n) of the noise of one coordinate at the times `t` (n,) [s] of a segment."""
-        return self.autocorrelation.covariance(t)
+        return self.uniform.correlation(t)
 
 
 def stated_map_error(recording: Recording) -> float:

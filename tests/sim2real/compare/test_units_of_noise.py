@@ -60,6 +60,13 @@ def test_a_calibration_that_states_its_error_stands_out_in_nothing(tmp_path: Pat
     assert recording.nominal("camera", "place_std_m") == 0.0003
 
 
+def test_noise_that_is_correlated_from_frame_to_frame_stands_out_in_nothing(tmp_path: Path) -> None:
+    """An AR(1) correlation of 0.6 at 120 Hz; white noise of the same size would explain half of these errors."""
+    camera = Camera(noise=0.0005, jitter=0.0, correlation_time=0.0163, correlated=1.0)
+    summary = compared(made(tmp_path, Law(), "launches", camera, 60.0))
+    assert all(0.5 < summary[kind]["times_noise"]["median"] < 1.5 for kind in ("glide", "wall"))
+
+
 def test_a_practice_recording_without_effects_is_explained() -> None:
     summary = compared(practice("null"), **PRACTICE_RESTITUTION)
     assert summary["wall"]["times_noise"]["median"] < 1.5 and summary["wall"]["times_noise"]["high"] < LARGEST + 0.5
