@@ -12,7 +12,7 @@ import signal
 import sys
 import textwrap
 import threading
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from importlib.metadata import version
 from typing import NoReturn
@@ -114,6 +114,19 @@ def _orderly_end() -> Iterator[None]:
             signal.signal(number, signal.SIG_DFL)
 
 
+def _loaded(name: str) -> tuple[argparse.ArgumentParser, Callable[[argparse.Namespace], int]]:
+    """The parser of a command's arguments, and what runs it."""
+    module_name, what = COMMANDS[name]
+    module = importlib.import_module(module_name)
+    parser = _Parser(
+        prog=f"puckpilot {name}",
+        description=_paragraphs(module.__doc__ or what),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    module.add_arguments(parser)
+    return parser, module.run
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one sub-command. 0: did it; 1: did it, and the answer is bad news; 2: could not, with one line why."""
     words = list(sys.argv[1:] if arguments is None else arguments)
@@ -131,17 +144,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if name not in COMMANDS:
         print(_unknown(words), file=sys.stderr)
         return 2
-    module_name, what = COMMANDS[name]
-    module = importlib.import_module(module_name)
-    parser = _Parser(
-        prog=f"puckpilot {name}",
-        description=_paragraphs(module.__doc__ or what),
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    module.add_arguments(parser)
     try:
         with _orderly_end():
-            return module.run(parser.parse_args(rest))
+            parser, run = _loaded(name)
+            return run(parser.parse_args(rest))
     except BrokenPipeError:  # the reader, `head` say, has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0

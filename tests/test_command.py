@@ -163,6 +163,15 @@ def test_mistakes_get_one_line(words, expected, capsys):
     assert refused(words, capsys) == expected
 
 
+def test_an_interrupt_while_a_command_is_loaded_ends_in_one_line(monkeypatch, capsys):
+    def interrupted(name: str) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(puckpilot.importlib, "import_module", interrupted)
+    assert puckpilot.main(["envs"]) == 130
+    assert capsys.readouterr().err == "puckpilot envs: stopped\n"
+
+
 @pytest.mark.parametrize("name", OPTIONS)
 def test_every_command_refuses_an_unknown_option(name, capsys):
     assert refused([*name.split(), "--no-such-option"], capsys).startswith(f"puckpilot {name}: ")

@@ -65,7 +65,7 @@ def _cells(row: Mapping[str, Any]) -> dict[str, str]:
         "minutes": f"{row['seconds'] / 60:.1f}",
         "steps/s": f"{row['steps_per_s']:,}",
         "selves": str(row["selves"]),
-        "rating": f"{row['rating']:+.0f}",
+        "rating": f"{round(row['rating']) + 0:+d}",
         **{name: "-" if value != value else f"{100 * value:.0f} %" for name, value in wins.items()},
     }
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, fields, replace
@@ -113,7 +114,11 @@ def find_preset(name: str) -> Preset:
     try:
         text = small_file.read_text(path)
     except OSError:
-        raise ValueError(f"no preset '{name}'; known: {', '.join(preset_names())}, or a path to a .toml file") from None
+        near = difflib.get_close_matches(str(name), preset_names(), n=1)
+        hint = (
+            f"did you mean '{near[0]}'?" if near else f"known: {', '.join(preset_names())}, or a path to a .toml file"
+        )
+        raise ValueError(f"no preset '{name}'; {hint}") from None
     except ValueError as error:
         raise ValueError(f"preset {error}") from None
     return read_preset(text, str(name))

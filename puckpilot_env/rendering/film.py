@@ -26,7 +26,8 @@ class Video(Protocol):
 
     fps: float
 
-    def add(self, frame: NDArray[np.uint8], /) -> None: ...
+    def add(self, frame: NDArray[np.uint8], /) -> None:
+        """Add a frame (height, width, 3), RGB."""
 
 
 class Film:

@@ -10,7 +10,8 @@ optionally mallet.csv and commands.csv. It is cut into segments, and each is pre
 - rms in units of noise: 1 is expected from noise alone. The noise of camera and encoders is estimated from the
   recording; it affects the velocities of puck and mallet, the time of a contact and its normal. If the calibration
   states its error (camera.place_std_m), that is included.
-- held: frames that repeat the previous one; wild: outliers; launch: uninterrupted motion of the puck.
+- held: frames that repeat the previous one though the puck moves; wild: outliers; launch: uninterrupted motion of the
+  puck.
 - unexplained: a change of motion without a known cause nearby, for example a hand.
 
 The largest difference is the largest median error in units of noise."""

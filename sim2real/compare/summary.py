@@ -12,6 +12,7 @@ from sim2real.compare.glides import GlideError
 from sim2real.compare.predict import UNEXPLAINED, Comparison
 from sim2real.compare.tuned import COMPARISON
 from sim2real.diagnose.input_checks import notes
+from sim2real.diagnose.regimes.sensing.repeated_frames import repeats_while_moving
 from sim2real.recording.folder import Recording
 from sim2real.segmentation.segments import Segments
 
@@ -33,7 +34,7 @@ def summarize(recording: Recording, segments: Segments, found: Comparison, value
         "sensor": {
             "frames": 0 if recording.frames is None else recording.frames.rows,
             "seen": seen,
-            "held": int(segments.held.sum()),
+            "held": repeats_while_moving(recording, segments),
             "wild": int(segments.wild.sum()),
             "position_std_m": segments.noise.position if seen else None,
             "clock_std_s": segments.noise.clock if seen else None,

@@ -43,6 +43,7 @@ class Stream(Mapping[str, np.ndarray]):
 
     @property
     def rows(self) -> int:
+        """Number of rows."""
         return len(self.t)
 
     def __getitem__(self, name: str) -> np.ndarray:

@@ -191,7 +191,8 @@ def test_resuming_names_all_that_is_contradicted_and_nothing_that_was_not_given(
     words = ["--resume", "--out", "run", "--steps", str(2 * EACH)]
     said = refused(capsys, *words, "--seed", "8", "--threads", "2", "--variant", "defence-v0")
     assert "but --seed is 8 where the run has 7, --threads is 2 where the run has 1; leave them out" in said
-    assert "no preset 'nobody'" in refused(capsys, *words, "--preset", "nobody")
+    assert "no preset 'nobody'; known: " in refused(capsys, *words, "--preset", "nobody")
+    assert "no preset 'fasst'; did you mean 'fast'?" in refused(capsys, *words, "--preset", "fasst")
     assert "unknown variant 'chess-v0'" in refused(capsys, *words, "--variant", "chess-v0")
     assert "--start is for a new one" in refused(capsys, *words, "--start", "run")
     assert main(["train", *words]) == 0

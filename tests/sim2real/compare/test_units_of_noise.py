@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from sim2real.compare.predict import compare_segments
 from sim2real.compare.summary import summarize
 from sim2real.recording.folder import Recording, read_recording
+from sim2real.recording.stream_csv import Stream
 from sim2real.recording.table_parameters import parameters
 from sim2real.segmentation.segments import segment
 from sim2real.study.independent_table.physics.law import Law
@@ -93,3 +96,17 @@ def test_an_effect_stands_out_where_it_is(tmp_path: Path, law: Law, kind: str) -
     summary = compared(made(tmp_path, law, "match", Camera(noise=0.0002, jitter=0.0)))
     assert summary[kind]["times_noise"]["median"] > LARGEST
     assert str(summary["part_most"]).startswith(kind)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.05])
+def test_a_resting_puck_repeats_no_frames(tmp_path: Path, share: float) -> None:
+    """A still puck seen without noise has equal positions, which says nothing of the camera."""
+    recording = made(tmp_path, Law(), "launches", Camera(noise=0.0003, jitter=0.0, held=share), 30.0)
+    assert recording.frames is not None
+    frames = recording.frames
+    moving = np.hypot(np.gradient(frames["puck_x"], frames.t), np.gradient(frames["puck_y"], frames.t)) > 0.2
+    seen = np.flatnonzero(np.isfinite(frames["puck_x"]))[-1]
+    rest = {name: np.full(240, frames[name][seen]) for name in frames} | {"t": frames.t[-1] + np.arange(1, 241) / 120}
+    at_rest = Stream({name: np.append(frames[name], rest[name]) for name in frames})
+    held = compared(replace(recording, frames=at_rest))["sensor"]["held"]
+    assert held == pytest.approx(share * moving.sum(), rel=0.25)

@@ -36,29 +36,39 @@ def moving_frames(recording: Recording, segments: Segments, launch: np.ndarray) 
     `launch` (frames,): the launch number of each row. Frames with a resting or stopping puck, without a detection, or
     with an outlier are excluded.
     """
-    frames = recording.frames
-    nothing = MovingFrames(np.zeros(0, bool), np.zeros(0, int), np.zeros(0), np.zeros(0))
-    if frames is None or frames.rows < 3:
-        return nothing
-    p = np.stack([frames["puck_x"], frames["puck_y"]], axis=1)
+    if recording.frames is None:
+        return MovingFrames(np.zeros(0, bool), np.zeros(0, int), np.zeros(0), np.zeros(0))
+    p = np.stack([recording.frames["puck_x"], recording.frames["puck_y"]], axis=1)
+    before, here, after, repeats = _while_moving(p, segments)
+    held = np.concatenate([np.arange(a + 1, a + 1 + m) for a, m in zip(here, repeats, strict=True)] or [here[:0]])
+    first, last = np.repeat(here, repeats), np.repeat(after, repeats)
+    rows = np.concatenate([here, held])
+    deviation, std = _deviations(
+        recording.frames.t, p, segments, rows, np.concatenate([before, first]), np.concatenate([after, last])
+    )
+    return MovingFrames(np.arange(len(rows)) >= len(here), launch[rows], deviation, std)
+
+
+def repeats_while_moving(recording: Recording, segments: Segments) -> int:
+    """Number of frames that repeat the previous position exactly although the puck moves."""
+    if recording.frames is None:
+        return 0
+    p = np.stack([recording.frames["puck_x"], recording.frames["puck_y"]], axis=1)
+    return int(_while_moving(p, segments)[3].sum())
+
+
+def _while_moving(p: np.ndarray, segments: Segments) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Rows (n,) of new positions `p` (frames, 2) [m] of a moving puck, between the rows before and after them that are
+    new as well, and the number of repeats (n,) that follow each: (before, row, after, repeats)."""
     fresh = np.flatnonzero(np.isfinite(p).all(axis=1) & ~segments.held & ~segments.wild)
-    if len(fresh) < 3:
-        return nothing
     before, here, after = fresh[:-2], fresh[1:-1], fresh[2:]
     total = np.concatenate([[0], np.cumsum(segments.held)])
-    repeated = total[after] - total[here]
+    repeats = total[after] - total[here]
     step_before = np.linalg.norm(p[here] - p[before], axis=1) / (here - before)
     step_after = np.linalg.norm(p[after] - p[here], axis=1)
     moved = REPEATED_FRAMES.moved * segments.noise_std + REPEATED_FRAMES.rounding
-    counted = (step_before > moved) & (step_after > moved) & (after - here - 1 == repeated)
-    before, here, after, repeated = before[counted], here[counted], after[counted], repeated[counted]
-    held = np.concatenate([np.arange(a + 1, a + 1 + m) for a, m in zip(here, repeated, strict=True)] or [here[:0]])
-    first, last = np.repeat(here, repeated), np.repeat(after, repeated)
-    rows = np.concatenate([here, held])
-    deviation, std = _deviations(
-        frames.t, p, segments, rows, np.concatenate([before, first]), np.concatenate([after, last])
-    )
-    return MovingFrames(np.arange(len(rows)) >= len(here), launch[rows], deviation, std)
+    counted = (step_before > moved) & (step_after > moved) & (after - here - 1 == repeats)
+    return before[counted], here[counted], after[counted], repeats[counted]
 
 
 def _deviations(t: np.ndarray, p: np.ndarray, segments: Segments, row, before, after) -> tuple[np.ndarray, np.ndarray]:
