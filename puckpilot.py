@@ -97,21 +97,31 @@ def _unknown(words: list[str]) -> str:
 
 @contextmanager
 def _orderly_end() -> Iterator[None]:
-    """Inside, a request to end (SIGTERM, or SIGHUP of a closed terminal) is as Ctrl-C: no draft of a file is left."""
+    """Inside, a request to end (SIGTERM, or SIGHUP of a closed terminal) is as Ctrl-C: no draft of a file is left.
+
+    Libraries may lose the interrupt and fail of it: the failure after a request is taken for its effect.
+    """
+    requests: list[int] = []
 
     def stop(number: int, frame: object) -> NoReturn:
+        requests.append(number)
         raise KeyboardInterrupt(number)
 
-    numbers = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
+    defaults = {signal.SIGINT: signal.default_int_handler}
+    defaults |= {getattr(signal, name): signal.SIG_DFL for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)}
     ours = threading.current_thread() is threading.main_thread()  # no other may set handlers
-    kept = [number for number in numbers if ours and signal.getsignal(number) is signal.SIG_DFL]  # nohup ignores one
+    kept = [number for number in defaults if ours and signal.getsignal(number) is defaults[number]]  # nohup ignores one
     for number in kept:
         signal.signal(number, stop)
     try:
         yield
+    except Exception as error:
+        if requests:
+            raise KeyboardInterrupt(requests[0]) from error
+        raise
     finally:
         for number in kept:
-            signal.signal(number, signal.SIG_DFL)
+            signal.signal(number, defaults[number])
 
 
 def _loaded(name: str) -> tuple[argparse.ArgumentParser, Callable[[argparse.Namespace], int]]:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
+import signal
 import subprocess
 import sys
 
@@ -170,6 +172,20 @@ def test_an_interrupt_while_a_command_is_loaded_ends_in_one_line(monkeypatch, ca
     monkeypatch.setattr(puckpilot.importlib, "import_module", interrupted)
     assert puckpilot.main(["envs"]) == 130
     assert capsys.readouterr().err == "puckpilot envs: stopped\n"
+
+
+def test_a_library_that_fails_of_an_interrupt_ends_in_one_line(monkeypatch, capsys):
+    """numba's compiler asks in callbacks that lose the interrupt, and fails afterwards."""
+
+    def failing(name: str) -> None:
+        with contextlib.suppress(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGTERM)
+        raise RuntimeError("no compiled object yet")
+
+    monkeypatch.setattr(puckpilot.importlib, "import_module", failing)
+    assert puckpilot.main(["envs"]) == 143
+    assert capsys.readouterr().err == "puckpilot envs: stopped\n"
+    assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
 
 
 @pytest.mark.parametrize("name", OPTIONS)
