@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+from results.console import wrong_printed
 from results.marks import Mark, documents, marks
 from results.page import PAGE, page
 from results.provenance import in_history
 from results.raw import Raw, read_raws
 from results.rows import Row, read_rows
+from results.unmarked import wrong_numbers
 from results.values import figure_text
 
 
@@ -19,7 +21,8 @@ def problems(root: Path) -> list[str]:
     ValueError, in one line, for a table of runs or a raw output that cannot be read.
     """
     rows, raws = read_rows(root), read_raws(root)
-    return [*wrong_outputs(root, rows, raws), *wrong_marks(root, rows, raws), *wrong_page(root, rows, raws)]
+    checks = (wrong_outputs, wrong_marks, wrong_printed, wrong_numbers, wrong_page)
+    return [line for check in checks for line in check(root, rows, raws)]
 
 
 def wrong_outputs(root: Path, rows: Iterable[Row], raws: Mapping[str, Raw]) -> list[str]:

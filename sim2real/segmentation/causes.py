@@ -175,7 +175,7 @@ def touched_walls(
         if abs(place[axis] - line) > slack or (v_out[axis] - v_in[axis]) * inward <= 0:
             continue
         leaves_before = v_in[axis] * inward > SEGMENTATION.touching
-        if leaves_before or v_out[axis] * inward < -SEGMENTATION.touching or _in_mouth(g, wall, place):
+        if leaves_before or v_out[axis] * inward < -SEGMENTATION.touching or in_mouth(g, wall, place):
             continue
         found.append(wall)
     return found
@@ -189,8 +189,11 @@ def touched_post(g: Geometry, place: np.ndarray, dv: np.ndarray, slack: float) -
     for where in POSTS if g.goals_known else ():
         away = place - g.post(where)
         distance = float(np.linalg.norm(away))
-        in_mouth = abs(place[1] - g.width / 2) < g.goal_width / 2 + slack
-        if in_mouth and abs(distance - g.puck_radius) < slack and _pushed_along(away, distance, dv):
+        if (
+            in_mouth(g, where[:2], place, slack)
+            and abs(distance - g.puck_radius) < slack
+            and _pushed_along(away, distance, dv)
+        ):
             return where
     return ""
 
@@ -231,5 +234,9 @@ def may_be_goal(g: Geometry, wall: str, place: np.ndarray) -> bool:
     return wall[0] == "x" and not g.goals_known and abs(place[1] - g.width / 2) < reach
 
 
-def _in_mouth(g: Geometry, wall: str, place: np.ndarray) -> bool:
-    return wall[0] == "x" and g.goals_known and abs(place[1] - g.width / 2) < g.goal_width / 2
+def in_mouth(g: Geometry, wall: str, place: np.ndarray, slack: float = 0.0) -> bool:
+    """Whether a puck at `place` (2,) is where `wall` is open for a goal of known width: it meets a post or nothing.
+
+    `slack` [m]: tolerance of the place.
+    """
+    return wall[0] == "x" and g.goals_known and abs(place[1] - g.width / 2) < g.goal_width / 2 + slack

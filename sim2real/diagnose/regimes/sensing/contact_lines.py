@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim2real.diagnose.regimes.sensing.tuned import CONTACT_LINES
-from sim2real.segmentation.causes import WALLS, Geometry, nominal_lines, turned_round, wall_axis
+from sim2real.segmentation.causes import WALLS, Geometry, in_mouth, nominal_lines, turned_round, wall_axis
 from sim2real.segmentation.velocity_jumps import VelocityJump
 from sim2real.statistics.robust import t_weights, typical
 
@@ -48,6 +48,7 @@ def _line(wall: str, found: list[VelocityJump], g: Geometry) -> ContactLine | No
     size, middle = ((g.length, g.width / 2), (g.width, g.length / 2))[axis]
     near = [s for s in found if abs(s.place[axis] - nominal_lines(g)[wall]) < CONTACT_LINES.farthest * size]
     near = [s for s in near if turned_round(wall, s.v_in, s.v_out)]
+    near = [s for s in near if not in_mouth(g, wall, s.place, CONTACT_LINES.band)]
     if len(near) < CONTACT_LINES.fewest_contacts:
         return None
     place = np.array([s.place[axis] for s in near])
