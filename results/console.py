@@ -7,11 +7,11 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from results.marks import documents
+from results.marks import CODE, documents
 from results.raw import Raw
 from results.rows import Row
 
-BLOCK = re.compile(r"^```[^\n]*\n(?P<lines>.*?)^```\n+<!--\s*output:\s*(?P<runs>.*?)\s*-->", re.MULTILINE | re.DOTALL)
+OUTPUT = re.compile(r"\n+<!--\s*output:\s*(.*?)\s*-->", re.DOTALL)
 COMMAND = "$ "  # what begins a line that is typed and not printed
 LEFT_OUT = "…"
 
@@ -26,11 +26,12 @@ class Printed:
 
 def printed_blocks(text: str) -> Iterator[Printed]:
     """The blocks of a document that name the runs which printed them."""
-    for hit in BLOCK.finditer(text):
-        first = text.count("\n", 0, hit.start()) + 2
-        lines = enumerate(hit["lines"].splitlines(), first)
-        shown = tuple((number, line) for number, line in lines if line.strip() and not line.startswith(COMMAND))
-        yield Printed(tuple(hit["runs"].split()), shown)
+    for block in CODE.finditer(text):
+        mark = OUTPUT.match(text, block.end())
+        if mark and block[1]:
+            lines = enumerate(block[0].splitlines()[1:-1], text.count("\n", 0, block.start()) + 2)
+            shown = tuple((number, line) for number, line in lines if line.strip() and not line.startswith(COMMAND))
+            yield Printed(tuple(mark[1].split()), shown)
 
 
 def wrong_printed(root: Path, rows: Iterable[Row], raws: Mapping[str, Raw]) -> list[str]:

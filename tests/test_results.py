@@ -12,11 +12,13 @@ import pytest
 
 from results.__main__ import main
 from results.check import problems, wrong_marks, wrong_outputs
+from results.console import wrong_printed
 from results.marks import marks
 from results.page import PAGE, page
 from results.raw import Raw, read_raws, write_raw
 from results.rows import Bar, Figure, Row, read_rows
 from results.run import chosen, run_all
+from results.unmarked import wrong_numbers
 from results.values import figure_text, reaches, value
 from tests.places import ROOT
 
@@ -64,6 +66,14 @@ def test_the_page_follows_from_the_outputs() -> None:
 
 def test_every_marked_figure_agrees() -> None:
     assert wrong_marks(ROOT, read_rows(ROOT), read_raws(ROOT)) == []
+
+
+def test_every_printed_answer_was_printed() -> None:
+    assert wrong_printed(ROOT, read_rows(ROOT), read_raws(ROOT)) == []
+
+
+def test_every_number_with_a_unit_is_marked_or_stated() -> None:
+    assert wrong_numbers(ROOT, read_rows(ROOT), read_raws(ROOT)) == []
 
 
 def test_every_output_is_of_its_row_and_of_a_commit_of_this_history() -> None:
@@ -132,6 +142,48 @@ def test_a_wrong_figure_is_reported_with_file_and_line(house: Path, capsys: pyte
         "README.md:3: '6' where add-3.sum is '5'",
         "docs/deep/page.md:3: '112 of 1,300' where words.found is '12 of 1,300'",
     ]
+
+
+def test_what_no_run_printed_is_reported_with_its_line(house: Path) -> None:
+    block = "```console\n$ add\n{}\n```\n\n<!-- output: {} -->\n"
+    shown = [block.format(*one) for one in (("found … of\n  1,300", "words"), ("found 13", "words"), ("5", "add-3"))]
+    (house / "docs" / "page.md").write_text("```sh\nls\n```\n\n" + "\n".join(shown))
+    page_of = [line for line in problems(house) if line.startswith("docs/page.md")]
+    assert page_of == [
+        "docs/page.md:15: 'found 13' is not printed there by words",
+        "docs/page.md:22: 'add-3' is no run of results/runs.toml with a text as output",
+    ]
+
+
+def test_lines_are_printed_in_order(house: Path) -> None:
+    text = "```text\nof 1,300\nfound 12\n```\n<!-- output: words -->\n"
+    (house / "docs" / "page.md").write_text(text)
+    assert "docs/page.md:3: 'found 12' is not printed there by words" in problems(house)
+
+
+def test_a_number_with_a_unit_needs_a_mark_or_a_statement(house: Path) -> None:
+    text = (
+        "`8 mm` is code, found 12 of\n1,300 <!-- result: words.found --> too, but 3 mm, 4 to 5 % and 2 of 7 are not.\n"
+    )
+    (house / "docs" / "page.md").write_text(text)
+    words = "has no mark; mark it, or state it in results/stated.toml"
+    assert [line for line in problems(house) if "page.md" in line] == [
+        f"docs/page.md:2: '{number}' {words}" for number in ("3 mm", "4 to 5 %", "2 of 7")
+    ]
+    stated = (
+        'format = "puckpilot-stated/1"\n"docs/page.md" = ["3 mm", "4 to 5 %", "2 of 7", "9 s"]\n"docs/no.md" = []\n'
+    )
+    (house / "results" / "stated.toml").write_text(stated)
+    assert problems(house) == [
+        "results/stated.toml: '9 s' is stated of docs/page.md, which has no such number",
+        "results/stated.toml: docs/no.md is no document",
+    ]
+
+
+def test_a_table_of_stated_numbers_is_read_strictly(house: Path) -> None:
+    (house / "results" / "stated.toml").write_text('format = "puckpilot-stated/1"\n"docs/page.md" = "3 mm"\n')
+    with pytest.raises(ValueError, match=r"stated.toml: 'docs/page.md' is no list of texts"):
+        problems(house)
 
 
 def test_a_mark_of_nothing_is_reported(house: Path) -> None:
