@@ -1,0 +1,63 @@
+"""The state of a game as the simulator's record, written from what is known of a table, and the observations of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from puckpilot_env.game import sensing
+from puckpilot_env.game.state import FRAME
+from puckpilot_env.game.step import observe_table
+from puckpilot_env.kernel import kernel
+from puckpilot_env.physics.gantry.mallet import idle, place_axis
+from puckpilot_env.tables import Tables
+from puckpilot_env.variants import Variant
+
+Motion = tuple[float, float, float, float]  # x, y [m], vx, vy [m/s]
+
+
+class GameRecord:
+    """A record of one table of a variant, in whose places the caller writes what it knows.
+
+    `tables`: a simulator's table of its own, for spaces, columns and rules; nothing is stepped in it. ValueError, in
+    one line, for a variant whose observations are camera frames or estimates, which no table backend makes yet.
+    """
+
+    def __init__(self, variant: Variant | str, parameters: Mapping[str, float] | None, seed: int) -> None:
+        self.tables = Tables(variant, 1, seed=seed, autoreset=False, parameters=parameters)
+        if self.tables.variant.sensing != sensing.EXACT:
+            raise ValueError(
+                f"{self.tables.variant.id} shows a camera's frames; a table backend plays variants that show states, "
+                "such as puckpilot/match-v0"
+            )
+        self.record, self.p = self.tables.states[0], self.tables.params[0]
+        self.rule = self.tables.variant.rules()[0]
+        self._no_frames = np.zeros(1, FRAME)
+
+    def put_puck(self, puck: Motion) -> None:
+        """Write the puck's motion."""
+        for name, value in zip(("x", "y", "vx", "vy"), puck, strict=True):
+            self.record["puck"][name] = value
+
+    def put_mallet(self, which: int, motion: Motion) -> None:
+        """Write the motion of the robot's (0) or the opponent's mallet (1), in the table's frame."""
+        _put_mallet(self.record["mallets"][which], *motion)
+
+    def observe(self) -> NDArray[np.float32]:
+        """The observations (2, columns) of both players."""
+        tables = self.tables
+        observe_table(
+            self.record, self.p, tables.nominal[0], self.rule, self._no_frames, tables.observation_bounds,
+            tables.observations[0],
+        )  # fmt: skip
+        return tables.observations[0].copy()
+
+
+@kernel
+def _put_mallet(mallet, x, y, vx, vy):
+    place_axis(mallet.x, x, vx, 0.0)
+    place_axis(mallet.y, y, vy, 0.0)
+    idle(mallet.x)
+    idle(mallet.y)

@@ -1,0 +1,77 @@
+"""Estimates of puck and opponent from camera frames, and their motion predicted to a later moment."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from puckpilot_env.game.predict import expected_place
+from sim2real.table.backend import Place
+from sim2real.table.game_record import Motion
+from sim2real.vision.track.detector import OPPONENT_POWER, PUCK_POWER
+from sim2real.vision.track.kalman_tracker import KalmanTracker, Measurement, TrackState
+
+DEVIATION = 0.0003  # m, of a measured place, each coordinate
+COVARIANCE = DEVIATION**2 * np.eye(2)
+
+
+class SeenObject:
+    """An object that the camera sees: the newest state of its track, kept while it is hidden."""
+
+    def __init__(self, power: float) -> None:
+        self._power = power
+        self.forget()
+
+    def forget(self) -> None:
+        """Begin anew: the object was put somewhere else."""
+        self._tracker = KalmanTracker(self._power)
+        self.state: TrackState | None = None
+
+    def update(self, time: float, place: Place | None) -> None:
+        """Take a frame of `time` [s], in which the object is at `place` [m], or not seen."""
+        seen = [] if place is None else [Measurement(np.array(place), COVARIANCE, True)]
+        self.state = self._tracker.update(time, seen) or self.state
+
+    def unseen_for(self, time: float) -> float:
+        """How long before `time` [s] it was seen last [s]; infinite if never."""
+        return math.inf if self.state is None else time - self.state.time
+
+    def motion(self) -> Motion | None:
+        """The motion at the newest frame in which it was seen; None before the second."""
+        if self.state is None:
+            return None
+        (x, y), (vx, vy) = self.state.place, self.state.velocity
+        return float(x), float(y), float(vx), float(vy)
+
+
+class SeenTable:
+    """Puck and opponent as seen.
+
+    p: the table's parameters, as the player may know them, with which the free puck is predicted.
+    """
+
+    def __init__(self, p: np.void) -> None:
+        self._p = p
+        self.puck, self.opponent = SeenObject(PUCK_POWER), SeenObject(OPPONENT_POWER)
+
+    def forget(self) -> None:
+        """Begin anew."""
+        self.puck.forget()
+        self.opponent.forget()
+
+    def puck_at(self, time: float) -> Motion | None:
+        """The puck's motion at `time` [s] if no mallet touches it; None before it was seen twice."""
+        found = self.puck.motion()
+        return found and expected_place(*found, self._p, max(self.puck.unseen_for(time), 0.0))
+
+    def opponent_at(self, time: float) -> Motion | None:
+        """The opponent's motion at `time` [s] if it goes straight on for a moment; None before it was seen twice."""
+        found = self.opponent.motion()
+        if found is None:
+            return None
+        x, y, vx, vy = found
+        ahead = min(max(self.opponent.unseen_for(time), 0.0), 0.05)
+        low_x, high_x = 0.5 * self._p["length"], float(self._p["length"])
+        ahead_x, ahead_y = x + ahead * vx, y + ahead * vy
+        return min(max(ahead_x, low_x), high_x), min(max(ahead_y, 0.0), float(self._p["width"])), vx, vy
