@@ -200,7 +200,7 @@ def make_robot_seat(
     seed: int = 0,
     **options: Any,
 ) -> RobotSeat:
-    """The robot's seat at a backend by name; `options` are the backend's own. ValueError, in one line, for a wrong one."""
+    """The robot's seat at a backend by name, with the backend's own `options`. ValueError, in one line, for wrong ones."""
     game = GameRecord(variant, parameters, seed)
     made = make_backend(backend, game.p, variant, opponent, parameters=parameters, seed=seed, **options)
     return RobotSeat(made, variant, parameters, seed)

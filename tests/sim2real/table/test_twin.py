@@ -1,0 +1,171 @@
+"""The whole chain on the twin: action, trajectory, flashed firmware, plant, camera, observation; and safe stops."""
+
+from __future__ import annotations
+
+import gymnasium
+import numpy as np
+import pytest
+
+pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
+
+import puckpilot_env  # noqa: F401 - registers the ids
+from sim2real.table.backend import TableFaultError
+from sim2real.table.robot_seat import RobotSeat, make_robot_seat
+from sim2real.table.twin.twin import Twin
+
+MATCH = "puckpilot/match-v0"
+STAY = np.array([0.25, 0.5, 5.0, 5.0], np.float32)
+
+
+@pytest.fixture
+def seat():
+    env = make_robot_seat(MATCH, "twin", "still", seed=2)
+    yield env
+    env.close()
+
+
+def twin_of(env: RobotSeat) -> Twin:
+    twin = env._backend
+    assert isinstance(twin, Twin)
+    return twin
+
+
+def test_it_has_the_spaces_of_the_simulator(seat: RobotSeat) -> None:
+    simulated = gymnasium.make(MATCH, opponent="still")
+    assert seat.observation_space == simulated.observation_space and seat.action_space == simulated.action_space
+    observation, info = seat.reset(seed=1)
+    assert seat.observation_space.contains(observation)
+    assert info["acts_at"] > info["time"] and 0.0 < info["frame_age"] < 0.02
+
+
+def test_the_mallet_goes_where_the_action_says_and_the_columns_say_so(seat: RobotSeat) -> None:
+    seat.reset(seed=1)
+    target = np.array([0.6, 0.3, 8.0, 8.0], np.float32)
+    observation, plant = np.zeros(0), twin_of(seat).plant
+    for _ in range(8):
+        observation, *_, info = seat.step(target)
+    assert plant.mallet(0)[:2] == pytest.approx(target[:2], abs=0.001)
+    assert observation[:4] == pytest.approx([0.6, 0.3, 0.0, 0.0], abs=0.005)
+    assert info["plans_refused"] == 0 and info["off_path"] < 0.002
+
+
+def test_puck_and_opponent_are_seen_where_they_are(seat: RobotSeat) -> None:
+    seat.reset(seed=4)
+    names = [column.name for column in seat.tables.observation_columns]
+    at = names.index("puck_x")
+    errors = []
+    for _ in range(10):
+        observation, *_, info = seat.step(STAY)
+        plant = twin_of(seat).plant
+        puck, ahead = plant.puck, info["acts_at"] - plant.time
+        errors.append(np.abs(observation[at : at + 2] - puck[:2] - ahead * puck[2:]).max())
+        assert observation[names.index("opponent_x") :][:2] == pytest.approx(plant.mallet(1)[:2], abs=0.002)
+    assert np.median(errors) < 0.003
+
+
+def played(seed: int) -> tuple[list, list]:
+    env = make_robot_seat(MATCH, "twin", "interceptor", seed=seed)
+    try:
+        seen = [env.reset(seed=seed)[0]]
+        random = np.random.default_rng(5)
+        for _ in range(10):
+            action = random.uniform(*env.tables.action_bounds).astype(np.float32)
+            seen.append(env.step(action)[0])
+        board = twin_of(env).board
+        assert board is not None
+        return [one.tolist() for one in seen], list(board.machine.pwm)
+    finally:
+        env.close()
+
+
+@pytest.mark.slow
+def test_the_same_seed_gives_the_same_game_to_the_last_bit() -> None:
+    once = played(3)
+    assert once == played(3) and once[0] != played(4)[0]
+    assert len(once[1]) > 100
+
+
+def test_a_motor_never_gets_more_than_15_volts(seat: RobotSeat) -> None:
+    seat.reset(seed=1)
+    for k in range(10):
+        seat.step(np.array([0.1 + 0.8 * (k % 2), 0.1 + 0.8 * (k % 2), 24.0, 24.0], np.float32))
+    board = twin_of(seat).board
+    assert board is not None and 10.0 < board.most_volts <= 15.0 + 1e-3
+
+
+def test_a_cable_that_is_cut_stops_the_mallet_within_50_ms(seat: RobotSeat) -> None:
+    seat.reset(seed=1)
+    seat.step(np.array([0.9, 0.9, 3.0, 3.0], np.float32))
+    twin = twin_of(seat)
+    board, cut = twin.board, twin.now()
+    assert board is not None and max(map(abs, board.machine.motors.duties)) > 0.0
+    board.cut = True
+    with pytest.raises(TableFaultError, match="port is lost"):
+        seat.step(np.array([0.9, 0.9, 3.0, 3.0], np.float32))
+    board.run(cut + 0.2)
+    assert board.machine.motors.duties == (0.0, 0.0)
+    driven = [time for time, *duties in board.machine.pwm if any(duties)]
+    off = next(time for time, *duties in board.machine.pwm if time > driven[-1] and not any(duties))
+    assert off * 1e-6 <= cut + 0.051 + 0.002  # the last message may have come a ping's period before the cut
+
+
+def test_a_camera_that_is_unplugged_stops_the_mallet(seat: RobotSeat) -> None:
+    seat.reset(seed=1)
+    twin = twin_of(seat)
+    twin.camera.unplugged = True
+    board = twin.board
+    assert board is not None
+    with pytest.raises(TableFaultError, match="no frame for"):
+        seat.step(np.array([0.9, 0.9, 3.0, 3.0], np.float32))
+    board.run(board.now() + 0.005)
+    assert board.machine.motors.duties == (0.0, 0.0)
+
+
+def test_a_policy_that_hangs_stops_the_mallet(seat: RobotSeat) -> None:
+    seat.reset(seed=1)
+    seat.step(np.array([0.9, 0.9, 1.0, 1.0], np.float32))
+    twin = twin_of(seat)
+    twin.wait(twin.now() + 0.25)
+    assert twin.board is not None and twin.board.machine.motors.duties == (0.0, 0.0)
+
+
+def test_closing_stops_the_mallet(seat: RobotSeat) -> None:
+    seat.reset(seed=1)
+    seat.step(np.array([0.9, 0.9, 3.0, 3.0], np.float32))
+    board = twin_of(seat).board
+    seat.close()
+    assert board is not None
+    board.run(board.now() + 0.005)
+    assert board.machine.motors.duties == (0.0, 0.0)
+    with pytest.raises(ValueError, match="call reset"):
+        seat.step(STAY)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"backend": "twinn"}, "unknown backend 'twinn'; did you mean 'twin'?"),
+        ({"backend": "twin", "seat": 1}, "seat is given with backend 'twin'"),
+        ({"backend": "twin", "period": 0.05}, "period is given with backend"),
+        ({"backend": "twin", "opponent": "goaly"}, "unknown player 'goaly'; did you mean 'goalie'?"),
+    ],
+)
+def test_what_a_backend_cannot_do_is_refused_in_one_line(options: dict, words: str) -> None:
+    with pytest.raises(ValueError) as caught:
+        gymnasium.make(MATCH, **options)
+    assert words in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_a_variant_of_camera_frames_is_refused() -> None:
+    with pytest.raises(ValueError, match="shows a camera's frames"):
+        gymnasium.make("puckpilot/match-sensors-v0", backend="twin")
+
+
+def test_gymnasium_makes_the_twin_by_naming_it() -> None:
+    env = gymnasium.make(MATCH, backend="twin", opponent="still")
+    try:
+        observation, _ = env.reset(seed=1)
+        after, *_ = env.step(STAY)
+        assert env.observation_space.contains(observation) and env.observation_space.contains(after)
+    finally:
+        env.close()
