@@ -43,7 +43,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m results", description="Published figures and where they are from.")
     commands = parser.add_subparsers(dest="command", required=True)
     run = commands.add_parser("run", help="make runs, one after the other, and keep their outputs")
-    run.add_argument("id", nargs="*", help="a row of runs.toml; default: all whose output is missing")
+    run.add_argument("id", nargs="*", help="a row of runs.toml; default: all without output, or of another command")
     run.add_argument("--minutes", type=float, default=math.inf, metavar="M", help="without ids: only rows of at most M")
     commands.add_parser("page", help="write docs/results.md from the outputs")
     commands.add_parser("check", help="say which figure does not agree with the outputs; 1 if there is one")

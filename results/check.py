@@ -12,7 +12,7 @@ from results.provenance import in_history
 from results.raw import Raw, read_raws
 from results.rows import Row, read_rows
 from results.unmarked import wrong_numbers
-from results.values import figure_text
+from results.values import figure_text, reaches
 
 
 def problems(root: Path) -> list[str]:
@@ -45,6 +45,8 @@ def _faults(root: Path, row: Row | None, raw: Raw) -> list[str]:
     for figure in row.figures:
         try:
             figure_text(figure, raw.output)
+            if figure.bar is not None:
+                reaches(figure, raw.output)
         except ValueError as error:
             faults.append(f"figure {figure.name}: {error}")
     return faults

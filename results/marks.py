@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 MARK = re.compile(r"<!--\s*result:\s*(\S+?)\s*-->")
-CODE = re.compile(r"^(```|~~~).*?^\1|(?<!`)(`+)(?!`).+?(?<!`)\2(?!`)", re.MULTILINE | re.DOTALL)
+CODE = re.compile(r"^ *(`{3,}|~{3,}).*?^ *\1|(?<!`)(`+)(?!`)(?:(?!\n\s*\n).)+?(?<!`)\2(?!`)", re.MULTILINE | re.DOTALL)
 EMPHASIS = "*_` \t\n"  # what may stand between a figure and its mark
 GOES_ON = re.compile(r"[\w.,+\-−]$")  # what belongs to a number that it stands before
 

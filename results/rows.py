@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
@@ -129,6 +130,10 @@ def _check(row: Row, ids: list[str]) -> None:
     if ids.count(row.id) > 1 or len(set(names)) < len(names):
         raise ValueError(f"run '{row.id}': its id or the name of a figure is there twice")
     for figure in row.figures:
+        if figure.find and (figure.at or (figure.bar and figure.bar.of)):
+            raise ValueError(f"figure {row.id}.{figure.name}: `at` and `of` are for `values`, and it has `find`")
+        if figure.bar and figure.bar.least == -math.inf and figure.bar.most == math.inf:
+            raise ValueError(f"figure {row.id}.{figure.name}: its bar has no limit; expected `least`, `most` or both")
         if bool(figure.values) == bool(figure.find) or row.prints_json == bool(figure.find):
             wanted = "`values`" if row.prints_json else "`find`"
             raise ValueError(f"figure {row.id}.{figure.name}: its run prints otherwise; expected {wanted} alone")

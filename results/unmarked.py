@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -18,13 +18,14 @@ from results.values import figure_text
 FORMAT = "puckpilot-stated/1"
 STATED = "results/stated.toml"
 UNITS = (
-    "%", "×", "mm", "cm", "µm", "um", "ms", "µs", "us", "ns", "s", "min", "minutes?", "hours?", "times", "Hz", "kHz",
-    "bytes", "kB", "MB", "GB", "instructions", "million", "thousand", "billion", "M", "k", "px", "pixels?", "V", "W",
+    "%", "×", "m", "m/s", "mm/s", "mm", "cm", "µm", "um", "ms", "µs", "us", "ns", "s", "min", "minutes?", "hours?",
+    "times", "Hz", "kHz", "rad", "°", "A", "V", "W", "bits?", "bytes", "kB", "MB", "GB", "instructions", "million",
+    "thousand", "billion", "M", "k", "px", "pixels?",
 )  # fmt: skip
 VALUE = r"[−-]?\d[\d,.]*(?:\^\d+)?"
 NUMBER = re.compile(
-    rf"(?<![\w.,^`-])(?:{VALUE}(?: (?:to|and|or) |, |[–-]))*{VALUE} ?(?:{'|'.join(UNITS)})(?![\w/])"
-    rf"|(?<![\w.,])\d[\d,.]* (?:of|in) \d[\d,.^]*|\d[\d,.]* (?:agent-)?steps/s"
+    rf"(?<![\w.,^`-])(?:{VALUE}(?:\s(?:to|and|or)\s|,\s|[–-]))*{VALUE}\s?(?:{'|'.join(UNITS)})(?![\w/])"
+    rf"|(?<![\w.,])\d[\d,.]*\s(?:of|in)\s\d[\d,.^]*|\d[\d,.]* (?:agent-)?steps/s"
 )
 COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 
@@ -39,7 +40,7 @@ def wrong_numbers(root: Path, rows: Iterable[Row], raws: Mapping[str, Raw]) -> l
         name = path.relative_to(root).as_posix()
         if name == PAGE:
             continue
-        left = Counter(stated.pop(name, ()))
+        left = set(stated.pop(name, ()))
         unused = set(left)
         for line, number in numbers(path.read_text(encoding="utf-8"), figures):
             unused.discard(number)
@@ -75,7 +76,8 @@ def _figure_texts(rows: Iterable[Row], raws: Mapping[str, Raw]) -> dict[str, str
     for row in rows:
         for figure in row.figures:
             if row.id in raws:
-                texts[f"{row.id}.{figure.name}"] = figure_text(figure, raws[row.id].output)
+                with suppress(ValueError):  # `wrong_outputs` reports it
+                    texts[f"{row.id}.{figure.name}"] = figure_text(figure, raws[row.id].output)
     return texts
 
 

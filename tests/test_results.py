@@ -145,14 +145,51 @@ def test_a_wrong_figure_is_reported_with_file_and_line(house: Path, capsys: pyte
 
 
 def test_what_no_run_printed_is_reported_with_its_line(house: Path) -> None:
-    block = "```console\n$ add\n{}\n```\n\n<!-- output: {} -->\n"
-    shown = [block.format(*one) for one in (("found … of\n  1,300", "words"), ("found 13", "words"), ("5", "add-3"))]
+    block = "```console\n$ python # so\n{}\n```\n\n<!-- output: {} -->\n"
+    shown = [block.format(*one) for one in (("found 12 of\n  1,300", "words"), ("found 13", "words"), ("5", "add-3"))]
     (house / "docs" / "page.md").write_text("```sh\nls\n```\n\n" + "\n".join(shown))
     page_of = [line for line in problems(house) if line.startswith("docs/page.md")]
     assert page_of == [
         "docs/page.md:15: 'found 13' is not printed there by words",
-        "docs/page.md:22: 'add-3' is no run of results/runs.toml with a text as output",
+        "docs/page.md:20: 'add-3' is no run of results/runs.toml with a text as output",
     ]
+
+
+@pytest.mark.parametrize(
+    ("shown", "words"),
+    [
+        ("found 1", "'found 1' is not printed there by words"),
+        ("found 12 … 1,300", "'found 12 … 1,300' is not printed there by words"),
+        ("und 12", "'und 12' is not printed there by words"),
+        ("$ other 5\nfound 12", "'$ other 5' is not the command of words"),
+        ("$ python -c 'x'", "a mark of printed lines needs a run, and lines that it printed"),
+    ],
+)
+def test_what_is_printed_is_compared_word_by_word(house: Path, shown: str, words: str) -> None:
+    (house / "docs" / "page.md").write_text(f"```text\n{shown}\n```\n<!-- output: words -->\n")
+    (line,) = [line for line in problems(house) if line.startswith("docs/page.md")]
+    assert line.endswith(words)
+
+
+@pytest.mark.parametrize("shown", ["found 12 of 1,300", "found 12\nof", "found […] 1,300", "- x\n\n"])
+def test_what_is_printed_may_be_a_part_of_it(house: Path, shown: str) -> None:
+    indent = "  " if shown.startswith("-") else ""
+    lines = f"{indent}```text\n{indent}found 12\n{indent}```\n" if indent else f"```text\n{shown}\n```\n"
+    (house / "docs" / "page.md").write_text(f"{lines}\n<!-- output: words -->\n")
+    assert problems(house) == []
+
+
+def test_a_mark_of_printed_lines_without_a_block_is_reported(house: Path) -> None:
+    (house / "docs" / "page.md").write_text("Words.\n\n<!-- output: words -->\n")
+    assert problems(house) == ["docs/page.md: 1 of its marks of printed lines follow no block of ``` or ~~~"]
+
+
+def test_an_output_without_its_figure_hides_no_other_problem(house: Path) -> None:
+    write_raw(house, replace(read_raws(house)["add-3"], output={}))
+    (house / "docs" / "page.md").write_text("It is 3 mm off.\n")
+    assert main(["check"], house) == 1
+    found = "\n".join(problems(house))
+    assert "raw/add-3.json: figure sum: the output has no '/sum'" in found and "docs/page.md:1: '3 mm'" in found
 
 
 def test_lines_are_printed_in_order(house: Path) -> None:
@@ -163,7 +200,7 @@ def test_lines_are_printed_in_order(house: Path) -> None:
 
 def test_a_number_with_a_unit_needs_a_mark_or_a_statement(house: Path) -> None:
     text = (
-        "`8 mm` is code, found 12 of\n1,300 <!-- result: words.found --> too, but 3 mm, 4 to 5 % and 2 of 7 are not.\n"
+        "`8 mm` is code, found 12 of\n1,300 <!-- result: words.found --> too, but 3 mm, 4 to 5 % and 2 of\n7 are not.\n"
     )
     (house / "docs" / "page.md").write_text(text)
     words = "has no mark; mark it, or state it in results/stated.toml"

@@ -1,4 +1,7 @@
-"""Residuals of the identified models on the holdout; no other number of a diagnosis depends on it."""
+"""Residuals of the identified models on the holdout; no other number of a diagnosis depends on it.
+
+Exceptions, which use no residual: input checks and the split itself look at complete recordings.
+"""
 
 from __future__ import annotations
 

@@ -97,7 +97,7 @@ def _launches(
         _, first_glide = np.unique(found.cluster, return_index=True)
         starts = np.searchsorted(t, [found.glides[k].t[0] for k in first_glide])
         launch_of_row.append(first + np.maximum(np.searchsorted(starts, np.arange(len(t)), side="right") - 1, 0))
-        counts.append(_contact_counts(own_segments, found))
+        counts.append(_contact_counts(own_segments, found) if len(t) else np.zeros((0, len(KINDS)), int))
         first += len(counts[-1])
     return tuple(launch_of_row), np.concatenate(counts)
 

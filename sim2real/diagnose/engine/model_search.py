@@ -157,6 +157,7 @@ def search_model(
     model, law, smooth = best.model, best.law, best.smooth
     kept = use if smooth else without_outliers(problem, law, use)
     if len(kept) < len(use):
+        baseline = fit(problem, baseline.values, problem.base, kept)
         law = refit(problem, baseline, [one for one in model.laws if not one.family], screen, kept)
     gains = selection.gains(model, screen.listed) if clear else []
     return SearchResult(
@@ -166,7 +167,7 @@ def search_model(
         smooth=smooth,
         theta_covariance=_covariance(problem, smooth, use),
         clusters=kept,
-        defaults=defaults_accepted(problem, defaults, baseline, use, dispersion),
+        defaults=defaults_accepted(problem, defaults, baseline, kept, dispersion),
         dispersion=dispersion,
         screen=screen,
         forward_selection=selection,

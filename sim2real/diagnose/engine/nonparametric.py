@@ -69,9 +69,9 @@ def fit_nonparametric(
         there = search.downhill(here, best)
         if there is None:
             return replace(best, theta=np.concatenate([np.zeros(len(law.free)), here.coefficients]), cv_loss=cv_loss)
-        cv_loss, now = best.cv_loss, search.loss(here, best.spread)
+        cv_loss, now, then = best.cv_loss, search.loss(here, best.spread), search.loss(there, best.spread)
         here, best = there, search.solved(there)
-        if now - search.loss(here, best.spread) < ENGINE.term_decrease * now:
+        if now - then < ENGINE.term_decrease * now:
             break
     return best
 

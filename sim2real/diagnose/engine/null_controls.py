@@ -19,14 +19,21 @@ NULL, PERMUTED = "null", "permutation"
 
 
 def null_controls(
-    equations: NormalEquations, units: Units, model: Model, listed: Sequence[Law], use: np.ndarray, test: np.ndarray
+    equations: NormalEquations,
+    units: Units,
+    model: Model,
+    listed: Sequence[Law],
+    use: np.ndarray,
+    test: np.ndarray,
+    least: float = 0.0,
 ) -> dict[str, NullControl]:
     """Fit `model` to null data of the clusters `use` and predict null data of the clusters `test`.
 
     Returns, by the kind of data, the rms residual before and after the laws are added. NULL: white sensor noise about
-    the baseline; a search among the `listed` laws and those of the model (a wave at the length found) should find
-    nothing in it. PERMUTED: the baseline's residuals with a random sign for each unit (a randomization test). No search
-    is made there, since these residuals are as smooth as the missing law and would resemble other laws.
+    the baseline; a forward selection and backward elimination among the `listed` laws and those of the model (a wave
+    at the length found), with the limit `least` of `ForwardSelection`, should find nothing in it. PERMUTED: the
+    baseline's residuals with a random sign for each unit (a randomization test). No search is made there, since these
+    residuals are as smooth as the missing law and would resemble other laws.
     """
     laws = list({law.columns: law for law in (*model.laws, *listed)}.values())
     every = Model(model.base, tuple(laws), (1.0,) * len(laws))
@@ -36,22 +43,27 @@ def null_controls(
         NULL: lambda rng: _noise(inner, units, rng),
         PERMUTED: lambda rng: _flipped(residual, rng),
     }
-    rng, found = np.random.default_rng(0), {}
+    rng, controls = np.random.default_rng(0), {}
     for name, draw in drawn.items():
         data = [draw(rng) for _ in range(ENGINE.null_draws)]
         before, after = np.mean([list(_rms(one, units, model, use, test)) for one in data], axis=0)
-        found[name] = NullControl(float(before), float(after))
+        controls[name] = NullControl(float(before), float(after))
         if name == NULL:
-            named = sum(_finds_laws(one, units, model, laws, use) for one in data)
-            found[name] = replace(found[name], named=named, of=ENGINE.null_draws)
-    return found
+            named = sum(_finds_laws(one, units, model.base, laws, use, least) for one in data)
+            controls[name] = replace(controls[name], named=named, of=ENGINE.null_draws)
+    return controls
 
 
-def _finds_laws(equations: NormalEquations, units: Units, model: Model, laws: Sequence[Law], use: np.ndarray) -> bool:
-    """Return whether a search as in `model_search` selects any law."""
-    dispersion = estimated_dispersion(equations, units, model.base, laws, use)
-    selection = ForwardSelection(equations, units, use, dispersion)
-    grown = selection.add_forward(Model(model.base), laws, len(model.laws))
+def _finds_laws(
+    equations: NormalEquations, units: Units, base: tuple[str, ...], laws: Sequence[Law], use: np.ndarray, least: float
+) -> bool:
+    """Return whether forward selection and backward elimination as in `model_search` leave any law.
+
+    The smooth terms of `model_search` are not searched, nor are laws fitted jointly to the trajectories.
+    """
+    dispersion = estimated_dispersion(equations, units, base, laws, use)
+    selection = ForwardSelection(equations, units, use, dispersion, least)
+    grown = selection.add_forward(Model(base), laws, ENGINE.most_listed)
     return bool(selection.eliminate_backward(grown).laws)
 
 

@@ -10,7 +10,7 @@ from sim2real.diagnose.result.result import Proof
 
 
 def pooled(proofs: Sequence[Proof]) -> Proof | None:
-    """Return the rms over all segments of the proofs, None if there is none."""
+    """Return the rms over all launches of the proofs, None if there is none."""
     if not proofs:
         return None
     pieces = sum(one.pieces for one in proofs)

@@ -69,9 +69,11 @@ def _findings(problem: Problem, chosen: Selection) -> tuple[Finding, ...]:
     if not found.model.laws:
         return ()
     misfit = {law.name: validation.rms(chosen.without[law.name]) for law in found.model.laws}
-    tested = np.isin(found.clusters, validation.launches[ENGINE.launch_folds - 1 :: ENGINE.launch_folds])
-    parts = (found.clusters[~tested], found.clusters[tested])
-    controls = null_controls(found.screen.equations, problem.units, found.model, found.screen.listed, *parts)
+    tested = np.isin(found.clusters, found.clusters[:: ENGINE.launch_folds])
+    controls = null_controls(
+        found.screen.equations, problem.units, found.model, found.screen.listed, found.clusters[~tested],
+        found.clusters[tested], found.forward_selection.least,
+    )  # fmt: skip
     ordered = sorted(found.model.laws, key=lambda law: -misfit[law.name])
     findings = [_unlisted(problem, found, law) if law.family else _listed(found, law) for law in ordered]
     return tuple(replace(one, null_controls=controls) for one in findings)

@@ -36,7 +36,8 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Proof:
-    """Residuals on `pieces` held-out segments: rms [m] before and after, and `floor_m`, the rms of noise alone."""
+    """Residuals on `pieces` held-out launches (of the gantry: segments of some seconds): rms [m] before and after, and
+    `floor_m`, the rms of noise alone."""
 
     before_m: float
     after_m: float

@@ -1,5 +1,7 @@
 """The choice of the holdout: one of every few launches, with some of each kind of contact."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -71,3 +73,15 @@ def test_launches_are_counted_through_all_recordings(tmp_path):
     recordings = [read_recording(tmp_path / f"{k}") for k in range(2)]
     first, second = (np.unique(rows) for rows in launches_of(recordings, [segment(one) for one in recordings]))
     assert second[0] == first[-1] + 1 and len(first) > 3
+
+
+def test_a_recording_of_the_gantry_alone_is_no_launch(tmp_path):
+    make_recording(tmp_path / "one", Law(), "rally", 3, 20.0, dt=5e-5)
+    recording = read_recording(tmp_path / "one")
+    gantry = replace(recording, frames=None)
+    recordings = [recording, gantry, recording]
+    segments = [segment(one) for one in recordings]
+    alone = launches_of([recording], segments[:1])[0]
+    first, none, last = launches_of(recordings, segments)
+    np.testing.assert_array_equal(first, alone)
+    assert len(none) == 0 and last.min() == alone.max() + 1

@@ -146,7 +146,8 @@ def fit_clock(
 ) -> ClockFit | None:
     """Fit delay and rate, if `free`, and the nuisance parameters by robust least squares, beginning at `start`.
 
-    `skip`: launches left out of the fit, whose residuals are returned too. None if there are too few contacts.
+    `skip`: launches left out of the fit, whose residuals are returned too. None if there are too few contacts, or
+    none that determine the clock.
     """
     theta = np.concatenate([np.where(free, start, 0.0), np.zeros(len(CLOCK.nuisance_std))])
     prior = 1 / np.square(CLOCK.nuisance_std)
@@ -157,7 +158,8 @@ def fit_clock(
         rows = [linearise(each, theta[0], theta[1]) for each in tables]
         gap, jacobian, variance = (np.concatenate(part) for part in zip(*rows, strict=True))
         residual = gap + jacobian[:, 2:] @ theta[2:]
-        touches = np.abs(residual) < CLOCK.largest_gap
+        known = np.isfinite(jacobian).all(axis=1) & np.isfinite(variance)  # a hole of the encoders may be near
+        touches = known & (np.abs(residual) < CLOCK.largest_gap)
         used = touches & in_fit
         if used.sum() < CLOCK.fewest_contacts:
             return None
@@ -167,6 +169,8 @@ def fit_clock(
         normal = (jacobian[used].T * weight) @ jacobian[used]
         rest[2:] += prior * theta[2:]
         normal[2:, 2:] += np.diag(prior)
+        if not _determined(normal[np.ix_(kept, kept)]):
+            return None
         inverse = np.linalg.inv(normal[np.ix_(kept, kept)])
         step = inverse @ rest[kept]
         theta[kept] -= step
@@ -179,6 +183,13 @@ def fit_clock(
     covariance *= dispersion**2 * (ROBUST.t_freedom + 3) / (ROBUST.t_freedom + 1)
     clock = Clock(float(theta[0]), float(theta[1]), covariance)
     return ClockFit(clock, residual, std, launch, touches, in_fit, float(dispersion), freedom, theta[2:])
+
+
+def _determined(normal: np.ndarray) -> bool:
+    """Whether normal equations (n, n) determine all numbers: a mallet at rest tells no delay, a single contact with a
+    moving one no rate."""
+    scale = np.sqrt(np.diag(normal))
+    return bool((scale > 0.0).all() and np.linalg.cond(normal / np.outer(scale, scale)) < CLOCK.worst_condition)
 
 
 def gaps_of_others(

@@ -11,7 +11,7 @@ from sim2real.segmentation.causes import WALLS, Geometry, in_mouth, nominal_line
 from sim2real.segmentation.velocity_jumps import VelocityJump
 from sim2real.statistics.robust import t_weights, typical
 
-# Slants [rad] of a wall against the camera's axes at which the line is searched
+# Slopes [1] of a wall against the camera's axes at which the line is searched
 SLANTS = np.linspace(-CONTACT_LINES.most_slant, CONTACT_LINES.most_slant, CONTACT_LINES.slants)
 
 

@@ -21,10 +21,10 @@ class HeldOutErrors:
 def held_out_errors(before: np.ndarray, after: np.ndarray, std: np.ndarray, launch: np.ndarray) -> HeldOutErrors | None:
     """The rms of errors (n,) [m] before and after correction, with standard deviations `std` (n,) [m].
 
-    Only errors that are finite in both are used. `launch` (n,): the launch of each error, the unit of the proof. None
-    if no error is finite in both.
+    Only errors that are finite in both, and whose standard deviation is, are used. `launch` (n,): the launch of each
+    error, the unit of the proof. None if no error is.
     """
-    both = np.isfinite(before) & np.isfinite(after)
+    both = np.isfinite(before) & np.isfinite(after) & np.isfinite(std)
     if not both.any():
         return None
     before, after, std = before[both], after[both], std[both]
