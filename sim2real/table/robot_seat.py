@@ -200,7 +200,7 @@ def make_robot_seat(
     seed: int = 0,
     **options: Any,
 ) -> RobotSeat:
-    """The robot's seat at a backend by name, with the backend's own `options`. ValueError, in one line, for wrong ones."""
+    """The robot's seat at a backend by name, with its own `options`. ValueError, in one line, for what cannot be."""
     game = GameRecord(variant, parameters, seed)
     made = make_backend(backend, game.p, variant, opponent, parameters=parameters, seed=seed, **options)
     return RobotSeat(made, variant, parameters, seed)
