@@ -10,7 +10,7 @@ from puckpilot_env.game import mirror
 from puckpilot_env.physics.gantry.mallet import axis_coefficients
 from sim2real.link.serial_port import SerialLine
 from sim2real.link.session import Session
-from sim2real.link.wire.messages import Config, Event, Fault, Notice, Refusal, State, Telemetry, Traj
+from sim2real.link.wire.messages import FORMATS, Config, Event, Fault, Notice, Refusal, State, Telemetry, Traj
 from sim2real.table.backend import Place, TableFaultError
 from sim2real.table.mallet_driver import OPERATING_VOLTS, MalletPlan
 
@@ -21,6 +21,7 @@ AREA_SLACK = 0.002  # m beyond the area of plans in which the mallet may err bef
 PATIENCE = 2.0  # s that a step of the bring-up may take
 EXCHANGES = 10  # pings that are answered before the board's clock is relied on
 POLL = 0.001  # s between polls
+STALE = 0.05  # s without telemetry after which the board counts as lost
 MICRO = 1e-6
 
 
@@ -85,7 +86,7 @@ class BoardLine:
             self.telemetry = telemetry[-1]
 
     def _take(self, event: Event) -> None:
-        if event.code == Notice.REFUSED:
+        if event.code == Notice.REFUSED and event.detail >> 8 == FORMATS[Traj][0]:
             self.refused.append(Refusal(event.detail & 0xFF))
 
     def check(self) -> None:
@@ -95,6 +96,8 @@ class BoardLine:
             return
         if not session.port_is_open:
             raise TableFaultError("the board's port is lost; plug it in and begin anew")
+        if (session.age or 0.0) > STALE:
+            raise TableFaultError(f"no telemetry for {1e3 * STALE:.0f} ms; check the cable and begin anew")
         if session.state == State.FAULT:
             reason = Fault(session.telemetry.fault).name if session.telemetry else "unknown"
             raise TableFaultError(f"the board stopped the motors: {reason}; clear the table and begin anew")

@@ -41,9 +41,10 @@ class GameRecord:
         for name, value in zip(("x", "y", "vx", "vy"), puck, strict=True):
             self.record["puck"][name] = value
 
-    def put_mallet(self, which: int, motion: Motion) -> None:
-        """Write the motion of the robot's (0) or the opponent's mallet (1), in the table's frame."""
-        _put_mallet(self.record["mallets"][which], *motion)
+    def put_mallet(self, which: int, motion: Motion, acceleration: tuple[float, float] = (0.0, 0.0)) -> None:
+        """Write the motion of the robot's (0) or the opponent's mallet (1), in the table's frame; with its acceleration
+        [m/s^2] where that is known."""
+        _put_mallet(self.record["mallets"][which], *motion, *acceleration)
 
     def observe(self) -> NDArray[np.float32]:
         """The observations (2, columns) of both players."""
@@ -56,8 +57,8 @@ class GameRecord:
 
 
 @kernel
-def _put_mallet(mallet, x, y, vx, vy):
-    place_axis(mallet.x, x, vx, 0.0)
-    place_axis(mallet.y, y, vy, 0.0)
+def _put_mallet(mallet, x, y, vx, vy, ax, ay):
+    place_axis(mallet.x, x, vx, ax)
+    place_axis(mallet.y, y, vy, ay)
     idle(mallet.x)
     idle(mallet.y)

@@ -54,11 +54,13 @@ class MalletDriver:
         self._mallet = np.zeros(1, MALLET)[0]
         _prepare(self._mallet, p)
         self._begin = 0.0
+        self._before, self._before_begin = self._mallet.copy(), 0.0  # the plan that was followed until `_begin`
 
     def stand(self, x: float, y: float, time: float) -> None:
         """The mallet is at rest at x, y [m] from `time` [s] on."""
         _stand(self._mallet, x, y)
-        self._begin = time
+        self._begin = self._before_begin = time
+        self._before = self._mallet.copy()
 
     def plan(self, action: ArrayLike, begin: float) -> MalletPlan:
         """Plan for an action (4,), target x, y [m] and volts x, y [V] in the robot's frame, that acts at `begin` [s].
@@ -69,6 +71,7 @@ class MalletDriver:
         x, y, vx, vy = (float(one) for one in np.asarray(action, float))
         if not np.isfinite([x, y, vx, vy]).all():
             raise ValueError(f"the action is {np.asarray(action).tolist()}; expected four finite numbers")
+        self._before, self._before_begin = self._mallet.copy(), self._begin
         _plan(self._mallet, self._p, begin - self._begin, x, y, vx, vy, self._limit)
         self._begin = begin
         axes = (self._mallet["x"], self._mallet["y"])
@@ -77,7 +80,9 @@ class MalletDriver:
         return MalletPlan(begin, volts, t1, t2, modes)
 
     def motion(self, time: float) -> tuple[float, float, float, float]:
-        """The path's x, y [m] and vx, vy [m/s] at `time` [s], not before the last plan's begin."""
+        """The path's x, y [m] and vx, vy [m/s] at `time` [s], by the last plan or the one before it."""
+        if time < self._begin:
+            return motion_at(self._before, max(time - self._before_begin, 0.0))
         return motion_at(self._mallet, time - self._begin)
 
     def standing(self, time: float) -> bool:

@@ -120,7 +120,7 @@ class RobotSeat(gymnasium.Env[NDArray[Any], NDArray[Any]]):
             self._seen.opponent.update(frame.time, frame.opponent)
             puck = self._seen.puck.motion()
             if frame.puck is not None and puck is not None:
-                robot = self._driver.motion(self._backend.now())
+                robot = self._driver.motion(frame.time)
                 self._referee.watch(frame.time, puck, robot, self._seen.opponent.motion())
 
     def _send(self, action: ArrayLike, begin: float) -> None:

@@ -45,7 +45,7 @@ class ScriptedHand:
         if np.isfinite(puck[0]):
             self._game.put_puck((float(puck[0]), float(puck[1]), float(puck[2]), float(puck[3])))
         for which in range(2):
-            self._game.put_mallet(which, plant.mallet(which))
+            self._game.put_mallet(which, plant.mallet(which), plant.acceleration(which))
         action = self._player.act(self._game.observe()[None, 1])[0]
         mallet = self._game.record["mallets"][1]
         _plan(mallet, self._game.p, *(float(one) for one in action))

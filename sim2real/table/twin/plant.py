@@ -42,6 +42,10 @@ class Plant:
         x, vx, _, y, vy, _ = (float(one) for one in self._mallets[which, :6])
         return x, y, vx, vy
 
+    def acceleration(self, which: int) -> Place:
+        """Acceleration [m/s^2] of the robot's (0) or the opponent's mallet (1)."""
+        return float(self._mallets[which, 2]), float(self._mallets[which, 5])
+
     def shafts(self) -> Place:
         """Angles of the robot's two shafts [rad] (report E.1): (x - y)/R and (-x - y)/R."""
         motor = self._mallets[0, -6:]  # the motors' own state, where a belt or a gap separates them

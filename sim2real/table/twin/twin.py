@@ -44,6 +44,7 @@ class Twin:
         self._errors, self._seed = camera or CameraErrors(), seed
         self.hand = ScriptedHand(variant, opponent, parameters, seed)
         self.board: EmulatedBoard | None = None
+        self.line: BoardLine | None = None
 
     def connect(self, home: Place) -> None:
         """Switch board and camera on, home and arm."""
@@ -55,6 +56,12 @@ class Twin:
         self.line.bring_up(board_config(self._p), home)
 
     @property
+    def _line(self) -> BoardLine:
+        if self.line is None:
+            raise TableFaultError("the twin is not connected; call connect() first")
+        return self.line
+
+    @property
     def _board(self) -> EmulatedBoard:
         if self.board is None:
             raise TableFaultError("the twin is not connected; call connect() first")
@@ -63,7 +70,7 @@ class Twin:
     @property
     def refused(self) -> int:
         """The number of plans that the board did not take."""
-        return len(self.line.refused)
+        return len(self._line.refused)
 
     def now(self) -> float:
         """Virtual time since power-on [s]."""
@@ -80,23 +87,23 @@ class Twin:
         """Let virtual time pass until `until` [s], and serve the line."""
         while self.now() < until - 1e-9:
             self._run(min(self.now() + POLL, until))
-            self.line.poll()
+            self._line.poll()
 
     def read(self) -> Reading:
         """What came since the last call."""
-        self.line.check()
+        self._line.check()
         frames, now = self.camera.take(self.now()), self.now()
         if frames:
             self._since = now
         elif now - self._since > BLIND:
             raise TableFaultError(f"no frame for {1e3 * (now - self._since):.0f} ms; check the camera and begin anew")
-        telemetry = self.line.telemetry
+        telemetry = self._line.telemetry
         late = now - frames[-1].time if frames else math.nan
         return Reading(frames, telemetry.place if telemetry else None, late)
 
     def send(self, plan: MalletPlan) -> None:
         """Send a plan to the board."""
-        self.line.send(plan)
+        self._line.send(plan)
 
     def place_puck(self, puck: np.ndarray) -> None:
         """The hand puts the puck down and its mallet home."""
@@ -110,15 +117,14 @@ class Twin:
 
     def stop(self) -> None:
         """Emergency stop of the board."""
-        if self.board is not None and not self.board.cut:
+        if self.line is not None:
             self.line.stop()
 
     def close(self) -> None:
-        """Stop, and drop board and camera."""
-        if self.board is not None:
-            self.stop()
+        """Stop, and drop the board."""
+        if self.line is not None:
             self.line.close()
-            self.board = None
+        self.board = self.line = None
 
 
 def law_of(p: np.void) -> Law:

@@ -56,6 +56,8 @@ def test_the_next_plan_goes_on_from_the_motion_of_the_one_before() -> None:
     second = driver.plan([0.2, 0.4, 10.0, 10.0], 0.1)
     assert second.modes.sum(axis=0) == pytest.approx(moving[:, 0], abs=1e-6)
     assert driver.motion(0.1) == pytest.approx((*moving[:, 0], *moving[:, 1]), abs=1e-5)
+    earlier = integrated(first, at_rest(*HOME), 0.06)
+    assert driver.motion(0.06) == pytest.approx((*earlier[:, 0], *earlier[:, 1]), abs=1e-5)
     end = integrated(second, moving, 1.5)
     assert end[:, 0] == pytest.approx([0.2, 0.4], abs=1e-4)
 

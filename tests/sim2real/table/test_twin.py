@@ -121,6 +121,26 @@ def test_a_camera_that_is_unplugged_stops_the_mallet(seat: RobotSeat) -> None:
     assert board.machine.motors.duties == (0.0, 0.0)
 
 
+def test_a_board_that_is_reset_ends_the_game_with_motors_off(seat: RobotSeat) -> None:
+    seat.reset(seed=1)
+    seat.step(np.array([0.9, 0.9, 3.0, 3.0], np.float32))
+    board = twin_of(seat).board
+    assert board is not None
+    board.machine.reset("watchdog")
+    with pytest.raises(TableFaultError, match="begin anew"):
+        seat.step(np.array([0.9, 0.9, 3.0, 3.0], np.float32))
+    assert board.machine.motors.duties == (0.0, 0.0)
+
+
+def test_a_mallet_that_is_held_fast_ends_the_game_with_motors_off(seat: RobotSeat) -> None:
+    seat.reset(seed=1)
+    twin, fast = twin_of(seat), np.array([0.9, 0.9, 10.0, 10.0], np.float32)
+    twin.plant.drive = lambda first, second: None  # pyright: ignore[reportAttributeAccessIssue] - the belts are off
+    with pytest.raises(TableFaultError, match=r"the board stopped the motors: (OFF_PATH|ENCODER_FROZEN)"):
+        for _ in range(10):
+            seat.step(fast)
+
+
 def test_a_policy_that_hangs_stops_the_mallet(seat: RobotSeat) -> None:
     seat.reset(seed=1)
     seat.step(np.array([0.9, 0.9, 1.0, 1.0], np.float32))
