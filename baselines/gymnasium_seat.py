@@ -76,6 +76,8 @@ def make_seat(
         given |= {"effects": effects, "draws": draws}
         if wrong := [name for name, value in given.items() if value is not None]:
             raise ValueError(f"{wrong[0]} is given with backend '{backend}'; a backend takes opponent and parameters")
+        if not isinstance(opponent, str):
+            raise ValueError(f"opponent is {in_short(opponent)}; a backend takes a player's name")
         make = importlib.import_module(TABLE_SEAT).make_robot_seat
         return make(variant, backend, opponent, parameters=parameters, seed=seed)
     tables = Tables(

@@ -65,7 +65,6 @@ def _result(args: argparse.Namespace, variant: str, logs: list[GameLog]) -> dict
         "fouls": [sum(log.fouls[k] for log in logs) for k in range(2)],
         "seconds": sum(log.seconds for log in logs),
         "plans": sum(log.plans for log in logs),
-        "plans_refused": sum(log.refused for log in logs),
         "frame_age_s": {"median": float(np.median(ages)), "p99": float(np.percentile(ages, 99))},
         "mallet_off_path_m": max(log.off_path for log in logs),
     }
@@ -77,6 +76,6 @@ def _summary(result: dict[str, Any]) -> str:
         f"{result['players'][0]}: {won} won, {lost} lost of {result['games']}; goals {scored}:{conceded} in "
         f"{result['seconds']:.0f} s of play\n"
         f"newest frame at a decision: median {1e3 * ages['median']:.1f} ms old, 99 % {1e3 * ages['p99']:.1f} ms; "
-        f"{result['plans']} plans sent, {result['plans_refused']} refused; mallet off its path by at most "
+        f"{result['plans']} plans sent; mallet off its path by at most "
         f"{1e3 * result['mallet_off_path_m']:.1f} mm"
     )

@@ -29,21 +29,20 @@ class SeenFrame:
 class Reading:
     """All that came since the last reading.
 
-    `frames`: in order of time; `mallet`: by the encoders, None before the first telemetry; `late_s`: age of the newest
-    frame when it could be used [s], nan without frames.
+    `frames`: in order of time; `late_s`: age of the newest frame now [s], nan without frames; `off_path`: the farthest
+    that the encoders had the mallet from its path [m].
     """
 
     frames: list[SeenFrame]
-    mallet: Place | None
     late_s: float
+    off_path: float
 
 
 class Backend(Protocol):
     """A table. It is not connected when it is made; every way out ends in `close`, which stops the mallet first."""
 
-    @property
-    def refused(self) -> int:
-        """The number of plans that the board did not take."""
+    def seed(self, seed: int) -> None:
+        """Begin the randomness of all that is drawn anew; before `connect`."""
         ...
 
     def connect(self, home: Place) -> None:
@@ -59,7 +58,7 @@ class Backend(Protocol):
         ...
 
     def read(self) -> Reading:
-        """What came since the last call. TableFaultError, in one line, if the board stopped the motors."""
+        """What came since the last call. TableFaultError, in one line, if the board stopped the motors, or refused."""
         ...
 
     def send(self, plan: MalletPlan) -> None:
@@ -74,10 +73,6 @@ class Backend(Protocol):
         """Show the state of the game, a `state.TABLE` record, to the opponent, who plays on by it."""
         ...
 
-    def stop(self) -> None:
-        """Switch the motors off now, whatever the state; never raises."""
-        ...
-
     def close(self) -> None:
-        """Stop, and free all that was opened; may be called again."""
+        """Switch the motors off, whatever the state, and free all that was opened; may be called again."""
         ...

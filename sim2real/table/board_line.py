@@ -10,14 +10,15 @@ from puckpilot_env.game import mirror
 from puckpilot_env.physics.gantry.mallet import axis_coefficients
 from sim2real.link.serial_port import SerialLine
 from sim2real.link.session import Session
-from sim2real.link.wire.messages import FORMATS, Config, Event, Fault, Notice, Refusal, State, Telemetry, Traj
+from sim2real.link.wire.messages import FORMATS, Config, Event, Fault, Notice, Refusal, State, Traj
 from sim2real.table.backend import Place, TableFaultError
-from sim2real.table.mallet_driver import OPERATING_VOLTS, MalletPlan
+from sim2real.table.mallet_driver import MalletPlan, operating_volts
 
 PROPORTIONAL, INTEGRAL, DERIVATIVE = 400.0, 500.0, 2.0  # V/m, V/m/s, V s/m of both axes
 OFF_PATH = 0.05  # m from its path at which the board stops the mallet
 SILENCE = 50  # ms without a message after which the board stops
 AREA_SLACK = 0.002  # m beyond the area of plans in which the mallet may err before the board stops it
+AT_HOME = 0.002  # m from the home that was sent, by the encoders
 PATIENCE = 2.0  # s that a step of the bring-up may take
 EXCHANGES = 10  # pings that are answered before the board's clock is relied on
 POLL = 0.001  # s between polls
@@ -30,7 +31,7 @@ def board_config(p: np.void) -> Config:
     x_low, x_high, y_low, y_high = mirror.area(0, p)
     (c5x, c6x, c7x), (c5y, c6y, c7y) = axis_coefficients(p, 0), axis_coefficients(p, 1)
     return Config(
-        (c5x, c5y), (c6x, c6y), (c7x, c7y), float(p["pulley_radius"]), float(p["max_voltage"]), OPERATING_VOLTS,
+        (c5x, c5y), (c6x, c6y), (c7x, c7y), float(p["pulley_radius"]), float(p["max_voltage"]), operating_volts(p),
         (x_low - AREA_SLACK, x_high + AREA_SLACK), (y_low - AREA_SLACK, y_high + AREA_SLACK),
         (PROPORTIONAL, PROPORTIONAL), (INTEGRAL, INTEGRAL), (DERIVATIVE, DERIVATIVE), OFF_PATH, SILENCE,
     )  # fmt: skip
@@ -49,8 +50,8 @@ class BoardLine:
         self._connect, self._now, self._serve = connect, now, serve
         self._session: Session | None = None
         self._armed = False
-        self.telemetry: Telemetry | None = None
-        self.refused: list[Refusal] = []  # of plans, since the bring-up
+        self._refused = ""  # the first message that the board refused, and why
+        self._off_path = 0.0  # m, the farthest since it was taken
 
     def bring_up(self, config: Config, home: Place) -> None:
         """Greet the board, configure it, home the mallet at `home` [m] and arm. TableFaultError where a step fails."""
@@ -62,10 +63,14 @@ class BoardLine:
         session.config(config)
         self._until(lambda: session.state in (State.UNHOMED, State.IDLE), "the board does not get ready")
         session.home(*home)
-        self._until(lambda: session.state == State.IDLE, "the board does not take the mallet's home")
+        self._until(lambda: session.state == State.IDLE and self._stands_at(home), "the board does not take the home")
         session.arm()
         self._until(lambda: session.state == State.ARMED, "the board does not arm")
         self._armed = True
+
+    def _stands_at(self, home: Place) -> bool:
+        telemetry = self._open().telemetry
+        return telemetry is not None and float(np.hypot(*np.subtract(telemetry.place, home))) < AT_HOME
 
     def _until(self, done: Callable[[], bool], otherwise: str) -> None:
         end = self._now() + PATIENCE
@@ -74,6 +79,7 @@ class BoardLine:
                 raise TableFaultError(f"{otherwise}; see puckpilot link test")
             self._serve(self._now() + POLL)
             self.poll()
+            self._refuse_refusals()
 
     def poll(self) -> None:
         """Read and answer what is due, and keep the newest telemetry; call it every few milliseconds."""
@@ -82,15 +88,26 @@ class BoardLine:
         for event in session.take_events():
             self._take(event)
         session.take_notes()
-        if telemetry := session.take_telemetry():
-            self.telemetry = telemetry[-1]
+        for telemetry in session.take_telemetry():
+            if telemetry.state == State.ARMED and telemetry.sequence:
+                self._off_path = max(self._off_path, float(np.hypot(*np.subtract(telemetry.place, telemetry.path))))
+
+    def take_off_path(self) -> float:
+        """The farthest that the encoders had the mallet from its path since the last call [m]."""
+        farthest, self._off_path = self._off_path, 0.0
+        return farthest
 
     def _take(self, event: Event) -> None:
-        if event.code == Notice.REFUSED and event.detail >> 8 == FORMATS[Traj][0]:
-            self.refused.append(Refusal(event.detail & 0xFF))
+        if event.code == Notice.REFUSED and not self._refused:
+            names = {number: message.__name__.lower() for message, (number, _) in FORMATS.items()}
+            self._refused = f"{names.get(event.detail >> 8, 'message')}, {Refusal(event.detail & 0xFF).name}"
+
+    def _refuse_refusals(self) -> None:
+        if self._refused:
+            raise TableFaultError(f"the board refused a {self._refused}; begin anew")
 
     def check(self) -> None:
-        """TableFaultError, in one line, if an armed board does not play any more."""
+        """TableFaultError, in one line, if an armed board does not play any more, or refused what it was sent."""
         session = self._open()
         if not self._armed:
             return
@@ -103,6 +120,7 @@ class BoardLine:
             raise TableFaultError(f"the board stopped the motors: {reason}; clear the table and begin anew")
         if session.state not in (None, State.ARMED):
             raise TableFaultError(f"the board is in {State(session.state).name} and not ARMED; begin anew")
+        self._refuse_refusals()
 
     def send(self, plan: MalletPlan) -> None:
         """Send a plan. TableFaultError if there is no board that could take it."""

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 class GameLog:
     """score, fouls: of the robot and its opponent; outcome: 1 won, 0 nobody, -1 lost; seconds: of play.
 
-    plans, refused: sent to the board, and those that it did not take; frame_ages [s]: of the newest frame at each
-    decision; off_path [m]: the farthest that the encoders had the mallet from its path.
+    plans: sent to the board; frame_ages [s]: of the newest frame at each decision; off_path [m]: the farthest that the
+    encoders had the mallet from its path.
     """
 
     score: tuple[int, int] = (0, 0)
@@ -18,6 +18,5 @@ class GameLog:
     outcome: int = 0
     seconds: float = 0.0
     plans: int = 0
-    refused: int = 0
     frame_ages: list[float] = field(default_factory=list)
     off_path: float = 0.0

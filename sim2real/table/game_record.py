@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from puckpilot_env.game import sensing
+from puckpilot_env.game.start import MATCH
 from puckpilot_env.game.state import FRAME
 from puckpilot_env.game.step import observe_table
 from puckpilot_env.kernel import kernel
@@ -22,18 +23,17 @@ class GameRecord:
     """A record of one table of a variant, in whose places the caller writes what it knows.
 
     `tables`: a simulator's table of its own, for spaces, columns and rules; nothing is stepped in it. ValueError, in
-    one line, for a variant whose observations are camera frames or estimates, which no table backend makes yet.
+    one line, for drills, and for variants that draw their table or show camera frames: no backend plays them yet.
     """
 
     def __init__(self, variant: Variant | str, parameters: Mapping[str, float] | None, seed: int) -> None:
         self.tables = Tables(variant, 1, seed=seed, autoreset=False, parameters=parameters)
-        if self.tables.variant.sensing != sensing.EXACT:
+        self.rule = self.tables.variant.rules()[0]
+        if self.rule["sensing"] != sensing.EXACT or self.rule["game"] != MATCH or self.tables.variant.draws:
             raise ValueError(
-                f"{self.tables.variant.id} shows a camera's frames; a table backend plays variants that show states, "
-                "such as puckpilot/match-v0"
+                f"a table backend plays puckpilot/match-v0; {self.tables.variant.id} is not played there yet"
             )
         self.record, self.p = self.tables.states[0], self.tables.params[0]
-        self.rule = self.tables.variant.rules()[0]
         self._no_frames = np.zeros(1, FRAME)
 
     def put_puck(self, puck: Motion) -> None:

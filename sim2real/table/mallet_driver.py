@@ -21,9 +21,10 @@ from puckpilot_env.physics.gantry.mallet import (
 from puckpilot_env.physics.gantry.plan import plan_mallet
 
 OPERATING_VOLTS = 15.0  # V that a motor ever gets on a table (report)
-PLANNED_VOLTS = 14.0  # V of these for plans; the rest is left to the board's feedback
+FEEDBACK_VOLTS = 1.0  # V of these that plans leave to the board's feedback
 AHEAD = 0.014  # s from sending a plan until it acts: the board looks at it for 10 ms
-LIFE = 0.2  # s after the last plan's begin in which the mallet goes on: a policy that hangs stops it
+LEAST_LIFE, AFTER = 0.2, 0.1  # s of a plan, and from its end until the motors are off: it always brakes by itself
+LONGEST_LIFE = 5.0  # s, the protocol's; only plans of a volt or so are longer
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,7 @@ class MalletPlan:
     """A plan of the robot's mallet: +volts until t1, -volts until t2, then none, from the state that the modes say.
 
     `begin`: on the host's clock [s]; `volts` signed, axes x and y [V]; `t1`, `t2` since the begin [s]; `modes` (3, 2):
-    rest, slow and fast of x and y at the begin [m]; `life` [s]: after it the motors are off.
+    rest, slow and fast of x and y at the begin [m].
     """
 
     begin: float
@@ -39,7 +40,16 @@ class MalletPlan:
     t1: tuple[float, float]
     t2: tuple[float, float]
     modes: np.ndarray
-    life: float = LIFE
+
+    @property
+    def life(self) -> float:
+        """After so long since the begin the motors are off [s]; the plan is over by then, unless its volts are few."""
+        return min(max(LEAST_LIFE, *(one + AFTER for one in self.t2)), LONGEST_LIFE)
+
+
+def operating_volts(p: np.void) -> float:
+    """The most that a motor may get on a table of these parameters [V]."""
+    return min(OPERATING_VOLTS, float(p["max_voltage"]))
 
 
 class MalletDriver:
@@ -50,7 +60,7 @@ class MalletDriver:
 
     def __init__(self, p: np.void) -> None:
         self._p = p
-        self._limit = min(PLANNED_VOLTS, float(p["max_voltage"]))
+        self._limit = operating_volts(p) - FEEDBACK_VOLTS
         self._mallet = np.zeros(1, MALLET)[0]
         _prepare(self._mallet, p)
         self._begin = 0.0

@@ -30,7 +30,7 @@ def play(
     make = find_player(player)
     env = make_robot_seat(variant, backend, opponent, seed=seed)
     try:
-        actor = make(Seat.from_tables(env.tables, seed))
+        actor = make(Seat.from_tables(env.tables, 2 * seed))
         observation, info = env.reset(seed=seed)
         log, over = GameLog(), False
         while not over and (seconds is None or log.seconds < seconds):
@@ -40,7 +40,7 @@ def play(
             _note(log, info, tell)
             if info["new_point"]:
                 actor.reset(np.ones(1, bool))
-        log.outcome = int(np.sign(log.score[0] - log.score[1]))
+        log.outcome = int(info.get("outcome", np.sign(log.score[0] - log.score[1])))
         return log
     finally:
         env.close()
@@ -54,5 +54,5 @@ def _note(log: GameLog, info: dict[str, Any], tell: Callable[[str], None]) -> No
             if is_now > was:
                 tell(f"{info['play_time']:6.1f} s  {name} of the {who}, {score[0]}:{score[1]}")
     log.score, log.fouls, log.seconds = score, fouls, info["play_time"]
-    log.plans, log.refused = info["plans"], info["plans_refused"]
+    log.plans = info["plans"]
     log.off_path = max(log.off_path, info["off_path"])

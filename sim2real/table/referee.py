@@ -9,8 +9,11 @@ from puckpilot_env.physics.contacts import bounce
 from sim2real.table.game_record import GameRecord, Motion
 from sim2real.table.moving_objects import SeenTable
 
+Seen = tuple[float, Motion]  # time of a frame [s], and the motion then
+SAMPLES = 5  # of the time between two frames at which contacts are looked for
+HIDDEN = 0.02  # s without a sight of the puck, in which the clock does not end a point: it may be in a goal
 GONE = 0.1  # s without a sight of the puck after which it is in the goal that it went to
-TOUCHING = 0.01  # m between puck and mallet below which they are taken for touching
+TOUCHING = 0.004  # m between puck and mallet below which they are taken for touching
 
 
 class Referee:
@@ -21,7 +24,7 @@ class Referee:
 
     def __init__(self, game: GameRecord) -> None:
         self._game = game
-        self._before: Motion | None = None  # the puck, one frame ago
+        self._before: Seen | None = None  # the puck, one frame ago
         self._half_since = 0.0
         self.rewards = np.zeros(2, np.float32)
 
@@ -44,16 +47,29 @@ class Referee:
     def watch(self, time: float, puck: Motion, robot: Motion, opponent: Motion | None) -> None:
         """Take the motions at a frame of `time` [s]."""
         record, middle = self._game.record, 0.5 * float(self._game.p["length"])
+        before, self._before = self._before, (time, puck)
         self._game.put_puck(puck)
-        reach = float(self._game.p["puck_radius"] + self._game.p["mallet_radius"]) + TOUCHING
+        if record["ending"] != rules.RUNNING:
+            return
         for which, mallet in enumerate((robot, opponent)):
-            if mallet and np.hypot(puck[0] - mallet[0], puck[1] - mallet[1]) < reach:
+            if mallet and self._touches(before, (time, puck), mallet):
                 record["puck"]["touched"][which] = 1
-        if self._before is not None and (self._before[0] < middle) != (puck[0] < middle):
+        if before is not None and (before[1][0] < middle) != (puck[0] < middle):
             self._half_since = time
+            ahead = (puck[0] - before[1][0]) / (time - before[0])
+            if ahead * puck[2] <= 0.0:  # struck back within the frame: the rules ask where it crossed to
+                self._game.put_puck((puck[0], puck[1], ahead, puck[3]))
             entered = robot if puck[0] < middle else opponent or (2 * middle, 0.0, 0.0, 0.0)
             rules.crossed_middle(record, self._game.p, self._game.rule, self.rewards, entered[0], entered[1])
-        self._before = puck
+
+    def _touches(self, before: Seen | None, now: Seen, mallet: Motion) -> bool:
+        """Whether the puck came to the mallet since the frame before, going on as then or having come as now."""
+        earlier = before or now
+        since = np.linspace(earlier[0], now[0], SAMPLES)[:, None]
+        paths = [_at(one, since) for one in (earlier, now)]
+        there = _at((now[0], mallet), since)
+        nearest = min(float(np.linalg.norm(path - there, axis=1).min()) for path in paths)
+        return nearest < float(self._game.p["puck_radius"] + self._game.p["mallet_radius"]) + TOUCHING
 
     def end_step(self, now: float, seen: SeenTable) -> bool:
         """Count the step, and judge. Returns whether a new point begins: the record says where the puck is put."""
@@ -67,7 +83,7 @@ class Referee:
             again = record["ending"] == rules.RUNNING
         else:
             rules.look_for_clear(record, p, rule, self.rewards)
-        if record["ending"] == rules.RUNNING:
+        if record["ending"] == rules.RUNNING and (again or seen.puck.unseen_for(now) < HIDDEN):
             again = bool(rules.keep_time(record, p, rule, self.rewards)) or again
         return again
 
@@ -79,4 +95,10 @@ class Referee:
         expected = seen.puck_at(now)
         if expected is not None and (expected[0] <= 0.0 or expected[0] >= length):
             return -1 if expected[0] <= 0.0 else 1
-        return -1 if self._before[0] < 0.5 * length else 1  # a mallet sent it there between two frames
+        return -1 if self._before[1][0] < 0.5 * length else 1  # a mallet sent it there between two frames
+
+
+def _at(seen: Seen, times: np.ndarray) -> np.ndarray:
+    """Places (n, 2) [m] at `times` (n, 1) [s] on a straight way."""
+    time, (x, y, vx, vy) = seen
+    return np.array([x, y]) + (times - time) * np.array([vx, vy])

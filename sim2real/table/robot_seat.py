@@ -17,6 +17,7 @@ from puckpilot_env.game import rules
 from puckpilot_env.game.start import HOME
 from puckpilot_env.options.inputs import reset_options
 from puckpilot_env.options.real_numbers import real_numbers
+from puckpilot_env.tables import ROUNDING
 from puckpilot_env.variants import Variant
 from sim2real.table.backend import Backend, Place
 from sim2real.table.backends import make_backend
@@ -26,7 +27,6 @@ from sim2real.table.moving_objects import SeenTable
 from sim2real.table.referee import Referee
 
 HOMING_VOLTS = 5.0  # V, of the way home between points
-SETTLED = 0.1  # s at home before a point begins, in which the camera sees the puck
 POINT_PAUSE = 0.02  # s between looks at whether the mallet is home
 SEEN_WITHIN = 1.0  # s in which the puck is seen after it was put down
 
@@ -36,8 +36,8 @@ class RobotSeat(gymnasium.Env[NDArray[Any], NDArray[Any]]):
 
     An observation is of the moment at which the next action will act. The info of a step has the host's `time` [s] at
     which it was made, the moment `acts_at` [s], the `frame_age` [s] of the newest frame, `play_time` [s], `score` and
-    `fouls` of the robot and its opponent, whether a `new_point` began, the number of `plans` sent and of those
-    refused, and how far the mallet is `off_path` [m] by its encoders. The mallet is stopped by `close`, and by every
+    `fouls` of the robot and its opponent, whether a `new_point` began, the number of `plans` sent, and how far the
+    mallet was `off_path` [m] since the step before, by its encoders. The mallet is stopped by `close`, and by every
     error of the backend, which is raised.
     """
 
@@ -52,7 +52,7 @@ class RobotSeat(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         self._connected = False
         self._over = True
         self._seen, self._referee = SeenTable(self._game.p), Referee(self._game)
-        self._frame_age, self._off_path, self._plans = math.nan, 0.0, 0
+        self._frame_age, self._off_path, self._plans, self._placed = math.nan, 0.0, 0, 0.0
 
     @property
     def _home(self) -> Place:
@@ -61,9 +61,15 @@ class RobotSeat(gymnasium.Env[NDArray[Any], NDArray[Any]]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
-        """Begin a new episode: connect if need be, drive home, have the puck put down. `options` is not used."""
+        """Begin a new episode: connect if need be, drive home, have the puck put down. `options` is not used.
+
+        With a seed, the backend is connected anew with it, so that the same seed gives the same game.
+        """
         reset_options(options)
         super().reset(seed=seed)
+        if seed is not None:
+            self.close()
+            self._backend.seed(int(seed))
         with self._stopped_by_errors():
             if not self._connected:
                 self._backend.connect(self._home)
@@ -80,10 +86,12 @@ class RobotSeat(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         if self._over:
             raise ValueError("the episode is over (or has not begun); call reset() before step()")
         wanted = np.asarray(real_numbers(action, "the action"), np.float32)
-        if wanted.shape != (4,) or not self.action_space.contains(wanted):
+        low, high = self.tables.action_bounds
+        slack = ROUNDING * (high - low)
+        if wanted.shape != (4,) or not np.all((wanted >= low - slack) & (wanted <= high + slack)):
             raise ValueError(f"the action is {wanted.tolist()}; expected four numbers in {self.action_space}")
         with self._stopped_by_errors():
-            return self._step(wanted)
+            return self._step(np.clip(wanted, low, high))
 
     def _step(self, action: NDArray[np.float32]) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
         begin = self._backend.now()
@@ -97,12 +105,12 @@ class RobotSeat(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         ending = int(self._game.record["ending"])
         self._over = ending != rules.RUNNING
         truncated = ending == rules.STEP_LIMIT
-        if self._over:
-            self._drive_home()
-        elif again:
+        if again and not self._over:
             self._begin_point()
         observation, info = self._observed()
-        info["new_point"] = again
+        info["new_point"] = again and not self._over
+        if self._over:
+            self._drive_home()
         self.tables.terminated[0], self.tables.truncated[0] = self._over and not truncated, truncated
         if self._over:
             info |= only_row(outcome_info(self.tables, np.zeros(1, int)))
@@ -111,11 +119,10 @@ class RobotSeat(gymnasium.Env[NDArray[Any], NDArray[Any]]):
     def _take_frames(self) -> None:
         """Update the estimates, and show the referee each frame in which the puck is seen."""
         reading = self._backend.read()
-        self._frame_age = reading.late_s
-        if reading.mallet is not None:
-            x, y, _, _ = self._driver.motion(self._backend.now())
-            self._off_path = math.hypot(reading.mallet[0] - x, reading.mallet[1] - y)
+        self._frame_age, self._off_path = reading.late_s, max(self._off_path, reading.off_path)
         for frame in reading.frames:
+            if frame.time <= self._placed:  # of the point before
+                continue
             self._seen.puck.update(frame.time, frame.puck)
             self._seen.opponent.update(frame.time, frame.opponent)
             puck = self._seen.puck.motion()
@@ -144,6 +151,7 @@ class RobotSeat(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         put = np.array([float(puck[name]) for name in ("x", "y", "vx", "vy")])
         self._drive_home()
         self._backend.place_puck(put)
+        self._placed = self._backend.now()
         self._seen.forget()
         self._referee.begin(self._backend.now())
         end = self._backend.now() + SEEN_WITHIN
@@ -172,8 +180,9 @@ class RobotSeat(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         info = {
             "time": now, "acts_at": acts_at, "frame_age": self._frame_age, "play_time": float(record["time"]),
             "score": record["score"].copy(), "fouls": record["fouls"].copy(), "new_point": False,
-            "plans": self._plans, "plans_refused": self._backend.refused, "off_path": self._off_path,
+            "plans": self._plans, "off_path": self._off_path,
         }  # fmt: skip
+        self._off_path = 0.0
         return self._game.observe()[0], info
 
     @contextmanager

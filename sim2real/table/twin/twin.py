@@ -19,6 +19,7 @@ from sim2real.table.twin.camera import CameraErrors, TwinCamera
 from sim2real.table.twin.hand import ScriptedHand
 from sim2real.table.twin.plant import Plant
 
+MODELLED = tuple(row.name for row in TABLE if row.name in {field.name for field in fields(Law)})  # of the baseline
 BLIND = 0.05  # s without a new frame after which the camera counts as lost
 
 
@@ -42,7 +43,9 @@ class Twin:
     ) -> None:
         self._p, self._law = p, law or law_of(p)
         self._errors, self._seed = camera or CameraErrors(), seed
-        self.hand = ScriptedHand(variant, opponent, parameters, seed)
+        refuse_unmodelled(parameters)
+        self._make_hand = lambda seed: ScriptedHand(variant, opponent, parameters, 2 * seed + 1)
+        self.hand = self._make_hand(seed)
         self.board: EmulatedBoard | None = None
         self.line: BoardLine | None = None
 
@@ -67,10 +70,10 @@ class Twin:
             raise TableFaultError("the twin is not connected; call connect() first")
         return self.board
 
-    @property
-    def refused(self) -> int:
-        """The number of plans that the board did not take."""
-        return len(self._line.refused)
+    def seed(self, seed: int) -> None:
+        """Noise, the hand and the board's memory begin anew."""
+        self._seed = seed
+        self.hand = self._make_hand(seed)
 
     def now(self) -> float:
         """Virtual time since power-on [s]."""
@@ -97,9 +100,8 @@ class Twin:
             self._since = now
         elif now - self._since > BLIND:
             raise TableFaultError(f"no frame for {1e3 * (now - self._since):.0f} ms; check the camera and begin anew")
-        telemetry = self._line.telemetry
         late = now - frames[-1].time if frames else math.nan
-        return Reading(frames, telemetry.place if telemetry else None, late)
+        return Reading(frames, late, self._line.take_off_path())
 
     def send(self, plan: MalletPlan) -> None:
         """Send a plan to the board."""
@@ -115,11 +117,6 @@ class Twin:
         """The hand decides what to do next."""
         self.plant.play(self.hand.decide(self.plant, game))
 
-    def stop(self) -> None:
-        """Emergency stop of the board."""
-        if self.line is not None:
-            self.line.stop()
-
     def close(self) -> None:
         """Stop, and drop the board."""
         if self.line is not None:
@@ -127,7 +124,13 @@ class Twin:
         self.board = self.line = None
 
 
+def refuse_unmodelled(parameters: Mapping[str, float] | None) -> None:
+    """ValueError, in one line, for a parameter that the plant's law does not have, or under another name."""
+    for name in parameters or ():
+        if name not in MODELLED:
+            raise ValueError(f"the twin does not model '{name}'; it takes {', '.join(MODELLED)}")
+
+
 def law_of(p: np.void) -> Law:
     """The independent table's law with the baseline's numbers as the parameters say."""
-    known = {field.name for field in fields(Law)}
-    return replace(Law(), **{row.name: float(p[row.name]) for row in TABLE if row.name in known})
+    return replace(Law(), **{name: float(p[name]) for name in MODELLED})

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from puckpilot_env.parameters import make_records
-from sim2real.table.mallet_driver import PLANNED_VOLTS, MalletDriver, MalletPlan
+from sim2real.table.mallet_driver import FEEDBACK_VOLTS, OPERATING_VOLTS, MalletDriver, MalletPlan
 
 P = make_records(1)[0]
 HOME = (0.25, 0.5)
@@ -70,7 +70,8 @@ def test_motors_never_get_more_than_the_operating_limit_and_the_mallet_stays_ins
     for k in range(200):
         wild = random.uniform(-0.5, 1.5, 2), random.uniform(0.0, 24.0, 2)
         plan = driver.plan(np.concatenate(wild), 0.1 * k)
-        assert abs(plan.volts[0]) + abs(plan.volts[1]) <= 2.0 * PLANNED_VOLTS
+        assert abs(plan.volts[0]) + abs(plan.volts[1]) <= 2.0 * (OPERATING_VOLTS - FEEDBACK_VOLTS)
+        assert plan.life >= min(max(plan.t2), 5.0)
         for since in np.linspace(0.0, 0.1, 5):
             x, y, _, _ = driver.motion(0.1 * k + since)
             assert radius <= x <= 1.0 - radius and radius <= y <= 1.0 - radius

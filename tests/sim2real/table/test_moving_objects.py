@@ -29,6 +29,23 @@ def test_a_puck_is_predicted_past_a_bounce() -> None:
     assert expected[2:] == pytest.approx(trace.puck[late, 2:], abs=0.02)
 
 
+def test_the_velocity_after_a_bounce_is_known_at_once() -> None:
+    """In the first frame after a wall, and nearly so after a mallet; the truth is the independent table's."""
+    trace = run(Law(), (1.0, 0.5, 0.4, 3.0), duration=0.5, sample=1 / RATE)
+    after = int(np.ceil(trace.contacts[0].t * RATE))
+    seen = SeenTable(P)
+    for frame in range(after + 1):
+        seen.puck.update(frame / RATE, tuple(trace.puck[frame, :2]))
+    found = seen.puck.motion()
+    assert found is not None and found[2:] == pytest.approx(trace.puck[after, 2:], abs=0.05)
+    seen = SeenTable(P)
+    for frame in range(20):
+        seen.puck.update(frame / RATE, (1.0 + 0.01 * frame, 0.5))
+    seen.puck.update(20 / RATE, (1.15, 0.55))  # struck
+    found = seen.puck.motion()
+    assert found is not None and found[2:] == pytest.approx((-0.04 * RATE, 0.05 * RATE), rel=0.02)
+
+
 def test_what_was_seen_once_or_never_is_not_known() -> None:
     seen = SeenTable(P)
     assert seen.puck_at(0.0) is None and seen.puck.unseen_for(1.0) == np.inf
