@@ -50,7 +50,8 @@ class SeenObject:
     def _after_contact(self, before: TrackState, now: TrackState) -> np.ndarray:
         """The velocity (2,) after a contact since the frame before: off a wall, if that is where it would be, else the
         mean of the frames' interval."""
-        x, y, vx, vy = self._expected((*before.place, *self._velocity), now.time - before.time)
+        (x, y), (vx, vy) = before.place, self._velocity
+        x, y, vx, vy = self._expected((float(x), float(y), float(vx), float(vy)), now.time - before.time)
         if np.hypot(x - now.place[0], y - now.place[1]) < WALL:
             return np.array([vx, vy])
         return (now.place - before.place) / (now.time - before.time)
