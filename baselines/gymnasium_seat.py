@@ -7,9 +7,11 @@ envs = gymnasium.make_vec("puckpilot/match-v0", num_envs=64, opponent="goalie", 
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
+import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
@@ -25,6 +27,7 @@ from puckpilot_env.options.inputs import in_short, whole_number
 from puckpilot_env.tables import MOST_TABLES, Tables
 from puckpilot_env.variants import Variant
 
+TABLE_SEAT = "sim2real.table.robot_seat"  # of a package above this one, so loaded only where a backend is named
 AnyOpponent = str | Callable[[Seat], Player] | Opponent  # a name, a function from a seat to a player, or a player
 
 
@@ -54,18 +57,29 @@ def make_seat(
     seat: int = 0,
     render_mode: str | None = None,
     *,
+    backend: str | None = None,
     period: float | None = None,
     max_cycles: int | None = None,
     parameters: Mapping[str, float] | None = None,
     effects: Effects | None = None,
     draws: Draws | None = None,
-) -> SingleEnv:
+) -> SingleEnv | gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]:
     """A Gymnasium environment of one seat (0 or 1); `opponent` plays the other.
 
-    `period` [s], `max_cycles`, `parameters`, `effects` and `draws` are those of `Tables`. ValueError, in one line, for
-    an invalid argument.
+    `period` [s], `max_cycles`, `parameters`, `effects` and `draws` are those of `Tables`. With a `backend` the robot's
+    seat (0) of a table outside the simulator, "twin" say, which takes `opponent` by name and `parameters` alone.
+    ValueError, in one line, for an invalid argument.
     """
     seed = fresh_seed()
+    if backend is not None:
+        given = {"seat": seat or None, "render_mode": render_mode, "period": period, "max_cycles": max_cycles}
+        given |= {"effects": effects, "draws": draws}
+        if wrong := [name for name, value in given.items() if value is not None]:
+            raise ValueError(f"{wrong[0]} is given with backend '{backend}'; a backend takes opponent and parameters")
+        if not isinstance(opponent, str):
+            raise ValueError(f"opponent is {in_short(opponent)}; a backend takes a player's name")
+        make = importlib.import_module(TABLE_SEAT).make_robot_seat
+        return make(variant, backend, opponent, parameters=parameters, seed=seed)
     tables = Tables(
         variant,
         1,

@@ -52,6 +52,7 @@ OPTIONS = {
     "export": ["--out"],
     "bench": ["--tables", "--threads", "--seconds", "--against", "--dicts", "--startup", "--json"],
     "bench vision": ["--pictures", "--seed", "--json"],
+    "play": ["--backend", "--opponent", "--variant", "--games", "--seconds", "--seed", "--json"],
     "compare": ["--json", "--out"],
     "diagnose": ["--holdout", "--baseline", "--out", "--json"],
     "study": ["--cases", "--seed", "--out", "--only", "--mechanism", "--filmed", "--peer", "--workers", "--json"],

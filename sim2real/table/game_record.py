@@ -1,0 +1,64 @@
+"""The state of a game as the simulator's record, written from what is known of a table, and the observations of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from puckpilot_env.game import sensing
+from puckpilot_env.game.start import MATCH
+from puckpilot_env.game.state import FRAME
+from puckpilot_env.game.step import observe_table
+from puckpilot_env.kernel import kernel
+from puckpilot_env.physics.gantry.mallet import idle, place_axis
+from puckpilot_env.tables import Tables
+from puckpilot_env.variants import Variant
+
+Motion = tuple[float, float, float, float]  # x, y [m], vx, vy [m/s]
+
+
+class GameRecord:
+    """A record of one table of a variant, in whose places the caller writes what it knows.
+
+    `tables`: a simulator's table of its own, for spaces, columns and rules; nothing is stepped in it. ValueError, in
+    one line, for drills, and for variants that draw their table or show camera frames: no backend plays them yet.
+    """
+
+    def __init__(self, variant: Variant | str, parameters: Mapping[str, float] | None, seed: int) -> None:
+        self.tables = Tables(variant, 1, seed=seed, autoreset=False, parameters=parameters)
+        self.rule = self.tables.variant.rules()[0]
+        if self.rule["sensing"] != sensing.EXACT or self.rule["game"] != MATCH or self.tables.variant.draws:
+            raise ValueError(
+                f"a table backend plays puckpilot/match-v0; {self.tables.variant.id} is not played there yet"
+            )
+        self.record, self.p = self.tables.states[0], self.tables.params[0]
+        self._no_frames = np.zeros(1, FRAME)
+
+    def put_puck(self, puck: Motion) -> None:
+        """Write the puck's motion."""
+        for name, value in zip(("x", "y", "vx", "vy"), puck, strict=True):
+            self.record["puck"][name] = value
+
+    def put_mallet(self, which: int, motion: Motion, acceleration: tuple[float, float] = (0.0, 0.0)) -> None:
+        """Write the motion of the robot's (0) or the opponent's mallet (1), in the table's frame; with its acceleration
+        [m/s^2] where that is known."""
+        _put_mallet(self.record["mallets"][which], *motion, *acceleration)
+
+    def observe(self) -> NDArray[np.float32]:
+        """The observations (2, columns) of both players."""
+        tables = self.tables
+        observe_table(
+            self.record, self.p, tables.nominal[0], self.rule, self._no_frames, tables.observation_bounds,
+            tables.observations[0],
+        )  # fmt: skip
+        return tables.observations[0].copy()
+
+
+@kernel
+def _put_mallet(mallet, x, y, vx, vy, ax, ay):
+    place_axis(mallet.x, x, vx, ax)
+    place_axis(mallet.y, y, vy, ay)
+    idle(mallet.x)
+    idle(mallet.y)

@@ -1,0 +1,121 @@
+"""From an action to a trajectory: the simulator's plan for the state in which the mallet will be when the plan acts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from puckpilot_env.game import mirror
+from puckpilot_env.kernel import kernel
+from puckpilot_env.physics.gantry.mallet import (
+    MALLET,
+    axis_coefficients,
+    idle,
+    motion_at,
+    place_axis,
+    set_constants,
+    settle,
+)
+from puckpilot_env.physics.gantry.plan import plan_mallet
+
+OPERATING_VOLTS = 15.0  # V that a motor ever gets on a table (report)
+FEEDBACK_VOLTS = 1.0  # V of these that plans leave to the board's feedback
+AHEAD = 0.014  # s from sending a plan until it acts: the board looks at it for 10 ms
+LEAST_LIFE, AFTER = 0.2, 0.1  # s of a plan, and from its end until the motors are off: it always brakes by itself
+LONGEST_LIFE = 5.0  # s, the protocol's; only plans of a volt or so are longer
+
+
+@dataclass(frozen=True)
+class MalletPlan:
+    """A plan of the robot's mallet: +volts until t1, -volts until t2, then none, from the state that the modes say.
+
+    `begin`: on the host's clock [s]; `volts` signed, axes x and y [V]; `t1`, `t2` since the begin [s]; `modes` (3, 2):
+    rest, slow and fast of x and y at the begin [m].
+    """
+
+    begin: float
+    volts: tuple[float, float]
+    t1: tuple[float, float]
+    t2: tuple[float, float]
+    modes: np.ndarray
+
+    @property
+    def life(self) -> float:
+        """After so long since the begin the motors are off [s]; the plan is over by then, unless its volts are few."""
+        return min(max(LEAST_LIFE, *(one + AFTER for one in self.t2)), LONGEST_LIFE)
+
+
+def operating_volts(p: np.void) -> float:
+    """The most that a motor may get on a table of these parameters [V]."""
+    return min(OPERATING_VOLTS, float(p["max_voltage"]))
+
+
+class MalletDriver:
+    """The robot's mallet as it was told to move: plans follow each other without a jump.
+
+    p: the table's parameters, as the player may know them.
+    """
+
+    def __init__(self, p: np.void) -> None:
+        self._p = p
+        self._limit = operating_volts(p) - FEEDBACK_VOLTS
+        self._mallet = np.zeros(1, MALLET)[0]
+        _prepare(self._mallet, p)
+        self._begin = 0.0
+        self._before, self._before_begin = self._mallet.copy(), 0.0  # the plan that was followed until `_begin`
+
+    def stand(self, x: float, y: float, time: float) -> None:
+        """The mallet is at rest at x, y [m] from `time` [s] on."""
+        _stand(self._mallet, x, y)
+        self._begin = self._before_begin = time
+        self._before = self._mallet.copy()
+
+    def plan(self, action: ArrayLike, begin: float) -> MalletPlan:
+        """Plan for an action (4,), target x, y [m] and volts x, y [V] in the robot's frame, that acts at `begin` [s].
+
+        The target is brought into the mallet's area and the volts to the operating limit, as far as it can still stop
+        inside. ValueError for a number that is none.
+        """
+        x, y, vx, vy = (float(one) for one in np.asarray(action, float))
+        if not np.isfinite([x, y, vx, vy]).all():
+            raise ValueError(f"the action is {np.asarray(action).tolist()}; expected four finite numbers")
+        self._before, self._before_begin = self._mallet.copy(), self._begin
+        _plan(self._mallet, self._p, begin - self._begin, x, y, vx, vy, self._limit)
+        self._begin = begin
+        axes = (self._mallet["x"], self._mallet["y"])
+        volts, t1, t2 = ((float(axes[0][name]), float(axes[1][name])) for name in ("volts", "t1", "t2"))
+        modes = np.array([[float(axis[name]) for axis in axes] for name in ("rest", "slow", "fast")])
+        return MalletPlan(begin, volts, t1, t2, modes)
+
+    def motion(self, time: float) -> tuple[float, float, float, float]:
+        """The path's x, y [m] and vx, vy [m/s] at `time` [s], by the last plan or the one before it."""
+        if time < self._begin:
+            return motion_at(self._before, max(time - self._before_begin, 0.0))
+        return motion_at(self._mallet, time - self._begin)
+
+    def standing(self, time: float) -> bool:
+        """Whether the path is at rest at `time` [s]."""
+        return time - self._begin >= max(float(self._mallet["x"]["t2"]), float(self._mallet["y"]["t2"]))
+
+
+@kernel
+def _prepare(mallet, p):
+    for a in range(2):
+        c5, c6, c7 = axis_coefficients(p, a)
+        set_constants(mallet.x if a == 0 else mallet.y, c5, c6, c7, p.pulley_radius)
+
+
+@kernel
+def _stand(mallet, x, y):
+    place_axis(mallet.x, x, 0.0, 0.0)
+    place_axis(mallet.y, y, 0.0, 0.0)
+    idle(mallet.x)
+    idle(mallet.y)
+
+
+@kernel
+def _plan(mallet, p, since, x, y, vx, vy, limit):
+    settle(mallet, since)
+    plan_mallet(mallet, x, y, vx, vy, mirror.area(0, p), limit)

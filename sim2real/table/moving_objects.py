@@ -1,0 +1,106 @@
+"""Estimates of puck and opponent from camera frames, and their motion predicted to a later moment."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from puckpilot_env.game.predict import expected_place
+from sim2real.table.backend import Place
+from sim2real.table.game_record import Motion
+from sim2real.vision.track.detector import OPPONENT_POWER, PUCK_POWER
+from sim2real.vision.track.kalman_tracker import ANY_SPEED, KalmanTracker, Measurement, TrackState
+
+DEVIATION = 0.0003  # m, of a measured place, each coordinate
+WALL = 0.01  # m from where a wall would have sent it
+COVARIANCE = DEVIATION**2 * np.eye(2)
+
+
+class SeenObject:
+    """An object that the camera sees: the newest state of its track, kept while it is hidden.
+
+    power: of the track's white acceleration [m^2/s^3]; expected: its motion a time [s] after another without contacts
+    with mallets.
+    """
+
+    def __init__(self, power: float, expected: Callable[[Motion, float], Motion]) -> None:
+        self._power, self._expected = power, expected
+        self.forget()
+
+    def forget(self) -> None:
+        """Begin anew: the object was put somewhere else."""
+        self._tracker = KalmanTracker(self._power)
+        self.state: TrackState | None = None
+        self._velocity = np.zeros(2)
+
+    def update(self, time: float, place: Place | None) -> None:
+        """Take a frame of `time` [s], in which the object is at `place` [m], or not seen."""
+        seen = [] if place is None else [Measurement(np.array(place), COVARIANCE, True)]
+        before, self.state = self.state, self._tracker.update(time, seen) or self.state
+        if self.state is None or self.state is before:
+            return
+        began_anew = self.state.covariance[2, 2] > 0.5 * ANY_SPEED**2
+        if began_anew and before is not None:
+            self._velocity = self._after_contact(before, self.state)
+        else:
+            self._velocity = self.state.velocity
+
+    def _after_contact(self, before: TrackState, now: TrackState) -> np.ndarray:
+        """The velocity (2,) after a contact since the frame before: off a wall, if that is where it would be, else the
+        mean of the frames' interval."""
+        (x, y), (vx, vy) = before.place, self._velocity
+        x, y, vx, vy = self._expected((float(x), float(y), float(vx), float(vy)), now.time - before.time)
+        if np.hypot(x - now.place[0], y - now.place[1]) < WALL:
+            return np.array([vx, vy])
+        return (now.place - before.place) / (now.time - before.time)
+
+    def unseen_for(self, time: float) -> float:
+        """How long before `time` [s] it was seen last [s]; infinite if never."""
+        return math.inf if self.state is None else time - self.state.time
+
+    def motion(self) -> Motion | None:
+        """The motion at the newest frame in which it was seen; None before the second."""
+        if self.state is None:
+            return None
+        (x, y), (vx, vy) = self.state.place, self._velocity
+        return float(x), float(y), float(vx), float(vy)
+
+
+def _straight_on(motion: Motion, ahead: float) -> Motion:
+    x, y, vx, vy = motion
+    return x + ahead * vx, y + ahead * vy, vx, vy
+
+
+class SeenTable:
+    """Puck and opponent as seen.
+
+    p: the table's parameters, as the player may know them, with which the free puck is predicted.
+    """
+
+    def __init__(self, p: np.void) -> None:
+        self._p = p
+        self.puck = SeenObject(PUCK_POWER, lambda motion, ahead: expected_place(*motion, p, ahead))
+        self.opponent = SeenObject(OPPONENT_POWER, _straight_on)
+
+    def forget(self) -> None:
+        """Begin anew."""
+        self.puck.forget()
+        self.opponent.forget()
+
+    def puck_at(self, time: float) -> Motion | None:
+        """The puck's motion at `time` [s] if no mallet touches it; None before it was seen twice."""
+        found = self.puck.motion()
+        return found and expected_place(*found, self._p, max(self.puck.unseen_for(time), 0.0))
+
+    def opponent_at(self, time: float) -> Motion | None:
+        """The opponent's motion at `time` [s] if it goes straight on for a moment; None before it was seen twice."""
+        found = self.opponent.motion()
+        if found is None:
+            return None
+        x, y, vx, vy = found
+        ahead = min(max(self.opponent.unseen_for(time), 0.0), 0.05)
+        low_x, high_x = 0.5 * self._p["length"], float(self._p["length"])
+        ahead_x, ahead_y = x + ahead * vx, y + ahead * vy
+        return min(max(ahead_x, low_x), high_x), min(max(ahead_y, 0.0), float(self._p["width"])), vx, vy

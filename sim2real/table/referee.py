@@ -1,0 +1,104 @@
+"""The rules of the game on what the camera sees: who holds the puck, goals, fouls, the clock."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from puckpilot_env.game import reward, rules
+from puckpilot_env.physics.contacts import bounce
+from sim2real.table.game_record import GameRecord, Motion
+from sim2real.table.moving_objects import SeenTable
+
+Seen = tuple[float, Motion]  # time of a frame [s], and the motion then
+SAMPLES = 5  # of the time between two frames at which contacts are looked for
+HIDDEN = 0.02  # s without a sight of the puck, in which the clock does not end a point: it may be in a goal
+GONE = 0.1  # s without a sight of the puck after which it is in the goal that it went to
+TOUCHING = 0.004  # m between puck and mallet below which they are taken for touching
+
+
+class Referee:
+    """Applies the variant's rules to a game's record as frames come.
+
+    game: the record, whose puck and mallets the referee reads at each frame.
+    """
+
+    def __init__(self, game: GameRecord) -> None:
+        self._game = game
+        self._before: Seen | None = None  # the puck, one frame ago
+        self._half_since = 0.0
+        self.rewards = np.zeros(2, np.float32)
+
+    def begin(self, now: float) -> None:
+        """A point begins at `now` [s]."""
+        self._before, self._half_since = None, now
+        self._game.record["ending"] = rules.RUNNING
+
+    def begin_step(self) -> None:
+        """A step begins: its rewards are counted from 0."""
+        self.rewards[:] = 0.0
+        self._game.record["ending"] = rules.RUNNING
+
+    def order(self, robot: Motion, action: np.ndarray) -> None:
+        """Charge the robot for an action (4,), with its mallet at `robot` (report J.3)."""
+        x, y = float(action[0]), float(action[1])
+        self.rewards[0] += reward.movement_cost(robot[0], robot[1], x, y)
+        self.rewards[0] += reward.voltage_cost(float(action[2]), float(action[3]))
+
+    def watch(self, time: float, puck: Motion, robot: Motion, opponent: Motion | None) -> None:
+        """Take the motions at a frame of `time` [s]."""
+        record, middle = self._game.record, 0.5 * float(self._game.p["length"])
+        before, self._before = self._before, (time, puck)
+        self._game.put_puck(puck)
+        if record["ending"] != rules.RUNNING:
+            return
+        for which, mallet in enumerate((robot, opponent)):
+            if mallet and self._touches(before, (time, puck), mallet):
+                record["puck"]["touched"][which] = 1
+        if before is not None and (before[1][0] < middle) != (puck[0] < middle):
+            self._half_since = time
+            ahead = (puck[0] - before[1][0]) / (time - before[0])
+            if ahead * puck[2] <= 0.0:  # struck back within the frame: the rules ask where it crossed to
+                self._game.put_puck((puck[0], puck[1], ahead, puck[3]))
+            entered = robot if puck[0] < middle else opponent or (2 * middle, 0.0, 0.0, 0.0)
+            rules.crossed_middle(record, self._game.p, self._game.rule, self.rewards, entered[0], entered[1])
+
+    def _touches(self, before: Seen | None, now: Seen, mallet: Motion) -> bool:
+        """Whether the puck came to the mallet since the frame before, going on as then or having come as now."""
+        earlier = before or now
+        since = np.linspace(earlier[0], now[0], SAMPLES)[:, None]
+        paths = [_at(one, since) for one in (earlier, now)]
+        there = _at((now[0], mallet), since)
+        nearest = min(float(np.linalg.norm(path - there, axis=1).min()) for path in paths)
+        return nearest < float(self._game.p["puck_radius"] + self._game.p["mallet_radius"]) + TOUCHING
+
+    def end_step(self, now: float, seen: SeenTable) -> bool:
+        """Count the step, and judge. Returns whether a new point begins: the record says where the puck is put."""
+        record, p, rule = self._game.record, self._game.p, self._game.rule
+        record["steps"] += 1
+        record["time"] = float(record["steps"]) * float(rule["period"])
+        record["held"] = now - self._half_since
+        again = False
+        if side := self._goal(now, seen):
+            rules.goal(record, p, rule, self.rewards, bounce.GOAL_X0 if side < 0 else bounce.GOAL_X1)
+            again = record["ending"] == rules.RUNNING
+        else:
+            rules.look_for_clear(record, p, rule, self.rewards)
+        if record["ending"] == rules.RUNNING and (again or seen.puck.unseen_for(now) < HIDDEN):
+            again = bool(rules.keep_time(record, p, rule, self.rewards)) or again
+        return again
+
+    def _goal(self, now: float, seen: SeenTable) -> int:
+        """-1 or 1 if the puck is in the robot's or the opponent's goal, 0 if it is not."""
+        if self._before is None or seen.puck.unseen_for(now) < GONE:
+            return 0
+        length = float(self._game.p["length"])
+        expected = seen.puck_at(now)
+        if expected is not None and (expected[0] <= 0.0 or expected[0] >= length):
+            return -1 if expected[0] <= 0.0 else 1
+        return -1 if self._before[1][0] < 0.5 * length else 1  # a mallet sent it there between two frames
+
+
+def _at(seen: Seen, times: np.ndarray) -> np.ndarray:
+    """Places (n, 2) [m] at `times` (n, 1) [s] on a straight way."""
+    time, (x, y, vx, vy) = seen
+    return np.array([x, y]) + (times - time) * np.array([vx, vy])

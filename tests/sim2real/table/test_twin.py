@@ -1,0 +1,237 @@
+"""The whole chain on the twin: action, trajectory, flashed firmware, plant, camera, observation; and safe stops."""
+
+from __future__ import annotations
+
+import gymnasium
+import numpy as np
+import pytest
+
+pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
+
+import puckpilot_env  # noqa: F401 - registers the ids
+from sim2real.table.backend import TableFaultError
+from sim2real.table.robot_seat import RobotSeat, make_robot_seat
+from sim2real.table.twin.twin import Twin
+
+MATCH = "puckpilot/match-v0"
+STAY = np.array([0.25, 0.5, 5.0, 5.0], np.float32)
+
+
+@pytest.fixture
+def seat():
+    env = make_robot_seat(MATCH, "twin", "still", seed=2)
+    yield env
+    env.close()
+
+
+def twin_of(env: RobotSeat) -> Twin:
+    twin = env._backend
+    assert isinstance(twin, Twin)
+    return twin
+
+
+def test_it_has_the_spaces_of_the_simulator(seat: RobotSeat) -> None:
+    simulated = gymnasium.make(MATCH, opponent="still")
+    assert seat.observation_space == simulated.observation_space and seat.action_space == simulated.action_space
+    observation, info = seat.reset(seed=1)
+    assert seat.observation_space.contains(observation)
+    assert info["acts_at"] > info["time"] and 0.0 < info["frame_age"] < 0.02
+
+
+def test_the_mallet_goes_where_the_action_says_and_the_columns_say_so(seat: RobotSeat) -> None:
+    seat.reset(seed=1)
+    target = np.array([0.6, 0.3, 8.0, 8.0], np.float32)
+    observation, plant = np.zeros(0), twin_of(seat).plant
+    for _ in range(8):
+        observation, *_, info = seat.step(target)
+    assert plant.mallet(0)[:2] == pytest.approx(target[:2], abs=0.001)
+    assert observation[:4] == pytest.approx([0.6, 0.3, 0.0, 0.0], abs=0.005)
+    assert info["off_path"] < 0.002
+
+
+def test_puck_and_opponent_are_seen_where_they_are_and_as_fast() -> None:
+    env = make_robot_seat(MATCH, "twin", "interceptor", seed=2)
+    try:
+        env.reset(seed=4)
+        names = [column.name for column in env.tables.observation_columns]
+        puck_at, opponent_at = names.index("puck_x"), names.index("opponent_x")
+        places, speeds, others = [], [], []
+        for _ in range(40):
+            observation, *_, info = env.step(STAY)
+            plant = twin_of(env).plant
+            puck, ahead = plant.puck, info["acts_at"] - plant.time
+            places.append(np.abs(observation[puck_at : puck_at + 2] - puck[:2] - ahead * puck[2:]).max())
+            speeds.append(np.abs(observation[puck_at + 2 : puck_at + 4] - puck[2:]).max())
+            others.append(np.abs(observation[opponent_at : opponent_at + 2] - plant.mallet(1)[:2]).max())
+        assert np.median(places) < 0.003 and np.median(speeds) < 0.1 and np.median(others) < 0.03
+        assert (np.array(places) > 0.05).sum() <= 2 and (np.array(speeds) > 1.0).sum() <= 4  # contacts meanwhile
+    finally:
+        env.close()
+
+
+def played(seed: int, env: RobotSeat) -> tuple[list, list]:
+    try:
+        seen = [env.reset(seed=seed)[0]]
+        random = np.random.default_rng(5)
+        for _ in range(10):
+            action = random.uniform(*env.tables.action_bounds).astype(np.float32)
+            seen.append(env.step(action)[0])
+        board = twin_of(env).board
+        assert board is not None
+        return [one.tolist() for one in seen], list(board.machine.pwm)
+    finally:
+        env.close()
+
+
+@pytest.mark.slow
+def test_the_same_seed_gives_the_same_game_to_the_last_bit() -> None:
+    env = make_robot_seat(MATCH, "twin", "interceptor", seed=1)
+    once = played(3, env)
+    assert once == played(3, env) == played(3, make_robot_seat(MATCH, "twin", "interceptor", seed=2))
+    assert once[0] != played(4, env)[0]
+    assert len(once[1]) > 100
+
+
+def test_a_motor_never_gets_more_than_15_volts(seat: RobotSeat) -> None:
+    seat.reset(seed=1)
+    for k in range(10):
+        seat.step(np.array([0.1 + 0.8 * (k % 2), 0.1 + 0.8 * (k % 2), 10.0, 10.0], np.float32))
+    board = twin_of(seat).board
+    assert board is not None and 9.0 < board.most_volts <= 15.0
+
+
+def test_a_cable_that_is_cut_stops_the_mallet_within_50_ms(seat: RobotSeat) -> None:
+    seat.reset(seed=1)
+    seat.step(np.array([0.9, 0.9, 3.0, 3.0], np.float32))
+    twin = twin_of(seat)
+    board, cut = twin.board, twin.now()
+    assert board is not None and max(map(abs, board.machine.motors.duties)) > 0.0
+    board.cut = True
+    with pytest.raises(TableFaultError, match="port is lost"):
+        seat.step(np.array([0.9, 0.9, 3.0, 3.0], np.float32))
+    board.run(cut + 0.2)
+    assert board.machine.motors.duties == (0.0, 0.0)
+    driven = [time for time, *duties in board.machine.pwm if any(duties)]
+    off = next(time for time, *duties in board.machine.pwm if time > driven[-1] and not any(duties))
+    assert off * 1e-6 <= cut + 0.051 + 0.002  # the last message may have come a ping's period before the cut
+
+
+def test_a_camera_that_is_unplugged_stops_the_mallet(seat: RobotSeat) -> None:
+    seat.reset(seed=1)
+    twin = twin_of(seat)
+    twin.camera.unplugged = True
+    board = twin.board
+    assert board is not None
+    with pytest.raises(TableFaultError, match="no frame for"):
+        seat.step(np.array([0.9, 0.9, 3.0, 3.0], np.float32))
+    board.run(board.now() + 0.005)
+    assert board.machine.motors.duties == (0.0, 0.0)
+
+
+def test_a_board_that_is_reset_ends_the_game_with_motors_off(seat: RobotSeat) -> None:
+    seat.reset(seed=1)
+    seat.step(np.array([0.9, 0.9, 3.0, 3.0], np.float32))
+    board = twin_of(seat).board
+    assert board is not None
+    board.machine.reset("watchdog")
+    with pytest.raises(TableFaultError, match="begin anew"):
+        seat.step(np.array([0.9, 0.9, 3.0, 3.0], np.float32))
+    assert board.machine.motors.duties == (0.0, 0.0)
+
+
+def test_a_mallet_that_is_held_fast_ends_the_game_with_motors_off(seat: RobotSeat) -> None:
+    seat.reset(seed=1)
+    twin, fast = twin_of(seat), np.array([0.9, 0.9, 10.0, 10.0], np.float32)
+    twin.plant.drive = lambda first, second: None  # pyright: ignore[reportAttributeAccessIssue] - the belts are off
+    with pytest.raises(TableFaultError, match=r"the board stopped the motors: (OFF_PATH|ENCODER_FROZEN)"):
+        for _ in range(10):
+            seat.step(fast)
+
+
+@pytest.mark.parametrize("hang", [0.15, 0.25, 1.0])
+def test_a_policy_that_hangs_leaves_the_mallet_at_its_target(seat: RobotSeat, hang: float) -> None:
+    """And play goes on afterwards, from wherever the mallet is."""
+    seat.reset(seed=1)
+    target = np.array([0.9, 0.9, 10.0, 10.0], np.float32)
+    seat.step(target)
+    twin = twin_of(seat)
+    twin.wait(twin.now() + hang)
+    assert twin.board is not None
+    if hang == 1.0:
+        assert twin.plant.mallet(0) == pytest.approx((0.9, 0.9, 0.0, 0.0), abs=0.002)
+        assert twin.board.machine.motors.duties == (0.0, 0.0)
+    twin._since = twin.now()
+    for _ in range(10):
+        seat.step(STAY)
+    assert twin.plant.mallet(0)[:2] == pytest.approx(STAY[:2], abs=0.002)
+
+
+def test_a_refused_plan_ends_the_game(seat: RobotSeat) -> None:
+    seat.reset(seed=1)
+    seat._driver.stand(0.7, 0.3, twin_of(seat).now())  # where the mallet is not
+    with pytest.raises(TableFaultError, match="the board refused a traj, OFF_START; begin anew"):
+        seat.step(STAY)
+    seat.reset()
+    seat.step(STAY)
+
+
+def test_after_a_fault_a_new_episode_begins(seat: RobotSeat) -> None:
+    seat.reset(seed=1)
+    twin_of(seat).camera.unplugged = True
+    with pytest.raises(TableFaultError):
+        seat.step(STAY)
+    assert np.isfinite(seat.reset()[0]).all()
+    seat.step(STAY)
+
+
+def test_closing_stops_the_mallet(seat: RobotSeat) -> None:
+    seat.reset(seed=1)
+    seat.step(np.array([0.9, 0.9, 3.0, 3.0], np.float32))
+    board = twin_of(seat).board
+    seat.close()
+    assert board is not None
+    board.run(board.now() + 0.005)
+    assert board.machine.motors.duties == (0.0, 0.0)
+    with pytest.raises(ValueError, match="call reset"):
+        seat.step(STAY)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"backend": "twinn"}, "unknown backend 'twinn'; did you mean 'twin'?"),
+        ({"backend": "twin", "seat": 1}, "seat is given with backend 'twin'"),
+        ({"backend": "twin", "period": 0.05}, "period is given with backend"),
+        ({"backend": "twin", "opponent": print}, "a backend takes a player's name"),
+        ({"backend": "twin", "opponent": "goaly"}, "unknown player 'goaly'; did you mean 'goalie'?"),
+    ],
+)
+def test_what_a_backend_cannot_do_is_refused_in_one_line(options: dict, words: str) -> None:
+    with pytest.raises(ValueError) as caught:
+        gymnasium.make(MATCH, **options)
+    assert words in str(caught.value) and "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("variant", ["match-sensors-v0", "match-randomized-v0", "defence-v0"])
+def test_variants_that_no_backend_plays_are_refused(variant: str) -> None:
+    with pytest.raises(ValueError, match=f"puckpilot/{variant} is not played there yet"):
+        gymnasium.make(f"puckpilot/{variant}", backend="twin")
+
+
+def test_a_weak_supply_is_kept_to_and_what_the_twin_does_not_model_is_refused() -> None:
+    env = make_robot_seat(MATCH, "twin", "still", parameters={"max_voltage": 12.0})
+    env.reset(seed=1)
+    env.step(STAY)
+    env.close()
+    with pytest.raises(ValueError, match="the twin does not model 'camera_latency'"):
+        make_robot_seat(MATCH, "twin", "still", parameters={"camera_latency": 0.02})
+
+
+def test_gymnasium_makes_the_twin_by_naming_it() -> None:
+    env = gymnasium.make(MATCH, backend="twin", opponent="still")
+    try:
+        observation, _ = env.reset(seed=1)
+        after, *_ = env.step(STAY)
+        assert env.observation_space.contains(observation) and env.observation_space.contains(after)
+    finally:
+        env.close()
