@@ -74,7 +74,7 @@ def run_one(root: Path, row: Row) -> Raw:
         seconds=round(seconds, 1),
         status=done.returncode,
         machine=machine(),
-        output=_output(row, done),
+        output=_output(row, done, f"{root}{os.sep}"),
     )
 
 
@@ -89,15 +89,16 @@ def _environment(root: Path) -> dict[str, str]:
     return {**os.environ, "PYTHONPATH": str(root), **dict.fromkeys(ONE_THREAD, "1")}
 
 
-def _output(row: Row, done: subprocess.CompletedProcess[str]) -> Any:
-    """What the run printed. A command with JSON may end with 1, which is then its answer."""
+def _output(row: Row, done: subprocess.CompletedProcess[str], here: str) -> Any:
+    """What the run printed, with paths in the clone `here` relative to it. A command with JSON may end with 1, which is
+    then its answer."""
     if done.returncode not in ((0, 1) if row.prints_json else (0,)):
         last = (done.stderr.strip() or done.stdout.strip() or "nothing was said").splitlines()[-1]
         raise ValueError(f"{' '.join(row.command)} ended with {done.returncode}: {last}")
     if not row.prints_json:
-        return done.stdout
+        return done.stdout.replace(here, "")
     try:
-        return json.loads(done.stdout)
+        return json.loads(done.stdout.replace(here, ""))
     except ValueError:
         last = (done.stderr.strip() or done.stdout.strip() or "nothing").splitlines()[-1]
         raise ValueError(f"{' '.join(row.command)} printed no JSON but: {last}") from None

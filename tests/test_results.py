@@ -40,7 +40,7 @@ figures = "sums"
 id = "words"
 topic = "Words"
 title = "a text"
-command = ["python", "-c", "print('found 12 of 1,300')"]
+command = ["python", "-c", "import os; print(os.getcwd() + '/x', 'found 12 of 1,300')"]
 minutes = 2
 seed = 3
 figures = [{ name = "found", what = "found", find = 'found (\\d+) of (\\S+)', show = "{} of {:,}" }]
@@ -114,7 +114,7 @@ def test_a_run_is_kept_with_all_that_it_came_of(house: Path) -> None:
     assert {"cpu", "cores", "python", "numpy", "numba"} <= set(raw.machine)
     assert raw.command == next(row.command for row in read_rows(house) if row.id == "add-3")
     text = read_raws(house)["words"]
-    assert (text.output, text.seed) == ("found 12 of 1,300\n", 3)
+    assert (text.output, text.seed) == ("x found 12 of 1,300\n", 3)
 
 
 def test_the_page_shows_figure_command_seed_commit_date_and_bar(house: Path) -> None:
