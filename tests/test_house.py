@@ -50,7 +50,7 @@ ALLOWED = {
 }  # fmt: skip
 MOST_FILES = 15  # in a folder, but for those of which every file is one of a kind
 SOURCES = (".py", ".c", ".h")
-REGISTRIES = ("puckpilot_env/physics/effects",)
+REGISTRIES = ("puckpilot_env/physics/effects", "sim2real/commands")
 HEAVY = ("torch", "cv2", "serial", "matplotlib", "rich", "PIL")
 SCIPY = ("scipy.linalg", "scipy.optimize", "scipy.stats", "scipy.sparse", "scipy.spatial", "scipy.special")
 # library: the one package whose modules may import it at the top
