@@ -19,7 +19,7 @@ from puckpilot_env.options.inputs import reset_options
 from puckpilot_env.options.real_numbers import real_numbers
 from puckpilot_env.tables import ROUNDING
 from puckpilot_env.variants import Variant
-from sim2real.table.backend import Backend, Place
+from sim2real.table.backend import Backend, Place, TableFaultError
 from sim2real.table.backends import make_backend
 from sim2real.table.game_record import GameRecord
 from sim2real.table.mallet_driver import AHEAD, MalletDriver
@@ -157,7 +157,7 @@ class RobotSeat(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         end = self._backend.now() + SEEN_WITHIN
         while self._seen.puck.motion() is None or self._seen.opponent.motion() is None:
             if self._backend.now() > end:
-                raise ValueError("the puck or the opponent's mallet is not seen; check light and camera, begin anew")
+                raise TableFaultError("the puck or the opponent's mallet is not seen; check the light and begin anew")
             self._hold()
             self._take_frames()
 
