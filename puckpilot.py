@@ -106,7 +106,7 @@ def _orderly_end() -> Iterator[None]:
 
     def stop(number: int, frame: object) -> NoReturn:
         requests.append(number)
-        raise KeyboardInterrupt(number)
+        raise _interrupt(number)
 
     defaults = {signal.SIGINT: signal.default_int_handler}
     defaults |= {getattr(signal, name): signal.SIG_DFL for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)}
@@ -118,11 +118,16 @@ def _orderly_end() -> Iterator[None]:
         yield
     except Exception as error:
         if requests:
-            raise KeyboardInterrupt(requests[0]) from error
+            raise _interrupt(requests[0]) from error
         raise
     finally:
         for number in kept:
             signal.signal(number, defaults[number])
+
+
+def _interrupt(number: int) -> KeyboardInterrupt:
+    """What a signal raises: Ctrl-C as Python has it, any other with its number."""
+    return KeyboardInterrupt() if number == signal.SIGINT else KeyboardInterrupt(number)
 
 
 def _loaded(name: str) -> tuple[argparse.ArgumentParser, Callable[[argparse.Namespace], int]]:

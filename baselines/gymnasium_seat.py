@@ -10,6 +10,7 @@ from __future__ import annotations
 import importlib
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from typing import Any
 
 import gymnasium
 import numpy as np
@@ -51,35 +52,43 @@ class SeededPlayer:
         return self._player.act(observation)
 
 
+def make_env(
+    variant: Variant | str, *, backend: str | None = None, **options: Any
+) -> gymnasium.Env[NDArray[Any], NDArray[Any]]:
+    """The entry point of every id: `make_seat` with its options, or the robot's seat at a `backend`, "twin" say.
+
+    A backend is a table outside the simulator; it takes `opponent`, by name, and `parameters`. ValueError, in one line,
+    for an invalid argument.
+    """
+    if backend is None:
+        return make_seat(variant, **options)
+    opponent, parameters = options.pop("opponent", "goalie"), options.pop("parameters", None)
+    if given := [name for name, value in options.items() if value is not None]:
+        raise ValueError(f"{given[0]} is given with backend '{backend}'; a backend takes opponent and parameters")
+    if not isinstance(opponent, str):
+        raise ValueError(f"opponent is {in_short(opponent)}; a backend takes a player's name")
+    make = importlib.import_module(TABLE_SEAT).make_robot_seat
+    return make(variant, backend, opponent, parameters=parameters, seed=fresh_seed())
+
+
 def make_seat(
     variant: Variant | str,
     opponent: AnyOpponent = "goalie",
     seat: int = 0,
     render_mode: str | None = None,
     *,
-    backend: str | None = None,
     period: float | None = None,
     max_cycles: int | None = None,
     parameters: Mapping[str, float] | None = None,
     effects: Effects | None = None,
     draws: Draws | None = None,
-) -> SingleEnv | gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]:
+) -> SingleEnv:
     """A Gymnasium environment of one seat (0 or 1); `opponent` plays the other.
 
-    `period` [s], `max_cycles`, `parameters`, `effects` and `draws` are those of `Tables`. With a `backend` the robot's
-    seat (0) of a table outside the simulator, "twin" say, which takes `opponent` by name and `parameters` alone.
-    ValueError, in one line, for an invalid argument.
+    `period` [s], `max_cycles`, `parameters`, `effects` and `draws` are those of `Tables`. ValueError, in one line, for
+    an invalid argument.
     """
     seed = fresh_seed()
-    if backend is not None:
-        given = {"seat": seat or None, "render_mode": render_mode, "period": period, "max_cycles": max_cycles}
-        given |= {"effects": effects, "draws": draws}
-        if wrong := [name for name, value in given.items() if value is not None]:
-            raise ValueError(f"{wrong[0]} is given with backend '{backend}'; a backend takes opponent and parameters")
-        if not isinstance(opponent, str):
-            raise ValueError(f"opponent is {in_short(opponent)}; a backend takes a player's name")
-        make = importlib.import_module(TABLE_SEAT).make_robot_seat
-        return make(variant, backend, opponent, parameters=parameters, seed=seed)
     tables = Tables(
         variant,
         1,

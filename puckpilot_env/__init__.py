@@ -34,7 +34,7 @@ def _register() -> None:
         if id_ not in gymnasium.registry:
             gymnasium.register(
                 id_,
-                entry_point="baselines.gymnasium_seat:make_seat",
+                entry_point="baselines.gymnasium_seat:make_env",
                 vector_entry_point="baselines.gymnasium_seat:make_seats",
                 kwargs={"variant": id_},
             )
