@@ -100,9 +100,11 @@ def _unknown(words: list[str]) -> str:
 def _orderly_end() -> Iterator[None]:
     """Inside, a request to end (SIGTERM, or SIGHUP of a closed terminal) is as Ctrl-C: no draft of a file is left.
 
-    Libraries may lose the interrupt and fail of it: the failure after a request is taken for its effect.
+    Libraries may lose the interrupt and fail of it: the failure after a request is taken for its effect, and what their
+    callbacks cannot raise is not printed.
     """
     requests: list[int] = []
+    report = sys.unraisablehook
 
     def stop(number: int, frame: object) -> NoReturn:
         requests.append(number)
@@ -114,6 +116,7 @@ def _orderly_end() -> Iterator[None]:
     kept = [number for number in defaults if ours and signal.getsignal(number) is defaults[number]]  # nohup ignores one
     for number in kept:
         signal.signal(number, stop)
+    sys.unraisablehook = lambda lost: None if requests else report(lost)
     try:
         yield
     except Exception as error:
@@ -121,6 +124,7 @@ def _orderly_end() -> Iterator[None]:
             raise _interrupt(requests[0]) from error
         raise
     finally:
+        sys.unraisablehook = report
         for number in kept:
             signal.signal(number, defaults[number])
 
@@ -145,12 +149,19 @@ def _loaded(name: str) -> tuple[argparse.ArgumentParser, Callable[[argparse.Name
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one sub-command. 0: did it; 1: did it, and the answer is bad news; 2: could not, with one line why."""
-    words = list(sys.argv[1:] if arguments is None else arguments)
+    try:
+        return _run(list(sys.argv[1:] if arguments is None else arguments))
+    except BrokenPipeError:  # the reader, `head` say, has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+
+
+def _run(words: list[str]) -> int:
     if words[:1] == ["--version"]:
         print(f"puckpilot {version('puckpilot')}")
         return 0
     if not words or words[0] in ("-h", "--help"):
-        print(_overview())
+        print(_overview(), flush=True)
         return 0 if words else 2
     many = 2 if " ".join(words[:2]) in COMMANDS else 1
     name, rest = " ".join(words[:many]), words[many:]
@@ -164,9 +175,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         with _orderly_end():
             parser, run = _loaded(name)
             return run(parser.parse_args(rest))
-    except BrokenPipeError:  # the reader, `head` say, has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
+    except BrokenPipeError:
+        raise
     except KeyboardInterrupt as stop:
         print(f"puckpilot {name}: stopped", file=sys.stderr)
         return 128 + (stop.args[0] if stop.args else signal.SIGINT)

@@ -189,6 +189,32 @@ def test_a_library_that_fails_of_an_interrupt_ends_in_one_line(monkeypatch, caps
     assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
 
 
+@pytest.mark.skipif(os.name != "posix", reason="pipes of POSIX")
+def test_a_reader_that_has_seen_enough_ends_the_overview_quietly():
+    code = "import sys, time; time.sleep(0.5); import puckpilot; sys.exit(puckpilot.main(['--help']))"
+    words = f'"{sys.executable}" -c "{code}" | true'
+    done = subprocess.run(["sh", "-c", words], cwd=ROOT, capture_output=True, text=True)
+    assert done.stderr == ""
+
+
+def test_what_a_callback_lost_of_an_interrupt_is_not_printed(monkeypatch, capsys):
+    """The emulator's callbacks cannot raise it, and report it as ignored."""
+
+    class Lost:
+        def __del__(self) -> None:
+            raise RuntimeError("ignored")
+
+    def losing(name: str) -> None:
+        with contextlib.suppress(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGTERM)
+        Lost()
+        raise RuntimeError("stopped in between")
+
+    monkeypatch.setattr(puckpilot.importlib, "import_module", losing)
+    assert puckpilot.main(["envs"]) == 143
+    assert capsys.readouterr().err == "puckpilot envs: stopped\n"
+
+
 @pytest.mark.parametrize("name", OPTIONS)
 def test_every_command_refuses_an_unknown_option(name, capsys):
     assert refused([*name.split(), "--no-such-option"], capsys).startswith(f"puckpilot {name}: ")

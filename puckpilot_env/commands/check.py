@@ -22,7 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--steps", type=int, default=2000, help="steps that each check plays (default 2000, a match)")
     parser.add_argument("--seed", type=int, default=0, help="seed of the games (default 0)")
     parser.add_argument(
-        "--adversarial", type=int, metavar="STEPS", help="play so many steps at the ends of all ranges instead"
+        "--adversarial", type=int, metavar="STEPS", help="play at least so many steps at the ends of all ranges instead"
     )
     parser.add_argument("--json", action="store_true", help="print findings as JSON")
 

@@ -1,7 +1,7 @@
 """A player at the robot's seat of a table, behind the simulator's own interface.
 
 The only backend so far is the twin, a table on this computer in virtual time: the flashed firmware runs in the
-emulator, drives the mallet of an independent physics, and a camera with measured errors watches. A scripted player has
+emulator, drives the mallet of an independent physics, and a camera with measured errors watches. Another player has
 the other seat. Goals and fouls are printed as they happen, the results and what the line did at the end."""
 
 from __future__ import annotations
@@ -18,7 +18,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
     parser.add_argument("player", metavar="PLAYER", help="a script, or a policy by name, .npz file or run's folder")
     parser.add_argument("--backend", default="twin", metavar="NAME", help="the table: twin (default)")
-    parser.add_argument("--opponent", default="interceptor", metavar="SCRIPT", help="who has the twin's other seat")
+    parser.add_argument(
+        "--opponent",
+        default="interceptor",
+        metavar="PLAYER",
+        help="who has the other seat of a twin (default interceptor)",
+    )
     parser.add_argument("--variant", default="match-v0", metavar="ID", help="the game (default match-v0)")
     parser.add_argument("--games", type=int, default=1, metavar="N", help="games (default 1)")
     parser.add_argument(

@@ -1,4 +1,4 @@
-"""The opponent's hand in the twin: a scripted player that sees the table as it is, and takes the mallet with it."""
+"""The opponent's hand in the twin: a player that sees the table as it is, and takes the mallet with it."""
 
 from __future__ import annotations
 
