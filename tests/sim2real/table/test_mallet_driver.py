@@ -36,6 +36,7 @@ def at_rest(x: float, y: float) -> np.ndarray:
     return np.array([[x, 0.0, 0.0], [y, 0.0, 0.0]])
 
 
+@pytest.mark.slow
 def test_a_plan_ends_at_its_target_at_rest() -> None:
     driver = MalletDriver(P)
     driver.stand(*HOME, 1.0)

@@ -14,6 +14,7 @@ P = make_records(1)[0]
 RATE = 120.0
 
 
+@pytest.mark.slow
 def test_a_puck_is_predicted_past_a_bounce() -> None:
     """The truth is the independent table's."""
     seen, random = SeenTable(P), np.random.default_rng(1)

@@ -49,6 +49,7 @@ def test_the_mallet_goes_where_the_action_says_and_the_columns_say_so(seat: Robo
     assert info["off_path"] < 0.002
 
 
+@pytest.mark.slow
 def test_puck_and_opponent_are_seen_where_they_are_and_as_fast() -> None:
     env = make_robot_seat(MATCH, "twin", "interceptor", seed=2)
     try:
