@@ -46,8 +46,8 @@ def run(args: argparse.Namespace) -> int:
     logs = []
     for game in range(args.games):
         seed = seed_number(args.seed) + game
-        tell = (lambda line: None) if args.json else print
-        logs.append(play(args.player, args.backend, args.opponent, variant, seed, args.seconds, tell))
+        report = (lambda line: None) if args.json else print
+        logs.append(play(args.player, args.backend, args.opponent, variant, seed, args.seconds, report))
         if not args.json:
             print(f"game {game + 1}: {args.player} {logs[-1].score[0]}:{logs[-1].score[1]} {args.opponent}")
     result = _result(args, variant.id, logs)

@@ -53,7 +53,7 @@ def operating_volts(p: np.void) -> float:
 
 
 class MalletDriver:
-    """The robot's mallet as it was told to move: plans follow each other without a jump.
+    """The robot's mallet as commanded: plans follow each other without a jump.
 
     p: the table's parameters, as the player may know them.
     """

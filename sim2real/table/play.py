@@ -21,9 +21,9 @@ def play(
     variant: Variant,
     seed: int,
     seconds: float | None,
-    tell: Callable[[str], None],
+    report: Callable[[str], None],
 ) -> GameLog:
-    """Play a game, at most `seconds` of it, and return what came of it. `tell` takes a line for each goal and foul.
+    """Play a game, at most `seconds` of it, and return what came of it. `report` takes a line for each goal and foul.
 
     ValueError, in one line, for an unknown name, and where the table stopped.
     """
@@ -37,7 +37,7 @@ def play(
             log.frame_ages.append(info["frame_age"])
             observation, _, terminated, truncated, info = env.step(actor.act(observation[None])[0])
             over = terminated or truncated
-            _note(log, info, tell)
+            _note(log, info, report)
             if info["new_point"]:
                 actor.reset(np.ones(1, bool))
         log.outcome = int(info.get("outcome", np.sign(log.score[0] - log.score[1])))
@@ -46,13 +46,13 @@ def play(
         env.close()
 
 
-def _note(log: GameLog, info: dict[str, Any], tell: Callable[[str], None]) -> None:
-    """Add a step to the log, and tell of goals and fouls."""
+def _note(log: GameLog, info: dict[str, Any], report: Callable[[str], None]) -> None:
+    """Add a step to the log, and report goals and fouls."""
     score, fouls = ((int(info[name][0]), int(info[name][1])) for name in ("score", "fouls"))
     for name, before, after in (("goal", log.score, score), ("foul", log.fouls, fouls)):
         for who, was, is_now in zip(("robot", "opponent"), before, after, strict=True):
             if is_now > was:
-                tell(f"{info['play_time']:6.1f} s  {name} of the {who}, {score[0]}:{score[1]}")
+                report(f"{info['play_time']:6.1f} s  {name} of the {who}, {score[0]}:{score[1]}")
     log.score, log.fouls, log.seconds = score, fouls, info["play_time"]
     log.plans = info["plans"]
     log.off_path = max(log.off_path, info["off_path"])

@@ -17,7 +17,7 @@ from sim2real.table.backend import Place
 from sim2real.table.game_record import GameRecord
 from sim2real.table.twin.plant import OpponentPlan, Plant
 
-GAME = ("score", "time", "held", "steps", "defending", "fouls")  # what the opponent is told
+GAME = ("score", "time", "held", "steps", "defending", "fouls")  # what the opponent may know
 
 
 class ScriptedHand:

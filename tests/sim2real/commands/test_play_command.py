@@ -1,4 +1,4 @@
-"""`puckpilot play`: a player on the twin, told in lines and as JSON."""
+"""`puckpilot play`: a player on the twin, reported in lines and as JSON."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import puckpilot
 
 
 @pytest.mark.slow
-def test_a_game_is_told_in_lines(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_game_is_reported_in_lines(capsys: pytest.CaptureFixture[str]) -> None:
     assert puckpilot.main(["play", "interceptor", "--opponent", "still", "--seconds", "12", "--seed", "1"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert any("goal of the robot" in line for line in lines)
@@ -20,7 +20,7 @@ def test_a_game_is_told_in_lines(capsys: pytest.CaptureFixture[str]) -> None:
     assert "plans sent; mallet off its path by at most" in lines[-1]
 
 
-def test_a_game_is_told_as_json(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_game_is_reported_as_json(capsys: pytest.CaptureFixture[str]) -> None:
     assert puckpilot.main(["play", "still", "--opponent", "still", "--seconds", "0.5", "--json"]) == 0
     result = json.loads(capsys.readouterr().out)
     assert result["games"] == 1 and result["seconds"] == pytest.approx(0.5)

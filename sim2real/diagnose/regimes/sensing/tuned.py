@@ -70,7 +70,7 @@ class ClockNumbers:
         4, "contacts", "fewer do not determine a clock", "choice: two more than it has numbers"
     )
     worst_condition: float = tuned(
-        1e12, "1", "condition number beyond which delay and rate are not told apart", "choice: what rounding leaves"
+        1e12, "1", "condition number beyond which delay and rate are not separable", "choice: what rounding leaves"
     )
     rejected: float = tuned(
         1e-3,
