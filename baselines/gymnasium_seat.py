@@ -57,18 +57,14 @@ def make_env(
 ) -> gymnasium.Env[NDArray[Any], NDArray[Any]]:
     """The entry point of every id: `make_seat` with its options, or the robot's seat at a `backend`, "twin" say.
 
-    A backend is a table outside the simulator; it takes `opponent`, by name, and `parameters`. ValueError, in one line,
-    for an invalid argument.
+    A backend is a table outside the simulator; it takes `parameters`, `period` and options of its own, as a twin's
+    `opponent`, a player or its name. ValueError, in one line, for an invalid argument.
     """
     if backend is None:
         return make_seat(variant, **options)
-    opponent, parameters = options.pop("opponent", "goalie"), options.pop("parameters", None)
-    if given := [name for name, value in options.items() if value is not None]:
-        raise ValueError(f"{given[0]} is given with backend '{backend}'; a backend takes opponent and parameters")
-    if not isinstance(opponent, str):
-        raise ValueError(f"opponent is {in_short(opponent)}; a backend takes a player's name")
+    given = {name: value for name, value in options.items() if value is not None}
     make = importlib.import_module(TABLE_SEAT).make_robot_seat
-    return make(variant, backend, opponent, parameters=parameters, seed=fresh_seed())
+    return make(variant, backend, **{"seed": fresh_seed(), **given})
 
 
 def make_seat(

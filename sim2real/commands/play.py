@@ -37,20 +37,25 @@ def run(args: argparse.Namespace) -> int:
     """Play and print. 0: played. ValueError, in one line, for what cannot be played, or where the table stopped."""
     from puckpilot_env.options.inputs import seed_number, whole_number
     from puckpilot_env.variants import find_variant
-    from sim2real.table.play import play
+    from sim2real.table.play import play_game
+    from sim2real.table.robot_seat import make_robot_seat
 
     whole_number(args.games, "--games", 1, 1000)
     if args.seconds is not None and not args.seconds > 0.0:
         raise ValueError(f"--seconds is {args.seconds:g}; expected more than 0")
-    variant = find_variant(args.variant)
+    options = {"opponent": args.opponent} if args.backend == "twin" else {}
+    env = make_robot_seat(find_variant(args.variant), args.backend, **options)
     logs = []
-    for game in range(args.games):
-        seed = seed_number(args.seed) + game
-        report = (lambda line: None) if args.json else print
-        logs.append(play(args.player, args.backend, args.opponent, variant, seed, args.seconds, report))
-        if not args.json:
-            print(f"game {game + 1}: {args.player} {logs[-1].score[0]}:{logs[-1].score[1]} {args.opponent}")
-    result = _result(args, variant.id, logs)
+    try:
+        for game in range(args.games):
+            report = (lambda line: None) if args.json else print
+            seed = seed_number(args.seed) + game
+            logs.append(play_game(env, args.player, seed, args.seconds, report, lambda fault: False))
+            if not args.json:
+                print(f"game {game + 1}: {args.player} {logs[-1].score[0]}:{logs[-1].score[1]} {args.opponent}")
+    finally:
+        env.close()
+    result = _result(args, env.tables.variant.id, logs)
     print(json.dumps(result, indent=2) if args.json else _summary(result))
     return 0
 
@@ -58,7 +63,7 @@ def run(args: argparse.Namespace) -> int:
 def _result(args: argparse.Namespace, variant: str, logs: list[GameLog]) -> dict[str, Any]:
     import numpy as np
 
-    ages = np.concatenate([log.frame_ages for log in logs])
+    ages = np.concatenate([log.times.frame_ages for log in logs])
     return {
         "variant": variant,
         "backend": args.backend,

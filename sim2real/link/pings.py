@@ -9,6 +9,8 @@ from sim2real.link.wire.messages import Ping, Pong
 
 PERIOD = 0.05  # s
 OVERDUE = 1.0  # s after which a ping counts as lost
+CLOCK_EVERY = 0.04  # s between exchanges from which the clock is determined, once there are EXCHANGES: pings that only
+EXCHANGES = 20  # keep a host alive that the board soon takes for silent come more often
 
 
 class Pings:
@@ -19,9 +21,10 @@ class Pings:
         self.clock = BoardClock()
         self.sent = self.answered = self.lost = 0
         self.round_trips: deque[float] = deque(maxlen=1000)  # s on the line, without the board's own time, newest last
-        self.period = PERIOD  # s
+        self.period = PERIOD  # s, see `set_period`
         self.answered_at = now  # time of the newest answer, or of the beginning [s]
         self._due = now
+        self._clock_at = now  # time of the newest exchange that the clock has [s]
         self._open: dict[int, float] = {}  # time of sending of each unanswered ping, by its token
 
     def due(self, now: float) -> Ping | None:
@@ -36,6 +39,11 @@ class Pings:
         self.sent += 1
         return Ping(self.sent % 2**32)
 
+    def set_period(self, period: float, now: float) -> None:
+        """Send pings every `period` [s] from `now` [s] on."""
+        self.period = period
+        self._due = min(self._due, now + period)
+
     def mark_sent(self, ping: Ping, now: float) -> None:
         """Record that `ping` is about to be written at `now` [s]."""
         self._open[ping.token] = now
@@ -48,4 +56,6 @@ class Pings:
         self.answered += 1
         self.answered_at = now
         self.round_trips.append(now - sent - 1e-6 * ((pong.sent - pong.received) % 2**32))
-        self.clock.add(sent, pong.received, pong.sent, now)
+        if len(self.clock) < EXCHANGES or now - self._clock_at >= CLOCK_EVERY:
+            self._clock_at = now
+            self.clock.add(sent, pong.received, pong.sent, now)

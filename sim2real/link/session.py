@@ -139,7 +139,7 @@ class Session:
         """Send the configuration. Pings are sent at a third of its `silence` if that is more often than usual."""
         self._send_connected(config)
         self._config = frame_crc(config)
-        self.pings.period = min(PERIOD, config.silence / 3000)
+        self.pings.set_period(min(PERIOD, config.silence / 3000), self._now())
 
     def home(self, x: float, y: float) -> None:
         """Tell the board that the mallet is at rest at x, y [m]."""

@@ -1,24 +1,38 @@
-"""Backends by name."""
+"""Backends by name: a row each."""
 
 from __future__ import annotations
 
 import difflib
+import importlib
+import inspect
 from typing import Any
 
 from sim2real.table.backend import Backend
+from sim2real.table.game_record import GameRecord
 
-BACKENDS = ("twin",)
+BACKENDS = {  # name -> module and class, loaded when asked for
+    "twin": ("sim2real.table.twin.twin", "Twin"),
+    "table": ("sim2real.table.physical.physical_table", "PhysicalTable"),
+    "replay": ("sim2real.table.replay.replay", "Replay"),
+}
+NEEDS = {"unicorn": "the twin needs unicorn; install it with: pip install 'puckpilot[emulate]'"}
 
 
-def make_backend(name: str, *arguments: Any, **options: Any) -> Backend:
-    """The backend of this name. ValueError, in one line, for an unknown name, and where it cannot be made."""
+def make_backend(name: str, game: GameRecord, **options: Any) -> Backend:
+    """The backend of this name for a game, with its own options. ValueError, in one line, for an unknown name or
+    option, and where it cannot be made."""
     if name not in BACKENDS:
         near = difflib.get_close_matches(str(name), BACKENDS, n=1)
-        raise ValueError(f"unknown backend '{name}'; " + (f"did you mean '{near[0]}'?" if near else "known: twin"))
+        known = ", ".join(BACKENDS)
+        raise ValueError(f"unknown backend '{name}'; " + (f"did you mean '{near[0]}'?" if near else f"known: {known}"))
+    module, kind = BACKENDS[name]
     try:
-        from sim2real.table.twin.twin import Twin
+        make = getattr(importlib.import_module(module), kind)
     except ModuleNotFoundError as error:
-        if error.name != "unicorn":
+        if error.name not in NEEDS:
             raise
-        raise ValueError("the twin needs unicorn; install it with: pip install 'puckpilot[emulate]'") from None
-    return Twin(*arguments, **options)
+        raise ValueError(NEEDS[error.name]) from None
+    takes = [word for word in inspect.signature(make).parameters if word != "game"]
+    if unknown := [word for word in options if word not in takes]:
+        raise ValueError(f"{unknown[0]} is given with backend '{name}'; it takes {', '.join(takes)}")
+    return make(game, **options)

@@ -2,39 +2,29 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import replace
 
 import numpy as np
 
-from puckpilot_env.game import mirror
-from puckpilot_env.physics.gantry.mallet import axis_coefficients
+from firmware import PWM_FULL
 from sim2real.link.serial_port import SerialLine
 from sim2real.link.session import Session
-from sim2real.link.wire.messages import FORMATS, Config, Event, Fault, Notice, Refusal, State, Traj
-from sim2real.table.backend import Place, TableFaultError
-from sim2real.table.mallet_driver import MalletPlan, operating_volts
+from sim2real.link.wire.messages import FORMATS, Config, Event, Fault, Notice, Refusal, State, Telemetry, Traj
+from sim2real.table.backend import Place, SeenMallet
+from sim2real.table.faults import Cause, TableFaultError
+from sim2real.table.mallet_driver import MalletPlan
 
-PROPORTIONAL, INTEGRAL, DERIVATIVE = 400.0, 500.0, 2.0  # V/m, V/m/s, V s/m of both axes
-OFF_PATH = 0.05  # m from its path at which the board stops the mallet
-SILENCE = 50  # ms without a message after which the board stops
-AREA_SLACK = 0.002  # m beyond the area of plans in which the mallet may err before the board stops it
 AT_HOME = 0.002  # m from the home that was sent, by the encoders
 PATIENCE = 2.0  # s that a step of the bring-up may take
+BRAKES_WITHIN = 0.1  # s in which a board that was asked to shows that it has stopped, before it gets an emergency stop
 EXCHANGES = 10  # pings that are answered before the board's clock is relied on
 POLL = 0.001  # s between polls
-STALE = 0.05  # s without telemetry after which the board counts as lost
+STALE = 0.03  # s without telemetry, which comes every 2 ms, after which the board counts as lost
 MICRO = 1e-6
-
-
-def board_config(p: np.void) -> Config:
-    """The configuration for a table of these parameters."""
-    x_low, x_high, y_low, y_high = mirror.area(0, p)
-    (c5x, c6x, c7x), (c5y, c6y, c7y) = axis_coefficients(p, 0), axis_coefficients(p, 1)
-    return Config(
-        (c5x, c5y), (c6x, c6y), (c7x, c7y), float(p["pulley_radius"]), float(p["max_voltage"]), operating_volts(p),
-        (x_low - AREA_SLACK, x_high + AREA_SLACK), (y_low - AREA_SLACK, y_high + AREA_SLACK),
-        (PROPORTIONAL, PROPORTIONAL), (INTEGRAL, INTEGRAL), (DERIVATIVE, DERIVATIVE), OFF_PATH, SILENCE,
-    )  # fmt: skip
+NAMES = {number: message.__name__.lower() for message, (number, _) in FORMATS.items()}
 
 
 class BoardLine:
@@ -47,107 +37,160 @@ class BoardLine:
     def __init__(
         self, connect: Callable[[], SerialLine], now: Callable[[], float], serve: Callable[[float], None]
     ) -> None:
-        self._connect, self._now, self._serve = connect, now, serve
-        self._session: Session | None = None
+        self._now, self._serve = now, serve
+        self.session = Session(connect, now)
         self._armed = False
         self._refused = ""  # the first message that the board refused, and why
-        self._off_path = 0.0  # m, the farthest since it was taken
+        self._mallets: list[SeenMallet] = []
 
-    def bring_up(self, config: Config, home: Place) -> None:
-        """Greet the board, configure it, home the mallet at `home` [m] and arm. TableFaultError where a step fails."""
-        self._session = session = Session(self._connect, self._now)
+    # Bring-up, step by step
+
+    def greet(self) -> None:
+        """Greet the board, until it answers and its clock is known, and have it leave FAULT. TableFaultError if it does
+        not."""
+        session = self.session
+        self._refused = ""
         self._until(lambda: session.connected and len(session.clock) >= EXCHANGES, "no board answers on this line")
+        self._until(lambda: session.state is not None, "the board sends no telemetry")
         if session.state == State.FAULT:
-            session.clear()
-            self._until(lambda: session.state in (State.UNHOMED, State.IDLE), "the board does not leave FAULT")
-        session.config(config)
-        self._until(lambda: session.state in (State.UNHOMED, State.IDLE), "the board does not get ready")
-        session.home(*home)
-        self._until(lambda: session.state == State.IDLE and self._stands_at(home), "the board does not take the home")
-        session.arm()
-        self._until(lambda: session.state == State.ARMED, "the board does not arm")
-        self._armed = True
+            self._until(self._cleared, "the board does not leave FAULT")
 
-    def _stands_at(self, home: Place) -> bool:
-        telemetry = self._open().telemetry
-        return telemetry is not None and float(np.hypot(*np.subtract(telemetry.place, home))) < AT_HOME
+    def _cleared(self) -> bool:
+        if self.session.state == State.FAULT:
+            with suppress(ValueError):  # while a stop is not confirmed
+                self.session.clear()
+            self._serve(self._now() + 0.01)
+            return False
+        return self.session.state in (State.UNHOMED, State.IDLE)
+
+    def configure(self, config: Config) -> None:
+        """Send the configuration. TableFaultError if the board refuses it, or is armed."""
+        self.session.config(config)
+        self._until(lambda: self.session.state in (State.UNHOMED, State.IDLE), "the board does not get ready")
+
+    @property
+    def homed(self) -> bool:
+        """Whether the board knows where its mallet is."""
+        return self.session.state in (State.IDLE, State.ARMED)
+
+    @property
+    def place(self) -> Place:
+        """The mallet's place by its encoders [m]. TableFaultError before it is known."""
+        telemetry = self.session.telemetry
+        if telemetry is None or not self.homed:
+            raise TableFaultError(Cause.NOT_READY, "the board does not know where its mallet is; home it first")
+        return telemetry.place
+
+    def home(self, home: Place) -> None:
+        """Tell the board that the mallet is at rest at `home` [m]. TableFaultError if it does not take it."""
+        self.session.home(*home)
+        self._until(
+            lambda: self.homed and math.dist(self.place, home) < AT_HOME, "the board does not take the home"
+        )  # fmt: skip
+
+    def arm(self) -> None:
+        """Enable the motors. TableFaultError if the board does not."""
+        self.session.arm()
+        self._until(lambda: self.session.state == State.ARMED, "the board does not arm")
+        self._armed = True
 
     def _until(self, done: Callable[[], bool], otherwise: str) -> None:
         end = self._now() + PATIENCE
         while not done():
             if self._now() > end:
-                raise TableFaultError(f"{otherwise}; see puckpilot link test")
+                raise TableFaultError(Cause.NOT_READY, f"{otherwise}; see puckpilot link test")
             self._serve(self._now() + POLL)
             self.poll()
             self._refuse_refusals()
 
+    # Play
+
     def poll(self) -> None:
-        """Read and answer what is due, and keep the newest telemetry; call it every few milliseconds."""
-        session = self._open()
+        """Read and answer what is due, and keep what telemetry says of the mallet; call it every few milliseconds."""
+        session = self.session
         session.poll()
         for event in session.take_events():
             self._take(event)
         session.take_notes()
         for telemetry in session.take_telemetry():
-            if telemetry.state == State.ARMED and telemetry.sequence:
-                self._off_path = max(self._off_path, float(np.hypot(*np.subtract(telemetry.place, telemetry.path))))
+            if telemetry.state in (State.IDLE, State.ARMED) and len(session.clock):
+                self._mallets.append(_seen(telemetry, session.clock.to_host(telemetry.time)))
 
-    def take_off_path(self) -> float:
-        """The farthest that the encoders had the mallet from its path since the last call [m]."""
-        farthest, self._off_path = self._off_path, 0.0
-        return farthest
+    def take_mallets(self) -> list[SeenMallet]:
+        """What telemetry said of the mallet since the last call."""
+        mallets, self._mallets = self._mallets, []
+        return mallets
 
     def _take(self, event: Event) -> None:
         if event.code == Notice.REFUSED and not self._refused:
-            names = {number: message.__name__.lower() for message, (number, _) in FORMATS.items()}
-            self._refused = f"{names.get(event.detail >> 8, 'message')}, {Refusal(event.detail & 0xFF).name}"
+            self._refused = f"{NAMES.get(event.detail >> 8, 'message')}, {Refusal(event.detail & 0xFF).name}"
 
     def _refuse_refusals(self) -> None:
         if self._refused:
-            raise TableFaultError(f"the board refused a {self._refused}; begin anew")
+            raise TableFaultError(Cause.PLAN_REFUSED, f"the board refused a {self._refused}; clear, and play on")
 
     def check(self) -> None:
         """TableFaultError, in one line, if an armed board does not play any more, or refused what it was sent."""
-        session = self._open()
+        session = self.session
         if not self._armed:
             return
         if not session.port_is_open:
-            raise TableFaultError("the board's port is lost; plug it in and begin anew")
+            raise TableFaultError(Cause.PORT_LOST, "the board's port is lost; plug it in and clear")
         if (session.age or 0.0) > STALE:
-            raise TableFaultError(f"no telemetry for {1e3 * STALE:.0f} ms; check the cable and begin anew")
+            raise TableFaultError(
+                Cause.BOARD_SILENT, f"no telemetry for {1e3 * STALE:.0f} ms; check the cable and clear"
+            )
         if session.state == State.FAULT:
             reason = Fault(session.telemetry.fault).name if session.telemetry else "unknown"
-            raise TableFaultError(f"the board stopped the motors: {reason}; clear the table and begin anew")
+            raise TableFaultError(
+                Cause.BOARD_STOPPED, f"the board stopped the motors: {reason}; see to the table and clear"
+            )
         if session.state not in (None, State.ARMED):
-            raise TableFaultError(f"the board is in {State(session.state).name} and not ARMED; begin anew")
+            name = State(session.state).name
+            raise TableFaultError(Cause.BOARD_NOT_ARMED, f"the board is in {name} and not ARMED; clear to arm it again")
         self._refuse_refusals()
 
-    def send(self, plan: MalletPlan) -> None:
-        """Send a plan. TableFaultError if there is no board that could take it."""
-        session = self._open()
+    def send(self, plan: MalletPlan) -> MalletPlan:
+        """Send a plan; return it with the numbers that the protocol carries. TableFaultError if there is no board that
+        could take it."""
         self.check()
+        session = self.session
         t1, t2 = ((round(x / MICRO), round(y / MICRO)) for x, y in (plan.t1, plan.t2))
-        rest, slow, fast = ((float(row[0]), float(row[1])) for row in plan.modes)
-        begin, life = session.clock.to_board(plan.begin), round(plan.life / MICRO)
+        rest, slow, fast = ((float(row[0]), float(row[1])) for row in np.float32(plan.modes))
+        volts = float(np.float32(plan.volts[0])), float(np.float32(plan.volts[1]))
         try:
-            session.traj(Traj(0, begin, life, plan.volts, t1, t2, rest, slow, fast))
+            begin = session.clock.to_board(plan.begin)
+            session.traj(Traj(0, begin, round(plan.life / MICRO), volts, t1, t2, rest, slow, fast))
         except ValueError as error:
-            raise TableFaultError(str(error)) from None
+            raise TableFaultError(Cause.NOT_READY, str(error)) from None
+        seconds = ((MICRO * first, MICRO * second) for first, second in (t1, t2))
+        return replace(plan, volts=volts, t1=next(seconds), t2=next(seconds), modes=np.array([rest, slow, fast]))
 
     def stop(self) -> None:
-        """Send an emergency stop, if there is a line; never raises."""
+        """Have the board brake and switch the motors off; an emergency stop if it does not show that it did. A board
+        that cannot be reached stops by itself. Raises nothing."""
         self._armed = False
-        if self._session is not None and self._session.port_is_open:
-            self._session.estop()
+        session = self.session
+        if session.state != State.ARMED or not session.port_is_open:
+            if session.port_is_open and session.state is None:
+                session.estop()
+            return
+        with suppress(ValueError):  # not connected
+            session.disarm()
+        end = self._now() + BRAKES_WITHIN
+        while session.state == State.ARMED and session.port_is_open and self._now() < end:
+            self._serve(self._now() + POLL)
+            self.poll()
+        if session.state == State.ARMED and session.port_is_open:
+            session.estop()
 
     def close(self) -> None:
         """Stop and close the line."""
-        if self._session is not None:
-            self.stop()
-            self._session.close()
-            self._session = None
+        self.stop()
+        self.session.close()
 
-    def _open(self) -> Session:
-        if self._session is None:
-            raise TableFaultError("the table is not connected; call connect() first")
-        return self._session
+
+def _seen(telemetry: Telemetry, time: float) -> SeenMallet:
+    path = telemetry.path if telemetry.state == State.ARMED and telemetry.sequence else None
+    left, right = telemetry.pwm
+    return SeenMallet(time, telemetry.place, path, (left / PWM_FULL, right / PWM_FULL))

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from sim2real.table.loop_times import LoopTimes
+
 
 @dataclass
 class GameLog:
     """score, fouls: of the robot and its opponent; outcome: 1 won, 0 nobody, -1 lost; seconds: of play.
 
-    plans: sent to the board; frame_ages [s]: of the newest frame at each decision; off_path [m]: the farthest that the
-    encoders had the mallet from its path.
+    plans: sent to the board; parked [s]: with the puck lost; off_path [m]: the farthest that the encoders had the
+    mallet from its path; faults: causes of stops; times: of the decisions.
     """
 
     score: tuple[int, int] = (0, 0)
@@ -18,5 +20,7 @@ class GameLog:
     outcome: int = 0
     seconds: float = 0.0
     plans: int = 0
-    frame_ages: list[float] = field(default_factory=list)
+    parked: float = 0.0
     off_path: float = 0.0
+    faults: list[str] = field(default_factory=list)
+    times: LoopTimes = field(default_factory=LoopTimes)

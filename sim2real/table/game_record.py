@@ -15,24 +15,36 @@ from puckpilot_env.kernel import kernel
 from puckpilot_env.physics.gantry.mallet import idle, place_axis
 from puckpilot_env.tables import Tables
 from puckpilot_env.variants import Variant
+from sim2real.table.backend import Motion
 
-Motion = tuple[float, float, float, float]  # x, y [m], vx, vy [m/s]
+SHORTEST = 0.016  # s between two decisions: the board looks at a plan for 10 ms, and frames come every 8.3 ms
 
 
 class GameRecord:
     """A record of one table of a variant, in whose places the caller writes what it knows.
 
-    `tables`: a simulator's table of its own, for spaces, columns and rules; nothing is stepped in it. ValueError, in
+    `tables`: a simulator's table of its own, for spaces, columns and rules; nothing is stepped in it; `given`: the
+    parameters that were named; `period`: of a step [s], SHORTEST at least, the variant's by default. ValueError, in
     one line, for drills, and for variants that draw their table or show camera frames: no backend plays them yet.
     """
 
-    def __init__(self, variant: Variant | str, parameters: Mapping[str, float] | None, seed: int) -> None:
-        self.tables = Tables(variant, 1, seed=seed, autoreset=False, parameters=parameters)
+    def __init__(
+        self,
+        variant: Variant | str,
+        parameters: Mapping[str, float] | None = None,
+        seed: int = 0,
+        *,
+        period: float | None = None,
+    ) -> None:
+        self.given = dict(parameters or {})
+        self.tables = Tables(variant, 1, seed=seed, autoreset=False, parameters=parameters, period=period)
         self.rule = self.tables.variant.rules()[0]
         if self.rule["sensing"] != sensing.EXACT or self.rule["game"] != MATCH or self.tables.variant.draws:
             raise ValueError(
                 f"a table backend plays puckpilot/match-v0; {self.tables.variant.id} is not played there yet"
             )
+        if float(self.rule["period"]) < SHORTEST:
+            raise ValueError(f"period is {float(self.rule['period']):g} s; the board takes a plan every {SHORTEST:g} s")
         self.record, self.p = self.tables.states[0], self.tables.params[0]
         self._no_frames = np.zeros(1, FRAME)
 

@@ -8,8 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from puckpilot_env.game.predict import expected_place
-from sim2real.table.backend import Place
-from sim2real.table.game_record import Motion
+from sim2real.table.backend import Motion, Place
 from sim2real.vision.track.detector import OPPONENT_POWER, PUCK_POWER
 from sim2real.vision.track.kalman_tracker import ANY_SPEED, KalmanTracker, Measurement, TrackState
 

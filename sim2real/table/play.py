@@ -1,4 +1,4 @@
-"""One game of a player at the robot's seat of a table."""
+"""Games of a player at the robot's seat of a table."""
 
 from __future__ import annotations
 
@@ -9,41 +9,56 @@ import numpy as np
 
 from baselines import find_player
 from baselines.player import Seat
-from puckpilot_env.variants import Variant
+from sim2real.table.faults import TableFaultError
 from sim2real.table.game_log import GameLog
-from sim2real.table.robot_seat import make_robot_seat
+from sim2real.table.robot_seat import RobotSeat
 
 
-def play(
+def play_game(
+    env: RobotSeat,
     player: str,
-    backend: str,
-    opponent: str,
-    variant: Variant,
     seed: int,
     seconds: float | None,
     report: Callable[[str], None],
+    may_clear: Callable[[TableFaultError], bool],
 ) -> GameLog:
-    """Play a game, at most `seconds` of it, and return what came of it. `report` takes a line for each goal and foul.
+    """Play a game, at most `seconds` of it, and return what came of it; the mallet is at rest in the end.
 
-    ValueError, in one line, for an unknown name, and where the table stopped.
+    report: takes a line for each goal, foul and fault; may_clear: whether to go on after a fault, when it is mended.
+    ValueError, in one line, for an unknown name, and where the table stopped for good.
     """
-    make = find_player(player)
-    env = make_robot_seat(variant, backend, opponent, seed=seed)
-    try:
-        actor = make(Seat.from_tables(env.tables, 2 * seed))
-        observation, info = env.reset(seed=seed)
-        log, over = GameLog(), False
-        while not over and (seconds is None or log.seconds < seconds):
-            log.frame_ages.append(info["frame_age"])
+    actor = find_player(player)(Seat.from_tables(env.tables, 2 * seed))
+    actor.act(np.zeros((1, *(env.observation_space.shape or ())), np.float32))  # compiled before the motors are armed
+    actor.reset(np.ones(1, bool))
+    log, over = GameLog(), False
+    observation, info = env.reset(seed=seed)
+    while not over and (seconds is None or log.seconds < seconds):
+        try:
             observation, _, terminated, truncated, info = env.step(actor.act(observation[None])[0])
             over = terminated or truncated
             _note(log, info, report)
-            if info["new_point"]:
-                actor.reset(np.ones(1, bool))
-        log.outcome = int(info.get("outcome", np.sign(log.score[0] - log.score[1])))
-        return log
-    finally:
-        env.close()
+        except TableFaultError as fault:
+            report(f"{log.seconds:6.1f} s  stopped, {fault.cause}: {fault}")
+            log.faults.append(str(fault.cause))
+            observation, info = _cleared(env, fault, may_clear)
+        if info["new_point"]:
+            actor.reset(np.ones(1, bool))
+    if env.loop is not None:
+        log.times = env.loop.times
+    log.outcome = int(info.get("outcome", np.sign(log.score[0] - log.score[1])))
+    return log
+
+
+def _cleared(
+    env: RobotSeat, fault: TableFaultError, may_clear: Callable[[TableFaultError], bool]
+) -> tuple[np.ndarray, dict[str, Any]]:
+    """The observation and info with which play goes on; raises the fault where it does not."""
+    while may_clear(fault):
+        try:
+            return env.clear()
+        except TableFaultError as still:
+            fault = still
+    raise fault
 
 
 def _note(log: GameLog, info: dict[str, Any], report: Callable[[str], None]) -> None:
@@ -54,5 +69,5 @@ def _note(log: GameLog, info: dict[str, Any], report: Callable[[str], None]) -> 
             if is_now > was:
                 report(f"{info['play_time']:6.1f} s  {name} of the {who}, {score[0]}:{score[1]}")
     log.score, log.fouls, log.seconds = score, fouls, info["play_time"]
-    log.plans = info["plans"]
+    log.plans, log.parked = info["plans"], info["parked"]
     log.off_path = max(log.off_path, info["off_path"])

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from puckpilot_env.game import reward, rules
+from puckpilot_env.game import mirror, reward, rules
 from puckpilot_env.physics.contacts import bounce
-from sim2real.table.game_record import GameRecord, Motion
+from sim2real.table.backend import Motion
+from sim2real.table.game_record import GameRecord
 from sim2real.table.moving_objects import SeenTable
 
 Seen = tuple[float, Motion]  # time of a frame [s], and the motion then
 SAMPLES = 5  # of the time between two frames at which contacts are looked for
 HIDDEN = 0.02  # s without a sight of the puck, in which the clock does not end a point: it may be in a goal
 GONE = 0.1  # s without a sight of the puck after which it is in the goal that it went to
+NEAR = 0.25  # m from a goal line: farther away a puck that is unseen was not sent into the goal by a mallet
 TOUCHING = 0.004  # m between puck and mallet below which they are taken for touching
 
 
@@ -38,11 +40,12 @@ class Referee:
         self.rewards[:] = 0.0
         self._game.record["ending"] = rules.RUNNING
 
-    def order(self, robot: Motion, action: np.ndarray) -> None:
-        """Charge the robot for an action (4,), with its mallet at `robot` (report J.3)."""
-        x, y = float(action[0]), float(action[1])
-        self.rewards[0] += reward.movement_cost(robot[0], robot[1], x, y)
-        self.rewards[0] += reward.voltage_cost(float(action[2]), float(action[3]))
+    def order(self, which: int, mallet: Motion, action: np.ndarray) -> None:
+        """Charge the robot (0) or the opponent (1) for an action (4,), with its mallet at `mallet` of the table's frame
+        (report J.3)."""
+        x, y = mirror.place(which, mallet[0], mallet[1], self._game.p)
+        self.rewards[which] += reward.movement_cost(x, y, float(action[0]), float(action[1]))
+        self.rewards[which] += reward.voltage_cost(float(action[2]), float(action[3]))
 
     def watch(self, time: float, puck: Motion, robot: Motion, opponent: Motion | None) -> None:
         """Take the motions at a frame of `time` [s]."""
@@ -95,7 +98,11 @@ class Referee:
         expected = seen.puck_at(now)
         if expected is not None and (expected[0] <= 0.0 or expected[0] >= length):
             return -1 if expected[0] <= 0.0 else 1
-        return -1 if self._before[1][0] < 0.5 * length else 1  # a mallet sent it there between two frames
+        x, y = self._before[1][:2]
+        mouth = abs(y - 0.5 * float(self._game.p["width"])) < 0.5 * float(self._game.p["goal_width"])
+        if not mouth or NEAR < x < length - NEAR:  # hidden, by an arm perhaps
+            return 0
+        return -1 if x < 0.5 * length else 1  # a mallet sent it there between two frames
 
 
 def _at(seen: Seen, times: np.ndarray) -> np.ndarray:

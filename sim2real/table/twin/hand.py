@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
+from numpy.typing import NDArray
 
 from baselines import find_player
-from baselines.player import Seat
+from baselines.player import Player, Seat
 from puckpilot_env.game import mirror
 from puckpilot_env.game.start import HOME
 from puckpilot_env.kernel import kernel
 from puckpilot_env.physics.gantry.plan import plan_mallet
-from puckpilot_env.variants import Variant
 from sim2real.table.backend import Place
 from sim2real.table.game_record import GameRecord
 from sim2real.table.twin.plant import OpponentPlan, Plant
@@ -21,11 +19,12 @@ GAME = ("score", "time", "held", "steps", "defending", "fouls")  # what the oppo
 
 
 class ScriptedHand:
-    """A player by name at the opponent's seat. ValueError, in one line, for an unknown name."""
+    """A player, by name or itself, at the opponent's seat of a game. ValueError, in one line, for an unknown name."""
 
-    def __init__(self, variant: Variant | str, player: str, parameters: Mapping[str, float] | None, seed: int) -> None:
-        self._game = GameRecord(variant, parameters, seed)
-        self._player = find_player(player)(Seat.from_tables(self._game.tables, seed))
+    def __init__(self, game: GameRecord, player: str | Player, seed: int) -> None:
+        self._game = GameRecord(game.tables.variant, game.given, seed, period=float(game.rule["period"]))
+        seat = Seat.from_tables(self._game.tables, seed)
+        self._player = find_player(player)(seat) if isinstance(player, str) else player
 
     @property
     def home(self) -> Place:
@@ -37,8 +36,8 @@ class ScriptedHand:
         """A point begins."""
         self._player.reset(np.ones(1, bool))
 
-    def decide(self, plant: Plant, game: np.void) -> OpponentPlan:
-        """The plan of the next step, of the table as it is and the game's record."""
+    def observe(self, plant: Plant, game: np.void) -> NDArray[np.float32]:
+        """The opponent's observation (columns,) of the table as it is and the game's record."""
         for name in GAME:
             self._game.record[name] = game[name]
         puck = plant.puck
@@ -46,7 +45,11 @@ class ScriptedHand:
             self._game.put_puck((float(puck[0]), float(puck[1]), float(puck[2]), float(puck[3])))
         for which in range(2):
             self._game.put_mallet(which, plant.mallet(which), plant.acceleration(which))
-        action = self._player.act(self._game.observe()[None, 1])[0]
+        return self._game.observe()[1]
+
+    def decide(self, plant: Plant, game: np.void) -> OpponentPlan:
+        """The plan of the next step, of the table as it is and the game's record."""
+        action = self._player.act(self.observe(plant, game)[None])[0]
         mallet = self._game.record["mallets"][1]
         _plan(mallet, self._game.p, *(float(one) for one in action))
         x, y = mallet["x"], mallet["y"]

@@ -56,6 +56,10 @@ class Plant:
         """Put the puck at (x, y, vx, vy) [m, m/s], without spin."""
         self._puck[:] = (*puck, 0.0, LONG_AGO)
 
+    def put_robot(self, place: Place) -> None:
+        """Put the robot's mallet at rest at a place [m]."""
+        self._mallets[0] = begin(self.law, [place])[0]
+
     def put_opponent(self, place: Place) -> None:
         """Put the opponent's mallet at rest at a place [m]."""
         self._mallets[1] = begin(self.law, [place])[0]

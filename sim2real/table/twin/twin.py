@@ -2,131 +2,104 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import fields, replace
 
 import numpy as np
 
+from baselines.player import Player
 from puckpilot_env.parameters import TABLE
-from puckpilot_env.variants import Variant
 from sim2real.study.independent_table.physics.law import Law
-from sim2real.table.backend import Place, Reading, TableFaultError
-from sim2real.table.board_line import POLL, BoardLine, board_config
-from sim2real.table.mallet_driver import MalletPlan
+from sim2real.table.backend import Place
+from sim2real.table.board_config import board_config
+from sim2real.table.board_line import BoardLine
+from sim2real.table.game_record import GameRecord
+from sim2real.table.live_table import LiveTable
 from sim2real.table.twin.board import EmulatedBoard
 from sim2real.table.twin.camera import CameraErrors, TwinCamera
 from sim2real.table.twin.hand import ScriptedHand
 from sim2real.table.twin.plant import Plant
 
 MODELLED = tuple(row.name for row in TABLE if row.name in {field.name for field in fields(Law)})  # of the baseline
-BLIND = 0.05  # s without a new frame after which the camera counts as lost
+CARRYING = 1.0  # m/s at which a hand takes the robot's mallet home
 
 
-class Twin:
+class Twin(LiveTable):
     """A table with a scripted hand at the other end; see `backend.Backend`.
 
-    variant, parameters: of the game; opponent: a player's name; law: physics of the plant, as the parameters say by
-    default; camera: its errors. ValueError, in one line, for an unknown name.
+    game: whose table it is; opponent: a player, by name or itself; law: physics of the plant, as the game's parameters
+    say by default; errors: of the camera. ValueError, in one line, for an unknown name.
     """
 
     def __init__(
         self,
-        p: np.void,
-        variant: Variant | str,
-        opponent: str,
-        *,
-        parameters: Mapping[str, float] | None = None,
+        game: GameRecord,
+        opponent: str | Player = "goalie",
         law: Law | None = None,
-        camera: CameraErrors | None = None,
-        seed: int = 0,
+        errors: CameraErrors | None = None,
     ) -> None:
-        self._p, self._law = p, law or law_of(p)
-        self._errors, self._seed = camera or CameraErrors(), seed
-        refuse_unmodelled(parameters)
-        self._make_hand = lambda seed: ScriptedHand(variant, opponent, parameters, 2 * seed + 1)
-        self.hand = self._make_hand(seed)
+        super().__init__(board_config(game.p))
+        refuse_unmodelled(game.given)
+        self._supply, self._law = float(game.p["max_voltage"]), law or law_of(game.p)
+        self._errors, self._seed = errors or CameraErrors(), 0
+        self._make_hand = lambda seed: ScriptedHand(game, opponent, 2 * seed + 1)
+        self.hand = self._make_hand(self._seed)
         self.board: EmulatedBoard | None = None
-        self.line: BoardLine | None = None
-
-    def connect(self, home: Place) -> None:
-        """Switch board and camera on, home and arm."""
-        self.plant = Plant(self._law, home, self.hand.home)
-        self.board = EmulatedBoard(self.plant, float(self._p["max_voltage"]), self._seed)
-        self.camera = TwinCamera(self._errors, self._seed)
-        self._since = self.board.now()  # the newest frame's arrival
-        self.line = BoardLine(lambda: self._board, self.now, self._run)
-        self.line.bring_up(board_config(self._p), home)
-
-    @property
-    def _line(self) -> BoardLine:
-        if self.line is None:
-            raise TableFaultError("the twin is not connected; call connect() first")
-        return self.line
-
-    @property
-    def _board(self) -> EmulatedBoard:
-        if self.board is None:
-            raise TableFaultError("the twin is not connected; call connect() first")
-        return self.board
 
     def seed(self, seed: int) -> None:
         """Noise, the hand and the board's memory begin anew."""
         self._seed = seed
         self.hand = self._make_hand(seed)
 
+    def _open(self, home: Place) -> None:
+        """Switch board and camera on."""
+        self.plant = Plant(self._law, home, self.hand.home)
+        self.board = EmulatedBoard(self.plant, self._supply, self._seed)
+        self.eyes = self.camera = TwinCamera(self._errors, self._seed)
+        self.line = BoardLine(lambda: self._opened(self.board), self.now, self._pass_time)
+        self.person = self
+
     def now(self) -> float:
         """Virtual time since power-on [s]."""
-        return self._board.now()
+        return self._opened(self.board).now()
 
-    def _run(self, until: float) -> None:
-        """Let time pass, with the frames that are due."""
+    def _pass_time(self, until: float) -> None:
+        """Let virtual time pass, with the frames that are due."""
+        board = self._opened(self.board)
         while self.camera.next_exposure <= until:
-            self._board.run(self.camera.next_exposure)
+            board.run(self.camera.next_exposure)
             self.camera.expose(self.plant)
-        self._board.run(until)
+        board.run(until)
 
-    def wait(self, until: float) -> None:
-        """Let virtual time pass until `until` [s], and serve the line."""
-        while self.now() < until - 1e-9:
-            self._run(min(self.now() + POLL, until))
-            self._line.poll()
+    def _shut(self) -> None:
+        self.board = None
 
-    def read(self) -> Reading:
-        """What came since the last call."""
-        self._line.check()
-        frames, now = self.camera.take(self.now()), self.now()
-        if frames:
-            self._since = now
-        elif now - self._since > BLIND:
-            raise TableFaultError(f"no frame for {1e3 * (now - self._since):.0f} ms; check the camera and begin anew")
-        late = now - frames[-1].time if frames else math.nan
-        return Reading(frames, late, self._line.take_off_path())
+    # The person at the table: the hand
 
-    def send(self, plan: MalletPlan) -> None:
-        """Send a plan to the board."""
-        self._line.send(plan)
-
-    def place_puck(self, puck: np.ndarray) -> None:
+    def put_puck(self, puck: np.ndarray) -> None:
         """The hand puts the puck down and its mallet home."""
         self.plant.put_puck(puck)
         self.plant.put_opponent(self.hand.home)
         self.hand.begin_point()
 
-    def show(self, game: np.void) -> None:
+    def home_mallet(self, home: Place) -> None:
+        """The hand takes the robot's mallet home, no faster than encoders can count."""
+        line = self._opened(self.line)
+        here = np.array(self.plant.mallet(0)[:2])
+        steps = int(np.ceil(float(np.hypot(*(here - home))) / (CARRYING * 1e-3)))
+        for part in (np.arange(steps) + 1.0) / max(steps, 1):
+            self.plant.put_robot(tuple(here + part * (np.array(home) - here)))
+            self._pass_time(self.now() + 1e-3)
+            line.poll()
+
+    def play(self, game: np.void) -> None:
         """The hand decides what to do next."""
         self.plant.play(self.hand.decide(self.plant, game))
 
-    def close(self) -> None:
-        """Stop, and drop the board."""
-        if self.line is not None:
-            self.line.close()
-        self.board = self.line = None
 
-
-def refuse_unmodelled(parameters: Mapping[str, float] | None) -> None:
+def refuse_unmodelled(parameters: Mapping[str, float]) -> None:
     """ValueError, in one line, for a parameter that the plant's law does not have, or under another name."""
-    for name in parameters or ():
+    for name in parameters:
         if name not in MODELLED:
             raise ValueError(f"the twin does not model '{name}'; it takes {', '.join(MODELLED)}")
 

@@ -31,7 +31,7 @@ def test_a_game_is_reported_as_json(capsys: pytest.CaptureFixture[str]) -> None:
     ("words", "message"),
     [
         (["goaly"], "unknown player 'goaly'; did you mean 'goalie'?"),
-        (["goalie", "--backend", "table"], "unknown backend 'table'; known: twin"),
+        (["goalie", "--backend", "tabel"], "unknown backend 'tabel'; did you mean 'table'?"),
         (["goalie", "--games", "0"], "--games is 0; expected a whole number from 1 to 1,000"),
         (["goalie", "--seconds", "0"], "--seconds is 0; expected more than 0"),
         (["goalie", "--variant", "defence-v0"], "a table backend plays puckpilot/match-v0"),

@@ -9,7 +9,7 @@ import pytest
 pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
 
 import puckpilot_env  # noqa: F401 - registers the ids
-from sim2real.table.backend import TableFaultError
+from sim2real.table.faults import TableFaultError
 from sim2real.table.robot_seat import RobotSeat, make_robot_seat
 from sim2real.table.twin.twin import Twin
 
@@ -19,13 +19,13 @@ STAY = np.array([0.25, 0.5, 5.0, 5.0], np.float32)
 
 @pytest.fixture
 def seat():
-    env = make_robot_seat(MATCH, "twin", "still", seed=2)
+    env = make_robot_seat(MATCH, "twin", opponent="still", seed=2)
     yield env
     env.close()
 
 
 def twin_of(env: RobotSeat) -> Twin:
-    twin = env._backend
+    twin = env.backend
     assert isinstance(twin, Twin)
     return twin
 
@@ -51,7 +51,7 @@ def test_the_mallet_goes_where_the_action_says_and_the_columns_say_so(seat: Robo
 
 @pytest.mark.slow
 def test_puck_and_opponent_are_seen_where_they_are_and_as_fast() -> None:
-    env = make_robot_seat(MATCH, "twin", "interceptor", seed=2)
+    env = make_robot_seat(MATCH, "twin", opponent="interceptor", seed=2)
     try:
         env.reset(seed=4)
         names = [column.name for column in env.tables.observation_columns]
@@ -86,9 +86,9 @@ def played(seed: int, env: RobotSeat) -> tuple[list, list]:
 
 @pytest.mark.slow
 def test_the_same_seed_gives_the_same_game_to_the_last_bit() -> None:
-    env = make_robot_seat(MATCH, "twin", "interceptor", seed=1)
+    env = make_robot_seat(MATCH, "twin", opponent="interceptor", seed=1)
     once = played(3, env)
-    assert once == played(3, env) == played(3, make_robot_seat(MATCH, "twin", "interceptor", seed=2))
+    assert once == played(3, env) == played(3, make_robot_seat(MATCH, "twin", opponent="interceptor", seed=2))
     assert once[0] != played(4, env)[0]
     assert len(once[1]) > 100
 
@@ -135,7 +135,7 @@ def test_a_board_that_is_reset_ends_the_game_with_motors_off(seat: RobotSeat) ->
     board = twin_of(seat).board
     assert board is not None
     board.machine.reset("watchdog")
-    with pytest.raises(TableFaultError, match="begin anew"):
+    with pytest.raises(TableFaultError, match=r"BOOT and not ARMED; clear to arm it again"):
         seat.step(np.array([0.9, 0.9, 3.0, 3.0], np.float32))
     assert board.machine.motors.duties == (0.0, 0.0)
 
@@ -169,20 +169,45 @@ def test_a_policy_that_hangs_leaves_the_mallet_at_its_target(seat: RobotSeat, ha
 
 def test_a_refused_plan_ends_the_game(seat: RobotSeat) -> None:
     seat.reset(seed=1)
-    seat._driver.stand(0.7, 0.3, twin_of(seat).now())  # where the mallet is not
-    with pytest.raises(TableFaultError, match="the board refused a traj, OFF_START; begin anew"):
+    assert seat.loop is not None
+    seat.loop._driver.stand(0.7, 0.3, twin_of(seat).now())  # where the mallet is not
+    with pytest.raises(TableFaultError, match="the board refused a traj, OFF_START; clear"):
         seat.step(STAY)
     seat.reset()
     seat.step(STAY)
 
 
-def test_after_a_fault_a_new_episode_begins(seat: RobotSeat) -> None:
+def test_after_a_fault_a_new_episode_begins_or_the_game_goes_on_where_the_mallet_stopped(seat: RobotSeat) -> None:
     seat.reset(seed=1)
-    twin_of(seat).camera.unplugged = True
+    twin = twin_of(seat)
+    for _ in range(3):
+        *_, info = seat.step(np.array([0.9, 0.9, 5.0, 5.0], np.float32))
+    twin.camera.unplugged = True
+    with pytest.raises(TableFaultError, match=r"no frame for 3. ms; check the camera and clear"):
+        seat.step(STAY)
+    with pytest.raises(TableFaultError, match="no frame for"):  # it is still unplugged
+        seat.clear()
+    twin.camera.unplugged = False
+    observation, after = seat.clear()
+    assert np.isfinite(observation).all() and after["play_time"] == pytest.approx(info["play_time"], abs=0.11)
+    assert after["new_point"] and twin.plant.mallet(0)[:2] == pytest.approx((0.25, 0.5), abs=0.002)
+    seat.step(STAY)
+    assert seat.reset()[1]["play_time"] == 0.0
+    seat.step(STAY)
+
+
+def test_a_board_that_was_reset_is_homed_again_by_hand_before_the_game_goes_on(seat: RobotSeat) -> None:
+    seat.reset(seed=1)
+    for _ in range(3):
+        seat.step(np.array([0.9, 0.9, 5.0, 5.0], np.float32))
+    twin = twin_of(seat)
+    assert twin.board is not None
+    twin.board.machine.reset("watchdog")
     with pytest.raises(TableFaultError):
         seat.step(STAY)
-    assert np.isfinite(seat.reset()[0]).all()
+    seat.clear()
     seat.step(STAY)
+    assert twin.plant.mallet(0)[:2] == pytest.approx(twin.place(), abs=0.001)
 
 
 def test_closing_stops_the_mallet(seat: RobotSeat) -> None:
@@ -202,8 +227,8 @@ def test_closing_stops_the_mallet(seat: RobotSeat) -> None:
     [
         ({"backend": "twinn"}, "unknown backend 'twinn'; did you mean 'twin'?"),
         ({"backend": "twin", "seat": 1}, "seat is given with backend 'twin'"),
-        ({"backend": "twin", "period": 0.05}, "period is given with backend"),
-        ({"backend": "twin", "opponent": print}, "a backend takes a player's name"),
+        ({"backend": "twin", "period": 0.0125}, "period is 0.0125 s; the board takes a plan every 0.016 s"),
+        ({"backend": "twin", "camara": "pictures"}, "camara is given with backend 'twin'; it takes opponent"),
         ({"backend": "twin", "opponent": "goaly"}, "unknown player 'goaly'; did you mean 'goalie'?"),
     ],
 )
@@ -220,12 +245,12 @@ def test_variants_that_no_backend_plays_are_refused(variant: str) -> None:
 
 
 def test_a_weak_supply_is_kept_to_and_what_the_twin_does_not_model_is_refused() -> None:
-    env = make_robot_seat(MATCH, "twin", "still", parameters={"max_voltage": 12.0})
+    env = make_robot_seat(MATCH, "twin", opponent="still", parameters={"max_voltage": 12.0})
     env.reset(seed=1)
     env.step(STAY)
     env.close()
     with pytest.raises(ValueError, match="the twin does not model 'camera_latency'"):
-        make_robot_seat(MATCH, "twin", "still", parameters={"camera_latency": 0.02})
+        make_robot_seat(MATCH, "twin", opponent="still", parameters={"camera_latency": 0.02})
 
 
 def test_gymnasium_makes_the_twin_by_naming_it() -> None:

@@ -1,0 +1,163 @@
+"""A table with a board at the end of a line and a camera over it, in real time or a twin's."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from collections.abc import Sequence
+from typing import Protocol, TypeVar
+
+import numpy as np
+
+from sim2real.link.wire.messages import Config
+from sim2real.table.backend import Backend, Place, Reading, SeenFrame
+from sim2real.table.board_line import POLL, BoardLine
+from sim2real.table.faults import Cause, TableFaultError
+from sim2real.table.mallet_driver import MalletPlan
+from sim2real.table.watchdog import CameraWatchdog
+
+Part = TypeVar("Part")
+
+
+class Eyes(Protocol):
+    """A camera and what finds puck and opponent in its frames."""
+
+    def take(self, now: float) -> Sequence[SeenFrame]:
+        """The frames that can be used at `now` [s] and were not taken before, in order of time."""
+        ...
+
+
+class Person(Protocol):
+    """Whoever stands at the table: has the other seat, puts the puck down, takes the robot's mallet home by hand."""
+
+    def put_puck(self, puck: np.ndarray) -> None:
+        """Put the puck at (x, y, vx, vy) [m, m/s]."""
+        ...
+
+    def home_mallet(self, home: Place) -> None:
+        """Put the robot's mallet, whose motors are off, at `home` [m], and leave it there at rest."""
+        ...
+
+    def play(self, game: np.void) -> None:
+        """Play on, by the state of the game."""
+        ...
+
+
+class LiveTable(Backend):
+    """See `Backend`. A subclass opens `line`, `eyes` and `person`, knows the time and lets it pass.
+
+    config: of the board.
+    """
+
+    def __init__(self, config: Config) -> None:
+        self._config = config
+        self.line: BoardLine | None = None
+        self.eyes: Eyes | None = None
+        self.person: Person | None = None
+        self._frames: list[SeenFrame] = []
+        self._watchdog: CameraWatchdog | None = None
+
+    @abstractmethod
+    def _open(self, home: Place) -> None:
+        """Open camera, line and what else there is, with the mallet near `home` [m]."""
+
+    @abstractmethod
+    def _pass_time(self, until: float) -> None:
+        """Let time pass until `until` [s], at most a few milliseconds away."""
+
+    @abstractmethod
+    def _shut(self) -> None:
+        """Free all that `_open` opened but the line; may be called again."""
+
+    def connect(self, home: Place) -> None:
+        """See `Backend.connect`."""
+        self._open(home)
+        self._get_ready(home)
+
+    def clear(self, home: Place) -> None:
+        """See `Backend.clear`."""
+        self._get_ready(home)
+
+    def _get_ready(self, home: Place) -> None:
+        line, eyes = self._opened(self.line), self._opened(self.eyes)
+        line.greet()
+        line.configure(self._config)
+        if not line.homed:
+            self._opened(self.person).home_mallet(home)
+            line.home(home)
+        line.arm()
+        eyes.take(self.now())  # what came meanwhile is old
+        line.take_mallets()
+        self._frames = []
+        self._watchdog = CameraWatchdog(self.now())
+
+    def wait(self, until: float) -> None:
+        """See `Backend.wait`."""
+        while self.now() < until - 1e-9:
+            self._serve(until)
+
+    def wait_for_frame(self, until: float) -> None:
+        """See `Backend.wait_for_frame`."""
+        known = len(self._frames)
+        while len(self._frames) == known and self.now() < until - 1e-9:
+            self._serve(until)
+
+    def _serve(self, until: float) -> None:
+        """Let a moment pass, no longer than `until` [s], and take what came. TableFaultError on any doubt."""
+        line, eyes, watchdog = self._opened(self.line), self._opened(self.eyes), self._opened(self._watchdog)
+        try:
+            self._pass_time(min(self.now() + POLL, until))
+            line.poll()
+            line.check()
+            now = self.now()
+            new = eyes.take(now)
+            self._frames += new
+            watchdog.check(now, new)
+        except TableFaultError:
+            self.stop()
+            raise
+
+    def place(self) -> Place:
+        """See `Backend.place`."""
+        return self._opened(self.line).place
+
+    def read(self) -> Reading:
+        """See `Backend.read`."""
+        frames, self._frames = self._frames, []
+        late = self.now() - frames[-1].time if frames else math.nan
+        return Reading(frames, self._opened(self.line).take_mallets(), late)
+
+    def send(self, plan: MalletPlan) -> MalletPlan:
+        """See `Backend.send`."""
+        try:
+            return self._opened(self.line).send(plan)
+        except TableFaultError:
+            self.stop()
+            raise
+
+    def place_puck(self, puck: np.ndarray) -> None:
+        """See `Backend.place_puck`."""
+        self._opened(self.person).put_puck(puck)
+
+    def show(self, game: np.void) -> None:
+        """See `Backend.show`."""
+        self._opened(self.person).play(game)
+
+    def stop(self) -> None:
+        """See `Backend.stop`."""
+        self._watchdog = None
+        if self.line is not None:
+            self.line.stop()
+
+    def close(self) -> None:
+        """See `Backend.close`."""
+        self.stop()
+        if self.line is not None:
+            self.line.close()
+        self._shut()
+        self.line = self.eyes = self.person = None
+
+    def _opened(self, part: Part | None) -> Part:
+        if part is None:
+            raise TableFaultError(Cause.NOT_READY, "the table is not connected, or has stopped; connect or clear first")
+        return part

@@ -1,0 +1,172 @@
+"""The loop at a table: frames to estimates, estimates to an observation, an action to a plan, rules on what is seen."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from puckpilot_env.game import rules
+from puckpilot_env.game.start import HOME, face_off
+from sim2real.table.backend import Backend, Place
+from sim2real.table.faults import Cause, TableFaultError
+from sim2real.table.game_record import GameRecord, Motion
+from sim2real.table.loop_times import LoopTimes
+from sim2real.table.mallet_driver import AHEAD, MalletDriver
+from sim2real.table.moving_objects import SeenTable
+from sim2real.table.referee import GONE, Referee
+
+HOMING_VOLTS = 5.0  # V, of the way home between points
+POINT_PAUSE = 0.02  # s between looks at whether the mallet is home
+HALF_FRAME = 0.004  # s, about half a frame of 120 Hz: a decision waits for the frame that is due
+LOST = 0.3  # s without a sight of the puck, on its way to no goal, after which the mallet is parked
+FOUND_WITHIN = 2.0  # s in which a lost puck comes back into sight
+
+
+class Loop:
+    """A backend, what is known of its game, and the mallet's plans; `record`'s clock goes on with each `step`.
+
+    times: of the decisions; plans: number of plans sent; parked: seconds in which the mallet was parked because the
+    puck was lost. TableFaultError, in one line, from every method in which time passes; the mallet is stopped then.
+    """
+
+    def __init__(self, backend: Backend, game: GameRecord) -> None:
+        self.backend, self.game = backend, game
+        self.referee, self.seen = Referee(game), SeenTable(game.p)
+        self.times, self.plans, self.parked = LoopTimes(), 0, 0.0
+        self.off_path = 0.0  # m, the farthest since it was taken
+        self.over = False  # whether the backend has ended
+        self._driver = MalletDriver(game.p)
+        self._placed = self._decided = -math.inf
+        self._frame_age = math.nan
+
+    @property
+    def home(self) -> Place:
+        """Where the mallet is at the beginning of a point [m]."""
+        return HOME * float(self.game.p["length"]), 0.5 * float(self.game.p["width"])
+
+    def connect(self) -> None:
+        """Connect the backend and stand at home."""
+        self.backend.connect(self.home)
+        self._stand()
+
+    def clear(self) -> None:
+        """Go on after a stop, from where the mallet is, with a face-off."""
+        self.backend.clear(self.home)
+        self._stand()
+        face_off(self.game.record, self.game.p)
+
+    def _stand(self) -> None:
+        """The mallet is at rest where the backend has it."""
+        self._driver.stand(*self.backend.place(), self.backend.now())
+
+    def begin_point(self) -> None:
+        """Drive home, have the puck put where the record says, and wait until it is seen."""
+        puck = self.game.record["puck"]
+        put = np.array([float(puck[name]) for name in ("x", "y", "vx", "vy")])
+        self._drive_home()
+        self.backend.place_puck(put)
+        self._placed = self.backend.now()
+        self.seen.forget()
+        self.referee.begin(self._placed)
+        self._await_sight(self.backend.patience, self.home)
+        self._decided = -math.inf
+
+    def step(self, action: NDArray[np.float32]) -> bool:
+        """Play an action (4,) for one period; whether a new point has begun. The record says how it ended."""
+        begin, period = self.backend.now(), float(self.game.rule["period"])
+        due = self._decided + period
+        self.times.add(max(begin - due, 0.0) if np.isfinite(due) else 0.0, self._frame_age)
+        self._decided = begin
+        self.referee.begin_step()
+        self.referee.order(0, self._motion(begin + AHEAD), action)
+        self.backend.show(self.game.record)
+        self._send(action, begin + AHEAD)
+        self.backend.wait(begin + period - HALF_FRAME)
+        self.backend.wait_for_frame(begin + period + HALF_FRAME)
+        self._take_frames()
+        again = self.referee.end_step(self.backend.now(), self.seen)
+        running = int(self.game.record["ending"]) == rules.RUNNING
+        if again and running:
+            self.begin_point()
+        elif running and not self.over and self.seen.puck.unseen_for(self.backend.now()) > LOST:
+            self._park()
+        return again and running
+
+    def finish(self) -> None:
+        """Drive home after the last point."""
+        self._drive_home()
+
+    def observe(self) -> tuple[NDArray[np.float32], float]:
+        """The observations (2, columns) of both players for the moment at which the next action acts; that moment
+        [s]."""
+        acts_at = self.backend.now() + AHEAD
+        self.game.put_mallet(0, self._motion(acts_at))
+        if puck := self.seen.puck_at(acts_at):
+            self.game.put_puck(puck)
+        if opponent := self.seen.opponent_at(acts_at):
+            self.game.put_mallet(1, opponent)
+        return self.game.observe(), acts_at
+
+    @property
+    def frame_age(self) -> float:
+        """The age of the newest frame when it was read [s]."""
+        return self._frame_age
+
+    def _motion(self, time: float) -> Motion:
+        return self.backend.mallet_motion(time) or self._driver.motion(time)
+
+    def _take_frames(self) -> None:
+        """Update the estimates, and show the referee each frame in which the puck is seen."""
+        reading = self.backend.read()
+        self._frame_age, self.over = reading.late_s, self.over or reading.over
+        self.off_path = max(self.off_path, reading.off_path)
+        for frame in reading.frames:
+            if frame.time <= self._placed:  # of the point before
+                continue
+            self.seen.puck.update(frame.time, frame.puck)
+            self.seen.opponent.update(frame.time, frame.opponent)
+            puck = self.seen.puck.motion()
+            if frame.puck is not None and puck is not None:
+                self.referee.watch(frame.time, puck, self._motion(frame.time), self.seen.opponent.motion())
+
+    def _send(self, action: ArrayLike, begin: float) -> None:
+        self.backend.send(self._driver.plan(action, begin))
+        self.plans += 1
+
+    def _drive_home(self) -> None:
+        """Drive the mallet home and wait until it stands there."""
+        while self.backend.obeys:
+            self._hold(self.home)
+            self.backend.read()
+            if self._driver.standing(self.backend.now()):
+                return
+
+    def _hold(self, place: Place) -> None:
+        """Keep the mallet at a place, or on its way there, for a moment."""
+        begin = self.backend.now() + AHEAD
+        self._send([*place, HOMING_VOLTS, HOMING_VOLTS], begin)
+        self.backend.wait(begin + POINT_PAUSE)
+
+    def _await_sight(self, patience: float, place: Place) -> None:
+        """Hold the mallet at `place` until puck and opponent are seen. TableFaultError after `patience` [s]."""
+        end = self.backend.now() + patience
+        while self.seen.puck.unseen_for(self.backend.now()) > GONE or self.seen.opponent.motion() is None:
+            if self.over:
+                return
+            if self.backend.now() > end:
+                self.backend.stop()
+                missing = "the opponent's mallet" if self.seen.opponent.motion() is None else "the puck"
+                raise TableFaultError(
+                    Cause.PUCK_LOST, f"{missing} is not seen for {patience:g} s; put it on the table, then clear"
+                )
+            self._hold(place)
+            self._take_frames()
+
+    def _park(self) -> None:
+        """Hold the mallet at home until the puck is seen again."""
+        since = self.backend.now()
+        self._await_sight(FOUND_WITHIN, self.home)
+        self.parked += self.backend.now() - since
+        self._decided = -math.inf
