@@ -1,91 +1,177 @@
 """A player at the robot's seat of a table, behind the simulator's own interface.
 
-The only backend so far is the twin, a table on this computer in virtual time: the flashed firmware runs in the
-emulator, drives the mallet of an independent physics, and a camera with measured errors watches. Another player has
-the other seat. Goals and fouls are printed as they happen, the results and what the line did at the end."""
+- `twin`, a table on this computer in virtual time: the flashed firmware runs in the emulator, drives the mallet of an
+  independent physics, and a camera watches. Another player has the other seat.
+- `table`, the physical one of a table.toml: a camera, the board at its port, a person at the other end. Goals, fouls
+  and what to do are said on the terminal. Any doubt stops the mallet; Enter clears it, Ctrl-C ends.
+- `replay`, a recording: the player sees what was seen, and its plans go nowhere.
+
+Goals and fouls are printed as they happen, results, late decisions and what the line did at the end."""
 
 from __future__ import annotations
 
 import argparse
 import json
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from sim2real.table.faults import TableFaultError
     from sim2real.table.game_log import GameLog
+    from sim2real.table.play import Show
+    from sim2real.table.robot_seat import RobotSeat
+
+INTERCEPTOR = "interceptor"
+OTHERS = {"table": "person", "replay": "recording"}  # who has the other seat, where that is not chosen
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
     parser.add_argument("player", metavar="PLAYER", help="a script, or a policy by name, .npz file or run's folder")
-    parser.add_argument("--backend", default="twin", metavar="NAME", help="the table: twin (default)")
-    parser.add_argument(
-        "--opponent",
-        default="interceptor",
-        metavar="PLAYER",
-        help="who has the other seat of a twin (default interceptor)",
-    )
+    parser.add_argument("--backend", default="twin", metavar="NAME", help="twin (default), table or replay")
+    parser.add_argument("--opponent", metavar="PLAYER", help="who has the other seat of a twin (default interceptor)")
+    parser.add_argument("--table", type=Path, metavar="FILE", help="the table.toml of a physical table")
+    parser.add_argument("--recording", type=Path, metavar="DIR", help="the recording to replay")
     parser.add_argument("--variant", default="match-v0", metavar="ID", help="the game (default match-v0)")
     parser.add_argument("--games", type=int, default=1, metavar="N", help="games (default 1)")
     parser.add_argument(
         "--seconds", type=float, metavar="S", help="end a game after so much play, before its clock does"
     )
     parser.add_argument("--seed", type=int, default=0, help="of serves, noise and players (default 0)")
+    parser.add_argument("--view", action="store_true", help="show what is seen, planned and late while it plays")
     parser.add_argument("--json", action="store_true", help="print the results as JSON alone")
 
 
 def run(args: argparse.Namespace) -> int:
     """Play and print. 0: played. ValueError, in one line, for what cannot be played, or where the table stopped."""
     from puckpilot_env.options.inputs import seed_number, whole_number
-    from puckpilot_env.variants import find_variant
     from sim2real.table.play import play_game
-    from sim2real.table.robot_seat import make_robot_seat
 
     whole_number(args.games, "--games", 1, 1000)
     if args.seconds is not None and not args.seconds > 0.0:
         raise ValueError(f"--seconds is {args.seconds:g}; expected more than 0")
-    options = {"opponent": args.opponent} if args.backend == "twin" else {}
-    env = make_robot_seat(find_variant(args.variant), args.backend, **options)
-    logs = []
+    env, other, logs = _seat(args), OTHERS.get(args.backend) or args.opponent or INTERCEPTOR, []
     try:
         for game in range(args.games):
-            report = (lambda line: None) if args.json else print
-            seed = seed_number(args.seed) + game
-            logs.append(play_game(env, args.player, seed, args.seconds, report, lambda fault: False))
+            with _reports(args) as (report, show):
+                seed = seed_number(args.seed) + game
+                logs.append(play_game(env, args.player, seed, args.seconds, report, _may_clear(args), show))
             if not args.json:
-                print(f"game {game + 1}: {args.player} {logs[-1].score[0]}:{logs[-1].score[1]} {args.opponent}")
+                print(f"game {game + 1}: {args.player} {logs[-1].score[0]}:{logs[-1].score[1]} {other}")
     finally:
         env.close()
-    result = _result(args, env.tables.variant.id, logs)
-    print(json.dumps(result, indent=2) if args.json else _summary(result))
+    result = _result(args, env.tables.variant.id, other, logs)
+    print(json.dumps(result, indent=2) if args.json else "\n".join(_summary(result, logs)))
     return 0
 
 
-def _result(args: argparse.Namespace, variant: str, logs: list[GameLog]) -> dict[str, Any]:
-    import numpy as np
+def _seat(args: argparse.Namespace) -> RobotSeat:
+    """The robot's seat at the backend that is asked for. ValueError, in one line, for options that do not fit it."""
+    from puckpilot_env.variants import find_variant
+    from sim2real.table.robot_seat import make_robot_seat
 
-    ages = np.concatenate([log.times.frame_ages for log in logs])
+    needs = {"twin": {"opponent"}, "table": {"table"}, "replay": {"recording"}}
+    for name in ("opponent", "table", "recording"):
+        wanted, given = needs.get(args.backend, set()), getattr(args, name) is not None
+        if given and name not in wanted:
+            raise ValueError(f"--{name} is given with --backend {args.backend}; it takes {_option(wanted)}")
+        if name in wanted and not given and name != "opponent":
+            raise ValueError(f"--backend {args.backend} needs {_option(wanted)}")
+    parameters, options = None, {}
+    if args.backend == "twin":
+        options = {"opponent": args.opponent or INTERCEPTOR}
+    elif args.backend == "table":
+        from sim2real.table.physical.table_file import read_table_file
+
+        parameters, options = read_table_file(args.table).parameters, {"table": args.table}
+    elif args.backend == "replay":
+        from sim2real.recording.folder import read_recording
+        from sim2real.recording.table_parameters import stated_sizes
+
+        parameters, options = stated_sizes(read_recording(args.recording)), {"recording": args.recording}
+    return make_robot_seat(find_variant(args.variant), args.backend, parameters=parameters, **options)
+
+
+def _option(names: set[str]) -> str:
+    return "".join(f"--{name}" for name in names) or "none of its own"
+
+
+def _may_clear(args: argparse.Namespace) -> Callable[[TableFaultError], bool]:
+    """Asks a person whether to go on after a fault; a twin mends nothing by itself."""
+    if args.backend != "table" or not sys.stdin.isatty():
+        return lambda fault: False
+
+    def ask(fault: TableFaultError) -> bool:
+        print(f"{fault}. Press Enter to go on, Ctrl-C to end", file=sys.stderr, flush=True)
+        return bool(sys.stdin.readline())
+
+    return ask
+
+
+@contextmanager
+def _reports(args: argparse.Namespace) -> Iterator[tuple[Callable[[str], None], Show]]:
+    """What takes a line for each goal, foul and fault, and what shows each step."""
+    from sim2real.table.view import picture
+
+    if not args.view:
+        yield (lambda line: None) if args.json else print, lambda loop, action, info: None
+        return
+    from rich.console import Console
+    from rich.live import Live
+    from rich.text import Text
+
+    console = Console(stderr=True)
+    with Live(console=console, refresh_per_second=10) as live:
+        yield (
+            (lambda line: None) if args.json else lambda line: console.print(line, highlight=False),
+            lambda loop, action, info: live.update(Text("\n".join(picture(loop, (action[0], action[1]), info)))),
+        )
+
+
+def _result(args: argparse.Namespace, variant: str, other: str, logs: list[GameLog]) -> dict[str, Any]:
+    from sim2real.table.loop_times import LoopTimes, summary
+
+    times = LoopTimes()
+    for log in logs:
+        times.join(log.times)
     return {
         "variant": variant,
         "backend": args.backend,
         "seed": args.seed,
-        "players": [args.player, args.opponent],
+        "players": [args.player, other],
         "games": len(logs),
         "wins": [sum(log.outcome == sign for log in logs) for sign in (1, -1)],
         "goals": [sum(log.score[k] for log in logs) for k in range(2)],
         "fouls": [sum(log.fouls[k] for log in logs) for k in range(2)],
         "seconds": sum(log.seconds for log in logs),
         "plans": sum(log.plans for log in logs),
-        "frame_age_s": {"median": float(np.median(ages)), "p99": float(np.percentile(ages, 99))},
+        "parked_s": sum(log.parked for log in logs),
+        "faults": [fault for log in logs for fault in log.faults],
+        "decisions": len(times.lateness),
+        "overruns": times.overruns,
+        **summary("frame_age_s", times.frame_ages),
+        **summary("late_s", times.lateness),
         "mallet_off_path_m": max(log.off_path for log in logs),
     }
 
 
-def _summary(result: dict[str, Any]) -> str:
-    (won, lost), (scored, conceded), ages = result["wins"], result["goals"], result["frame_age_s"]
-    return (
+def _summary(result: dict[str, Any], logs: list[GameLog]) -> list[str]:
+    from sim2real.table.loop_times import histogram
+
+    (won, lost), (scored, conceded) = result["wins"], result["goals"]
+    lines = [
         f"{result['players'][0]}: {won} won, {lost} lost of {result['games']}; goals {scored}:{conceded} in "
-        f"{result['seconds']:.0f} s of play\n"
-        f"newest frame at a decision: median {1e3 * ages['median']:.1f} ms old, 99 % {1e3 * ages['p99']:.1f} ms; "
-        f"{result['plans']} plans sent; mallet off its path by at most "
-        f"{1e3 * result['mallet_off_path_m']:.1f} mm"
-    )
+        f"{result['seconds']:.0f} s of play",
+        f"newest frame at a decision: median {1e3 * result['frame_age_s_median']:.1f} ms old, 99 % "
+        f"{1e3 * result['frame_age_s_p99']:.1f} ms; {result['plans']} plans sent; mallet off its path by at most "
+        f"{1e3 * result['mallet_off_path_m']:.1f} mm",
+        f"{result['decisions']} decisions, {result['overruns']} of them late; {len(result['faults'])} stops, "
+        f"{result['parked_s']:.1f} s parked",
+    ]
+    if result["backend"] != "table":  # time is virtual
+        return lines
+    late, ages = ([one for log in logs for one in getattr(log.times, name)] for name in ("lateness", "frame_ages"))
+    return [*lines, *histogram("lateness of decisions", late), *histogram("age of frames at decisions", ages)]

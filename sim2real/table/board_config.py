@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from puckpilot_env.game import mirror
@@ -9,18 +11,27 @@ from puckpilot_env.physics.gantry.mallet import axis_coefficients
 from sim2real.link.wire.messages import Config
 from sim2real.table.mallet_driver import operating_volts
 
-PROPORTIONAL, INTEGRAL, DERIVATIVE = 400.0, 500.0, 2.0  # V/m, V/m/s, V s/m of both axes
 OFF_PATH = 0.05  # m from its path at which the board stops the mallet
 SILENCE = 25  # ms without a message after which the board stops: it has as long again to brake within 50 ms
 AREA_SLACK = 0.002  # m beyond the area of plans in which the mallet may err before the board stops it
 
 
-def board_config(p: np.void) -> Config:
+@dataclass(frozen=True)
+class Gains:
+    """The board's feedback on axes x and y: proportional [V/m], integral [V/m/s], derivative [V s/m]."""
+
+    proportional: tuple[float, float] = (400.0, 400.0)
+    integral: tuple[float, float] = (500.0, 500.0)
+    derivative: tuple[float, float] = (2.0, 2.0)
+
+
+def board_config(p: np.void, gains: Gains | None = None) -> Config:
     """The configuration for a table of these parameters."""
+    gains = gains or Gains()
     x_low, x_high, y_low, y_high = mirror.area(0, p)
     (c5x, c6x, c7x), (c5y, c6y, c7y) = axis_coefficients(p, 0), axis_coefficients(p, 1)
     return Config(
         (c5x, c5y), (c6x, c6y), (c7x, c7y), float(p["pulley_radius"]), float(p["max_voltage"]), operating_volts(p),
         (x_low - AREA_SLACK, x_high + AREA_SLACK), (y_low - AREA_SLACK, y_high + AREA_SLACK),
-        (PROPORTIONAL, PROPORTIONAL), (INTEGRAL, INTEGRAL), (DERIVATIVE, DERIVATIVE), OFF_PATH, SILENCE,
+        gains.proportional, gains.integral, gains.derivative, OFF_PATH, SILENCE,
     )  # fmt: skip

@@ -46,11 +46,11 @@ class Person(Protocol):
 class LiveTable(Backend):
     """See `Backend`. A subclass opens `line`, `eyes` and `person`, knows the time and lets it pass.
 
-    config: of the board.
+    config: of the board; frame_rate: of the camera [Hz].
     """
 
-    def __init__(self, config: Config) -> None:
-        self._config = config
+    def __init__(self, config: Config, frame_rate: float) -> None:
+        self.config, self.frame_rate = config, frame_rate
         self.line: BoardLine | None = None
         self.eyes: Eyes | None = None
         self.person: Person | None = None
@@ -58,38 +58,48 @@ class LiveTable(Backend):
         self._watchdog: CameraWatchdog | None = None
 
     @abstractmethod
-    def _open(self, home: Place) -> None:
+    def open(self, home: Place) -> None:
         """Open camera, line and what else there is, with the mallet near `home` [m]."""
 
     @abstractmethod
-    def _pass_time(self, until: float) -> None:
-        """Let time pass until `until` [s], at most a few milliseconds away."""
+    def pass_time(self, until: float) -> None:
+        """Let time pass until `until` [s], at most a few milliseconds away, and serve nothing."""
 
     @abstractmethod
     def _shut(self) -> None:
-        """Free all that `_open` opened but the line; may be called again."""
+        """Free all that `open` opened but the line; may be called again."""
 
     def connect(self, home: Place) -> None:
         """See `Backend.connect`."""
-        self._open(home)
-        self._get_ready(home)
+        self.open(home)
+        self.clear(home)
 
     def clear(self, home: Place) -> None:
         """See `Backend.clear`."""
-        self._get_ready(home)
-
-    def _get_ready(self, home: Place) -> None:
-        line, eyes = self._opened(self.line), self._opened(self.eyes)
+        line = self._opened(self.line)
         line.greet()
-        line.configure(self._config)
+        line.configure(self.config)
         if not line.homed:
-            self._opened(self.person).home_mallet(home)
-            line.home(home)
+            self.home_by_hand(home)
+        self.arm()
+
+    def home_by_hand(self, home: Place) -> None:
+        """Have the mallet put at `home` [m] by hand, and tell the board where it is."""
+        self._opened(self.person).home_mallet(home)
+        self._opened(self.line).home(self._at_home(home))
+
+    def arm(self) -> None:
+        """Enable the motors; from now on every doubt stops them."""
+        line = self._opened(self.line)
         line.arm()
-        eyes.take(self.now())  # what came meanwhile is old
         line.take_mallets()
+        self._opened(self.eyes).take(self.now())  # what came meanwhile is old
         self._frames = []
         self._watchdog = CameraWatchdog(self.now())
+
+    def _at_home(self, home: Place) -> Place:
+        """Where the mallet is exactly [m], that was put at `home` by hand."""
+        return home
 
     def wait(self, until: float) -> None:
         """See `Backend.wait`."""
@@ -106,7 +116,7 @@ class LiveTable(Backend):
         """Let a moment pass, no longer than `until` [s], and take what came. TableFaultError on any doubt."""
         line, eyes, watchdog = self._opened(self.line), self._opened(self.eyes), self._opened(self._watchdog)
         try:
-            self._pass_time(min(self.now() + POLL, until))
+            self.pass_time(min(self.now() + POLL, until))
             line.poll()
             line.check()
             now = self.now()

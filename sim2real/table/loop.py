@@ -24,6 +24,11 @@ LOST = 0.3  # s without a sight of the puck, on its way to no goal, after which 
 FOUND_WITHIN = 2.0  # s in which a lost puck comes back into sight
 
 
+def home_of(p: np.void) -> Place:
+    """Where the robot's mallet is at the beginning of a point [m], on a table of these parameters."""
+    return HOME * float(p["length"]), 0.5 * float(p["width"])
+
+
 class Loop:
     """A backend, what is known of its game, and the mallet's plans; `record`'s clock goes on with each `step`.
 
@@ -44,7 +49,7 @@ class Loop:
     @property
     def home(self) -> Place:
         """Where the mallet is at the beginning of a point [m]."""
-        return HOME * float(self.game.p["length"]), 0.5 * float(self.game.p["width"])
+        return home_of(self.game.p)
 
     def connect(self) -> None:
         """Connect the backend and stand at home."""
@@ -80,7 +85,7 @@ class Loop:
         self.times.add(max(begin - due, 0.0) if np.isfinite(due) else 0.0, self._frame_age)
         self._decided = begin
         self.referee.begin_step()
-        self.referee.order(0, self._motion(begin + AHEAD), action)
+        self.referee.order(0, self.motion(begin + AHEAD), action)
         self.backend.show(self.game.record)
         self._send(action, begin + AHEAD)
         self.backend.wait(begin + period - HALF_FRAME)
@@ -90,7 +95,7 @@ class Loop:
         running = int(self.game.record["ending"]) == rules.RUNNING
         if again and running:
             self.begin_point()
-        elif running and not self.over and self.seen.puck.unseen_for(self.backend.now()) > LOST:
+        elif running and self.backend.obeys and self.seen.puck.unseen_for(self.backend.now()) > LOST:
             self._park()
         return again and running
 
@@ -102,7 +107,7 @@ class Loop:
         """The observations (2, columns) of both players for the moment at which the next action acts; that moment
         [s]."""
         acts_at = self.backend.now() + AHEAD
-        self.game.put_mallet(0, self._motion(acts_at))
+        self.game.put_mallet(0, self.motion(acts_at))
         if puck := self.seen.puck_at(acts_at):
             self.game.put_puck(puck)
         if opponent := self.seen.opponent_at(acts_at):
@@ -114,7 +119,8 @@ class Loop:
         """The age of the newest frame when it was read [s]."""
         return self._frame_age
 
-    def _motion(self, time: float) -> Motion:
+    def motion(self, time: float) -> Motion:
+        """The robot's mallet at `time` [s], as planned, or as it was where it does not obey."""
         return self.backend.mallet_motion(time) or self._driver.motion(time)
 
     def _take_frames(self) -> None:
@@ -129,7 +135,7 @@ class Loop:
             self.seen.opponent.update(frame.time, frame.opponent)
             puck = self.seen.puck.motion()
             if frame.puck is not None and puck is not None:
-                self.referee.watch(frame.time, puck, self._motion(frame.time), self.seen.opponent.motion())
+                self.referee.watch(frame.time, puck, self.motion(frame.time), self.seen.opponent.motion())
 
     def _send(self, action: ArrayLike, begin: float) -> None:
         self.backend.send(self._driver.plan(action, begin))
@@ -150,19 +156,22 @@ class Loop:
         self.backend.wait(begin + POINT_PAUSE)
 
     def _await_sight(self, patience: float, place: Place) -> None:
-        """Hold the mallet at `place` until puck and opponent are seen. TableFaultError after `patience` [s]."""
+        """Hold the mallet at `place` until all is seen. TableFaultError after `patience` [s]."""
         end = self.backend.now() + patience
-        while self.seen.puck.unseen_for(self.backend.now()) > GONE or self.seen.opponent.motion() is None:
-            if self.over:
-                return
+        while (missing := self._missing()) and not self.over:
             if self.backend.now() > end:
                 self.backend.stop()
-                missing = "the opponent's mallet" if self.seen.opponent.motion() is None else "the puck"
                 raise TableFaultError(
                     Cause.PUCK_LOST, f"{missing} is not seen for {patience:g} s; put it on the table, then clear"
                 )
             self._hold(place)
             self._take_frames()
+
+    def _missing(self) -> str:
+        """What has to be seen to play, and is not; empty if nothing is missing. A recording may have no opponent."""
+        if self.seen.puck.unseen_for(self.backend.now()) > GONE:
+            return "the puck"
+        return "the opponent's mallet" if self.backend.obeys and self.seen.opponent.motion() is None else ""
 
     def _park(self) -> None:
         """Hold the mallet at home until the puck is seen again."""

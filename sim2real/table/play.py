@@ -6,12 +6,16 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from baselines import find_player
 from baselines.player import Seat
 from sim2real.table.faults import TableFaultError
 from sim2real.table.game_log import GameLog
+from sim2real.table.loop import Loop
 from sim2real.table.robot_seat import RobotSeat
+
+Show = Callable[[Loop, NDArray[np.float32], dict[str, Any]], None]
 
 
 def play_game(
@@ -21,10 +25,12 @@ def play_game(
     seconds: float | None,
     report: Callable[[str], None],
     may_clear: Callable[[TableFaultError], bool],
+    show: Show,
 ) -> GameLog:
     """Play a game, at most `seconds` of it, and return what came of it; the mallet is at rest in the end.
 
-    report: takes a line for each goal, foul and fault; may_clear: whether to go on after a fault, when it is mended.
+    report: takes a line for each goal, foul and fault; may_clear: whether to go on after a fault, when it is mended;
+    show: takes loop, action and info of each step.
     ValueError, in one line, for an unknown name, and where the table stopped for good.
     """
     actor = find_player(player)(Seat.from_tables(env.tables, 2 * seed))
@@ -34,8 +40,11 @@ def play_game(
     observation, info = env.reset(seed=seed)
     while not over and (seconds is None or log.seconds < seconds):
         try:
-            observation, _, terminated, truncated, info = env.step(actor.act(observation[None])[0])
+            action = actor.act(observation[None])[0]
+            observation, _, terminated, truncated, info = env.step(action)
             over = terminated or truncated
+            if env.loop is not None:
+                show(env.loop, action, info)
             _note(log, info, report)
         except TableFaultError as fault:
             report(f"{log.seconds:6.1f} s  stopped, {fault.cause}: {fault}")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from firmware import ELF
 from sim2real.emulate.machine import Machine
 from sim2real.table.twin.plant import Plant
@@ -20,6 +22,8 @@ class EmulatedBoard:
     def __init__(self, plant: Plant, supply: float, seed: int) -> None:
         self.machine, self._plant, self._supply = Machine(ELF, seed=seed), plant, supply
         self.cut = False  # whether the cable is unplugged
+        self.damage = 0.0  # share of the bytes, both ways, that are changed on the line
+        self._random = np.random.default_rng([seed, 2])
         self.most_volts = 0.0  # V that a motor ever got
         self.machine.motors.listeners.append(self._drive)
         for number, encoder in enumerate(self.machine.encoders):
@@ -50,15 +54,21 @@ class EmulatedBoard:
     def read(self, most: int) -> bytes:
         """Bytes that the board sent. OSError if the cable is cut."""
         self._refuse_cut()
-        return self.machine.received()
+        return self._damaged(self.machine.received())
 
     def write(self, data: bytes) -> None:
         """Send bytes to the board. OSError if the cable is cut."""
         self._refuse_cut()
-        self.machine.send(data)
+        self.machine.send(self._damaged(data))
 
     def close(self) -> None:
         """The line needs no closing."""
+
+    def _damaged(self, data: bytes) -> bytes:
+        if not (self.damage and data):
+            return data
+        hit = self._random.random(len(data)) < self.damage
+        return bytes(np.frombuffer(data, np.uint8) ^ hit * self._random.integers(1, 256, len(data), np.uint8))
 
     def _refuse_cut(self) -> None:
         if self.cut:

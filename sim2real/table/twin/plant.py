@@ -30,7 +30,12 @@ class Plant:
         self._puck = np.full(6, math.nan)
         self._volts = (0.0, 0.0)  # of axes x, y of the robot's gantry
         self._plan: tuple[float, OpponentPlan] | None = None  # of the opponent, and when it began
+        self._held: np.ndarray | None = None  # the robot's mallet at rest, while it is held fast
         self._nothing = np.zeros((0, 6)), np.zeros((0, *self._mallets.shape)), np.zeros((ROWS, LOG_COLUMNS))
+
+    def hold(self, held: bool) -> None:
+        """Hold the robot's mallet fast where it is, or let it go."""
+        self._held = begin(self.law, [self.mallet(0)[:2]])[0] if held else None
 
     @property
     def puck(self) -> np.ndarray:
@@ -84,6 +89,8 @@ class Plant:
             *self._nothing,
         )  # fmt: skip
         self.time = time
+        if self._held is not None:
+            self._mallets[0] = self._held
 
     def _changes(self, until: float) -> list[float]:
         """Times since now [s] from which the volts are others, beginning with 0."""

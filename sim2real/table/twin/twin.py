@@ -38,10 +38,10 @@ class Twin(LiveTable):
         law: Law | None = None,
         errors: CameraErrors | None = None,
     ) -> None:
-        super().__init__(board_config(game.p))
-        refuse_unmodelled(game.given)
-        self._supply, self._law = float(game.p["max_voltage"]), law or law_of(game.p)
         self._errors, self._seed = errors or CameraErrors(), 0
+        super().__init__(board_config(game.p), self._errors.rate)
+        refuse_unmodelled(game.given)
+        self.p, self._law = game.p, law or law_of(game.p)
         self._make_hand = lambda seed: ScriptedHand(game, opponent, 2 * seed + 1)
         self.hand = self._make_hand(self._seed)
         self.board: EmulatedBoard | None = None
@@ -51,19 +51,19 @@ class Twin(LiveTable):
         self._seed = seed
         self.hand = self._make_hand(seed)
 
-    def _open(self, home: Place) -> None:
+    def open(self, home: Place) -> None:
         """Switch board and camera on."""
         self.plant = Plant(self._law, home, self.hand.home)
-        self.board = EmulatedBoard(self.plant, self._supply, self._seed)
+        self.board = EmulatedBoard(self.plant, float(self.p["max_voltage"]), self._seed)
         self.eyes = self.camera = TwinCamera(self._errors, self._seed)
-        self.line = BoardLine(lambda: self._opened(self.board), self.now, self._pass_time)
+        self.line = BoardLine(lambda: self._opened(self.board), self.now, self.pass_time)
         self.person = self
 
     def now(self) -> float:
         """Virtual time since power-on [s]."""
         return self._opened(self.board).now()
 
-    def _pass_time(self, until: float) -> None:
+    def pass_time(self, until: float) -> None:
         """Let virtual time pass, with the frames that are due."""
         board = self._opened(self.board)
         while self.camera.next_exposure <= until:
@@ -89,7 +89,7 @@ class Twin(LiveTable):
         steps = int(np.ceil(float(np.hypot(*(here - home))) / (CARRYING * 1e-3)))
         for part in (np.arange(steps) + 1.0) / max(steps, 1):
             self.plant.put_robot(tuple(here + part * (np.array(home) - here)))
-            self._pass_time(self.now() + 1e-3)
+            self.pass_time(self.now() + 1e-3)
             line.poll()
 
     def play(self, game: np.void) -> None:

@@ -1,0 +1,159 @@
+"""`table.toml`: all that is particular to one physical table, in one file; EXAMPLE shows what it holds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from puckpilot_env.options.profile_file import read_profile
+
+from puckpilot_env.files.toml_file import check_format, read_toml, refuse_unknown, section
+from puckpilot_env.options.inputs import in_short, real_number
+from puckpilot_env.parameters import checked
+from sim2real.camera.region import RegionOfInterest
+from sim2real.camera.settings import CameraSettings
+from sim2real.link import BAUD
+from sim2real.table.board_config import Gains
+
+FORMAT = "puckpilot-table/1"
+EXAMPLE = """\
+format = "puckpilot-table/1"
+
+[parameters]                    # sizes and constants by the simulator's names, SI units
+length = 2.362
+width = 1.144
+
+[camera]
+source = "aravis:"              # as of `puckpilot track`
+calibration = "table.json"      # of `puckpilot calibrate table`; paths are relative to this file
+setup = "setup.png"             # a picture of the whole sensor that shows the markers; or setup_exposure, to take one
+region = "1300x1450+396+20"     # of the sensor, that is streamed
+pixel_format = "BayerRG8"
+exposure = 1e-4                 # s
+gain = 25.0                     # dB
+rate = 120.0                    # Hz
+delay = 0.006                   # s from the middle of the exposure until a frame comes, of `puckpilot latency`
+ring_height = 0.05              # m, of the opponent's ring above the table
+film_radius = 0.0309            # m, of the puck's film; left out, it is measured
+
+[board]
+port = "/dev/ttyUSB0"
+supply = 24.0                   # V
+pulley_radius = 0.0353          # m, of `puckpilot calibrate gantry`
+offsets = [0.51, -1.22]         # rad, of the shafts' encoders, of the same; left out, the home is where the jig is
+proportional = [400.0, 400.0]   # V/m, of axes x and y; and so integral [V/m/s], derivative [V s/m]
+
+[gantry]
+profile = "gantry.toml"         # of `puckpilot identify gantry`
+"""
+SETTINGS = ("exposure", "setup_exposure", "gain", "rate", "trigger_line", "pixel_format")  # of the camera, as they are
+CAMERA = ("source", "calibration", "setup", "region", "delay", "level", "ring_height", "film_radius", *SETTINGS)
+BOARD = ("port", "baud", "supply", "pulley_radius", "offsets", "proportional", "integral", "derivative")
+Pair = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class CameraPart:
+    """Where pictures come from and how they are read; see EXAMPLE."""
+
+    source: str
+    calibration: Path
+    settings: CameraSettings
+    setup: Path | None = None
+    delay: float = 0.0
+    level: float | None = None
+    ring_height: float | None = None
+    film_radius: float | None = None
+
+
+@dataclass(frozen=True)
+class BoardPart:
+    """The board's port and what it is configured with; see EXAMPLE."""
+
+    port: str
+    baud: int = BAUD
+    offsets: Pair | None = None
+    gains: Gains = field(default_factory=Gains)
+
+
+@dataclass(frozen=True)
+class TableFile:
+    """What a table.toml holds. parameters: of the simulator, by name, with those of the gantry's profile."""
+
+    parameters: Mapping[str, float]
+    camera: CameraPart
+    board: BoardPart
+
+
+def read_table_file(path: str | PathLike[str]) -> TableFile:
+    """Read a table.toml. Raises ValueError, in one line, for a file that is none."""
+    folder = Path(path).absolute().parent
+    return read_toml(path, "a table", "table.toml (see puckpilot table check --help)", "'port = \"/dev/ttyUSB0\"'",
+                     lambda content: _table(content, folder))  # fmt: skip
+
+
+def _table(content: Mapping[str, Any], folder: Path) -> TableFile:
+    check_format(content, FORMAT, ("parameters", "camera", "board", "gantry"))
+    board, gantry = section(content, "board"), section(content, "gantry")
+    refuse_unknown(board, BOARD, "key of board")
+    refuse_unknown(gantry, ("profile",), "key of gantry")
+    given = dict(section(content, "parameters"))
+    if "profile" in gantry:
+        given = dict(read_profile(folder / _text(gantry, "profile", "gantry")).parameters) | given
+    for name, key in (("max_voltage", "supply"), ("pulley_radius", "pulley_radius")):
+        if key in board:
+            given[name] = board[key]
+    parameters = {name: checked(name, value) for name, value in given.items()}
+    return TableFile(parameters, _camera(section(content, "camera"), folder), _board(board))
+
+
+def _camera(camera: Mapping[str, Any], folder: Path) -> CameraPart:
+    refuse_unknown(camera, CAMERA, "key of camera")
+    given = {name: camera[name] for name in SETTINGS if name in camera}
+    if "region" in camera:
+        given["region"] = RegionOfInterest.parse(_text(camera, "region", "camera"))
+    numbers = {name: _number(camera, name, "camera") for name in ("delay", "level", "ring_height", "film_radius")
+               if name in camera}  # fmt: skip
+    return CameraPart(
+        _text(camera, "source", "camera"),
+        folder / _text(camera, "calibration", "camera"),
+        CameraSettings(**given),
+        folder / _text(camera, "setup", "camera") if "setup" in camera else None,
+        **numbers,
+    )
+
+
+def _board(board: Mapping[str, Any]) -> BoardPart:
+    pairs = {name: _pair(board, name) for name in ("offsets", "proportional", "integral", "derivative")
+             if name in board}  # fmt: skip
+    offsets = pairs.pop("offsets", None)
+    baud = board.get("baud", BAUD)
+    if not isinstance(baud, int) or baud < 1:
+        raise ValueError(f"board.baud is {in_short(baud)}; expected a whole number above 0")
+    return BoardPart(_text(board, "port", "board"), baud, offsets, Gains(**pairs))
+
+
+def _text(row: Mapping[str, Any], key: str, where: str) -> str:
+    if not isinstance(row.get(key), str):
+        given = f"is {in_short(row[key])}" if key in row else "is missing"
+        raise ValueError(f"{where}.{key} {given}; expected a text, as in puckpilot table check --example")
+    return row[key]
+
+
+def _number(row: Mapping[str, Any], key: str, where: str) -> float:
+    number = real_number(row[key])
+    if not 0.0 <= number < float("inf"):
+        raise ValueError(f"{where}.{key} is {in_short(row[key])}; expected a number, 0 or more")
+    return number
+
+
+def _pair(row: Mapping[str, Any], key: str) -> Pair:
+    if not isinstance(row[key], list) or len(row[key]) != 2:
+        raise ValueError(f"board.{key} is {in_short(row[key])}; expected two numbers")
+    first, second = (real_number(one) for one in row[key])
+    if not abs(first) + abs(second) < float("inf"):
+        raise ValueError(f"board.{key} is {in_short(row[key])}; expected two numbers")
+    return first, second

@@ -1,0 +1,95 @@
+"""A recording as a backend: what was recorded comes back, and plans go nowhere."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import gymnasium
+import numpy as np
+import pytest
+
+import puckpilot_env  # noqa: F401 - registers the ids
+from sim2real.recording.folder import Recording, write_recording
+from sim2real.recording.stream_csv import Stream
+from tests.places import UBC
+
+MATCH = "puckpilot/match-v0"
+META = {
+    "format": "puckpilot-recording/1", "table": {"length_m": 2.0, "width_m": 1.0, "goal_width_m": None},
+    "puck": {"radius_m": None}, "mallet": {"radius_m": None}, "camera": {"rate_hz": 120.0, "position_std_m": None},
+}  # fmt: skip
+
+
+def straight(path: Path, **meta: object) -> Path:
+    """Two seconds: the puck goes along x at 0.4 m/s, the opponent stands, the mallet goes along y at 0.1 m/s."""
+    t = np.arange(240) / 120.0
+    frames = {
+        "t": t,
+        "puck_x": 0.5 + 0.4 * t,
+        "puck_y": 0.3 + 0 * t,
+        "opponent_x": 1.8 + 0 * t,
+        "opponent_y": 0.5 + 0 * t,
+    }
+    mallet = {"t": t, "mallet_x": 0.25 + 0 * t, "mallet_y": 0.4 + 0.1 * t}
+    write_recording(path, Recording("straight", META | meta, frames=Stream(frames), mallet=Stream(mallet)))
+    return path
+
+
+def test_a_policy_sees_what_was_recorded_at_the_moment_at_which_it_would_act(tmp_path: Path) -> None:
+    env = gymnasium.make(MATCH, backend="replay", recording=straight(tmp_path / "straight"))
+    observation, info = env.reset()
+    names = [column.name for column in env.unwrapped.tables.observation_columns]  # pyright: ignore[reportAttributeAccessIssue]
+    column = {
+        name: names.index(name) for name in ("puck_x", "puck_y", "puck_vx", "opponent_x", "mallet_y", "mallet_vy")
+    }
+    for _ in range(10):
+        observation, _, terminated, truncated, info = env.step(env.action_space.sample())
+        at = info["acts_at"]
+        expected = {"puck_x": 0.5 + 0.4 * at, "puck_y": 0.3, "puck_vx": 0.4, "opponent_x": 1.8,
+                    "mallet_y": 0.4 + 0.1 * at, "mallet_vy": 0.1}  # fmt: skip
+        for name, value in expected.items():
+            assert observation[column[name]] == pytest.approx(value, abs=0.004), name
+        assert not (terminated or truncated)
+    env.close()
+
+
+def test_the_episode_is_truncated_where_the_recording_ends(tmp_path: Path) -> None:
+    env = gymnasium.make(MATCH, backend="replay", recording=straight(tmp_path / "straight"))
+    env.reset()
+    steps, truncated = 0, False
+    while not truncated:
+        *_, terminated, truncated, _ = env.step(env.action_space.sample())
+        assert not terminated
+        steps += 1
+    assert 18 <= steps <= 20
+    env.close()
+
+
+@pytest.mark.parametrize(
+    ("what", "words"),
+    [
+        ({"recording": "nowhere"}, "is not a folder"),
+        ({}, "missing 1 required positional argument: 'recording'"),
+        ({"recording": "{small}"}, "states width 0.9, the game 1; give parameters={'width': 0.9}"),
+        ({"recording": "{frames}"}, "has no rows in mallet.csv; a replay needs frames and mallet"),
+    ],
+)
+def test_what_cannot_be_replayed_is_refused_in_one_line(tmp_path: Path, what: dict, words: str) -> None:
+    straight(tmp_path / "small", table={"length_m": 2.0, "width_m": 0.9, "goal_width_m": None})
+    straight(tmp_path / "frames")
+    (tmp_path / "frames" / "mallet.csv").unlink()
+    what = {name: value.format(small=tmp_path / "small", frames=tmp_path / "frames") for name, value in what.items()}
+    with pytest.raises((ValueError, TypeError)) as caught:
+        gymnasium.make(MATCH, backend="replay", **what)
+    assert words in str(caught.value) and "\n" not in str(caught.value)
+
+
+@pytest.mark.skipif(not UBC.is_dir(), reason="the shared recordings are not here")
+def test_a_real_recording_is_replayed() -> None:
+    sizes = {"length": 2.362, "width": 1.144, "puck_radius": 0.0413, "mallet_radius": 0.0508}
+    env = gymnasium.make(MATCH, backend="replay", recording=UBC / "play_a", parameters=sizes)
+    observation, info = env.reset()
+    for _ in range(50):
+        observation, *_, info = env.step(env.action_space.sample())
+    assert np.isfinite(observation).all() and info["play_time"] == pytest.approx(5.0)
+    env.close()
