@@ -32,7 +32,10 @@ def make_backend(name: str, game: GameRecord, **options: Any) -> Backend:
         if error.name not in NEEDS:
             raise
         raise ValueError(NEEDS[error.name]) from None
-    takes = [word for word in inspect.signature(make).parameters if word != "game"]
+    takes = {word: row for word, row in inspect.signature(make).parameters.items() if word != "game"}
     if unknown := [word for word in options if word not in takes]:
         raise ValueError(f"{unknown[0]} is given with backend '{name}'; it takes {', '.join(takes)}")
+    needs = [word for word, row in takes.items() if row.default is inspect.Parameter.empty]
+    if missing := [word for word in needs if word not in options]:
+        raise ValueError(f"backend '{name}' needs {missing[0]}; give {missing[0]}=...")
     return make(game, **options)

@@ -91,8 +91,9 @@ class BoardLine:
     def arm(self) -> None:
         """Enable the motors. TableFaultError if the board does not."""
         self.session.arm()
-        self._until(lambda: self.session.state == State.ARMED, "the board does not arm")
+        self._until(lambda: self.session.state in (State.ARMED, State.FAULT), "the board does not arm")
         self._armed = True
+        self.check()
 
     def _until(self, done: Callable[[], bool], otherwise: str) -> None:
         end = self._now() + PATIENCE

@@ -79,9 +79,13 @@ class LiveTable(Backend):
         line = self._opened(self.line)
         line.greet()
         line.configure(self.config)
-        if not line.homed:
+        if not line.homed or not self._inside(line.place):
             self.home_by_hand(home)
         self.arm()
+
+    def _inside(self, place: Place) -> bool:
+        """Whether the board would let a mallet move from a place [m]: it stops one outside its area at once."""
+        return all(low <= at <= high for at, (low, high) in zip(place, (self.config.x, self.config.y), strict=True))
 
     def home_by_hand(self, home: Place) -> None:
         """Have the mallet put at `home` [m] by hand, and tell the board where it is."""

@@ -16,7 +16,7 @@ from sim2real.table.robot_seat import RobotSeat
 from sim2real.table.twin.twin import Twin
 
 NOTICED_WITHIN = 5.0  # s of play after which a fault that stopped nothing is mended
-AFTER = 0.3  # s that the mallet is watched after a stop
+AFTER = 0.6  # s that the mallet is watched after a stop
 TRIES = 5  # of clearing
 
 

@@ -23,10 +23,8 @@ def test_each_seat_drives_its_own_mallet_and_sees_the_table_from_its_own_end() -
         assert env.action_space(agent) == simulated.action_space(agent)
     try:
         env.reset(seed=3)
-        actions = {
-            "player_0": np.array([0.5, 0.3, 8, 8], np.float32),
-            "player_1": np.array([0.2, 0.7, 8, 8], np.float32),
-        }
+        wanted = {"player_0": [0.5, 0.3, 8.0, 8.0], "player_1": [0.2, 0.7, 8.0, 8.0]}
+        actions = {agent: np.array(action, np.float32) for agent, action in wanted.items()}
         for _ in range(8):
             observations, rewards, terminated, truncated, infos = env.step(actions)
         assert observations["player_0"][:2] == pytest.approx(actions["player_0"][:2], abs=0.005)

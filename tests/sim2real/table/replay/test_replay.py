@@ -39,16 +39,13 @@ def test_a_policy_sees_what_was_recorded_at_the_moment_at_which_it_would_act(tmp
     env = gymnasium.make(MATCH, backend="replay", recording=straight(tmp_path / "straight"))
     observation, info = env.reset()
     names = [column.name for column in env.unwrapped.tables.observation_columns]  # pyright: ignore[reportAttributeAccessIssue]
-    column = {
-        name: names.index(name) for name in ("puck_x", "puck_y", "puck_vx", "opponent_x", "mallet_y", "mallet_vy")
-    }
     for _ in range(10):
         observation, _, terminated, truncated, info = env.step(env.action_space.sample())
         at = info["acts_at"]
         expected = {"puck_x": 0.5 + 0.4 * at, "puck_y": 0.3, "puck_vx": 0.4, "opponent_x": 1.8,
                     "mallet_y": 0.4 + 0.1 * at, "mallet_vy": 0.1}  # fmt: skip
         for name, value in expected.items():
-            assert observation[column[name]] == pytest.approx(value, abs=0.004), name
+            assert observation[names.index(name)] == pytest.approx(value, abs=0.004), name
         assert not (terminated or truncated)
     env.close()
 
@@ -69,7 +66,7 @@ def test_the_episode_is_truncated_where_the_recording_ends(tmp_path: Path) -> No
     ("what", "words"),
     [
         ({"recording": "nowhere"}, "is not a folder"),
-        ({}, "missing 1 required positional argument: 'recording'"),
+        ({}, "backend 'replay' needs recording; give recording=..."),
         ({"recording": "{small}"}, "states width 0.9, the game 1; give parameters={'width': 0.9}"),
         ({"recording": "{frames}"}, "has no rows in mallet.csv; a replay needs frames and mallet"),
     ],
@@ -79,7 +76,7 @@ def test_what_cannot_be_replayed_is_refused_in_one_line(tmp_path: Path, what: di
     straight(tmp_path / "frames")
     (tmp_path / "frames" / "mallet.csv").unlink()
     what = {name: value.format(small=tmp_path / "small", frames=tmp_path / "frames") for name, value in what.items()}
-    with pytest.raises((ValueError, TypeError)) as caught:
+    with pytest.raises(ValueError) as caught:
         gymnasium.make(MATCH, backend="replay", **what)
     assert words in str(caught.value) and "\n" not in str(caught.value)
 

@@ -1,0 +1,90 @@
+"""Hours of play with faults at random moments, in parts that can be taken up again."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from sim2real.table.drills.drill import Drill, Stop
+from sim2real.table.drills.faults import FAULTS
+from sim2real.table.faults import TableFaultError
+from sim2real.table.robot_seat import make_robot_seat
+
+PART = 120.0  # s of play of a part
+BETWEEN = (1.0, 6.0)  # s of play between two faults
+STILL = 0.05  # s after a fault was noticed by which the mallet has to stand
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of a campaign: its seed, seconds of play, what each fault did, the worst volts at a motor [V] and the
+    farthest outside the area of plans [m]; why it ended early, "" if it did not."""
+
+    seed: int
+    seconds: float
+    stops: list[Stop]
+    volts: float
+    outside: float
+    ended: str
+
+
+def play_part(seed: int, names: Sequence[str], player: str) -> Part:
+    """Play a part, with one fault after the other, drawn of those by `names`."""
+    random = np.random.default_rng([seed, 21])
+    chosen = [fault for fault in FAULTS if fault.name in names]
+    env, stops, ended = make_robot_seat("puckpilot/match-v0", "twin", opponent="interceptor"), [], ""
+    try:
+        drill = Drill(env, player, seed)
+        try:
+            while drill.seconds < PART:
+                drill.play(float(random.uniform(*BETWEEN)))
+                stops.append(drill.let_happen(chosen[random.integers(len(chosen))], float(random.uniform(0.0, 0.1))))
+        except TableFaultError as error:
+            ended = str(error)
+        worst = drill.monitor.worst
+        return Part(seed, drill.seconds, stops, worst.volts, worst.outside, ended)
+    finally:
+        env.close()
+
+
+def run_campaign(
+    path: Path, seconds: float, seed: int, names: Sequence[str], player: str, processes: int,
+    report: Callable[[int, int], None],
+) -> list[Part]:  # fmt: skip
+    """Play parts until they have `seconds` of play; each is kept as a line of `path`, and those that are there already
+    are not played again. `report` takes how many are done, of how many. ValueError for a file of something else."""
+    done = {part.seed: part for part in read_parts(path)}
+    seeds = [seed + number for number in range(int(np.ceil(seconds / PART)))]
+    missing = [one for one in seeds if one not in done]
+    report(len(seeds) - len(missing), len(seeds))
+    with ProcessPoolExecutor(processes) as pool, path.open("a", encoding="utf-8") as file:
+        running = [pool.submit(play_part, one, names, player) for one in missing]
+        try:
+            for number, result in enumerate(as_completed(running), 1):
+                part = result.result()
+                file.write(json.dumps(asdict(part)) + "\n")
+                file.flush()
+                done[part.seed] = part
+                report(len(seeds) - len(missing) + number, len(seeds))
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+    return [done[one] for one in seeds]
+
+
+def read_parts(path: Path) -> Iterator[Part]:
+    """The parts in a file; none if it is not there. ValueError, in one line, for a file of something else."""
+    if not path.exists():
+        return
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        try:
+            row: dict[str, Any] = json.loads(line)
+            yield Part(**{**row, "stops": [Stop(**stop) for stop in row["stops"]]})
+        except (TypeError, KeyError, ValueError):
+            raise ValueError(f"{path}, line {number}, is no part of a campaign; choose another file") from None
