@@ -46,12 +46,13 @@ class SerialLine(Protocol):
 
 
 class SerialPort:
-    """The serial port `name`, 8N1, at a speed of `baud`. Raises PortError if it cannot be opened."""
+    """The serial port `name`, 8N1, at a speed of `baud`. wait: for a first byte of `read` [s]. Raises PortError if it
+    cannot be opened."""
 
-    def __init__(self, name: str, baud: int = BAUD) -> None:
+    def __init__(self, name: str, baud: int = BAUD, wait: float = READ_WAIT) -> None:
         self.name = name
         try:
-            self._serial = serial.Serial(name, baud, timeout=READ_WAIT, write_timeout=WRITE_WAIT, exclusive=True)
+            self._serial = serial.Serial(name, baud, timeout=wait, write_timeout=WRITE_WAIT, exclusive=True)
         except (OSError, OverflowError, ValueError) as error:
             raise PortError(f"port {name} {_reason(error, baud)}") from None
 

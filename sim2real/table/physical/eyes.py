@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections import deque
 from contextlib import ExitStack
 from dataclasses import replace
 
@@ -11,23 +10,23 @@ from sim2real.camera.camera_clock import CameraClock
 from sim2real.camera.frame import CameraError, Frame, Source
 from sim2real.table.backend import SeenFrame
 from sim2real.table.faults import Cause, TableFaultError
-from sim2real.table.frame_reader import FrameReader
-
-KEPT = 2000  # processing times kept
+from sim2real.table.physical.frame_reader import FrameReader
 
 
 class LiveEyes:
     """Frames of a source, read as they come. Opened by `open`, closed by `close`.
 
-    delay: from the middle of an exposure until its frame comes, as measured [s]; processing: the newest times from a
-    frame's arrival until its places are known [s]. Times are of time.perf_counter.
+    delay: from the middle of an exposure until its frame comes, as measured [s]; arrived: of the newest frame that was
+    taken, by time.perf_counter [s].
     """
 
     def __init__(self, source: Source, reader: FrameReader, delay: float) -> None:
-        self._source, self._reader, self._delay = source, reader, delay
-        self._clock = CameraClock()
+        self._source, self._reader = source, reader
+        self._clock = CameraClock(delay)
         self._open = ExitStack()
-        self.processing: deque[float] = deque(maxlen=KEPT)
+        self._coming: Frame | None = None
+        self._failed: CameraError | None = None
+        self.arrived = 0.0
 
     def open(self) -> None:
         """Start the camera. TableFaultError, in one line, if it cannot be."""
@@ -36,23 +35,29 @@ class LiveEyes:
         except CameraError as error:
             raise TableFaultError(Cause.NOT_READY, str(error)) from None
 
-    def take(self, now: float) -> list[SeenFrame]:
-        """The newest frame, read, if there is one that was not taken; older ones are dropped. TableFaultError if the
-        camera failed."""
+    def rest(self, seconds: float) -> None:
+        """Rest for so many seconds [s], or until a frame comes."""
         try:
-            frame = self._source.newest(0.0)
+            self._coming = self._source.newest(seconds) or self._coming
         except CameraError as error:
-            raise TableFaultError(Cause.CAMERA_SILENT, f"{error}; then clear") from None
+            self._failed = error
+            time.sleep(seconds)
+
+    def take(self, now: float) -> list[SeenFrame]:
+        """The newest frame, read, if one came; older ones are dropped. TableFaultError if the camera failed, or a
+        picture does not show what it must."""
+        if self._failed is not None:
+            raise TableFaultError(Cause.CAMERA_SILENT, f"{self._failed}; then begin anew")
+        frame, self._coming = self._coming, None
         if frame is None:
             return []
-        seen = self._reader.read(frame)
-        self.processing.append(time.perf_counter() - frame.host_time)
-        return [replace(seen, time=self._exposed(frame))]
-
-    def _exposed(self, frame: Frame) -> float:
-        """The middle of a frame's exposure by the host's clock [s]."""
+        try:
+            seen = self._reader.read(frame)
+        except ValueError as error:
+            raise TableFaultError(Cause.CAMERA_TROUBLE, f"{error}; then clear") from None
         self._clock.add(frame.time, frame.host_time)
-        return self._clock.to_host(frame.time) - self._delay
+        self.arrived = frame.host_time
+        return [replace(seen, time=self._clock.to_host(frame.time))]
 
     def close(self) -> None:
         """Stop the camera; may be called again."""

@@ -1,86 +1,74 @@
-"""The physical table as a backend: a camera, the board at its port, and a person, in real time."""
+"""The physical table of a table.toml as a backend: its camera, its board, and a person at the terminal."""
 
 from __future__ import annotations
 
-import time
 from os import PathLike
 
+import cv2
+
 from sim2real.camera.sources import RATE, open_source
-from sim2real.link.serial_port import PortError, SerialPort
+from sim2real.link.serial_port import SerialPort
 from sim2real.table.backend import Place
 from sim2real.table.board_config import board_config
-from sim2real.table.board_line import POLL, BoardLine
 from sim2real.table.faults import Cause, TableFaultError
 from sim2real.table.game_record import GameRecord
-from sim2real.table.live_table import LiveTable
 from sim2real.table.physical.eyes import LiveEyes
+from sim2real.table.physical.frame_reader import FrameReader
 from sim2real.table.physical.homing import exact_place
 from sim2real.table.physical.person import PersonAtTerminal
-from sim2real.table.physical.reader import frame_reader
-from sim2real.table.physical.table_file import read_table_file
+from sim2real.table.physical.real_time import RealTimeTable
+from sim2real.table.physical.table_file import CameraPart, read_table_file
+from sim2real.vision.calibrate.table_file import read_table
+from sim2real.vision.track.blobs import LEVEL
+from sim2real.vision.track.ring import HEIGHTS
+from sim2real.vision.track.tracker import Targets
 
-DOZE = 0.0003  # s of sleep between looks at camera and line, which wait themselves for a millisecond
 
-
-class PhysicalTable(LiveTable):
+class PhysicalTable(RealTimeTable):
     """See `Backend`. table: a table.toml (`table_file.py`). ValueError, in one line, for a file that cannot be used, or
     one whose parameters are not the game's."""
-
-    patience = float("inf")
 
     def __init__(self, game: GameRecord, table: str | PathLike[str]) -> None:
         self._file = read_table_file(table)
         _refuse_other_parameters(self._file.parameters, game)
-        rate = self._file.camera.settings.rate or RATE
-        super().__init__(board_config(game.p, self._file.board.gains), rate)
-        self._reader = frame_reader(self._file)
+        camera, board = self._file.camera, self._file.board
+        reader = frame_reader(camera)
+        super().__init__(
+            board_config(game.p, board.gains),
+            camera.settings.rate or RATE,
+            lambda: SerialPort(board.port, board.baud, wait=0.0),
+            lambda: LiveEyes(open_source(camera.source, camera.settings), reader, camera.delay),
+            PersonAtTerminal,
+        )
         self._pulley_radius = float(game.p["pulley_radius"])
-        self.live: LiveEyes | None = None
-
-    def seed(self, seed: int) -> None:
-        """Nothing of a physical table is drawn."""
-
-    def open(self, home: Place) -> None:
-        board, camera = self._file.board, self._file.camera
-        try:
-            self.line = BoardLine(lambda: SerialPort(board.port, board.baud), self.now, self.pass_time)
-        except PortError as error:
-            raise TableFaultError(Cause.NOT_READY, str(error)) from None
-        self.eyes = self.live = LiveEyes(open_source(camera.source, camera.settings), self._reader, camera.delay)
-        self.live.open()
-        self.person = PersonAtTerminal(self._look)
-
-    def _look(self) -> None:
-        """Serve line and camera while a person takes their time."""
-        self.pass_time(self.now() + POLL)
-        if self.line is not None:
-            self.line.poll()
 
     def _at_home(self, home: Place) -> Place:
-        """The mallet's exact place by its encoders, which was put near `home` [m]."""
-        offsets, line = self._file.board.offsets, self._opened(self.line)
-        if offsets is None or line.session.telemetry is None:
+        """The mallet's exact place by its encoders [m], that was put near `home` [m]."""
+        offsets, telemetry = self._file.board.offsets, self._opened(self.line).session.telemetry
+        if offsets is None or telemetry is None:
             return home
         try:
-            return exact_place(line.session.telemetry.angle, offsets, self._pulley_radius, home)
+            return exact_place(telemetry.angle, offsets, self._pulley_radius, home)
         except ValueError as error:
             raise TableFaultError(Cause.NOT_READY, str(error)) from None
 
-    def now(self) -> float:
-        """The host's clock [s]."""
-        return time.perf_counter()
 
-    def pass_time(self, until: float) -> None:
-        time.sleep(min(max(until - self.now(), 0.0), DOZE))
+def frame_reader(camera: CameraPart) -> FrameReader:
+    """What reads a camera's frames. ValueError, in one line, for a calibration or setup picture that cannot be used."""
+    calibration = read_table(camera.calibration)
+    height = HEIGHTS["standard"] if camera.ring_height is None else camera.ring_height
+    targets = Targets(camera.film_radius, height, LEVEL if camera.level is None else camera.level)
+    reader = FrameReader(calibration, targets, camera.settings)
+    if camera.setup is not None:
+        image = cv2.imread(str(camera.setup), cv2.IMREAD_GRAYSCALE)
+        if image is None:
+            raise ValueError(f"{camera.setup} is no picture; expected the setup picture of the whole sensor")
+        reader.tracker.set_up(image)
+    return reader
 
-    def _shut(self) -> None:
-        if self.live is not None:
-            self.live.close()
-        self.live = None
 
-
-def _refuse_other_parameters(parameters: dict[str, float] | object, game: GameRecord) -> None:
-    for name, value in dict(parameters).items():  # pyright: ignore[reportArgumentType, reportCallIssue]
+def _refuse_other_parameters(parameters: dict[str, float], game: GameRecord) -> None:
+    for name, value in parameters.items():
         if abs(value - float(game.p[name])) > 1e-9 * abs(value):
             raise ValueError(
                 f"table.toml has {name} {value:g}, the game {float(game.p[name]):g}; "

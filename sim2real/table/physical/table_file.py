@@ -83,7 +83,7 @@ class BoardPart:
 class TableFile:
     """What a table.toml holds. parameters: of the simulator, by name, with those of the gantry's profile."""
 
-    parameters: Mapping[str, float]
+    parameters: dict[str, float]
     camera: CameraPart
     board: BoardPart
 

@@ -1,0 +1,52 @@
+"""How fast this machine reacts at a table, in real time: from a frame's arrival until its plan is on the line.
+
+Rendered pictures of a game come 120 times a second, the vision finds puck and opponent, the player decides, and plans
+go through a pseudo-terminal to the flashed firmware, which is emulated in another process. Run it on an idle machine.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of the command."""
+    parser.add_argument("player", nargs="?", default="policy:champion", metavar="PLAYER", help="(policy:champion)")
+    parser.add_argument("--seconds", type=float, default=30.0, metavar="S", help="of play (default 30)")
+    parser.add_argument("--period", type=float, metavar="S", help="between decisions (the variant's, 0.1)")
+    parser.add_argument("--json", action="store_true", help="print the results as JSON alone")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Play and print. Returns 0. ValueError, in one line, if it cannot be played here."""
+    from sim2real.table.loop import home_of
+    from sim2real.table.loop_times import histogram, summary
+    from sim2real.table.game_record import GameRecord
+    from sim2real.table.physical.rehearsal import rehearsal_table
+    from sim2real.table.play import play_game
+    from sim2real.table.robot_seat import RobotSeat
+
+    if not 1.0 <= args.seconds <= 3600.0:
+        raise ValueError(f"--seconds is {args.seconds:g}; expected 1 to 3600")
+    game = GameRecord("puckpilot/match-v0", period=args.period)
+    with rehearsal_table(game, home_of(game.p), frames=360) as table:
+        env = RobotSeat(table, game)
+        try:
+            log = play_game(env, args.player, 0, args.seconds, lambda line: None, lambda fault: False,
+                            lambda loop, action, info: None)  # fmt: skip
+        finally:
+            env.close()
+        reactions = list(table.reactions)
+    result = {
+        "seconds": log.seconds, "decisions": len(log.times.lateness), "overruns": log.times.overruns,
+        **summary("reaction_s", reactions), **summary("late_s", log.times.lateness),
+    }  # fmt: skip
+    if args.json:
+        print(json.dumps(result, indent=1))
+        return 0
+    print(f"frame arrived -> plan on the line: median {1e3 * result['reaction_s_median']:.2f} ms, 99 % within "
+          f"{1e3 * result['reaction_s_p99']:.2f} ms, at most {1e3 * result['reaction_s_max']:.2f} ms")  # fmt: skip
+    print(f"{result['decisions']} decisions, {result['overruns']} more than 5 ms late")
+    print("\n".join(histogram("frame arrived -> plan on the line", reactions)))
+    return 0
