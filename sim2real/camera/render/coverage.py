@@ -88,8 +88,33 @@ def add_up(own, right, shares):
 def cut(corners: np.ndarray, longest: float) -> tuple[np.ndarray, np.ndarray]:
     """Divide the edges of the polygon `corners` (n, k) into equal pieces no longer than `longest`: the start (m, k) of
     each piece, and the step (m, k) to its end."""
-    edge = np.roll(corners, -1, axis=0) - corners
-    pieces = np.maximum(np.ceil(np.sqrt((edge**2).sum(axis=1)) / longest), 1.0).astype(np.intp)
-    step = np.repeat(edge / pieces[:, None], pieces, axis=0)
-    number = np.arange(len(step)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
-    return np.repeat(corners, pieces, axis=0) + number[:, None] * step, step
+    pieces = np.empty(len(corners), np.intp)
+    start, step = np.empty((2, _count_pieces(corners, longest, pieces), corners.shape[1]))
+    _cut(corners, pieces, start, step)
+    return start, step
+
+
+@kernel
+def _count_pieces(corners, longest, pieces):
+    """Write into how many `pieces` (n,) each edge of `corners` (n, k) is divided, and return their sum."""
+    count, total = corners.shape[0], 0
+    for i in range(count):
+        square = 0.0
+        for axis in range(corners.shape[1]):
+            square += (corners[(i + 1) % count, axis] - corners[i, axis]) ** 2
+        pieces[i] = max(math.ceil(math.sqrt(square) / longest), 1)
+        total += pieces[i]
+    return total
+
+
+@kernel
+def _cut(corners, pieces, start, step):
+    """Write start and step (m, k) of every piece."""
+    count, place = corners.shape[0], 0
+    for i in range(count):
+        for number in range(pieces[i]):
+            for axis in range(corners.shape[1]):
+                move = (corners[(i + 1) % count, axis] - corners[i, axis]) / pieces[i]
+                start[place, axis] = corners[i, axis] + number * move
+                step[place, axis] = move
+            place += 1
