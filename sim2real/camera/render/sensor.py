@@ -9,7 +9,6 @@ import cv2
 import numpy as np
 
 from puckpilot_env.kernel import kernel
-
 from sim2real.camera.render.box import Box
 
 SHIFTS = 256  # rows and columns by which the noise field is shifted between pictures

@@ -14,12 +14,13 @@ from sim2real.camera.render.renderer import Renderer
 from sim2real.camera.render.scene_state import BodyState, SceneState
 from sim2real.camera.render.table import Glint
 from sim2real.table.backend import SeenFrame
+from sim2real.table.faults import Cause, TableFaultError
 from sim2real.table.frame_reader import FrameReader
 from sim2real.table.twin.camera import CameraErrors
 from sim2real.table.twin.plant import Plant
 from sim2real.table.twin.rendered_table import RenderedTable
 
-NUMBERS = 1 << 20  # pictures of a seed, whose noise no other seed has
+NUMBERS = 1 << 20  # pictures of a seed; in those of another one, what moves has other noise
 
 
 @dataclass
@@ -54,13 +55,16 @@ class PictureCamera:
         return (self._taken + 0.5) / self.errors.rate
 
     def expose(self, plant: Plant) -> None:
-        """Take a picture of the plant as it is now, and find what is in it. ValueError, in one line, if the first one
-        does not show where the camera is."""
+        """Take a picture of the plant as it is now, and find what is in it. TableFaultError, in one line, if the first
+        one does not show where the camera is."""
         missed = plant.time > self.next_exposure + 0.5 / self.errors.rate  # while the board booted
         number, self._taken = self._taken, self._taken + 1
         if not (self.unplugged or missed):
-            image = self.picture(plant, number)
-            self._coming.append(self._reader.read(Frame(image, plant.time, plant.time, number)))
+            frame = Frame(self.picture(plant, number), plant.time, plant.time, number)
+            try:
+                self._coming.append(self._reader.read(frame))
+            except ValueError as error:
+                raise TableFaultError(Cause.CAMERA_TROUBLE, f"{error}; then connect anew") from None
 
     def picture(self, plant: Plant, number: int) -> np.ndarray:
         """The picture uint8 (rows, columns) of the plant as it is now; `number` selects its noise."""

@@ -23,7 +23,7 @@ class Watcher(Protocol):
         ...
 
     def expose(self, plant: Plant) -> None:
-        """Take a frame of the plant as it is now. ValueError, in one line, if it cannot be used."""
+        """Take a frame of the plant as it is now. TableFaultError, in one line, if it cannot be used."""
         ...
 
     def take(self, now: float) -> list[SeenFrame]:
