@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from sim2real.camera.frame import Frame
 from sim2real.camera.render.renderer import Renderer
 from sim2real.camera.render.scene_state import BodyState, SceneState
@@ -11,6 +13,7 @@ from sim2real.table.frame_reader import FrameReader
 from sim2real.table.twin.rendered_table import RenderedTable
 
 
+@pytest.mark.slow
 def test_a_picture_that_comes_twice_gives_no_places() -> None:
     rendered = RenderedTable(Table.with_markers(), CameraView.like_the_real_one(2.0, 1.0))
     reader, renderer = FrameReader(rendered.calibration(), rendered.targets()), Renderer(rendered.table, rendered.view)

@@ -50,7 +50,7 @@ def seen(camera: PictureCamera, plant: Plant, frames: int = 4, after: float = 0.
         camera.expose(plant)
     camera.unplugged = False
     for _ in range(frames):
-        plant.advance(camera.next_exposure)
+        plant.time = camera.next_exposure
         camera.expose(plant)
     return list(camera.take(plant.time + 1.0))
 
@@ -74,7 +74,7 @@ def test_the_gantry_hides_the_puck(camera: PictureCamera) -> None:
 
 def test_frames_come_after_the_delay_and_later_where_they_are_late(camera: PictureCamera) -> None:
     plant = plant_with()
-    plant.advance(camera.next_exposure)
+    plant.time = camera.next_exposure
     camera.expose(plant)
     assert not camera.take(plant.time + 0.0059)
     camera.late = 0.03
@@ -85,7 +85,7 @@ def test_frames_come_after_the_delay_and_later_where_they_are_late(camera: Pictu
 def test_an_unplugged_camera_takes_no_frames(camera: PictureCamera) -> None:
     plant = plant_with()
     camera.unplugged = True
-    plant.advance(camera.next_exposure)
+    plant.time = camera.next_exposure
     camera.expose(plant)
     assert not camera.take(plant.time + 1.0) and camera.next_exposure == pytest.approx(1.5 / RATE)
 
