@@ -97,7 +97,7 @@ def _seat(args: argparse.Namespace) -> RobotSeat:
 
 
 def _option(names: set[str]) -> str:
-    return "".join(f"--{name}" for name in names) or "none of its own"
+    return " and ".join(f"--{name}" for name in sorted(names)) or "none of its own"
 
 
 def _may_clear(args: argparse.Namespace) -> Callable[[TableFaultError], bool]:

@@ -15,7 +15,7 @@ from sim2real.camera.render.scene_state import BodyState, SceneState
 from sim2real.camera.render.table import Glint
 from sim2real.table.backend import SeenFrame
 from sim2real.table.faults import Cause, TableFaultError
-from sim2real.table.frame_reader import FrameReader
+from sim2real.table.physical.frame_reader import FrameReader
 from sim2real.table.twin.camera import CameraErrors
 from sim2real.table.twin.plant import Plant
 from sim2real.table.twin.rendered_table import RenderedTable

@@ -9,7 +9,7 @@ from sim2real.camera.render.renderer import Renderer
 from sim2real.camera.render.scene_state import BodyState, SceneState
 from sim2real.camera.render.table import Table
 from sim2real.camera.render.view import CameraView
-from sim2real.table.frame_reader import FrameReader
+from sim2real.table.physical.frame_reader import FrameReader
 from sim2real.table.twin.rendered_table import RenderedTable
 
 
