@@ -33,6 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("player", metavar="PLAYER", help="a script, or a policy by name, .npz file or run's folder")
     parser.add_argument("--backend", default="twin", metavar="NAME", help="twin (default), table or replay")
     parser.add_argument("--opponent", metavar="PLAYER", help="who has the other seat of a twin (default interceptor)")
+    parser.add_argument("--camera", metavar="KIND", help="of a twin: places (default), or pictures, drawn and looked at")
     parser.add_argument("--table", type=Path, metavar="FILE", help="the table.toml of a physical table")
     parser.add_argument("--recording", type=Path, metavar="DIR", help="the recording to replay")
     parser.add_argument("--variant", default="match-v0", metavar="ID", help="the game (default match-v0)")
@@ -73,16 +74,16 @@ def _seat(args: argparse.Namespace) -> RobotSeat:
     from puckpilot_env.variants import find_variant
     from sim2real.table.robot_seat import make_robot_seat
 
-    needs = {"twin": {"opponent"}, "table": {"table"}, "replay": {"recording"}}
-    for name in ("opponent", "table", "recording"):
+    needs = {"twin": {"opponent", "camera"}, "table": {"table"}, "replay": {"recording"}}
+    for name in ("opponent", "camera", "table", "recording"):
         wanted, given = needs.get(args.backend, set()), getattr(args, name) is not None
         if given and name not in wanted:
             raise ValueError(f"--{name} is given with --backend {args.backend}; it takes {_option(wanted)}")
-        if name in wanted and not given and name != "opponent":
+        if name in wanted and not given and args.backend != "twin":
             raise ValueError(f"--backend {args.backend} needs {_option(wanted)}")
     parameters, options = None, {}
     if args.backend == "twin":
-        options = {"opponent": args.opponent or INTERCEPTOR}
+        options = {"opponent": args.opponent or INTERCEPTOR, "camera": args.camera or "places"}
     elif args.backend == "table":
         from sim2real.table.physical.table_file import read_table_file
 
@@ -96,7 +97,7 @@ def _seat(args: argparse.Namespace) -> RobotSeat:
 
 
 def _option(names: set[str]) -> str:
-    return "".join(f"--{name}" for name in names) or "none of its own"
+    return " and ".join(f"--{name}" for name in sorted(names)) or "none of its own"
 
 
 def _may_clear(args: argparse.Namespace) -> Callable[[TableFaultError], bool]:
@@ -154,6 +155,7 @@ def _result(args: argparse.Namespace, variant: str, other: str, logs: list[GameL
         "overruns": times.overruns,
         **summary("frame_age_s", times.frame_ages),
         **summary("late_s", times.lateness),
+        "times_real_time": sum(log.table_seconds for log in logs) / sum(log.wall_seconds for log in logs),
         "mallet_off_path_m": max(log.off_path for log in logs),
     }
 
@@ -169,7 +171,7 @@ def _summary(result: dict[str, Any], logs: list[GameLog]) -> list[str]:
         f"{1e3 * result['frame_age_s_p99']:.1f} ms; {result['plans']} plans sent; mallet off its path by at most "
         f"{1e3 * result['mallet_off_path_m']:.1f} mm",
         f"{result['decisions']} decisions, {result['overruns']} of them late; {len(result['faults'])} stops, "
-        f"{result['parked_s']:.1f} s parked",
+        f"{result['parked_s']:.1f} s parked; {result['times_real_time']:.2f} times real time",
     ]
     if result["backend"] != "table":  # time is virtual
         return lines

@@ -20,13 +20,16 @@ Motion = tuple[float, float, float, float]  # x, y [m], vx, vy [m/s]
 @dataclass(frozen=True)
 class SeenFrame:
     """What the camera measured in one frame: `time` of its exposure on the host's clock [s]; places, None if unseen;
-    the number of candidates for the puck; what is wrong with the picture."""
+    the number of candidates for the puck; what is wrong with the picture; covariances (2, 2) of the places [m^2], None
+    where they are as usual."""
 
     time: float
     puck: Place | None
     opponent: Place | None
     pucks: int = 1
     troubles: tuple[Trouble, ...] = ()
+    puck_covariance: np.ndarray | None = None
+    opponent_covariance: np.ndarray | None = None
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,8 @@ class GameLog:
     """score, fouls: of the robot and its opponent; outcome: 1 won, 0 nobody, -1 lost; seconds: of play.
 
     plans: sent to the board; parked [s]: with the puck lost; off_path [m]: the farthest that the encoders had the
-    mallet from its path; faults: causes of stops; times: of the decisions.
+    mallet from its path; faults: causes of stops; times: of the decisions; table_seconds, wall_seconds: that passed at
+    the table, and here, since the first decision.
     """
 
     score: tuple[int, int] = (0, 0)
@@ -24,3 +25,5 @@ class GameLog:
     off_path: float = 0.0
     faults: list[str] = field(default_factory=list)
     times: LoopTimes = field(default_factory=LoopTimes)
+    table_seconds: float = 0.0
+    wall_seconds: float = 0.0

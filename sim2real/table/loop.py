@@ -131,8 +131,8 @@ class Loop:
         for frame in reading.frames:
             if frame.time <= self._placed:  # of the point before
                 continue
-            self.seen.puck.update(frame.time, frame.puck)
-            self.seen.opponent.update(frame.time, frame.opponent)
+            self.seen.puck.update(frame.time, frame.puck, frame.puck_covariance)
+            self.seen.opponent.update(frame.time, frame.opponent, frame.opponent_covariance)
             puck = self.seen.puck.motion()
             if frame.puck is not None and puck is not None:
                 self.referee.watch(frame.time, puck, self.motion(frame.time), self.seen.opponent.motion())

@@ -34,9 +34,13 @@ class SeenObject:
         self.state: TrackState | None = None
         self._velocity = np.zeros(2)
 
-    def update(self, time: float, place: Place | None) -> None:
-        """Take a frame of `time` [s], in which the object is at `place` [m], or not seen."""
-        seen = [] if place is None else [Measurement(np.array(place), COVARIANCE, True)]
+    def update(self, time: float, place: Place | None, covariance: np.ndarray | None = None) -> None:
+        """Take a frame of `time` [s], in which the object is at `place` [m], or not seen.
+
+        covariance: (2, 2) of the place [m^2], COVARIANCE if None.
+        """
+        covariance = COVARIANCE if covariance is None else covariance
+        seen = [] if place is None else [Measurement(np.array(place), covariance, True)]
         before, self.state = self.state, self._tracker.update(time, seen) or self.state
         if self.state is None or self.state is before:
             return

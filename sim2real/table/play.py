@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -38,6 +39,7 @@ def play_game(
     actor.reset(np.ones(1, bool))
     log, over = GameLog(), False
     observation, info = env.reset(seed=seed)
+    begin, began = info["time"], time.perf_counter()
     while not over and (seconds is None or log.seconds < seconds):
         try:
             action = actor.act(observation[None])[0]
@@ -52,6 +54,7 @@ def play_game(
             observation, info = _cleared(env, fault, may_clear)
         if info["new_point"]:
             actor.reset(np.ones(1, bool))
+    log.table_seconds, log.wall_seconds = info["time"] - begin, time.perf_counter() - began
     if env.loop is not None:
         log.times = env.loop.times
     log.outcome = int(info.get("outcome", np.sign(log.score[0] - log.score[1])))

@@ -7,6 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from puckpilot_env.kernel import kernel
+
 
 class Box(NamedTuple):
     """Rows `top` to `bottom` and columns `left` to `right` of a picture."""
@@ -19,10 +21,8 @@ class Box(NamedTuple):
     @classmethod
     def around(cls, points: np.ndarray) -> Box:
         """The pixels that an outline (n, 2), u and v, can touch."""
-        u, v = points.T
-        top, left = (math.floor(edge.min() + 0.5) for edge in (v, u))
-        bottom, right = (math.ceil(edge.max() + 0.5) for edge in (v, u))
-        return cls(top, left, bottom, right)
+        left, top, right, bottom = _extent(points)
+        return cls(math.floor(top + 0.5), math.floor(left + 0.5), math.ceil(bottom + 0.5), math.ceil(right + 0.5))
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -68,3 +68,14 @@ class Box(NamedTuple):
             slice(self.top - other.top, self.bottom - other.top),
             slice(self.left - other.left, self.right - other.left),
         )
+
+
+@kernel
+def _extent(points):
+    """The least u and v, and the greatest u and v, of points (n, 2)."""
+    left, top = points[0, 0], points[0, 1]
+    right, bottom = left, top
+    for i in range(1, points.shape[0]):
+        u, v = points[i, 0], points[i, 1]
+        left, top, right, bottom = min(left, u), min(top, v), max(right, u), max(bottom, v)
+    return left, top, right, bottom

@@ -44,10 +44,10 @@ class Renderer:
         noise."""
         box = self.box if box is None else box.common(self.box)
         image = self._empty(number % EMPTIES)[box.within(self.box)].copy()
-        instants = self._instants(state)
+        noise, instants = self._noise.of(number, box), self._instants(state)
         for part in self._changed(instants, box):
-            light = self._light(instants, part)
-            image[part.within(box)] = self.sensor.levels(light, self._noise.of(number, part))
+            within = part.within(box)
+            image[within] = self.sensor.levels(self._light(instants, part), noise[within])
         return image
 
     def light(self, state: SceneState, box: Box | None = None) -> np.ndarray:
@@ -95,8 +95,11 @@ class Renderer:
     def _light(self, instants: list[BodyShapes], box: Box) -> np.ndarray:
         """Blurred light float64 (rows, columns) in `box`, averaged over the exposure."""
         wide = box.wider(self.sensor.reach).common(self.box)
-        mean = np.mean([self._sharp(drawn, wide) for drawn in instants], axis=0)
-        return self.sensor.spread(mean)[box.within(wide)]
+        light = self._sharp(instants[0], wide)
+        for drawn in instants[1:]:
+            light += self._sharp(drawn, wide)
+        light /= len(instants)
+        return self.sensor.spread(light)[box.within(wide)]
 
     def _sharp(self, drawn: BodyShapes, box: Box) -> np.ndarray:
         """Light float64 (rows, columns) in `box` at one instant, without blur."""

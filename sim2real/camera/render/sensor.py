@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from puckpilot_env.kernel import kernel
 from sim2real.camera.render.box import Box
 
 SHIFTS = 256  # rows and columns by which the noise field is shifted between pictures
@@ -42,8 +43,9 @@ class Sensor:
     def levels(self, light: np.ndarray, noise: np.ndarray) -> np.ndarray:
         """Grey levels uint8 (rows, columns) from light and standard normal noise, both (rows, columns); saturated at
         255."""
-        deviation = np.sqrt(self.read_noise**2 + self.shot_noise * np.maximum(light, 0.0))
-        return np.clip(np.rint(light + deviation * noise), 0, 255).astype(np.uint8)
+        image = np.empty(light.shape, np.uint8)
+        _levels(light, noise, *map(light.dtype.type, (self.read_noise**2, self.shot_noise, 0.0)), image)
+        return image
 
 
 class PixelNoise:
@@ -63,3 +65,14 @@ class PixelNoise:
         """The noise (rows, columns) of picture `number` in `box`."""
         down, right = np.random.default_rng((self._seed, number)).integers(SHIFTS, size=2)
         return self._field[box.top + down : box.bottom + down, box.left + right : box.right + right]
+
+
+@kernel
+def _levels(light, noise, dark, shot, none, image):
+    """Write the grey levels of `light` with `noise`, of variance `dark` and `shot` for each level of light, to
+    `image`, all (rows, columns); `none` is a zero of their kind."""
+    for row in range(light.shape[0]):
+        for column in range(light.shape[1]):
+            level = light[row, column]
+            level += np.sqrt(dark + shot * max(level, none)) * noise[row, column]
+            image[row, column] = np.uint8(min(max(np.rint(level), 0.0), 255.0))

@@ -1,6 +1,7 @@
-"""The renderer's camera. It projects with OpenCV.
+"""The renderer's camera. It projects as OpenCV does.
 
-The vision has a camera model of its own, so that a mistake in one projection cannot cancel in the other.
+The vision has a camera model of its own, so that a mistake in one projection cannot cancel in the other. A kernel does
+the sums of `cv2.projectPoints`, which computes derivatives too, in a tenth of the time; a test compares the two.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from functools import cached_property
 import cv2
 import numpy as np
 
+from puckpilot_env.kernel import kernel
 from sim2real.camera.render.coverage import cut
 
 SIZE = (1440, 1080)  # columns and rows of the real table's camera during play
@@ -65,15 +67,21 @@ class CameraView:
 
     def project(self, points: np.ndarray) -> np.ndarray:
         """Pixels (n, 2), u and v, of points (n, 3) in the table's frame [m]."""
-        return cv2.projectPoints(points, self.rotation, self.shift, self.matrix, self.distortion)[0][:, 0]
+        return self._pixels(np.asarray(points, float), self.turn, self.shift)
 
     def silhouette(self, points: np.ndarray) -> np.ndarray:
         """The outline (m, 2) [pixels] of the convex hull of points (n, 3) [m]."""
         seen = points @ self.turn.T + self.shift
         rays = (seen[:, :2] / seen[:, 2:]).astype(np.float32)  # convexHull takes no doubles; 1e-4 pixels are lost
         corners = cv2.convexHull(rays)[:, 0].astype(float)
-        edges, _ = cut(np.column_stack([corners, np.ones(len(corners))]), PIECE)
-        return cv2.projectPoints(edges, np.zeros(3), np.zeros(3), self.matrix, self.distortion)[0][:, 0]
+        edges, _ = cut(corners, PIECE)
+        return self._pixels(np.column_stack([edges, np.ones(len(edges))]), np.eye(3), np.zeros(3))
+
+    def _pixels(self, points: np.ndarray, turn: np.ndarray, shift: np.ndarray) -> np.ndarray:
+        """Pixels (n, 2) of points (n, 3) [m] that a motion brings into the camera's frame."""
+        pixels = np.empty((len(points), 2))
+        _project(points, turn, shift, self.matrix, self.distortion, pixels)
+        return pixels
 
     def brightness(self) -> np.ndarray:
         """The illumination float32 (rows, columns) of the table's plane by the lamp beside the camera, at each pixel.
@@ -95,3 +103,23 @@ class CameraView:
         """The illumination of a point (3,) [m] in the table's frame, relative to the middle of the picture."""
         middle = self.place[2] / -self.turn[2, 2]  # from the camera to where it looks
         return float(middle**2 / ((point - self.place) ** 2).sum())
+
+
+@kernel
+def _project(points, turn, shift, matrix, distortion, pixels):
+    """Write the pixels (n, 2) of points (n, 3) [m], turned by (3, 3) and shifted by (3,) [m], of a camera with this
+    matrix (3, 3) and distortion (k1, k2, p1, p2, k3), report B.1."""
+    k1, k2, p1, p2, k3 = distortion[0], distortion[1], distortion[2], distortion[3], distortion[4]
+    for i in range(points.shape[0]):
+        a, b, c = points[i, 0], points[i, 1], points[i, 2]
+        x = turn[0, 0] * a + turn[0, 1] * b + turn[0, 2] * c + shift[0]
+        y = turn[1, 0] * a + turn[1, 1] * b + turn[1, 2] * c + shift[1]
+        z = 1.0 / (turn[2, 0] * a + turn[2, 1] * b + turn[2, 2] * c + shift[2])
+        x *= z
+        y *= z
+        r2 = x * x + y * y
+        r4 = r2 * r2
+        radial = 1.0 + k1 * r2 + k2 * r4 + k3 * (r4 * r2)
+        cross, along, down = 2.0 * x * y, r2 + 2.0 * x * x, r2 + 2.0 * y * y
+        pixels[i, 0] = (x * radial + p1 * cross + p2 * along) * matrix[0, 0] + matrix[0, 2]
+        pixels[i, 1] = (y * radial + p1 * down + p2 * cross) * matrix[1, 1] + matrix[1, 2]

@@ -25,7 +25,7 @@ class TwinCamera:
 
     def __init__(self, errors: CameraErrors, seed: int) -> None:
         self.errors = errors
-        self.unplugged = False
+        self.unplugged, self.late = False, 0.0
         self._random = np.random.default_rng([seed, 1])
         self._taken = 0
         self._coming: deque[SeenFrame] = deque()
@@ -49,6 +49,6 @@ class TwinCamera:
     def take(self, now: float) -> list[SeenFrame]:
         """The frames that can be used at `now` [s] and were not taken before."""
         found = []
-        while self._coming and self._coming[0].time + self.errors.delay <= now:
+        while self._coming and self._coming[0].time + self.errors.delay + self.late <= now:
             found.append(self._coming.popleft())
         return found

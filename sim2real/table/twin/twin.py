@@ -16,7 +16,8 @@ from sim2real.table.board_line import BoardLine
 from sim2real.table.game_record import GameRecord
 from sim2real.table.live_table import LiveTable
 from sim2real.table.twin.board import EmulatedBoard
-from sim2real.table.twin.camera import CameraErrors, TwinCamera
+from sim2real.table.twin.camera import CameraErrors
+from sim2real.table.twin.cameras import camera_maker
 from sim2real.table.twin.hand import ScriptedHand
 from sim2real.table.twin.plant import Plant
 
@@ -28,7 +29,7 @@ class Twin(LiveTable):
     """A table with a scripted hand at the other end; see `backend.Backend`.
 
     game: whose table it is; opponent: a player, by name or itself; law: physics of the plant, as the game's parameters
-    say by default; errors: of the camera. ValueError, in one line, for an unknown name.
+    say by default; errors: of the camera; camera: "places" or "pictures". ValueError, in one line, for an unknown name.
     """
 
     def __init__(
@@ -37,9 +38,11 @@ class Twin(LiveTable):
         opponent: str | Player = "goalie",
         law: Law | None = None,
         errors: CameraErrors | None = None,
+        camera: str = "places",
     ) -> None:
-        self._errors, self._seed = errors or CameraErrors(), 0
-        super().__init__(board_config(game.p), self._errors.rate)
+        errors, self._seed = errors or CameraErrors(), 0
+        super().__init__(board_config(game.p), errors.rate)
+        self._make_camera = camera_maker(camera, game.p, errors)
         refuse_unmodelled(game.given)
         self.p, self._law = game.p, law or law_of(game.p)
         self._make_hand = lambda seed: ScriptedHand(game, opponent, 2 * seed + 1)
@@ -55,7 +58,7 @@ class Twin(LiveTable):
         """Switch board and camera on."""
         self.plant = Plant(self._law, home, self.hand.home)
         self.board = EmulatedBoard(self.plant, float(self.p["max_voltage"]), self._seed)
-        self.eyes = self.camera = TwinCamera(self._errors, self._seed)
+        self.eyes = self.camera = self._make_camera(self._seed)
         self.line = BoardLine(lambda: self._opened(self.board), self.now, self.pass_time)
         self.person = self
 

@@ -25,12 +25,15 @@ EVERY = 4  # while no opponent is tracked, one in so many pictures is searched a
 class Detections:
     """The result for one picture.
 
-    puck, opponent: the states of the tracks, None where the place is unknown; pucks: number of candidates for the puck.
+    puck, opponent: the states of the tracks, None where the place is unknown; pucks: number of candidates for the puck;
+    measured_puck, measured_opponent: what the tracks took from this picture alone, None where they took nothing.
     """
 
     puck: TrackState | None
     opponent: TrackState | None
     pucks: int
+    measured_puck: Measurement | None = None
+    measured_opponent: Measurement | None = None
 
 
 class Detector:
@@ -60,7 +63,10 @@ class Detector:
         rings, discs = self._find(image, None) if near is None else near
         puck = self._puck.update(time, [_disc_measurement(disc) for disc in discs])
         opponent = self._opponent.update(time, [_ring_measurement(ring) for ring in rings])
-        return Detections(self._with_calibration(puck), self._with_calibration(opponent), len(discs))
+        return Detections(
+            self._with_calibration(puck), self._with_calibration(opponent), len(discs),
+            self._puck.measurement, self._opponent.measurement,
+        )  # fmt: skip
 
     def _find_in_regions(self, image: np.ndarray, time: float) -> tuple[list[Ring], list[Disc]] | None:
         """Rings and discs in the search regions; None if the whole picture has to be searched, because the puck's place

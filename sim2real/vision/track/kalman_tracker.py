@@ -40,7 +40,7 @@ class TrackState:
     """The state of a track.
 
     time: of the state [s]; place: (2,) [m]; velocity: (2,) [m/s]; covariance: (4, 4) of place and velocity [m, m/s];
-    pictures: number of measurements in this track.
+    pictures: number of measurements in this track; newest: the last of them.
     """
 
     time: float
@@ -48,6 +48,7 @@ class TrackState:
     velocity: np.ndarray
     covariance: np.ndarray
     pictures: int
+    newest: Measurement | None = None
 
     @property
     def confirmed(self) -> bool:
@@ -69,7 +70,7 @@ class TrackState:
         """The state after a measurement of the same time (Kalman 1960)."""
         state, covariance = np.concatenate([self.place, self.velocity]), np.empty((4, 4))
         _correct(state, self.covariance, measurement.place, measurement.covariance, covariance)
-        return TrackState(self.time, state[:2], state[2:], covariance, self.pictures + 1)
+        return TrackState(self.time, state[:2], state[2:], covariance, self.pictures + 1, measurement)
 
     def squared_distance(self, measurement: Measurement) -> float:
         """The squared Mahalanobis distance to a measurement of the same time."""
@@ -107,6 +108,11 @@ class KalmanTracker:
     def in_sight(self) -> bool:
         """Whether the object was measured in the last picture."""
         return self._last is not None and self._last.time == self._time
+
+    @property
+    def measurement(self) -> Measurement | None:
+        """What was taken for the object in the last picture, whether the track is confirmed or not; None if nothing."""
+        return self._last.newest if self._last and self.in_sight else None
 
     def _next(self, time: float, measurements: Sequence[Measurement]) -> TrackState | None:
         before = self._last
@@ -181,4 +187,4 @@ def _new_track(time: float, measurements: list[Measurement], pictures: int = 0) 
     (measurement,) = measurements
     covariance = np.diag([0.0, 0.0, ANY_SPEED**2, ANY_SPEED**2])
     covariance[:2, :2] = measurement.covariance
-    return TrackState(time, measurement.place, np.zeros(2), covariance, pictures + 1)
+    return TrackState(time, measurement.place, np.zeros(2), covariance, pictures + 1, measurement)

@@ -13,12 +13,14 @@ from sim2real.camera.render.view import CameraView
 from sim2real.vision.calibrate.calibration_view import CalibrationView
 from sim2real.vision.calibrate.intrinsics.calibrate import calibrate
 from sim2real.vision.calibrate.multiview import MultiviewFit, solve
+from sim2real.vision.calibrate.table_file import TableCalibration
 from sim2real.vision.camera import CameraModel
 from sim2real.vision.camera_file import Setup
 from sim2real.vision.coordinate_warp import CoordinateWarp
 from sim2real.vision.locate import Locator
 from sim2real.vision.markers import find_markers
 from sim2real.vision.surface import Surface
+from sim2real.vision.table_geometry import TableGeometry
 from sim2real.vision.track.detector import Detector
 
 DICTIONARY = "DICT_4X4_50"
@@ -43,6 +45,14 @@ def exact_locator(table: Table, view: CameraView) -> Locator:
     return Locator(
         camera_model_of(view), np.concatenate([view.rotation, view.shift]), Surface(middle), CoordinateWarp(box)
     )
+
+
+def exact_calibration(table: Table, view: CameraView) -> TableCalibration:
+    """The exact table.json of a rendered flat table, in which the camera's pose is not stated."""
+    exact = exact_locator(table, view)
+    setup = Setup(exact.camera, DICTIONARY, table.puck_height, table.length, table.width)
+    markers = {marker.number: marker.corners for marker in table.markers}
+    return TableCalibration(setup, TableGeometry(exact.surface, exact.warp, markers))
 
 
 def detector_for(renderer: Renderer, locator: Locator, calibration_error: float = 0.0) -> Detector:

@@ -70,11 +70,11 @@ def test_puck_and_opponent_are_seen_where_they_are_and_as_fast() -> None:
         env.close()
 
 
-def played(seed: int, env: RobotSeat) -> tuple[list, list]:
+def played(seed: int, env: RobotSeat, steps: int = 10) -> tuple[list, list]:
     try:
         seen = [env.reset(seed=seed)[0]]
         random = np.random.default_rng(5)
-        for _ in range(10):
+        for _ in range(steps):
             action = random.uniform(*env.tables.action_bounds).astype(np.float32)
             seen.append(env.step(action)[0])
         board = twin_of(env).board
@@ -91,6 +91,15 @@ def test_the_same_seed_gives_the_same_game_to_the_last_bit() -> None:
     assert once == played(3, env) == played(3, make_robot_seat(MATCH, "twin", opponent="interceptor", seed=2))
     assert once[0] != played(4, env)[0]
     assert len(once[1]) > 100
+
+
+@pytest.mark.slow
+def test_the_same_seed_gives_the_same_pictures_and_the_same_game() -> None:
+    env = make_robot_seat(MATCH, "twin", opponent="interceptor", camera="pictures")
+    once = played(3, env, steps=3)
+    other = make_robot_seat(MATCH, "twin", opponent="interceptor", camera="pictures")
+    assert once == played(3, env, steps=3) == played(3, other, steps=3)
+    assert once[0] != played(3, make_robot_seat(MATCH, "twin", opponent="interceptor"), steps=3)[0]  # of places
 
 
 def test_a_motor_never_gets_more_than_15_volts(seat: RobotSeat) -> None:

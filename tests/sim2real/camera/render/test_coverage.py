@@ -10,7 +10,7 @@ from matplotlib.path import Path
 from scipy.integrate import quad
 
 from sim2real.camera.render.box import Box
-from sim2real.camera.render.coverage import coverage
+from sim2real.camera.render.coverage import coverage, cut
 
 SAMPLES = 16
 
@@ -74,3 +74,38 @@ def test_a_box_cuts_exactly() -> None:
     np.testing.assert_allclose(coverage(outline, part), coverage(outline, whole)[part.within(whole)], atol=1e-12)
     assert not coverage(outline + 100.0, part).any()
     assert (coverage(np.array([(-9, -9), (99, -9), (99, 99), (-9, 99.0)]), part) == 1.0).all()
+
+
+def cut_by_numpy(corners: np.ndarray, longest: float) -> tuple[np.ndarray, np.ndarray]:
+    edge = np.roll(corners, -1, axis=0) - corners
+    pieces = np.maximum(np.ceil(np.sqrt((edge**2).sum(axis=1)) / longest), 1.0).astype(np.intp)
+    step = np.repeat(edge / pieces[:, None], pieces, axis=0)
+    number = np.arange(len(step)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    return np.repeat(corners, pieces, axis=0) + number[:, None] * step, step
+
+
+def coverage_by_numpy(outline: np.ndarray, box: Box) -> np.ndarray:
+    rows, columns = box.shape
+    start, step = cut_by_numpy(outline - np.array([box.left - 0.5, box.top - 0.5]), 1.0)
+    first, last = np.floor(start), np.floor(start + step)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        cuts = np.where(first != last, (np.maximum(first, last) - start) / step, 1.0)
+    before, after = np.minimum(*cuts.T)[:, None], np.maximum(*cuts.T)[:, None]
+    points = np.stack([start, start + before * step, start + after * step, start + step], axis=1)
+    begin, end = points[:, :-1].reshape(-1, 2), points[:, 1:].reshape(-1, 2)
+    height, middle = end[:, 1] - begin[:, 1], 0.5 * (begin + end)
+    x, row = np.clip(middle[:, 0], 0.0, columns), np.floor(middle[:, 1])
+    inside = (row >= 0) & (row < rows) & (height != 0.0)
+    x, row, height = x[inside], row[inside], height[inside]
+    place, further = (row * (columns + 2) + np.floor(x)).astype(np.intp), height * (x - np.floor(x))
+    covered = np.bincount(place, height - further, rows * (columns + 2))
+    covered += np.bincount(place + 1, further, rows * (columns + 2))
+    return np.minimum(np.abs(covered.reshape(rows, -1).cumsum(axis=1)[:, :columns]), 1.0)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_to_the_last_bit_as_with_sums_of_whole_arrays(seed: int) -> None:
+    outline = star(seed)
+    assert (coverage(outline, BOX) == coverage_by_numpy(outline, BOX)).all()
+    for one, other in zip(cut(outline, 0.7), cut_by_numpy(outline, 0.7), strict=True):
+        assert (one == other).all()

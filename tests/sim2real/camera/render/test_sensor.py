@@ -43,3 +43,12 @@ def test_noise_of_pictures_in_a_row_and_of_neighbours_is_unrelated() -> None:
 def test_saturated_light_is_white_and_none_is_black() -> None:
     levels = Sensor(read_noise=0.0, shot_noise=0.0).levels(np.array([[-3.0, 254.6, 300.0]]), np.zeros((1, 3)))
     assert levels.tolist() == [[0, 255, 255]]
+
+
+@pytest.mark.parametrize("kind", [np.float32, np.float64])
+def test_levels_are_to_the_last_bit_those_of_sums_of_whole_arrays(kind: type) -> None:
+    sensor, noise = Sensor(), PixelNoise(BOX, 3).of(7, BOX)
+    light = np.random.default_rng(1).uniform(-5.0, 270.0, BOX.shape).astype(kind)
+    deviation = np.sqrt(sensor.read_noise**2 + sensor.shot_noise * np.maximum(light, 0.0))
+    expected = np.clip(np.rint(light + deviation * noise), 0, 255).astype(np.uint8)
+    assert (sensor.levels(light, noise) == expected).all() and expected.min() == 0 and expected.max() == 255

@@ -1,0 +1,42 @@
+"""From a camera's pictures to the places in them, with what is wrong: frame monitor, then tracker."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sim2real.camera.frame import Frame
+from sim2real.camera.frame_monitor import FrameMonitor, colour_mosaic, over_exposed
+from sim2real.camera.valid_frames import INVALIDATING
+from sim2real.table.backend import Place, SeenFrame
+from sim2real.vision.calibrate.table_file import TableCalibration
+from sim2real.vision.track.kalman_tracker import Measurement
+from sim2real.vision.track.tracker import Targets, Tracker
+
+
+class FrameReader:
+    """Reads the pictures of one camera, in order of time; the first shows the table with its markers."""
+
+    def __init__(self, table: TableCalibration, targets: Targets) -> None:
+        self.tracker = Tracker(table, targets)
+        checks = (over_exposed, colour_mosaic, self.tracker.check_camera)
+        self._monitor = FrameMonitor(table.setup.camera.size, checks)
+
+    def read(self, frame: Frame) -> SeenFrame:
+        """The measured places, without any from a picture that is not to be believed. Raises ValueError, in one line,
+        if the first picture does not show where the camera is."""
+        troubles = tuple(self._monitor.check(frame, frame.host_time))
+        if any(trouble.name in INVALIDATING for trouble in troubles):
+            return SeenFrame(frame.time, None, None, troubles=troubles)
+        found = self.tracker.add(frame)
+        puck, opponent = found.measured_puck, found.measured_opponent
+        return SeenFrame(
+            frame.time, _place(puck), _place(opponent), found.pucks, troubles, _covariance(puck), _covariance(opponent)
+        )  # fmt: skip
+
+
+def _place(measured: Measurement | None) -> Place | None:
+    return None if measured is None else (float(measured.place[0]), float(measured.place[1]))
+
+
+def _covariance(measured: Measurement | None) -> np.ndarray | None:
+    return None if measured is None else measured.covariance
