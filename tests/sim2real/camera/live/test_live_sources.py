@@ -11,9 +11,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from sim2real.camera import device
 from sim2real.camera.frame import CameraError, Frame
-from sim2real.camera.live import Live
+from sim2real.camera.live import device
+from sim2real.camera.live.live_source import Live
+from sim2real.camera.settings import CameraSettings
 from sim2real.camera.sources import open_source
 
 PATIENCE = 20.0  # s, far longer than any of this takes
@@ -158,7 +159,7 @@ def test_aravis_own_fake_camera() -> None:
         gi.require_version("Aravis", "0.8")
     except ValueError:
         pytest.skip("Aravis is tried where it is: apt install gir1.2-aravis-0.8")
-    with open_source("aravis:Fake_1", exposure=2e-3) as source:
+    with open_source("aravis:Fake_1", CameraSettings(exposure=2e-3)) as source:
         first, second = source.newest(PATIENCE), source.newest(PATIENCE)
     assert first and second and first.image.shape == (512, 512) and first.image.dtype == np.uint8
     assert second.sequence - first.sequence == second.dropped + 1
@@ -231,7 +232,7 @@ class Spin:
 def test_flirs_sdk_is_used_as_its_documentation_says(monkeypatch) -> None:
     spin = Spin()
     monkeypatch.setitem(sys.modules, "PySpin", spin)
-    with open_source("flir:123", exposure=100e-6) as source:
+    with open_source("flir:123", CameraSettings(exposure=100e-6)) as source:
         frame = source.newest(PATIENCE)
         with pytest.raises(CameraError, match="flir:123 gives no more pictures"):
             source.newest(PATIENCE)
