@@ -187,18 +187,27 @@ class SpinError(Exception):
 class Spin:
     """Stands in for PySpin, and for the system, the list and the camera that it gives."""
 
-    PixelFormat_Mono8, ExposureAuto_Off = 1, 0
+    PixelFormat_Mono8, PixelFormat_BayerRG8, ExposureAuto_Off, GainAuto_Off = 1, 2, 0, 0
+    TriggerMode_Off, TriggerMode_On, TriggerSelector_FrameStart, TriggerSource_Line3 = 0, 1, 5, 6
+    FEATURES = (
+        "PixelFormat", "ExposureAuto", "ExposureTime", "TriggerMode", "TriggerSelector", "TriggerSource", "OffsetX",
+        "OffsetY", "Width", "Height", "GainAuto", "Gain", "AcquisitionFrameRateEnable", "AcquisitionFrameRate",
+    )  # fmt: skip
     SpinnakerException = SpinError
 
     def __init__(self, cameras: int = 1) -> None:
         self.cameras, self.calls, self.values, self.count, self.released = cameras, [], {}, 0, 0
+        self.steps: dict[str, int] = {}  # by which a feature differs from what it was set to
         self.System = SimpleNamespace(GetInstance=lambda: self)
 
     def __getattr__(self, name: str):
-        if name in ("PixelFormat", "ExposureAuto", "ExposureTime"):
+        if name in self.FEATURES:
+            step = 2.0 if name == "ExposureTime" else self.steps.get(name, 0)
             return SimpleNamespace(
-                SetValue=lambda value: self.values.__setitem__(name, value), GetValue=lambda: self.values[name] + 2.0
+                SetValue=lambda value: self.values.update({name: value}), GetValue=lambda: self.values[name] + step
             )
+        if "_" in name:
+            raise AttributeError(f"there is no {name}")
         return lambda *arguments: self.calls.append((name, *arguments))
 
     def GetCameras(self):  # noqa: N802
@@ -238,7 +247,8 @@ def test_flirs_sdk_is_used_as_its_documentation_says(monkeypatch) -> None:
             source.newest(PATIENCE)
     assert frame and frame.sequence == 43 and (frame.image == 7).all()
     assert frame.time == pytest.approx(5.0 + 51e-6, abs=1e-9)  # half of the exposure that the camera took: 102 us
-    assert spin.values == {"PixelFormat": 1, "ExposureAuto": 0, "ExposureTime": 100.0} and spin.released == 2
+    assert spin.values == {"TriggerMode": 0, "PixelFormat": 1, "ExposureAuto": 0, "ExposureTime": 100.0}
+    assert spin.released == 2
     names = [call[0] for call in spin.calls]
     assert names == ["GetBySerial", "Init", "BeginAcquisition", "EndAcquisition", "DeInit", "Clear", "ReleaseInstance"]
     monkeypatch.setitem(sys.modules, "PySpin", Spin(cameras=0))
