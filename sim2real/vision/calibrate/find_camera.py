@@ -35,19 +35,35 @@ def find_camera(setup: Setup, geometry: TableGeometry, image: np.ndarray) -> tup
     """
     even = smoothed(image)
     corners, before = detect_markers(even, setup.dictionary), set()
-    cells = dictionary_of(setup.dictionary).markerSize + BORDER
     for _ in range(ROUNDS):
         pose = camera_pose(setup, geometry, corners, ROUGH)
-        due = corners_in_picture(setup.camera, geometry, pose.motion, image.shape)
-        fine = {name: refine(even, setup.camera, one, cells, CONTRAST) for name, one in due.items()}
-        corners = {name: one for name, one in fine.items() if one is not None}
+        corners = _refined(setup, geometry, pose.motion, even)
         if set(corners) == before:
             break
         before = set(corners)
     return _without_spread(setup, geometry, corners)
 
 
-def corners_in_picture(
+def clear_markers(
+    setup: Setup, geometry: TableGeometry, motion: np.ndarray, image: np.ndarray
+) -> dict[int, np.ndarray]:
+    """The corners (4, 2) [pixels], by marker, of those that a picture uint8 (rows, columns) clearly shows where a camera
+    with this motion (6,) must see them."""
+    due = _corners_in_picture(setup.camera, geometry, motion, image.shape)
+    found = _refined(setup, geometry, motion, smoothed(image))
+    return {name: one for name, one in found.items() if np.abs(one - due[name]).max() < MOST_SPREAD + FAR}
+
+
+def _refined(setup: Setup, geometry: TableGeometry, motion: np.ndarray, even: np.ndarray) -> dict[int, np.ndarray]:
+    """The refined corners (4, 2) [pixels], by marker, of those with clear edges in a smoothed picture (rows, columns)
+    near to where a camera with this motion (6,) sees them."""
+    cells = dictionary_of(setup.dictionary).markerSize + BORDER
+    due = _corners_in_picture(setup.camera, geometry, motion, even.shape)
+    fine = {name: refine(even, setup.camera, one, cells, CONTRAST) for name, one in due.items()}
+    return {name: one for name, one in fine.items() if one is not None}
+
+
+def _corners_in_picture(
     camera: CameraModel, geometry: TableGeometry, motion: np.ndarray, shape: tuple[int, ...]
 ) -> dict[int, np.ndarray]:
     """The corners (4, 2) [pixels] of the markers that a camera with this motion (6,) sees as a whole in a picture of a

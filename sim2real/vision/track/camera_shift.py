@@ -9,7 +9,7 @@ from sim2real.camera.frame_monitor import Trouble
 
 AROUND = 40  # px round a marker in which it is searched
 MOST = 0.5  # px, tolerated shift of a marker; about a millimetre on the table
-DIM = 4.0  # grey levels, least standard deviation of a marker and its surroundings in the first picture
+DIM = 2.0  # grey levels, least standard deviation of a marker and its surroundings in the first picture
 TOGETHER = (0.5, 0.1)  # px, and share of the shift, by which the corners of a marker may move differently
 FLOW = {"winSize": (15, 15), "maxLevel": 2, "criteria": (cv2.TERM_CRITERIA_EPS | cv2.TERM_CRITERIA_COUNT, 20, 0.01)}
 

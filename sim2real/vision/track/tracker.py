@@ -15,7 +15,7 @@ from sim2real.camera.settings import CameraSettings
 from sim2real.recording.checks import FORMAT
 from sim2real.recording.folder import Recording
 from sim2real.recording.stream_csv import Stream
-from sim2real.vision.calibrate.find_camera import corners_in_picture, find_camera
+from sim2real.vision.calibrate.find_camera import clear_markers, find_camera
 from sim2real.vision.calibrate.place_uncertainty import pose_place_std
 from sim2real.vision.calibrate.pose import Pose
 from sim2real.vision.calibrate.table_file import TableCalibration
@@ -192,9 +192,9 @@ class Tracker:
 
     def _detect_from(self, pose: Pose, image: np.ndarray, corners: dict[int, np.ndarray]) -> None:
         """Start a detector for a pose, and watch the markers of a picture with corners (4, 2) [pixels], or those that
-        the pose shows in it."""
+        are clear in it."""
         setup, geometry, targets = self._table.setup, self._table.geometry, self.targets
-        corners = corners or corners_in_picture(setup.camera, geometry, pose.motion, image.shape)
+        corners = corners or clear_markers(setup, geometry, pose.motion, image)
         self.pose = pose
         self.locator = Locator(setup.camera, pose.motion, geometry.surface, geometry.warp)
         self._pose_std = pose_place_std(self.locator, pose.covariance, setup.length, setup.width)
