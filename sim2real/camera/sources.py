@@ -5,52 +5,58 @@ from __future__ import annotations
 from pathlib import Path
 
 from sim2real.camera.frame import CameraError, Source
+from sim2real.camera.settings import CameraSettings
 
 RATE = 120.0  # Hz, of the real table's camera
 EXPOSURE = 100e-6  # s (report 2.2.1)
-TIMED = ("synthetic", "device", "aravis", "flir")  # sources that time their pictures themselves
-EXPOSED = ("synthetic", "aravis", "flir")  # sources with a settable exposure
+CAMERAS = ("device", "aravis", "flir")  # kinds of sources that are cameras, named with a colon
+ONLY_CAMERAS = ("setup_exposure", "gain", "trigger_line")  # settings that no other source takes
 KNOWN = "a folder of pictures, a video file, device:0, aravis:NAME, flir:SERIAL, synthetic or synthetic:RECORDING"
 
 
-def open_source(word: str, rate: float | None = None, exposure: float | None = None) -> Source:
+def is_camera(word: str) -> bool:
+    """Whether a source's name is that of a camera, which takes pictures as it is set."""
+    kind, colon, _ = word.partition(":")
+    return bool(colon) and kind in CAMERAS
+
+
+def open_source(word: str, settings: CameraSettings | None = None) -> Source:
     """The source that `word` names, one of KNOWN, to be opened by `with`.
 
-    rate: of the pictures in a folder and of rendered games [Hz], RATE if None, or of a video that states another rate
-    than it was filmed with; exposure: of rendered pictures, aravis: and flir: [s], EXPOSURE if None. Only the libraries
+    settings: of a camera. Rendered games take rate and exposure, RATE and EXPOSURE if None; folders and videos the rate
+    at which they were taken; region and pixel format say what a folder's or video's pictures are. Only the libraries
     that the source needs are imported. Raises CameraError, or RecordingError for a bad recording, in one line.
     """
-    if rate is not None and not 0.0 < rate < 1e5:
-        raise CameraError(f"rate is {rate!r}; expected frames a second, say {RATE:g}")
-    if exposure is not None and not 0.0 < exposure < 1.0:
-        raise CameraError(f"exposure is {exposure!r}; expected seconds, say {EXPOSURE:g}")
+    settings = settings or CameraSettings()
     kind, colon, name = word.partition(":")
-    if rate is not None and colon and kind in TIMED:
-        raise CameraError(f"a rate of {rate:g} Hz is given, but {kind}: times its pictures itself; leave the rate out")
-    if exposure is not None and kind not in EXPOSED:
-        raise CameraError(f"an exposure of {exposure:g} s is given, but '{word}' takes none; leave it out")
-    exposure = EXPOSURE if exposure is None else exposure
+    exposure = EXPOSURE if settings.exposure is None else settings.exposure
     if kind == "synthetic":
         from sim2real.camera import synthetic
 
+        settings.refuse(word, *ONLY_CAMERAS, "region", *(("rate",) if colon else ()))
         if colon and not name:
             raise CameraError("synthetic: names no recording; give its folder after the colon, or leave the colon out")
-        return synthetic.of_a_recording(Path(name), exposure) if name else synthetic.of_a_game(rate or RATE, exposure)
-    if colon and kind == "device":
-        from sim2real.camera.device import Device
+        rate = settings.rate or RATE
+        return synthetic.of_a_recording(Path(name), exposure) if name else synthetic.of_a_game(rate, exposure)
+    if not is_camera(word):
+        settings.refuse(word, *ONLY_CAMERAS, "exposure")
+        return _files(word, settings.rate)
+    if kind == "device":
+        from sim2real.camera.live.device import Device
 
         if not name.isdecimal():
             raise CameraError(f"{word!r} names no device; expected its number, as in device:0")
-        return Device(int(name))
-    if colon and kind == "aravis":
-        from sim2real.camera.aravis import Aravis
+        return Device(int(name), settings)
+    from sim2real.camera.live.genicam import features
 
-        return Aravis(name, exposure)
-    if colon and kind == "flir":
-        from sim2real.camera.flir import Flir
+    wanted = features(settings, exposure)
+    if kind == "aravis":
+        from sim2real.camera.live.aravis import Aravis
 
-        return Flir(name, exposure)
-    return _files(word, rate)
+        return Aravis(name, wanted)
+    from sim2real.camera.live.flir import Flir
+
+    return Flir(name, wanted)
 
 
 def _files(word: str, rate: float | None) -> Source:

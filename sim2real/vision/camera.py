@@ -5,9 +5,12 @@ Image: u to the right, v down [pixels], the centre of the first pixel at (0, 0).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
+
+from sim2real.camera.region import RegionOfInterest
 
 STEPS = 20  # of Newton's method at most; a photograph's corners take 5
 CLOSE = 1e-12  # residual, in focal lengths, at which a ray has converged
@@ -28,6 +31,13 @@ class CameraModel:
     cy: float
     distortion: tuple[float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0)
     size: tuple[int, int] | None = None
+
+    def cropped(self, region: RegionOfInterest) -> Self:
+        """The camera whose pictures are a region of this one's. Raises ValueError, in one line, if the region reaches
+        beyond them."""
+        if self.size is not None:
+            region.check_within(self.size)
+        return replace(self, cx=self.cx - region.column, cy=self.cy - region.row, size=region.size)
 
     def project(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Project points (n, 3) of the camera's frame [m] to pixels (n, 2), with the derivatives (n, 2, 3) by the

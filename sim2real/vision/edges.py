@@ -25,15 +25,17 @@ PIXELS = 12  # least number on an edge
 GREY = 8.0  # grey levels, scale of the robust loss: larger residuals, of glints and dirt, count less
 
 
-def refine(image: np.ndarray, camera: CameraModel, corners: np.ndarray, cells: int) -> np.ndarray | None:
+def refine(
+    image: np.ndarray, camera: CameraModel, corners: np.ndarray, cells: int, contrast: float = CONTRAST
+) -> np.ndarray | None:
     """Refine the detected corners (4, 2) [pixels] of a marker in a smoothed image (rows, columns).
 
-    cells: along a side of the marker, its black border included. Returns corners (4, 2) [pixels], or None if an edge is
-    not clear.
+    cells: along a side of the marker, its black border included; contrast: least step of an edge [grey levels]. Returns
+    corners (4, 2) [pixels], or None if an edge is not clear.
     """
     for _ in range(ROUNDS):
         undistorted = camera.undistort(corners)
-        lines = [_line(image, camera, undistorted, k, cells) for k in range(4)]
+        lines = [_line(image, camera, undistorted, k, cells, contrast) for k in range(4)]
         found = [line for line in lines if line is not None]
         if len(found) < 4:
             return None
@@ -42,7 +44,7 @@ def refine(image: np.ndarray, camera: CameraModel, corners: np.ndarray, cells: i
 
 
 def _line(
-    image: np.ndarray, camera: CameraModel, corners: np.ndarray, k: int, cells: int
+    image: np.ndarray, camera: CameraModel, corners: np.ndarray, k: int, cells: int, contrast: float
 ) -> tuple[np.ndarray, np.ndarray] | None:
     """A point and a direction, in undistorted pixels, of the edge from corner k to the next; None if it is not
     clear."""
@@ -58,7 +60,7 @@ def _line(
     near = (np.abs(position) < ALONG) & (depth > -INSIDE * cell) & (depth < OUTSIDE * cell)
     if near.sum() < PIXELS:
         return None
-    step = _step(position[near], depth[near], image[rows[near], columns[near]])
+    step = _step(position[near], depth[near], image[rows[near], columns[near]], contrast)
     if step is None:
         return None
     shift, turn = step
@@ -73,7 +75,7 @@ def _box(image: np.ndarray, ends: np.ndarray, cell: float) -> tuple[np.ndarray, 
     return columns.ravel(), rows.ravel()
 
 
-def _step(position: np.ndarray, depth: np.ndarray, grey: np.ndarray) -> tuple[float, float] | None:
+def _step(position: np.ndarray, depth: np.ndarray, grey: np.ndarray, contrast: float) -> tuple[float, float] | None:
     """Fit a step from dark to bright, blurred by a normal distribution, to grey levels (n,).
 
     position: of each pixel along the edge, -1 to 1; depth: across it [pixels]. Returns the edge's shift at the middle
@@ -99,7 +101,7 @@ def _step(position: np.ndarray, depth: np.ndarray, grey: np.ndarray) -> tuple[fl
         f_scale=GREY,
     )
     shift, turn, low, high, _ = found.x
-    clear = found.success and high - low > CONTRAST and abs(shift) + abs(turn) < MOST
+    clear = found.success and high - low > contrast and abs(shift) + abs(turn) < MOST
     return (float(shift), float(turn)) if clear else None
 
 

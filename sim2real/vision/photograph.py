@@ -25,7 +25,8 @@ def check_size(name: Path | str, image: np.ndarray, camera: CameraModel) -> None
     elif abs(camera.cx - width / 2) > SHIFT * width or abs(camera.cy - height / 2) > SHIFT * height:
         raise ValueError(
             f"{name} is {width}x{height} pixels, but the camera's principal point is ({camera.cx:.0f}, "
-            f"{camera.cy:.0f}), far from the middle: expected a picture of the size that the camera was calibrated with"
+            f"{camera.cy:.0f}), far from the middle: expected a picture of the size that the camera was calibrated "
+            "with; of a region of its sensor, state which (--region)"
         )
 
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from sim2real.vision.calibrate.calibration_view import CalibrationView
 from sim2real.vision.calibrate.multiview import MultiviewFit
+from sim2real.vision.locate import Locator
 
 ALONG, ACROSS = 13, 7  # places of the evaluation grid
 SURE = 2e-3  # m, greatest standard deviation of a calibration that covers the table
@@ -43,6 +44,18 @@ def worst_known_place(fit: MultiviewFit, length: float, width: float) -> WorstKn
 def place_std(fit: MultiviewFit, length: float, width: float) -> float:
     """The typical error of places along each axis [m]: root mean square over a table of this length and width [m]."""
     return float(np.sqrt(0.5 * _variances(fit, length, width)[1].mean()))
+
+
+def pose_place_std(locator: Locator, covariance: np.ndarray, length: float, width: float) -> float:
+    """The typical error of places along each axis [m] that the camera's pose has, by the covariance (6, 6) of its
+    motion: root mean square over a table of this length and width [m]."""
+    x, y = np.meshgrid(np.linspace(0.0, length, ALONG), np.linspace(0.0, width, ACROSS))
+    pixels = locator.pixels(np.stack([x.ravel(), y.ravel()], axis=1), 0.0)
+    here = locator.places(pixels, 0.0)
+    values, vectors = np.linalg.eigh(covariance)
+    moves = (vectors * np.sqrt(np.maximum(values, 0.0))).T
+    off = [replace(locator, motion=locator.motion + one).places(pixels, 0.0) - here for one in moves]
+    return float(np.sqrt(0.5 * np.nanmean((np.array(off) ** 2).sum(axis=(0, 2)))))
 
 
 def _variances(fit: MultiviewFit, length: float, width: float) -> tuple[np.ndarray, np.ndarray]:

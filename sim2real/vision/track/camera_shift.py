@@ -9,6 +9,7 @@ from sim2real.camera.frame_monitor import Trouble
 
 AROUND = 40  # px round a marker in which it is searched
 MOST = 0.5  # px, tolerated shift of a marker; about a millimetre on the table
+DIM = 2.0  # grey levels, least standard deviation of a marker and its surroundings in the first picture
 TOGETHER = (0.5, 0.1)  # px, and share of the shift, by which the corners of a marker may move differently
 FLOW = {"winSize": (15, 15), "maxLevel": 2, "criteria": (cv2.TERM_CRITERIA_EPS | cv2.TERM_CRITERIA_COUNT, 20, 0.01)}
 
@@ -21,7 +22,12 @@ class CameraShift:
     """
 
     def __init__(self, first: np.ndarray, corners: dict[int, np.ndarray]) -> None:
-        self._markers = [_Marker(first, one) for one in corners.values()]
+        markers = [_Marker(first, one) for one in corners.values()]
+        self._markers = [marker for marker in markers if marker.spread >= DIM]
+
+    def __len__(self) -> int:
+        """The number of markers that are bright enough to be tracked."""
+        return len(self._markers)
 
     def shifts(self, image: np.ndarray) -> np.ndarray:
         """The shifts (n,) [pixels] of the n markers that are clearly seen in a picture; up to about 20 px are found."""
@@ -52,7 +58,7 @@ class _Marker:
         high = np.ceil(corners.max(axis=0)).astype(int) + AROUND
         self._part = slice(low[1], high[1]), slice(low[0], high[0])
         self._first = np.ascontiguousarray(first[self._part])
-        self._mean, self._spread = float(self._first.mean()), float(self._first.std())
+        self._mean, self.spread = float(self._first.mean()), float(self._first.std())
         self._corners = (corners - low).astype(np.float32)
 
     def shift(self, image: np.ndarray) -> float | None:
@@ -69,5 +75,5 @@ class _Marker:
         """The part with the mean and the contrast of the first picture, because optical flow assumes constant
         brightness."""
         grey = part.astype(np.float32)
-        gain = self._spread / max(float(grey.std()), 1.0)
+        gain = self.spread / max(float(grey.std()), 1.0)
         return np.clip(gain * (grey - grey.mean()) + self._mean, 0.0, 255.0).astype(np.uint8)

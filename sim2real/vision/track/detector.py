@@ -7,9 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sim2real.vision.locate import Locator, PlaceGrid
+from sim2real.vision.mosaic import GreyOfMosaic
 from sim2real.vision.track.blobs import LEVEL, BlobDetector
 from sim2real.vision.track.disc import Disc
-from sim2real.vision.track.kalman_tracker import KalmanTracker, Measurement, TrackState
+from sim2real.vision.track.film import Film, FilmGauge
+from sim2real.vision.track.kalman_tracker import KalmanTracker, Measurement, TrackState, first_state
 from sim2real.vision.track.puck import PuckFinder
 from sim2real.vision.track.ring import Ring, RingFinder
 from sim2real.vision.track.search_region import SearchRegions
@@ -40,19 +42,21 @@ class Detector:
     """Detects puck and opponent in the pictures of one camera and tracks both."""
 
     def __init__(
-        self, locator: Locator, size: tuple[int, int], *, length: float, width: float, puck_radius: float,
+        self, locator: Locator, size: tuple[int, int], *, length: float, width: float, film: Film | FilmGauge,
         puck_height: float, ring_height: float, level: float = LEVEL, calibration_error: float = 0.0,
+        mosaic: bool = False,
     ) -> None:  # fmt: skip
-        """size: columns and rows of the pictures; length, width: of the table [m]; puck_radius: [m]; puck_height,
-        ring_height: of the puck's top and of the opponent's ring above the table [m]; level: see `blobs.LEVEL`;
-        calibration_error: standard deviation along each axis of the error common to all pictures [m]."""
-        self._reach = AROUND * puck_radius
+        """size: columns and rows of the pictures; length, width: of the table [m]; film: of the puck, or the gauge that
+        measures it; puck_height, ring_height: of the puck's top and of the opponent's ring above the table [m]; level:
+        see `blobs.LEVEL`; calibration_error: standard deviation along each axis of the error common to all pictures
+        [m]; mosaic: whether pictures are raw, of format BayerRG8."""
         self._regions = [SearchRegions(locator, height, length, width) for height in (puck_height, ring_height)]
         self._blobs = BlobDetector(locator, size, length, width, ring_height, level)
-        self._pucks = PuckFinder(PlaceGrid(locator, puck_height, size).places, puck_radius)
+        self._pucks = PuckFinder(PlaceGrid(locator, puck_height, size).places, film)
         self._rings = RingFinder(PlaceGrid(locator, ring_height, size).places)
         self._puck, self._opponent = KalmanTracker(PUCK_POWER), KalmanTracker(OPPONENT_POWER)
         self._calibration = np.diag([calibration_error**2, calibration_error**2, 0.0, 0.0])
+        self._grey = GreyOfMosaic(size) if mosaic else None
         self._partly = 0  # pictures since one was searched as a whole
 
     def detect(self, image: np.ndarray, time: float) -> Detections:
@@ -67,6 +71,14 @@ class Detector:
             self._with_calibration(puck), self._with_calibration(opponent), len(discs),
             self._puck.measurement, self._opponent.measurement,
         )  # fmt: skip
+
+    def detect_alone(self, image: np.ndarray, time: float) -> Detections:
+        """Detect in a picture uint8 (rows, columns) that has nothing to do with any other: the best candidates, be they
+        sure or not, with a velocity of 0 that is unknown."""
+        rings, discs = self._find(image, None)
+        puck = first_state(time, _disc_measurement(discs[0])) if discs else None
+        opponent = first_state(time, _ring_measurement(rings[0])) if rings else None
+        return Detections(self._with_calibration(puck), self._with_calibration(opponent), len(discs))
 
     def _find_in_regions(self, image: np.ndarray, time: float) -> tuple[list[Ring], list[Disc]] | None:
         """Rings and discs in the search regions; None if the whole picture has to be searched, because the puck's place
@@ -87,14 +99,15 @@ class Detector:
     def _region(self, which: int, time: float) -> tuple[int, int, int, int] | None:
         """The search region of the puck (0) or the opponent (1): left, top, and the column and row after the last; None
         if its place is unknown."""
-        state = (self._puck, self._opponent)[which].predict(time)
-        return self._regions[which].around(state.place, self._reach + ROOM * state.deviation) if state else None
+        state, reach = (self._puck, self._opponent)[which].predict(time), AROUND * self._pucks.film.radius
+        return self._regions[which].around(state.place, reach + ROOM * state.deviation) if state else None
 
     def _with_calibration(self, state: TrackState | None) -> TrackState | None:
         """The state with the calibration's error added to its covariance, which no number of pictures reduces."""
         return state and replace(state, covariance=state.covariance + self._calibration)
 
     def _find(self, image: np.ndarray, region: tuple[int, int, int, int] | None) -> tuple[list[Ring], list[Disc]]:
+        image = self._grey.part(image, region) if self._grey else image
         rings, rest = self._rings.find(image, self._blobs.blobs(image, region))
         return rings, self._pucks.find(image, rest)
 

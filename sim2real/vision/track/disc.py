@@ -1,4 +1,4 @@
-"""Fit a disc of known radius to edge points, of which some belong to its rim and some to other things.
+"""Fit a disc of known size to edge points, of which some belong to its rim and some to other things.
 
 Hypotheses go through pairs of points (RANSAC with fixed pairs). The score of one is the number of points that lie on
 its rim and face outwards, minus the number of points just outside of it, where a disc has no edges. Points inside do
@@ -14,6 +14,7 @@ import numpy as np
 
 from puckpilot_env.kernel import array_kernel, kernel
 from sim2real.vision.track.covariance import deviation
+from sim2real.vision.track.film import Film
 from sim2real.vision.track.subpixel_edges import EdgePoints
 
 STARTS = 40  # number of first points of pairs
@@ -51,60 +52,69 @@ class Disc:
         return deviation(self.covariance)
 
 
-def find_disc(edge: EdgePoints, radius: float) -> Disc | None:
-    """The best disc of this radius [m] through edge points; None if no three points agree on one."""
+def find_disc(edge: EdgePoints, film: Film) -> Disc | None:
+    """The best disc of this film through edge points; None if no three points agree on one."""
+    if len(edge) < 3:
+        return None
     centre, covariance, counts = np.zeros(2), np.zeros((2, 2)), np.zeros(3, np.int64)
-    if len(edge) < 3 or not _find(edge.places, edge.steps, radius, centre, covariance, counts):
+    common = math.hypot(COMMON, film.edge_deviation(float(np.linalg.norm(edge.steps[len(edge) // 2]))))
+    if not _find(edge.places, edge.steps, (film.radius, film.spread), common, centre, covariance, counts):
         return None
     on, outside, bins = counts.tolist()
     return Disc(centre, covariance, bins / BINS, on, outside)
 
 
 @array_kernel
-def _find(places, steps, radius, centre, covariance, counts):
-    """Find the best disc; fill its centre (2,), covariance (2, 2) and counts (3,). Returns whether there is one."""
-    if _guess(places, steps, radius, centre) <= 0.0:
+def _find(places, steps, size, common, centre, covariance, counts):
+    """Find the best disc; fill its centre (2,), covariance (2, 2) and counts (3,). Returns whether there is one.
+
+    size: the film's radius [m] and its spread [px]; common: standard deviation of the error common to all edges [px].
+    """
+    if _guess(places, steps, size, centre) <= 0.0:
         return False
     normal, total = np.zeros((2, 2)), np.zeros(2)
-    scatter = _refine(places, steps, radius, centre, normal, total)
+    scatter = _refine(places, steps, size, centre, normal, total)
     if scatter <= 0.0:
         return False
-    _count(places, steps, radius, scatter, centre, np.zeros(BINS, np.bool_), counts)
-    _spread(normal, total, scatter, covariance)
+    _count(places, steps, size, scatter, centre, np.zeros(BINS, np.bool_), counts)
+    _spread(normal, total, scatter, common, covariance)
     return counts[0] >= 3
 
 
 @kernel
-def _off(places, steps, i, radius, x, y):
-    """The distance [px] of point i from the rim round (x, y), positive outside, and whether it faces outwards."""
+def _off(places, steps, i, size, x, y):
+    """The distance [px] of point i from the rim round (x, y) as it is seen, positive outside, and whether it faces
+    outwards."""
     dx, dy = places[i, 0] - x, places[i, 1] - y
     far = math.hypot(dx, dy)
     step = math.hypot(steps[i, 0], steps[i, 1])
     if far == 0.0 or step == 0.0:
         return -math.inf, False
     gain = (steps[i, 0] * dx + steps[i, 1] * dy) / far  # m along the radius for a pixel outwards
-    return (far - radius) / max(gain, FACING * step), gain > FACING * step
+    return (far - size[0]) / max(gain, FACING * step) - size[1], gain > FACING * step
 
 
 @kernel
-def _score(places, steps, radius, x, y, stride):
+def _score(places, steps, size, x, y, stride):
     """The score of a hypothesis from every `stride`-th point: points on the rim minus points outside."""
     score = 0
     for i in range(0, places.shape[0], stride):
-        off, faces = _off(places, steps, i, radius, x, y)
+        off, faces = _off(places, steps, i, size, x, y)
         if abs(off) < NEAR and faces:
             score += 1
-        elif off >= 2.0 * NEAR and math.hypot(places[i, 0] - x, places[i, 1] - y) < WIDE * radius:
+        elif off >= 2.0 * NEAR and math.hypot(places[i, 0] - x, places[i, 1] - y) < WIDE * size[0]:
             score -= 1
     return score
 
 
 @kernel
-def _guess(places, steps, radius, centre):
+def _guess(places, steps, size, centre):
     """Write the centre of the best hypothesis into `centre` (2,) and return its score."""
     count = places.shape[0]
     stride = max(count // JUDGES, 1)
-    whole = 2.0 * math.pi * radius / math.hypot(steps[count // 2, 0], steps[count // 2, 1])
+    pixel = math.hypot(steps[count // 2, 0], steps[count // 2, 1])
+    radius = size[0] + size[1] * pixel
+    whole = 2.0 * math.pi * radius / pixel
     most = (count + stride - 1) // stride
     best = 0
     for start in range(min(STARTS, count)):
@@ -119,9 +129,9 @@ def _guess(places, steps, radius, centre):
             for side in (-1.0, 1.0):
                 x = 0.5 * (places[i, 0] + places[j, 0]) - side * aside * dy
                 y = 0.5 * (places[i, 1] + places[j, 1]) + side * aside * dx
-                if not (_off(places, steps, i, radius, x, y)[1] and _off(places, steps, j, radius, x, y)[1]):
+                if not (_off(places, steps, i, size, x, y)[1] and _off(places, steps, j, size, x, y)[1]):
                     continue
-                score = _score(places, steps, radius, x, y, stride)
+                score = _score(places, steps, size, x, y, stride)
                 if score > best:
                     best = score
                     centre[0], centre[1] = x, y
@@ -131,7 +141,7 @@ def _guess(places, steps, radius, centre):
 
 
 @array_kernel
-def _refine(places, steps, radius, centre, normal, total):
+def _refine(places, steps, size, centre, normal, total):
     """Refine `centre` (2,) by robust least squares of the points' distances from the rim [px] (Gauss-Newton, Tukey's
     biweight).
 
@@ -146,7 +156,7 @@ def _refine(places, steps, radius, centre, normal, total):
         total[:] = 0.0
         right_x, right_y, kept = 0.0, 0.0, 0
         for i in range(count):
-            off[i], faces = _off(places, steps, i, radius, centre[0], centre[1])
+            off[i], faces = _off(places, steps, i, size, centre[0], centre[1])
             share = off[i] / (CUT * scatter)
             if not faces or abs(share) >= 1.0:
                 continue
@@ -178,27 +188,27 @@ def _refine(places, steps, radius, centre, normal, total):
 
 
 @kernel
-def _spread(normal, total, scatter, covariance):
+def _spread(normal, total, scatter, common, covariance):
     """Fill the centre's covariance (2, 2) [m^2]: the scatter of points, correlated between neighbours, and the error
     common to all."""
     det = normal[0, 0] * normal[1, 1] - normal[0, 1] ** 2
     xx, xy, yy = normal[1, 1] / det, -normal[0, 1] / det, normal[0, 0] / det
-    leaning_x, leaning_y = COMMON * (xx * total[0] + xy * total[1]), COMMON * (xy * total[0] + yy * total[1])
+    leaning_x, leaning_y = common * (xx * total[0] + xy * total[1]), common * (xy * total[0] + yy * total[1])
     covariance[0, 0] = TOGETHER * scatter**2 * xx + leaning_x * leaning_x
     covariance[1, 1] = TOGETHER * scatter**2 * yy + leaning_y * leaning_y
     covariance[0, 1] = covariance[1, 0] = TOGETHER * scatter**2 * xy + leaning_x * leaning_y
 
 
 @kernel
-def _count(places, steps, radius, scatter, centre, bins, counts):
+def _count(places, steps, size, scatter, centre, bins, counts):
     """Fill `counts` (3,): points on the rim, points outside, and sectors of the rim with points, marked in `bins`."""
     for i in range(places.shape[0]):
-        away, faces = _off(places, steps, i, radius, centre[0], centre[1])
+        away, faces = _off(places, steps, i, size, centre[0], centre[1])
         if faces and abs(away) < CUT * scatter:
             counts[0] += 1
             angle = math.atan2(places[i, 1] - centre[1], places[i, 0] - centre[0])
             part = int((angle / (2.0 * math.pi) + 0.5) * BINS) % BINS
             counts[2] += not bins[part]
             bins[part] = True
-        elif away > 2.0 * NEAR and math.hypot(places[i, 0] - centre[0], places[i, 1] - centre[1]) < WIDE * radius:
+        elif away > 2.0 * NEAR and math.hypot(places[i, 0] - centre[0], places[i, 1] - centre[1]) < WIDE * size[0]:
             counts[1] += 1

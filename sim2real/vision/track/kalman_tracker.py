@@ -180,11 +180,14 @@ def _apart(measurement: Measurement, state: TrackState) -> float:
     return float(np.linalg.norm(measurement.place - state.place))
 
 
-def _new_track(time: float, measurements: list[Measurement], pictures: int = 0) -> TrackState | None:
-    """A new track from the only measurement of a picture; None without one, or with several, which are ambiguous."""
-    if len(measurements) != 1:
-        return None
-    (measurement,) = measurements
+def first_state(time: float, measurement: Measurement, pictures: int = 0) -> TrackState:
+    """The state at a time [s] of an object that was measured then alone; pictures: number of measurements before, which
+    say nothing of the state any more."""
     covariance = np.diag([0.0, 0.0, ANY_SPEED**2, ANY_SPEED**2])
     covariance[:2, :2] = measurement.covariance
     return TrackState(time, measurement.place, np.zeros(2), covariance, pictures + 1, measurement)
+
+
+def _new_track(time: float, measurements: list[Measurement], pictures: int = 0) -> TrackState | None:
+    """A new track from the only measurement of a picture; None without one, or with several, which are ambiguous."""
+    return first_state(time, measurements[0], pictures) if len(measurements) == 1 else None

@@ -6,6 +6,7 @@ import numpy as np
 
 from sim2real.vision.track.blobs import Blob
 from sim2real.vision.track.disc import Disc, find_disc
+from sim2real.vision.track.film import Film, FilmGauge
 from sim2real.vision.track.subpixel_edges import EdgePoints, Places, find_edge_points
 
 LEAST_SEEN = (
@@ -19,11 +20,17 @@ MOST_OUTSIDE, TOUCHED = 0.15, 0.5  # most points outside for each one on the rim
 class PuckFinder:
     """Finds discs of the puck's size.
 
-    places: maps pixels to the table at the height of the puck's top; radius: of the puck [m].
+    places: maps pixels to the table at the height of the puck's top; film: of the puck, or the gauge that measures it
+    from the whole discs among those that are seen.
     """
 
-    def __init__(self, places: Places, radius: float) -> None:
-        self.places, self.radius = places, radius
+    def __init__(self, places: Places, film: Film | FilmGauge) -> None:
+        self.places, self._given = places, film
+
+    @property
+    def film(self) -> Film:
+        """The film as it is known at present."""
+        return self._given.film if isinstance(self._given, FilmGauge) else self._given
 
     def find(self, image: np.ndarray, blobs: list[Blob]) -> list[Disc]:
         """Find all candidates for the puck in a picture, the best first. A disc is fitted to each blob alone and to
@@ -33,7 +40,11 @@ class PuckFinder:
             for edge in (find_edge_points(image, blob.outline, self.places) for blob in blobs)
             if len(edge) >= LEAST_ON
         ]
-        found = [find_disc(EdgePoints.joined(group), self.radius) for group in self._groups(edges)]
+        if isinstance(self._given, FilmGauge):
+            for edge in edges:
+                self._given.add(edge)
+        film = self.film
+        found = [find_disc(EdgePoints.joined(group), film) for group in self._groups(edges)]
         good = [disc for disc in found if disc is not None and _is_puck(disc)]
         return self._apart(sorted(good, key=lambda disc: disc.outside - disc.on))
 
@@ -41,7 +52,7 @@ class PuckFinder:
         """The discs that can exist together: of two that overlap, the better one stays."""
         kept: list[Disc] = []
         for disc in discs:
-            if all(np.linalg.norm(disc.centre - other.centre) >= 2.0 * self.radius for other in kept):
+            if all(np.linalg.norm(disc.centre - other.centre) >= 2.0 * self.film.radius for other in kept):
                 kept.append(disc)
         return kept
 
@@ -56,7 +67,7 @@ class PuckFinder:
             near = [
                 other
                 for second, other in enumerate(edges)
-                if second > first and np.linalg.norm(middles[second] - middles[first]) < 2.0 * self.radius
+                if second > first and np.linalg.norm(middles[second] - middles[first]) < 2.0 * self.film.radius
             ]
             if near:
                 together.append([edge, *near])

@@ -19,6 +19,7 @@ from sim2real.vision.locate import Locator, PlaceGrid
 from sim2real.vision.markers import find_markers
 from sim2real.vision.track.blobs import BlobDetector
 from sim2real.vision.track.detector import Detector
+from sim2real.vision.track.film import Film
 from sim2real.vision.track.puck import PuckFinder
 from sim2real.vision.trial.baseline import centroid, report_centre
 from sim2real.vision.trial.rendered_calibration import detector_for, estimated_calibration
@@ -111,7 +112,7 @@ def _all_methods(bench: BenchmarkTable) -> FindPuck:
     table, size = bench.renderer.table, bench.renderer.view.size
     bright = BlobDetector(bench.locator, size, table.length, table.width, table.ring_height)
     places = PlaceGrid(bench.locator, table.puck_height, size).places
-    finder = PuckFinder(places, table.puck_radius)
+    finder = PuckFinder(places, Film.known(table.puck_radius))
 
     def find(image: np.ndarray, puck: BodyState) -> dict[str, np.ndarray | None]:
         blobs, truth = bright.blobs(image), np.array(puck[:2])

@@ -22,6 +22,7 @@ from sim2real.vision.markers import find_markers
 from sim2real.vision.surface import Surface
 from sim2real.vision.table_geometry import TableGeometry
 from sim2real.vision.track.detector import Detector
+from sim2real.vision.track.film import Film
 
 DICTIONARY = "DICT_4X4_50"
 ASIDE = ((-0.05, -0.3, 0.1), (-0.1, 0.3, 0.15), (-0.15, 0.0, 0.25))  # m, of the calibration's views from that of play
@@ -60,7 +61,7 @@ def detector_for(renderer: Renderer, locator: Locator, calibration_error: float 
     axis [m]."""
     table = renderer.table
     return Detector(
-        locator, renderer.view.size, length=table.length, width=table.width, puck_radius=table.puck_radius,
+        locator, renderer.view.size, length=table.length, width=table.width, film=Film.known(table.puck_radius),
         puck_height=table.puck_height, ring_height=table.ring_height, calibration_error=calibration_error,
     )  # fmt: skip
 

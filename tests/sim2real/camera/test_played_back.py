@@ -10,6 +10,7 @@ import pytest
 from PIL import Image
 
 from sim2real.camera.frame import CameraError, Frame, Source
+from sim2real.camera.settings import CameraSettings
 from sim2real.camera.sources import KNOWN, open_source
 
 
@@ -33,7 +34,7 @@ def test_numbers_in_names_are_sequence_numbers(tmp_path: Path) -> None:
     for number in (10, 9, 12):  # as text, 10 would come before 9
         save(tmp_path, f"frame_{number}.png", number)
     (tmp_path / "notes.txt").write_text("no picture")
-    frames = play(open_source(str(tmp_path), rate=50.0))
+    frames = play(open_source(str(tmp_path), CameraSettings(rate=50.0)))
     assert [(f.sequence, f.dropped, f.image[3, 4]) for f in frames] == [(9, 0, 9), (10, 0, 10), (12, 1, 12)]
     assert [f.time for f in frames] == pytest.approx([0.18, 0.20, 0.24])
     assert frames[0].image.shape == (30, 40) and frames[0].image.dtype == np.uint8
@@ -44,7 +45,7 @@ def test_numbers_in_names_are_sequence_numbers(tmp_path: Path) -> None:
 def test_without_numbers_of_their_own_names_are_in_order(tmp_path: Path, names: tuple[str, ...]) -> None:
     for level, name in enumerate(sorted(names)):
         save(tmp_path, name, level)
-    frames = play(open_source(f"{tmp_path}/", rate=10.0))
+    frames = play(open_source(f"{tmp_path}/", CameraSettings(rate=10.0)))
     assert [(f.sequence, f.dropped, f.image[0, 0]) for f in frames] == [(0, 0, 0), (1, 0, 1), (2, 0, 2)]
 
 
@@ -89,7 +90,7 @@ def film(path: Path, levels: list[int]) -> Path:
 
 def test_a_video_is_played_at_its_own_rate_or_the_one_given(tmp_path: Path) -> None:
     path = film(tmp_path / "game.avi", [20, 90, 160])
-    assert [frame.time for frame in play(open_source(str(path), rate=240.0))] == [0.0, 1 / 240, 2 / 240]
+    assert [frame.time for frame in play(open_source(str(path), CameraSettings(rate=240.0)))] == [0.0, 1 / 240, 2 / 240]
     frames = play(open_source(str(path)))
     assert [(f.sequence, f.dropped) for f in frames] == [(0, 0), (1, 0), (2, 0)]
     assert [f.time for f in frames] == pytest.approx([0.0, 1 / 60, 2 / 60], rel=1e-4)
@@ -137,13 +138,22 @@ def test_a_device_is_a_number(word: str) -> None:
         open_source(word)
 
 
-@pytest.mark.parametrize("word", ["device:0", "aravis:", "flir:1", "synthetic:somewhere"])
-def test_a_rate_is_refused_where_the_source_has_its_own(word: str) -> None:
-    with pytest.raises(CameraError, match=f"{word.partition(':')[0]}: times its pictures itself; leave the rate out"):
-        open_source(word, rate=60.0)
+@pytest.mark.parametrize(
+    ("word", "settings", "name"),
+    [
+        ("synthetic:somewhere", CameraSettings(rate=60.0), "rate"),
+        ("synthetic", CameraSettings(gain=3.0), "gain"),
+        ("/tmp", CameraSettings(exposure=1e-3), "exposure"),
+        ("device:0", CameraSettings(exposure=1e-3), "exposure"),
+        ("device:0", CameraSettings(trigger_line=0), "trigger_line"),
+    ],
+)
+def test_a_setting_is_refused_where_the_source_takes_none(word: str, settings: CameraSettings, name: str) -> None:
+    with pytest.raises(CameraError, match=f"{name} is .*, but '{word}' takes none; leave it out"):
+        open_source(word, settings)
 
 
 @pytest.mark.parametrize("wrong", [{"rate": 0.0}, {"rate": float("nan")}, {"exposure": 100.0}, {"exposure": -1e-4}])
 def test_an_impossible_rate_or_exposure_is_refused(wrong: dict[str, float]) -> None:
     with pytest.raises(CameraError, match=f"{next(iter(wrong))} is .*; expected"):
-        open_source("synthetic", **wrong)
+        open_source("synthetic", CameraSettings(**wrong))

@@ -13,6 +13,7 @@ from puckpilot_env.batch.motion import mallet_motion, puck_motion
 from sim2real.camera.render.scene_state import BodyState, SceneState
 from sim2real.camera.render.view import CameraView
 from sim2real.camera.scene_states import recorded_states, simulated_states
+from sim2real.camera.settings import CameraSettings
 from sim2real.camera.sources import open_source
 from sim2real.recording.folder import Recording, write_recording
 from sim2real.recording.stream_csv import RecordingError, Stream
@@ -108,7 +109,7 @@ def test_a_synthetic_source_shows_a_recording_on_a_table_of_its_size(tmp_path: P
 
 
 def test_a_synthetic_game_goes_on() -> None:
-    with open_source("synthetic", rate=60.0) as source:
+    with open_source("synthetic", CameraSettings(rate=60.0)) as source:
         frames = [source.newest(0.0) for _ in range(3)]
         assert not source.over
     assert [f.time for f in frames if f] == pytest.approx([0.0, 1 / 60, 2 / 60])

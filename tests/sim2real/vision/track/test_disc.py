@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 from sim2real.vision.track.disc import find_disc
+from sim2real.vision.track.film import Film
 from sim2real.vision.track.subpixel_edges import EdgePoints
 
 RADIUS, PIXEL = 0.0309, 1.8e-3
+FILM = Film.known(RADIUS)
 CENTRE = np.array([0.7, 0.4])
 
 
@@ -30,7 +32,7 @@ def line(
 
 
 def off(rim: EdgePoints) -> float:
-    disc = find_disc(rim, RADIUS)
+    disc = find_disc(rim, FILM)
     assert disc is not None
     return float(np.linalg.norm(disc.centre - CENTRE))
 
@@ -60,7 +62,7 @@ def test_deviations_cover_the_errors_of_arcs_whose_points_err_together_in_fours(
             whole = arc(0, 360, count=100)
             angle = np.degrees(np.arctan2(*(whole.places - CENTRE).T[::-1])) % 360
             distorted = EdgePoints(whole.places + coarse[:, None] * whole.steps, whole.steps).where(angle < span[1])
-            disc = find_disc(distorted, RADIUS)
+            disc = find_disc(distorted, FILM)
             assert disc is not None
             error = disc.centre - CENTRE
             far.append(error @ np.linalg.solve(disc.covariance, error))
@@ -69,25 +71,25 @@ def test_deviations_cover_the_errors_of_arcs_whose_points_err_together_in_fours(
 
 def test_deviations_cover_what_all_edges_are_off_by_alike_as_a_lamp_brightens_them():
     """An arc's centre follows such an error, which its points' scatter does not show."""
-    disc = find_disc(arc(0, 100, radius=RADIUS + 0.05 * PIXEL), RADIUS)
+    disc = find_disc(arc(0, 100, radius=RADIUS + 0.05 * PIXEL), FILM)
     assert disc is not None
     error = disc.centre - CENTRE
     assert np.linalg.norm(error) > 0.1e-3 and error @ np.linalg.solve(disc.covariance, error) < 5.99
 
 
 def test_a_disc_of_another_size_has_few_points_on_it_and_a_line_has_none():
-    larger = find_disc(arc(0, 360, radius=0.043), RADIUS)
+    larger = find_disc(arc(0, 360, radius=0.043), FILM)
     assert larger is None or larger.seen < 0.2
-    straight = find_disc(line((0.6, 0.4), (0.8, 0.4), (0.0, 1.0)), RADIUS)
+    straight = find_disc(line((0.6, 0.4), (0.8, 0.4), (0.0, 1.0)), FILM)
     assert straight is None or straight.seen < 0.2
 
 
 def test_a_hole_is_no_disc():
     inwards = arc(0, 360)
-    assert find_disc(EdgePoints(inwards.places, -inwards.steps), RADIUS) is None
+    assert find_disc(EdgePoints(inwards.places, -inwards.steps), FILM) is None
 
 
 def test_how_much_is_seen():
-    disc = find_disc(arc(0, 180), RADIUS)
+    disc = find_disc(arc(0, 180), FILM)
     assert disc is not None
     assert disc.seen == pytest.approx(0.5, abs=0.03) and disc.outside == 0

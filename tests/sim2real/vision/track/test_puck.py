@@ -8,6 +8,7 @@ import pytest
 
 from sim2real.vision.track.blobs import Blob
 from sim2real.vision.track.disc import Disc
+from sim2real.vision.track.film import Film
 from sim2real.vision.track.puck import PuckFinder
 
 PIXEL, RADIUS, FINE = 1.8e-3, 0.0309, 16
@@ -32,7 +33,7 @@ def picture(*shapes: tuple[str, tuple[float, float], tuple[float, float]], hidde
 def discs(image: np.ndarray) -> list[Disc]:
     contours, _ = cv2.findContours((image > 65).astype(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
     blobs = [Blob(contour[:, 0], None) for contour in contours]
-    return PuckFinder(lambda pixels: PIXEL * pixels, RADIUS).find(image, blobs)
+    return PuckFinder(lambda pixels: PIXEL * pixels, Film.known(RADIUS)).find(image, blobs)
 
 
 def found(image: np.ndarray) -> list[np.ndarray]:

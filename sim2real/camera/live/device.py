@@ -10,19 +10,25 @@ import time
 import cv2
 
 from sim2real.camera.frame import CameraError, Frame
-from sim2real.camera.live import Live
+from sim2real.camera.live.genicam import Feature, check_taken
+from sim2real.camera.live.live_source import Live
+from sim2real.camera.settings import CameraSettings
 
 
 class Device(Live):
-    """Video device `number`; its pictures are converted to grey.
+    """Video device `number`; its pictures are converted to grey. Of the settings it takes rate and gain, which are read
+    back; the meaning of a webcam's gain is its driver's.
 
     OpenCV reports neither the time of exposure nor lost pictures. So `time` is the time of arrival, late by an unknown
     delay (`puckpilot diagnose` estimates it as camera_delay), and `sequence` counts arrivals.
     """
 
-    def __init__(self, number: int) -> None:
+    def __init__(self, number: int, settings: CameraSettings) -> None:
         super().__init__()
-        self._number = number
+        settings.refuse(f"device:{number}", "exposure", "setup_exposure", "trigger_line", "region")
+        if settings.mosaic:
+            raise CameraError(f"pixel_format is {settings.pixel_format}, but device:{number} gives grey; leave it out")
+        self._number, self._settings = number, settings
         self._capture: cv2.VideoCapture | None = None
         self._count = 0
 
@@ -31,6 +37,13 @@ class Device(Live):
         self._capture = cv2.VideoCapture(self._number)
         if not self._capture.isOpened():
             raise CameraError(f"device:{self._number} cannot be opened; see that it is plugged in and not in use")
+        for name, key, value in (
+            ("rate", cv2.CAP_PROP_FPS, self._settings.rate),
+            ("gain", cv2.CAP_PROP_GAIN, self._settings.gain),
+        ):
+            if value is not None:
+                self._capture.set(key, value)
+                check_taken(f"device:{self._number}", Feature(name, float(value)), self._capture.get(key))
 
     def _grab(self) -> Frame | None:
         assert self._capture is not None

@@ -11,9 +11,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from sim2real.camera import device
 from sim2real.camera.frame import CameraError, Frame
-from sim2real.camera.live import Live
+from sim2real.camera.live import device
+from sim2real.camera.live.live_source import Live
+from sim2real.camera.settings import CameraSettings
 from sim2real.camera.sources import open_source
 
 PATIENCE = 20.0  # s, far longer than any of this takes
@@ -158,7 +159,7 @@ def test_aravis_own_fake_camera() -> None:
         gi.require_version("Aravis", "0.8")
     except ValueError:
         pytest.skip("Aravis is tried where it is: apt install gir1.2-aravis-0.8")
-    with open_source("aravis:Fake_1", exposure=2e-3) as source:
+    with open_source("aravis:Fake_1", CameraSettings(exposure=2e-3)) as source:
         first, second = source.newest(PATIENCE), source.newest(PATIENCE)
     assert first and second and first.image.shape == (512, 512) and first.image.dtype == np.uint8
     assert second.sequence - first.sequence == second.dropped + 1
@@ -186,18 +187,27 @@ class SpinError(Exception):
 class Spin:
     """Stands in for PySpin, and for the system, the list and the camera that it gives."""
 
-    PixelFormat_Mono8, ExposureAuto_Off = 1, 0
+    PixelFormat_Mono8, PixelFormat_BayerRG8, ExposureAuto_Off, GainAuto_Off = 1, 2, 0, 0
+    TriggerMode_Off, TriggerMode_On, TriggerSelector_FrameStart, TriggerSource_Line3 = 0, 1, 5, 6
+    FEATURES = (
+        "PixelFormat", "ExposureAuto", "ExposureTime", "TriggerMode", "TriggerSelector", "TriggerSource", "OffsetX",
+        "OffsetY", "Width", "Height", "GainAuto", "Gain", "AcquisitionFrameRateEnable", "AcquisitionFrameRate",
+    )  # fmt: skip
     SpinnakerException = SpinError
 
     def __init__(self, cameras: int = 1) -> None:
         self.cameras, self.calls, self.values, self.count, self.released = cameras, [], {}, 0, 0
+        self.steps: dict[str, int] = {}  # by which a feature differs from what it was set to
         self.System = SimpleNamespace(GetInstance=lambda: self)
 
     def __getattr__(self, name: str):
-        if name in ("PixelFormat", "ExposureAuto", "ExposureTime"):
+        if name in self.FEATURES:
+            step = 2.0 if name == "ExposureTime" else self.steps.get(name, 0)
             return SimpleNamespace(
-                SetValue=lambda value: self.values.__setitem__(name, value), GetValue=lambda: self.values[name] + 2.0
+                SetValue=lambda value: self.values.update({name: value}), GetValue=lambda: self.values[name] + step
             )
+        if "_" in name:
+            raise AttributeError(f"there is no {name}")
         return lambda *arguments: self.calls.append((name, *arguments))
 
     def GetCameras(self):  # noqa: N802
@@ -231,13 +241,14 @@ class Spin:
 def test_flirs_sdk_is_used_as_its_documentation_says(monkeypatch) -> None:
     spin = Spin()
     monkeypatch.setitem(sys.modules, "PySpin", spin)
-    with open_source("flir:123", exposure=100e-6) as source:
+    with open_source("flir:123", CameraSettings(exposure=100e-6)) as source:
         frame = source.newest(PATIENCE)
         with pytest.raises(CameraError, match="flir:123 gives no more pictures"):
             source.newest(PATIENCE)
     assert frame and frame.sequence == 43 and (frame.image == 7).all()
     assert frame.time == pytest.approx(5.0 + 51e-6, abs=1e-9)  # half of the exposure that the camera took: 102 us
-    assert spin.values == {"PixelFormat": 1, "ExposureAuto": 0, "ExposureTime": 100.0} and spin.released == 2
+    assert spin.values == {"TriggerMode": 0, "PixelFormat": 1, "ExposureAuto": 0, "ExposureTime": 100.0}
+    assert spin.released == 2
     names = [call[0] for call in spin.calls]
     assert names == ["GetBySerial", "Init", "BeginAcquisition", "EndAcquisition", "DeInit", "Clear", "ReleaseInstance"]
     monkeypatch.setitem(sys.modules, "PySpin", Spin(cameras=0))

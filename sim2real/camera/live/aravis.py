@@ -14,25 +14,28 @@ from typing import Any
 import numpy as np
 
 from sim2real.camera.frame import CameraError, Frame
-from sim2real.camera.live import Live
+from sim2real.camera.live.genicam import Feature, check_taken, not_taken
+from sim2real.camera.live.live_source import Live
 
 BUFFERS = 8
 WAIT = 100_000  # us, longest wait for one picture
 NANO = 1e-9
 FAKE = "Fake_"
+KINDS = {bool: "boolean", int: "integer", float: "float", str: "string"}
 
 
 class Aravis(Live):
     """The camera `name`, as Aravis lists it; the first one found if the name is empty.
 
-    It sets the exposure [s] and 8-bit grey pixels; everything else, such as rate and gain, stays as the camera has it.
-    A camera stamps the beginning of the exposure (GenICam SFNC, ChunkTimestamp: at FrameStart); half of the exposure is
+    It sets the features that `genicam.py` makes of the settings, reads each back, and leaves all others as they are. A
+    camera stamps the beginning of the exposure (GenICam SFNC, ChunkTimestamp: at FrameStart); half of the exposure is
     added.
     """
 
-    def __init__(self, name: str, exposure: float) -> None:
+    def __init__(self, name: str, wanted: list[Feature]) -> None:
         super().__init__()
-        self._name, self._exposure = name, exposure
+        self._name, self._wanted = name, wanted
+        self._exposure = 0.0  # s, as the camera took it
         self._camera: Any = None
         self._stream: Any = None
 
@@ -43,8 +46,8 @@ class Aravis(Live):
             self._library.enable_interface("Fake")
         try:
             self._camera = self._library.Camera.new(self._name or None)
-            self._camera.set_pixel_format_from_string("Mono8")
-            self._camera.set_exposure_time(1e6 * self._exposure)
+            for feature in self._wanted:
+                self._set(feature)
             self._exposure = 1e-6 * self._camera.get_exposure_time()
             self._stream = self._camera.create_stream(None, None)
             for _ in range(BUFFERS):
@@ -53,6 +56,17 @@ class Aravis(Live):
         except (self._error, TypeError) as error:  # TypeError: from a constructor that found no camera
             reason = getattr(error, "message", error)
             raise CameraError(f"aravis:{self._name} cannot be opened ({reason}); arv-tool-0.8 lists cameras") from None
+
+    def _set(self, feature: Feature) -> None:
+        """Set a feature by the method of its type, set_integer or get_string for example, and read it back. Raises
+        CameraError, in one line, if the camera did not take it."""
+        kind = KINDS[type(feature.value)]
+        try:
+            getattr(self._camera, f"set_{kind}")(feature.name, feature.value)
+            taken = getattr(self._camera, f"get_{kind}")(feature.name)
+        except self._error as error:
+            raise not_taken(f"aravis:{self._name}", feature, getattr(error, "message", str(error))) from None
+        check_taken(f"aravis:{self._name}", feature, taken)
 
     def _grab(self) -> Frame | None:
         buffer = self._stream.timeout_pop_buffer(WAIT)

@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 
 from sim2real.camera.frame import CameraError, Frame
-from sim2real.camera.live import Live
+from sim2real.camera.live.genicam import Feature, check_taken, not_taken
+from sim2real.camera.live.live_source import Live
 
 WAIT = 100  # ms, longest wait for one picture
 TIMED_OUT = -1011  # SPINNAKER_ERR_TIMEOUT
@@ -24,13 +25,14 @@ NANO = 1e-9
 class Flir(Live):
     """The camera with this serial number; the first one found if it is empty.
 
-    It sets the exposure [s] and 8-bit grey pixels; everything else stays as the camera has it. The camera's time stamp
-    is taken as the beginning of the exposure; half of the exposure is added.
+    It sets the features that `genicam.py` makes of the settings, reads each back, and leaves all others as they are.
+    The camera's time stamp is taken as the beginning of the exposure; half of the exposure is added.
     """
 
-    def __init__(self, serial: str, exposure: float) -> None:
+    def __init__(self, serial: str, wanted: list[Feature]) -> None:
         super().__init__()
-        self._serial, self._exposure = serial, exposure
+        self._serial, self._wanted = serial, wanted
+        self._exposure = 0.0  # s, as the camera took it
         self._system: Any = None
         self._cameras: Any = None
         self._camera: Any = None
@@ -50,14 +52,27 @@ class Flir(Live):
             found = self._cameras.GetBySerial(self._serial) if self._serial else self._cameras.GetByIndex(0)
             found.Init()
             self._camera = found
-            found.PixelFormat.SetValue(self._spin.PixelFormat_Mono8)
-            found.ExposureAuto.SetValue(self._spin.ExposureAuto_Off)
-            found.ExposureTime.SetValue(1e6 * self._exposure)
+            for feature in self._wanted:
+                self._set(feature)
             self._exposure = 1e-6 * found.ExposureTime.GetValue()
             found.BeginAcquisition()
         except self._spin.SpinnakerException as error:
             reason = " ".join(str(error).split())
             raise CameraError(f"flir:{self._serial} cannot be opened ({reason}); see that it is not in use") from None
+
+    def _set(self, feature: Feature) -> None:
+        """Set a feature and read it back; the value of an enumeration is a number of the library, PixelFormat_Mono8 for
+        example. Raises CameraError, in one line, if the camera did not take it."""
+        name, value = feature
+        try:
+            node = getattr(self._camera, name)
+            node.SetValue(getattr(self._spin, f"{name}_{value}") if isinstance(value, str) else value)
+            taken = node.GetValue()
+        except (self._spin.SpinnakerException, AttributeError) as error:
+            raise not_taken(f"flir:{self._serial}", feature, str(error)) from None
+        if isinstance(value, str):
+            taken = value if taken == getattr(self._spin, f"{name}_{value}") else f"number {taken}"
+        check_taken(f"flir:{self._serial}", feature, taken)
 
     def _grab(self) -> Frame | None:
         try:
