@@ -77,15 +77,15 @@ def fitted(law: Law, pieces: Sequence[Piece], tolerance: float = GANTRY.toleranc
 def fit(law: Law, pieces: Sequence[Piece]) -> Fit:
     """The fitted law with the covariance of its numbers.
 
-    The covariance is the sandwich G^-1 (sum over clusters of g g') G^-1, where g is a cluster's gradient: errors may be
-    correlated and of unequal size within clusters. Clusters are blocks of time; with some logs, also whole logs, as
-    constants may differ from log to log. The wider of both intervals counts for each number.
+    The covariance is that of the jackknife over clusters, of which each is left out in turn by one step of Gauss and
+    Newton: errors may be correlated and of unequal size within clusters. Clusters are blocks of time; with some logs,
+    also whole logs, as constants may differ from log to log. The wider of both intervals counts for each number.
     """
     values, r, jacobian, blocks = _solved(law, pieces, GANTRY.tolerance)
-    found = [_sandwich(r, jacobian, blocks)]
+    found = [_jackknife(r, jacobian, blocks)]
     logs = np.repeat(np.arange(len(pieces)), [r_of.fit.ahead.size * 2 for r_of in pieces])
     if len({id(piece.log) for piece in pieces}) >= FEWEST_LOGS:
-        found.append(_sandwich(r, jacobian, logs))
+        found.append(_jackknife(r, jacobian, logs))
     scale = np.array([NUMBERS[name].scale for name in law.free])
     half = np.max([reach * np.sqrt(np.diag(covariance)) for covariance, reach in found], axis=0)
     covariance, reach = found[0]
@@ -125,11 +125,10 @@ def _blocks(pieces: Sequence[Piece]) -> np.ndarray:
     return np.concatenate(found)
 
 
-def _sandwich(r: np.ndarray, jacobian: np.ndarray, cluster: np.ndarray) -> tuple[np.ndarray, float]:
+def _jackknife(r: np.ndarray, jacobian: np.ndarray, cluster: np.ndarray) -> tuple[np.ndarray, float]:
     """The covariance (k, k) of the numbers, and the half width of a 95 % interval in standard deviations."""
     names, cluster = np.unique(cluster, return_inverse=True)
-    gradient = np.zeros((len(names), jacobian.shape[1]))
-    np.add.at(gradient, cluster, jacobian * r[:, None])
-    inverse = np.linalg.pinv(jacobian.T @ jacobian)
-    meat = gradient.T @ gradient * len(names) / max(len(names) - 1, 1)
-    return inverse @ meat @ inverse, reach_of_launches(len(names))
+    g = np.array([jacobian[cluster == k].T @ jacobian[cluster == k] for k in range(len(names))])
+    b = np.array([jacobian[cluster == k].T @ r[cluster == k] for k in range(len(names))])
+    change = np.einsum("kij,kj->ki", np.linalg.pinv(g.sum(axis=0) - g, hermitian=True), b)
+    return (len(names) - 1) / len(names) * change.T @ change, reach_of_launches(len(names))

@@ -16,6 +16,7 @@ import math
 import numpy as np
 
 from puckpilot_env.kernel import kernel
+from puckpilot_env.physics.gantry.decay import decay
 
 CONSTANTS = np.dtype(
     [
@@ -66,7 +67,7 @@ def axis_volts(c, left, right, s):
 @kernel
 def lagged(rate, volts, target, duration):
     """Mean over the `duration` [s] and end of volts that follow `target` [V] at a `rate` [1/s]."""
-    fade = math.exp(-rate * duration)
+    fade = decay(rate * duration)
     mean = target + (volts - target) * (1.0 - fade) / (rate * duration)
     return mean, target + (volts - target) * fade
 
@@ -75,7 +76,7 @@ def lagged(rate, volts, target, duration):
 def engage(c, engaged, travel):
     """The share of the friction that acts after some `travel` [m]."""
     sign = math.copysign(1.0, travel)
-    return sign + (engaged - sign) * math.exp(-abs(travel) / c.presliding)
+    return sign + (engaged - sign) * decay(abs(travel) / c.presliding)
 
 
 @kernel
