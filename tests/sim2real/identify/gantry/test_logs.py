@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -65,7 +66,7 @@ def test_parts_of_a_log_share_no_moment(recording: Recording) -> None:
     found = parts(whole(read_log(recording, SUPPLY)))
     assert len(found) == GANTRY.parts
     spans = [(one.log.t[one.judge.begin[0]], one.log.t[one.judge.ahead[-1, -1]]) for one in found]
-    assert all(end <= begin for (_, end), (begin, _) in zip(spans[:-1], spans[1:], strict=True))
+    assert all(end <= begin for (_, end), (begin, _) in pairwise(spans))
 
 
 def test_what_holds_no_log_is_refused_in_one_line(recording: Recording) -> None:

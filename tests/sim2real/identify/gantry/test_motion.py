@@ -77,4 +77,6 @@ def test_sag_and_deadband_take_volts() -> None:
         for _ in range(50):
             advance(law.constants(), state, volts, -volts, STEP)
         ends.append(state[0])
-    assert ends[1] == pytest.approx(ends[0] * (10 / 1.5) / 8.0, rel=1e-9) and ends[2] == pytest.approx(ends[0], rel=1e-9)
+    assert ends[1] == pytest.approx(ends[0] * (10 / 1.5) / 8.0, rel=1e-9) and ends[2] == pytest.approx(
+        ends[0], rel=1e-9
+    )
