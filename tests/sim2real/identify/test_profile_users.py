@@ -12,7 +12,7 @@ from puckpilot_env.options.profile_file import read_profile
 from puckpilot_env.parameters import make_records
 from sim2real.recording.folder import write_recording
 from sim2real.recording.table_parameters import read_baseline
-from sim2real.table.board_line import board_config
+from sim2real.table.board_config import board_config
 from tests.places import ROOT
 from tests.puckpilot_env.options.test_profile_file import CONSTANTS, PROFILE
 from tests.sim2real.identify.gantry.simulated import log

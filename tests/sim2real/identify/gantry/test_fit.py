@@ -44,7 +44,7 @@ def test_intervals_of_several_logs_hold_the_constants_too() -> None:
 def test_without_noise_the_constants_themselves_come_back() -> None:
     found = fit(with_friction(), [piece(5, 6.0, noise=0.0, push=0.0)])
     for name in found.law.free:
-        assert found.law.values[name] == pytest.approx(KNOWN[name], rel=0.02, abs=0.01), name
+        assert found.law.values[name] == pytest.approx(KNOWN[name], rel=0.02, abs=0.02), name  # rows of 0.85 ms are coarse beside presliding
 
 
 def test_a_number_is_determined_only_by_an_interval_that_says_something() -> None:
