@@ -10,6 +10,8 @@ import pytest
 import puckpilot
 from puckpilot_env.options.profile_file import read_profile
 from puckpilot_env.parameters import make_records
+from sim2real.identify.gantry import choose
+from sim2real.identify.gantry.law import STEPS
 from sim2real.recording.folder import write_recording
 from sim2real.recording.table_parameters import read_baseline
 from sim2real.table.board_config import board_config
@@ -26,7 +28,10 @@ def test_the_board_is_configured_with_its_constants() -> None:
 
 
 @pytest.mark.slow
-def test_a_gantry_is_identified_and_its_profile_loaded(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_gantry_is_identified_and_its_profile_loaded(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(choose, "STEPS", STEPS[:2])
     for seed in (1, 2, 3):
         write_recording(tmp_path / f"log_{seed}", log(seed, 4.0, push=0.1))
     out, folders = tmp_path / "gantry.toml", [str(tmp_path / f"log_{seed}") for seed in (1, 2)]

@@ -33,7 +33,7 @@ def test_a_step_is_kept_if_its_gain_is_more_than_slight_and_than_luck(factors: l
 @pytest.mark.slow
 def test_of_a_single_log_friction_is_found_and_sag_is_not_claimed() -> None:
     stages: list[str] = []
-    found = identify_gantry([log(7, 10.0, push=0.1)], [], lambda stage, share: stages.append(stage))
+    found = identify_gantry([log(7, 6.0, push=0.1)], [], lambda stage, share: stages.append(stage))
     assert "friction_motors" in found.chosen.law.steps and "sag" not in found.chosen.law.steps
     assert found.chosen.law.values["friction_left"] == pytest.approx(KNOWN["friction_left"], abs=0.15)
     assert stages[-1] == "intervals"
