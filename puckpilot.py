@@ -45,6 +45,8 @@ COMMANDS = {
     "calibrate camera": ("sim2real.commands.calibrate_camera", "a camera's intrinsics, from photographs of a board"),
     "calibrate table": ("sim2real.commands.calibrate_table", "markers and surface of a table, from photographs of it"),
     "calibrate gantry": ("sim2real.commands.calibrate_gantry", "the pulley's radius, the mallet moved by hand"),
+    "identify gantry": ("sim2real.commands.identify_gantry", "the gantry's constants, from logs of its motors"),
+    "identify puck": ("sim2real.commands.identify_puck", "friction, drag and restitution, from recordings of the puck"),
     "track": ("sim2real.commands.track", "puck and opponent in a camera's pictures, as a recording"),
     "firmware info": ("sim2real.commands.firmware_info", "the microcontroller's program: protocol, size, speed"),
     "firmware build": ("sim2real.commands.firmware_build", "compile the microcontroller's program"),

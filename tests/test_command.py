@@ -59,6 +59,8 @@ OPTIONS = {
     "calibrate gantry": ["--baud", "--width", "--mallet-radius", "--jig", "--out", "--json"],
     "calibrate camera": ["--board", "--charuco", "--marker", "--out", "--json"],
     "calibrate table": ["--camera", "--out", "--check", "--json"],
+    "identify gantry": ["--holdout", "--out", "--json"],
+    "identify puck": ["--holdout", "--out", "--json"],
     "firmware info": ["--json"],
     "firmware build": [],
     "firmware emulate": ["--port", "--seconds", "--place"],

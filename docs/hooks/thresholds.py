@@ -11,10 +11,10 @@ from typing import Any
 from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 
-from sim2real import compare, diagnose, recording, segmentation, statistics
+from sim2real import compare, diagnose, identify, recording, segmentation, statistics
 from sim2real.statistics.tuned import listed
 
-PACKAGES = (recording, segmentation, statistics, compare, diagnose)
+PACKAGES = (recording, segmentation, statistics, compare, diagnose, identify)
 HEAD = """\
 # Thresholds
 

@@ -48,3 +48,10 @@ def check_folder(folder: Path) -> None:
         draft.unlink()
     except OSError as error:
         raise ValueError(f"cannot write to '{folder}': {error.strerror or error}; name another folder") from None
+
+
+def check_file(file: Path) -> None:
+    """See that `file` can be written before any work is done. ValueError, in one line, if not."""
+    if file.is_dir():
+        raise ValueError(f"cannot write '{file}': it is a folder; expected a file")
+    check_folder(file.absolute().parent)

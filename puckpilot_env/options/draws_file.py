@@ -12,6 +12,8 @@ low = 0.08
 high = 0.1                    # the same as low: a number that every table has
 source = "our table, cold and warm"
 ```
+
+A profile of `puckpilot identify` is taken too, for its parameters and draws.
 """
 
 from __future__ import annotations
@@ -21,7 +23,9 @@ from dataclasses import dataclass, field
 from os import PathLike
 from typing import Any
 
-from puckpilot_env.files.toml_file import check_format, read_toml, refuse_unknown, section
+from puckpilot_env.files.toml_file import check_format, read_toml, section
+from puckpilot_env.options import profile_file
+from puckpilot_env.options.draw_rows import KEYS, read_rows
 from puckpilot_env.options.effects_file import Effects, effect_values
 from puckpilot_env.options.inputs import by_name, in_short
 from puckpilot_env.options.randomization import Draw, as_rows, typical
@@ -29,7 +33,6 @@ from puckpilot_env.parameters import BY_NAME, checked, refuse_not_simulated
 from puckpilot_env.variants import Variant
 
 FORMAT = "puckpilot-draws/1"
-KEYS = ("distribution", "low", "high", "source")
 Draws = Mapping[str, Any] | str | PathLike[str]  # {parameter: {low, high, ...}}, a file, or what a file holds
 
 
@@ -56,7 +59,7 @@ def read_draws(draws: Draws | None) -> Drawn:
     if draws is None:
         return Drawn()
     if isinstance(draws, Mapping):
-        return _read(draws) if "format" in draws else Drawn({}, _rows(draws, "draws"))
+        return _read(draws) if "format" in draws else Drawn({}, read_rows(draws, "draws"))
     if not isinstance(draws, str | PathLike):
         words = "expected a dict, as in {'friction': {'low': 0.08, 'high': 0.1}}, or a file such as draws.toml"
         raise ValueError(f"draws is {in_short(draws)}; {words}")
@@ -105,25 +108,10 @@ def described(path: str | PathLike[str], apart_from: Iterable[str] = ()) -> list
 
 
 def _read(content: Mapping[str, Any]) -> Drawn:
+    if content.get("format") == profile_file.FORMAT:
+        profile = profile_file.from_content(content)
+        return Drawn(profile.parameters, profile.draws)
     check_format(content, FORMAT, ("parameters", "draws"))
     values = {name: checked(name, value) for name, value in section(content, "parameters").items()}
     refuse_not_simulated(values)
-    return Drawn(values, _rows(section(content, "draws"), "draws"))
-
-
-def _rows(content: Mapping[str, Any], where: str) -> tuple[Draw, ...]:
-    rows = tuple(_draw(name, section(content, name, where)) for name in content)
-    as_rows(rows)
-    return rows
-
-
-def _draw(name: str, row: Mapping[str, Any]) -> Draw:
-    refuse_unknown(row, KEYS, f"key of draws.{name}")
-    for key in ("low", "high"):
-        if key not in row:
-            raise ValueError(f"draws.{name} has no {key}; expected numbers low and high")
-    words = {"distribution": "uniform", "source": "", **{k: row[k] for k in ("distribution", "source") if k in row}}
-    for key, value in words.items():
-        if not isinstance(value, str):
-            raise ValueError(f"{key} of draws.{name} is {in_short(value)}; expected a text")
-    return Draw(name, words["distribution"], checked(name, row["low"]), checked(name, row["high"]), words["source"])
+    return Drawn(values, read_rows(section(content, "draws"), "draws"))

@@ -9,6 +9,8 @@ friction = 0.09
 [effects.table_tilt]    # of each effect, by the short names in its file
 tilt_x = 0.02
 ```
+
+A profile of `puckpilot identify` is taken too, for its parameters.
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ from typing import Any
 
 from puckpilot_env.files import small_file
 from puckpilot_env.files.toml_file import check_format, read_toml, refuse_unknown, section
+from puckpilot_env.options import profile_file
 from puckpilot_env.options.inputs import in_short
 from puckpilot_env.parameters import BY_NAME, EFFECT_ROWS, checked, refuse_not_simulated
 from puckpilot_env.physics.effects import EFFECTS
@@ -75,6 +78,8 @@ def described(path: str | PathLike[str], apart_from: Iterable[str] = ()) -> list
 
 
 def _read(content: Mapping[str, Any]) -> dict[str, float]:
+    if content.get("format") == profile_file.FORMAT:
+        return dict(profile_file.from_content(content).parameters)
     check_format(content, FORMAT, ("parameters", "effects"))
     values = {name: checked(name, value) for name, value in section(content, "parameters").items()}
     refuse_not_simulated(values)

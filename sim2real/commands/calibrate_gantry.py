@@ -37,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Calibrate and write the file. Returns 0; raises ValueError, in one line, if that is impossible."""
-    from puckpilot_env.files.whole_file import check_folder, write_text_whole
+    from puckpilot_env.files.whole_file import check_file, write_text_whole
     from puckpilot_env.parameters import TABLE, checked
     from sim2real.link.link_quality import wait_for_board
     from sim2real.link.two_points import ShaftAngles, solve
@@ -48,9 +48,7 @@ def run(args: argparse.Namespace) -> int:
     if not all(0.0 <= gap < 0.5 * width - radius for gap in args.jig):
         raise ValueError(f"--jig is {args.jig[0]:g} {args.jig[1]:g}; expected two distances [m], 0 or more, that leave "
                          f"a way across a table of {width:g} m")  # fmt: skip
-    check_folder(args.out.absolute().parent)
-    if args.out.is_dir():
-        raise ValueError(f"--out is {args.out}, a folder; expected a file")
+    check_file(args.out)
     corner = (radius + args.jig[0], radius + args.jig[1])
     shafts = ShaftAngles()
     with session_of(args) as session:

@@ -10,7 +10,6 @@ effects.toml, so give both files if there are some.
 from __future__ import annotations
 
 import argparse
-import hashlib
 import json
 from pathlib import Path
 
@@ -34,20 +33,18 @@ def run(args: argparse.Namespace) -> int:
     from sim2real.diagnose.output.files import as_dict, write
     from sim2real.diagnose.pipeline import diagnose
     from sim2real.diagnose.result.context import ReportContext
+    from sim2real.progress_bar import progress_bar
     from sim2real.recording.folder import read_recording
     from sim2real.recording.table_parameters import read_baseline
+    from sim2real.recording.twice import refuse_twice
 
-    _refuse_twice([*args.recordings, *args.holdout])
+    refuse_twice([*args.recordings, *args.holdout])
     defaults = read_baseline(args.baseline) if args.baseline else {}
-    with _bar() as bar:
-        task = bar.add_task("reading", total=1.0)
+    with progress_bar() as progress:
+        progress("reading", 0.0)
         recordings, heldout = ([read_recording(path) for path in paths] for paths in (args.recordings, args.holdout))
         context = ReportContext(tuple(one.name for one in (*recordings, *heldout)), defaults)
         check_folder(args.out)
-
-        def progress(stage: str, share: float) -> None:
-            bar.update(task, description=stage, completed=share)
-
         diagnosis = diagnose(recordings, heldout, defaults, progress)
         progress("writing", 0.95)
         written = write(diagnosis, args.out, context)
@@ -58,31 +55,3 @@ def run(args: argparse.Namespace) -> int:
 
         print("\n".join(summary(diagnosis, written, context)))
     return 0
-
-
-def _refuse_twice(folders: list[Path]) -> None:
-    """Raise ValueError for a folder that is given twice, because fitted data cannot serve as holdout."""
-    seen: dict[str, Path] = {}
-    for folder in folders:
-        same = seen.setdefault(_digest(folder), folder)
-        if same is not folder:
-            copy = "" if same.resolve() == folder.resolve() else f" (it holds the same as {same})"
-            raise ValueError(f"{folder} is given twice{copy}; give each recording once, for the fit or as --holdout")
-
-
-def _digest(folder: Path) -> str:
-    """A digest of the tables of a recording; its path if there are none."""
-    tables = sorted(folder.glob("*.csv"))
-    digest = hashlib.sha256()
-    for path in tables:
-        digest.update(path.name.encode() + path.read_bytes())
-    return digest.hexdigest() if tables else str(folder.resolve())
-
-
-def _bar():
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
-
-    columns = (TextColumn("{task.description:10}"), BarColumn(), TimeElapsedColumn())
-    console = Console(stderr=True)
-    return Progress(*columns, console=console, transient=True, disable=not console.is_terminal)

@@ -8,6 +8,7 @@ from typing import Any
 
 from puckpilot_env.files import small_file
 from puckpilot_env.files.toml_file import refuse_unknown, section
+from puckpilot_env.options import profile_file
 from puckpilot_env.options.draws_file import FORMAT as DRAWS_FORMAT
 from puckpilot_env.options.effects_file import FORMAT as EFFECTS_FORMAT
 from puckpilot_env.parameters import TABLE, checked
@@ -36,7 +37,8 @@ def stated_sizes(recording: Recording) -> dict[str, float]:
 
 
 def read_baseline(path: Path) -> dict[str, float]:
-    """Read parameters by name from a TOML file of lines like `friction = 0.1`, or from an effects.toml without effects.
+    """Read parameters by name from a TOML file of lines like `friction = 0.1`, from an effects.toml without effects, or
+    from a profile.
 
     Raises ValueError, in one line, for any other file.
     """
@@ -60,6 +62,8 @@ def _numbers(path: Path, found: Mapping[str, Any]) -> Mapping[str, Any]:
     alone = "give --baseline a file with [parameters] alone; to play with this one: puckpilot match A B"
     if found.get("format") == DRAWS_FORMAT:
         raise ValueError(f"contains ranges to draw from, not the parameters of one table: {alone} --draws {path}")
+    if found.get("format") == profile_file.FORMAT:
+        return profile_file.from_content(found).parameters
     if found.get("format") != EFFECTS_FORMAT:
         return found
     refuse_unknown(found, ("format", "parameters", "effects"), "entry")

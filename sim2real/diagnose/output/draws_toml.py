@@ -57,17 +57,20 @@ def _rows(name: str, low: float, high: float, source: str) -> list[str]:
 
 
 def _spread(by: Mapping[str, Estimate], nominal: Mapping[str, float]) -> float:
-    """Return the largest relative error of C6 and C7 of both axes, reduced until every gantry is overdamped.
-
-    It is 0 if they were not fitted or their error is negligible.
-    """
+    """Return the `playable_spread` of the largest relative error of C6 and C7 of both axes; 0 if not fitted."""
     if any(name not in by or name not in nominal for name in GANTRY):
         return 0.0
     shares = []
     for i in (2, 3):
         half = sum(0.5 * (by[f"{letter}{i}"].high - by[f"{letter}{i}"].low) for letter in "ab")
         shares += [half / abs(nominal[f"a{i}"] + sign * nominal[f"b{i}"]) for sign in (-1.0, 1.0)]
-    spread = BY_NAME[SPREAD].within(max(shares))
+    return playable_spread(max(shares), nominal)
+
+
+def playable_spread(share: float, nominal: Mapping[str, float]) -> float:
+    """Return the `share` by which a gantry's coefficients may differ from those of the `nominal` parameters, reduced
+    until every gantry is overdamped; 0 if it is negligible."""
+    spread = BY_NAME[SPREAD].within(share)
     while spread > 1e-4:
         try:
             make_records(1, {**nominal, SPREAD: spread})

@@ -139,7 +139,7 @@ def test_the_command_finds_the_radius_of_an_emulated_gantry(
         (["--jig", "5", "5"], "--jig is 5 5; expected two distances"),
         (["--jig", "-0.1", "0"], "--jig is -0.1 0; expected two distances"),
         (["--out", "/dev/null/gantry.toml"], "/dev/null"),
-        (["--out", "/tmp"], "--out is /tmp, a folder; expected a file"),
+        (["--out", "/tmp"], "cannot write '/tmp': it is a folder; expected a file"),
     ],
 )
 def test_invalid_arguments_are_refused_before_the_mallet_is_moved(

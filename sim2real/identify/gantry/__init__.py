@@ -1,0 +1,1 @@
+"""The gantry: its laws, the free run, the fit, and the choice of a law."""

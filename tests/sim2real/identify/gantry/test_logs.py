@@ -1,0 +1,84 @@
+"""Logs: volts of the motors from their pwm or from plans, windows that no gap breaks, and what is refused."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from sim2real.identify.gantry.logs import parts, read_log, whole
+from sim2real.identify.tuned import GANTRY
+from sim2real.recording.folder import Recording, Stream
+from tests.sim2real.identify.gantry.simulated import SUPPLY, log
+
+
+@pytest.fixture(scope="module")
+def recording() -> Recording:
+    return log(1, 4.0)
+
+
+def with_rows(one: Recording, stream: str, rows: np.ndarray) -> Recording:
+    columns = {name: column[rows] for name, column in getattr(one, stream).columns.items()}
+    return replace(one, **{stream: Stream(columns)})
+
+
+def test_each_motor_gets_its_share_of_the_supply(recording: Recording) -> None:
+    found = read_log(recording, SUPPLY)
+    drive = recording.drive
+    assert drive is not None and found.t == pytest.approx(drive.t[: len(found.t)])
+    pwm = np.column_stack([drive["pwm_left"], drive["pwm_right"]])[: len(found.t)]
+    assert found.volts[:-1] == pytest.approx(SUPPLY * pwm[:-1], abs=1e-9)
+
+
+def test_plans_are_taken_where_no_pwm_was_logged(recording: Recording) -> None:
+    plan = {"t": [0.0], "x_f": [0.5], "y_f": [0.5], "V_x": [6.0], "V_y": [-2.0]}
+    plan |= {"t_x1": [0.1], "t_x2": [0.2], "t_y1": [0.15], "t_y2": [0.3]}
+    commands = Stream({name: np.array(one) for name, one in plan.items()})
+    found = read_log(replace(recording, drive=None, commands=commands), SUPPLY)
+    for moment, axes in ((0.05, (6.0, -2.0)), (0.12, (-6.0, -2.0)), (0.16, (-6.0, 2.0)), (0.25, (0.0, 2.0))):
+        left, right = found.volts[np.searchsorted(found.t, moment) - 1]
+        assert (left - right, -left - right) == pytest.approx(axes)
+
+
+def test_no_window_spans_a_gap_of_either_stream(recording: Recording) -> None:
+    mallet, drive = recording.mallet, recording.drive
+    assert mallet is not None and drive is not None
+    seen = with_rows(recording, "mallet", (mallet.t < 2.0) | (mallet.t > 2.05))
+    unknown = {name: column.copy() for name, column in drive.columns.items()}
+    unknown["pwm_left"][(drive.t > 3.0) & (drive.t < 3.05)] = np.nan
+    found = whole(read_log(replace(seen, drive=Stream(unknown)), SUPPLY))
+    for windows in (found.fit, found.judge):
+        begin, end = found.log.t[windows.begin], found.log.t[windows.ahead[:, -1]]
+        assert not ((begin < 2.05) & (end > 2.0)).any() and not ((begin < 3.05) & (end > 3.0)).any()
+        assert ((found.log.t[windows.start] - begin) >= GANTRY.past - 1e-3).all()
+    assert len(found.fit.start) < len(whole(read_log(recording, SUPPLY)).fit.start)
+
+
+def test_windows_look_as_far_ahead_as_they_say(recording: Recording) -> None:
+    piece = whole(read_log(recording, SUPPLY))
+    ahead = piece.log.t[piece.judge.ahead] - piece.log.t[piece.judge.start][:, None]
+    assert ahead == pytest.approx(np.broadcast_to(GANTRY.judged, ahead.shape), abs=1e-3)
+
+
+def test_parts_of_a_log_share_no_moment(recording: Recording) -> None:
+    found = parts(whole(read_log(recording, SUPPLY)))
+    assert len(found) == GANTRY.parts
+    spans = [(one.log.t[one.judge.begin[0]], one.log.t[one.judge.ahead[-1, -1]]) for one in found]
+    assert all(end <= begin for (_, end), (begin, _) in pairwise(spans))
+
+
+def test_what_holds_no_log_is_refused_in_one_line(recording: Recording) -> None:
+    mallet = recording.mallet
+    assert mallet is not None
+    faults = {
+        "the mallet's path was not recorded": replace(recording, mallet=None),
+        "neither the plans": replace(recording, drive=None),
+        "windows of 0.2 s without a gap": with_rows(recording, "mallet", mallet.t < 1.0),
+        "record the mallet at 500 Hz or more": with_rows(recording, "mallet", np.arange(mallet.rows) % 8 == 0),
+    }
+    for words, one in faults.items():
+        with pytest.raises(ValueError, match=words) as error:
+            whole(read_log(one, SUPPLY))
+        assert "\n" not in str(error.value)
