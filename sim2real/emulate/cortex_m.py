@@ -5,10 +5,11 @@ from __future__ import annotations
 import ctypes
 import struct
 from collections.abc import Callable
+from functools import partial
 
 import unicorn
 from unicorn import arm_const as arm
-from unicorn.unicorn_py3.unicorn import Uc, UcError, uclib
+from unicorn.unicorn_py3.unicorn import MMIO_READ_CFUNC, MMIO_WRITE_CFUNC, Uc, UcError, uclib
 
 from sim2real.emulate.elf import Elf
 from sim2real.emulate.peripherals.nvic import HARD_FAULT, Nvic
@@ -56,28 +57,29 @@ class CortexM:
     """The processor.
 
     elf: the program; nvic: the interrupt controller; read, write: accesses to peripherals, in the form of Unicorn's
-    callbacks `(uc, offset, size, base)` and `(uc, offset, size, value, base)`.
+    callbacks `(base, handle, offset, size, data)` and `(base, handle, offset, size, value, data)`, which do not raise.
     """
 
     def __init__(
         self,
         elf: Elf,
         nvic: Nvic,
-        read: Callable[[Uc, int, int, int], int],
-        write: Callable[[Uc, int, int, int, int], None],
+        read: Callable[..., int],
+        write: Callable[..., None],
     ) -> None:
         self.nvic = nvic
         self.faults: list[tuple[int, str]] = []  # address and reason of each fault
         self.asleep = self.locked = False
         self._running = self._event = False
         self._why = ""
-        self._error: Exception | None = None
+        self._error: BaseException | None = None
         self._waits: set[int] = set()  # addresses of WFI
         self.uc = uc = Uc(unicorn.UC_ARCH_ARM, unicorn.UC_MODE_THUMB | unicorn.UC_MODE_MCLASS, arm.UC_CPU_ARM_CORTEX_M3)
         uc.mem_map(FLASH, FLASH_SIZE, unicorn.UC_PROT_READ | unicorn.UC_PROT_EXEC)
         uc.mem_map(RAM, RAM_SIZE, unicorn.UC_PROT_READ | unicorn.UC_PROT_WRITE)
+        self._callbacks: list[object] = []  # to be kept as long as Unicorn calls them
         for base, size in ((_PERIPHERALS, _PERIPHERALS_SIZE), (_SYSTEM, _SYSTEM_SIZE)):
-            uc.mmio_map(base, size, read, base, write, base)
+            self._map(base, size, MMIO_READ_CFUNC(partial(read, base)), MMIO_WRITE_CFUNC(partial(write, base)))
         uc.hook_add(unicorn.UC_HOOK_INTR, self._interrupted)
         for segment in elf.segments:
             uc.mem_write(segment.address, segment.data)
@@ -86,6 +88,12 @@ class CortexM:
         self._registers = _Registers(uc._uch)
         self._frame = ctypes.create_string_buffer(_FRAME.size)
         self._state = self._registers.read()  # registers while the processor does not run
+
+    def _map(self, base: int, size: int, read: object, write: object) -> None:
+        """Map peripherals, whose accesses are most of the work: through Unicorn's binding each takes twice as long."""
+        self._callbacks += [read, write]
+        if status := uclib.uc_mmio_map(self.uc._uch, base, size, read, None, write, None):
+            raise UcError(status)
 
     def _watch(self, address: int, code: bytes) -> None:
         """Hook the instructions that Unicorn does not handle: check for a pending interrupt after each `cpsie i`,
@@ -137,14 +145,16 @@ class CortexM:
             self._why = self._why or "stop"
             self.uc.emu_stop()
 
-    def fail(self, error: Exception) -> None:
+    def fail(self, error: BaseException) -> None:
         """Make `run` raise this error."""
         self._error = error
         self.uc.emu_stop()
 
     def deliverable(self) -> int | None:
         """The number of the exception that has to be entered now; None if there is none."""
-        number = self.nvic.next() if self.nvic.pending else None
+        if not self.nvic.pending:
+            return None
+        number = self.nvic.next()
         if number is None or self.locked or (number > HARD_FAULT and self._masked):
             return None
         return number

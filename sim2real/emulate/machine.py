@@ -80,13 +80,15 @@ class Machine:
         self.flash = Flash()
         self.rcc = Rcc(timeline, self._pass_until, self.flash)
         self.rcc.crystal = crystal
-        self.port_a = GpioPort("A", 0x40010800, lambda: self.spi.select())
-        self.port_b = GpioPort("B", 0x40010C00, lambda: self.motors.update())
-        self.pwm_timer = PwmTimer(lambda: self.motors.update())
+        self.port_a = GpioPort("A", 0x40010800)
+        self.port_b = GpioPort("B", 0x40010C00)
+        self.pwm_timer = PwmTimer()
         self.motors = Motors(self.port_b, self.pwm_timer, lambda: self.now)
+        self.port_b.changed = self.pwm_timer.changed = self.motors.update
         self.counter = Counter(timeline, self.rcc)
         self.systick = SysTick(timeline, self.rcc, nvic)
         self.spi = Spi(timeline, self.rcc, self._pass_until, self.port_a, self.encoders)
+        self.port_a.changed = self.spi.select
         self.usart = Usart(timeline, self.rcc, nvic, self.port_a)
         self.dma = Dma(timeline, nvic, self.usart, lambda at, size: bytes(self.cpu.uc.mem_read(at, size)))
         self.watchdog = Watchdog(timeline, self._pass_until, self._bite)
@@ -196,7 +198,7 @@ class Machine:
         comes first, the processor is stopped, and the call is repeated later."""
         timeline = self.timeline
         while True:
-            if self._bitten or self.cpu.deliverable() is not None:
+            if self._bitten or (self.nvic.pending and self.cpu.deliverable() is not None):
                 self.cpu.stop()
                 return False
             following = timeline.next()
@@ -216,7 +218,7 @@ class Machine:
             self._over = self.timeline.now + round(self.step_us * PER_US)
         self._stepping = bool(self.step_us) and not self._pass_until(self._over)
 
-    def _read(self, _: object, offset: int, size: int, base: int) -> int:
+    def _read(self, base: int, _: object, offset: int, size: int, __: object) -> int:
         try:
             known = self._registers.get(base + offset)
             if known is not None and size == 4 and known[0].clocked:
@@ -224,11 +226,11 @@ class Machine:
             if base == self.nvic.base:
                 return self.nvic.read(offset, size)
             raise self._refusal(f"read of {size} bytes", base + offset)
-        except NotModelledError as error:
+        except BaseException as error:  # noqa: BLE001 - Unicorn's C code is between here and who handles it
             self.cpu.fail(error)
             return 0
 
-    def _write(self, _: object, offset: int, size: int, value: int, base: int) -> None:
+    def _write(self, base: int, _: object, offset: int, size: int, value: int, __: object) -> None:
         try:
             known = self._registers.get(base + offset)
             if known is not None and size == 4 and known[0].clocked:
@@ -237,7 +239,7 @@ class Machine:
                 self.nvic.write(offset, value, size)
             else:
                 raise self._refusal(f"write of {size} bytes", base + offset)
-        except NotModelledError as error:
+        except BaseException as error:  # noqa: BLE001
             self.cpu.fail(error)
 
     def _refusal(self, what: str, address: int) -> NotModelledError:

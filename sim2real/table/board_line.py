@@ -41,7 +41,7 @@ class BoardLine:
         self.session = Session(connect, now)
         self._armed = False
         self._refused = ""  # the first message that the board refused, and why
-        self._mallets: list[SeenMallet] = []
+        self._said: list[Telemetry] = []  # since it was taken
 
     # Bring-up, step by step
 
@@ -115,12 +115,12 @@ class BoardLine:
         session.take_notes()
         for telemetry in session.take_telemetry():
             if telemetry.state in (State.IDLE, State.ARMED) and len(session.clock):
-                self._mallets.append(_seen(telemetry, session.clock.to_host(telemetry.time)))
+                self._said.append(telemetry)
 
     def take_mallets(self) -> list[SeenMallet]:
         """What telemetry said of the mallet since the last call."""
-        mallets, self._mallets = self._mallets, []
-        return mallets
+        said, self._said = self._said, []
+        return [_seen(telemetry, self.session.clock.to_host(telemetry.time)) for telemetry in said]
 
     def _take(self, event: Event) -> None:
         if event.code == Notice.REFUSED and not self._refused:

@@ -15,6 +15,8 @@ STEPS = 16384  # per turn
 NOP, ERRFL, DIAAGC, MAG, ANGLEUNC, ANGLECOM = 0x0000, 0x0001, 0x3FFC, 0x3FFD, 0x3FFE, 0x3FFF
 _PARITY_ERROR, _INVALID_COMMAND = 4, 2
 _LOOPS_FINISHED, _GAIN, _MAGNITUDE = 0x100, 0x80, 0x1200
+_FIXED = {NOP: 0, DIAAGC: _LOOPS_FINISHED | _GAIN, MAG: _MAGNITUDE}
+_STUCK = {"low": 0, "high": 0xFFFF}
 FAULTS = ("", "parity", "error", "low", "high", "frozen", "jump")
 
 
@@ -52,7 +54,7 @@ class As5147:
         """Exchange a frame of 16 bits: take `command`, return the answer to the last one. `tick`: time of the frame."""
         answer = self._answer
         self._answer = self._answer_to(command, tick)
-        return {"low": 0, "high": 0xFFFF}.get(self._fault, answer)
+        return _STUCK.get(self._fault, answer) if self._fault else answer
 
     def _answer_to(self, command: int, tick: int) -> int:
         data = 0
@@ -72,9 +74,9 @@ class As5147:
         if address == ERRFL:
             errors, self._errors = self._errors, 0
             return errors
-        if address not in (NOP, DIAAGC, MAG):
+        if address not in _FIXED:
             self._errors |= _INVALID_COMMAND
-        return {DIAAGC: _LOOPS_FINISHED | _GAIN, MAG: _MAGNITUDE}.get(address, 0)
+        return _FIXED.get(address, 0)
 
     def _steps(self, tick: int) -> int:
         if self._frozen is not None:

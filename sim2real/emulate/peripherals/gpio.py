@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import ClassVar
 
-from sim2real.emulate.peripherals.registers import Peripheral
+from sim2real.emulate.peripherals.registers import Peripheral, nothing
 
 _PULLED = 8  # of a pin's four bits in CRL or CRH; outputs have one of the lower two set, alternate functions bit 3 too
 
 
 class GpioPort(Peripheral):
-    """GPIOA or GPIOB; `changed` is called after each write.
+    """GPIOA or GPIOB; `changed` is called after each write that changes a pin.
 
     Masks with a bit for each pin: driven: outputs of ODR; alternate: outputs of a peripheral; high, low: level that ODR
     gives by driving or pulling.
@@ -20,8 +19,8 @@ class GpioPort(Peripheral):
     offsets = ("CRL", "CRH", "", "ODR", "BSRR", "BRR")
     start: ClassVar[dict[str, int]] = {"CRL": 0x44444444, "CRH": 0x44444444}
 
-    def __init__(self, letter: str, base: int, changed: Callable[[], None]) -> None:
-        self.name, self.base, self._changed = f"GPIO{letter}", base, changed
+    def __init__(self, letter: str, base: int) -> None:
+        self.name, self.base, self.changed = f"GPIO{letter}", base, nothing
         super().__init__()
 
     def reset(self) -> None:
@@ -33,15 +32,16 @@ class GpioPort(Peripheral):
     def set(self, register: str, value: int) -> None:
         """See `Peripheral`."""
         values = self.values
-        if register == "BSRR":
-            values["ODR"] = values["ODR"] & ~(value >> 16) | value & 0xFFFF
-        elif register == "BRR":
-            values["ODR"] &= ~value
+        if register in ("BSRR", "BRR"):
+            before = values["ODR"]
+            values["ODR"] = before & ~(value >> 16) | value & 0xFFFF if register == "BSRR" else before & ~value
+            if values["ODR"] == before:
+                return
         else:
             values[register] = value
             self._modes()
         self._levels()
-        self._changed()
+        self.changed()
 
     def get(self, register: str) -> int:
         """BSRR and BRR read as 0."""

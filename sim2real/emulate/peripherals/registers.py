@@ -5,6 +5,10 @@ from __future__ import annotations
 from typing import ClassVar
 
 
+def nothing() -> None:
+    """What happens after a write whose effects nobody has connected yet."""
+
+
 class NotModelledError(Exception):
     """The program used a feature that this emulator does not model; the message names it."""
 

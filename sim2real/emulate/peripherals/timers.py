@@ -2,26 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import ClassVar
 
 from sim2real.emulate.peripherals.rcc import Rcc
-from sim2real.emulate.peripherals.registers import NotModelledError, Peripheral
+from sim2real.emulate.peripherals.registers import NotModelledError, Peripheral, nothing
 from sim2real.emulate.timeline import Timeline
 
 _PWM_MODE = 6  # high while the counter is below CCR
 
 
 class PwmTimer(Peripheral):
-    """TIM1, only its complementary outputs; `changed` is called after each write."""
+    """TIM1, only its complementary outputs; `changed` is called after each write that changes a register."""
 
     name, base = "TIM1", 0x40012C00
     offsets = (
         "CR1", "", "", "", "", "EGR", "CCMR1", "", "CCER", "", "PSC", "ARR", "", "CCR1", "CCR2", "", "", "BDTR",
     )  # fmt: skip
 
-    def __init__(self, changed: Callable[[], None]) -> None:
-        self._changed = changed
+    def __init__(self) -> None:
+        self.changed = nothing
         super().__init__()
 
     def set(self, register: str, value: int) -> None:
@@ -30,9 +29,9 @@ class PwmTimer(Peripheral):
             raise NotModelledError(f"TIM1_CCMR1 = 0x{value:X}: expected PWM without preload")
         if register == "CCER" and value & ~0x44:
             raise NotModelledError(f"TIM1_CCER = 0x{value:X}: expected CC1NE and CC2NE alone")
-        if register != "EGR":
+        if register != "EGR" and self.values[register] != value & 0xFFFF:
             self.values[register] = value & 0xFFFF
-        self._changed()
+            self.changed()
 
     def duty(self, channel: int) -> float:
         """The share of time, 0 to 1, for which output 0 (CH1N) or 1 (CH2N) is high."""

@@ -65,13 +65,15 @@ def _number(place: str, value: Any, code: str, low: float, high: float) -> float
 def unpack(kind: type, body: bytes) -> Message:
     """Unpack a body into a message of this kind. Raises ValueError for a number outside its limits, and struct.error
     for a wrong length."""
-    numbers = iter(struct.unpack(FORMATS[kind][1], body))
+    numbers = struct.unpack(FORMATS[kind][1], body)
     values: list[Any] = []
-    for name, code, count in LAYOUTS[kind]:
-        several = tuple(next(numbers) for _ in range(count))
-        low, high = _as_received(kind, name, code)
-        if not all(low <= value <= high for value in several):
-            raise ValueError(f"{kind.__name__}.{name} is {several}; expected from {low:.9g} to {high:.10g}")
+    begin = 0
+    for name, count, low, high in _RECEIVED[kind]:
+        several = numbers[begin : begin + count]
+        begin += count
+        for value in several:
+            if not low <= value <= high:
+                raise ValueError(f"{kind.__name__}.{name} is {several}; expected from {low:.9g} to {high:.10g}")
         values.append(several if count > 1 else several[0])
     return kind(*values)
 
@@ -80,3 +82,9 @@ def _as_received(kind: type, name: str, code: str) -> tuple[float, float]:
     """The limits rounded to 32 bits, like the received numbers: a lower limit of 1e-9 arrives as slightly less."""
     low, high = LIMITS.get(kind, {}).get(name) or _WHOLE.get(code, (-_MOST_FLOAT, _MOST_FLOAT))
     return struct.unpack("<2f", struct.pack("<2f", low, high)) if code == "f" else (low, high)
+
+
+_RECEIVED = {
+    kind: [(name, count, *_as_received(kind, name, code)) for name, code, count in layout]
+    for kind, layout in LAYOUTS.items()
+}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numba import njit
 
 from sim2real.study.independent_table.physics.law import Law
 from sim2real.study.independent_table.physics.march import LOG_COLUMNS, march
@@ -13,8 +14,10 @@ from sim2real.study.independent_table.simulate import LONG_AGO, begin
 from sim2real.table.backend import Place
 
 STEP = 1e-4  # s, of the small steps
-ROWS = 1000  # contacts kept of one advance
+SWITCHES = 4  # of a plan
+START, INPUTS = 2, 9  # of what drives it: the robot's volts x, y; when the opponent's plan began, and the plan
 OpponentPlan = tuple[float, float, float, float, float, float]  # signed volts x, y [V]; t1 x, y; t2 x, y [s]
+_volts = njit(profile)
 
 
 class Plant:
@@ -25,13 +28,12 @@ class Plant:
 
     def __init__(self, law: Law, robot: Place, opponent: Place) -> None:
         self.law, self.time = law, 0.0
-        self._numbers = law.numbers()
+        self._numbers = np.array([law.numbers()])  # numba takes an array's row ten times as fast as a record
         self._mallets = begin(law, [robot, opponent])
+        self._motor = self._mallets.shape[1] - 6  # the motors' own state, where a belt or a gap separates them
         self._puck = np.full(6, math.nan)
-        self._volts = (0.0, 0.0)  # of axes x, y of the robot's gantry
-        self._plan: tuple[float, OpponentPlan] | None = None  # of the opponent, and when it began
+        self._inputs = np.zeros(INPUTS)
         self._held: np.ndarray | None = None  # the robot's mallet at rest, while it is held fast
-        self._nothing = np.zeros((0, 6)), np.zeros((0, *self._mallets.shape)), np.zeros((ROWS, LOG_COLUMNS))
 
     def hold(self, held: bool) -> None:
         """Hold the robot's mallet fast where it is, or let it go."""
@@ -53,8 +55,8 @@ class Plant:
 
     def shafts(self) -> Place:
         """Angles of the robot's two shafts [rad] (report E.1): (x - y)/R and (-x - y)/R."""
-        motor = self._mallets[0, -6:]  # the motors' own state, where a belt or a gap separates them
-        x, y, radius = float(motor[0]), float(motor[3]), self.law.pulley_radius
+        x, y = self._mallets.item(0, self._motor), self._mallets.item(0, self._motor + 3)
+        radius = self.law.pulley_radius
         return (x - y) / radius, (-x - y) / radius
 
     def put_puck(self, puck: np.ndarray) -> None:
@@ -68,41 +70,57 @@ class Plant:
     def put_opponent(self, place: Place) -> None:
         """Put the opponent's mallet at rest at a place [m]."""
         self._mallets[1] = begin(self.law, [place])[0]
-        self._plan = None
+        self._inputs[START:] = 0.0
 
     def drive(self, first: float, second: float) -> None:
         """The volts of the robot's motors from now on: axes get V1 - V2 and -V1 - V2."""
-        self._volts = first - second, -first - second
+        self._inputs[0], self._inputs[1] = first - second, -first - second
 
     def play(self, plan: OpponentPlan) -> None:
         """The opponent's plan from now on."""
-        self._plan = self.time, plan
+        self._inputs[START:] = (self.time, *plan)
 
     def advance(self, time: float) -> None:
         """Go on until `time` [s]."""
         if time <= self.time:
             return
-        times = self._changes(time)
-        volts = np.array([[self._volts, self._opponent_volts(self.time + at)] for at in times])
-        march(
-            self._numbers, self._puck, self._mallets, np.array(times), volts, self.time, time - self.time, STEP, 1.0,
-            *self._nothing,
-        )  # fmt: skip
+        _advance(self._numbers, self._puck, self._mallets, self._inputs, self.time, time)
         self.time = time
         if self._held is not None:
             self._mallets[0] = self._held
 
-    def _changes(self, until: float) -> list[float]:
-        """Times since now [s] from which the volts are others, beginning with 0."""
-        switches = []
-        if self._plan is not None:
-            start, plan = self._plan
-            switches = [start + one - self.time for one in plan[2:]]
-        return sorted({0.0, *(one for one in switches if 0.0 < one < until - self.time)})
 
-    def _opponent_volts(self, time: float) -> Place:
-        if self._plan is None:
-            return 0.0, 0.0
-        start, (vx, vy, tx1, ty1, tx2, ty2) = self._plan
-        since = time - start + 1e-12
-        return profile(vx, tx1, tx2, since), profile(vy, ty1, ty2, since)
+@njit(error_model="numpy")
+def _advance(law, puck, mallets, inputs, now, until):
+    """Go on from `now` until `until` [s] with the volts of the robot's axes, and those of the opponent's plan."""
+    times, volts = np.zeros(1 + SWITCHES), np.empty((1 + SWITCHES, 2, 2))
+    start, plan = inputs[START], inputs[START + 1 :]
+    count = 1
+    for switch in plan[2:]:
+        at = start + switch - now
+        if 0.0 < at < until - now:
+            count = _insert(times, count, at)
+    for row in range(count):
+        since = now + times[row] - start + 1e-12
+        for axis in range(2):
+            volts[row, 0, axis] = inputs[axis]
+            volts[row, 1, axis] = _volts(plan[axis], plan[2 + axis], plan[4 + axis], since)
+    no_mallets, no_log = np.empty((0, *mallets.shape)), np.empty((0, LOG_COLUMNS))
+    march(
+        law[0], puck, mallets, times[:count], volts[:count], now, until - now, STEP, 1.0, np.empty((0, 6)), no_mallets,
+        no_log,
+    )  # fmt: skip
+
+
+@njit(error_model="numpy")
+def _insert(times, count, at):
+    """Put `at` in its place among the first `count` increasing times, unless it is there; the number of times then."""
+    place = count
+    while times[place - 1] > at:
+        place -= 1
+    if times[place - 1] == at:
+        return count
+    for row in range(count, place, -1):
+        times[row] = times[row - 1]
+    times[place] = at
+    return count + 1

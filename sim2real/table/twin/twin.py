@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import fields, replace
 
@@ -15,6 +16,7 @@ from sim2real.table.board_config import board_config
 from sim2real.table.board_line import BoardLine
 from sim2real.table.game_record import GameRecord
 from sim2real.table.live_table import LiveTable
+from sim2real.table.mallet_driver import AHEAD
 from sim2real.table.twin.board import EmulatedBoard
 from sim2real.table.twin.camera import CameraErrors
 from sim2real.table.twin.cameras import camera_maker
@@ -45,6 +47,8 @@ class Twin(LiveTable):
         self._make_camera = camera_maker(camera, game.p, errors)
         refuse_unmodelled(game.given)
         self.p, self._law = game.p, law or law_of(game.p)
+        self._reaction = AHEAD if isinstance(opponent, str) else 0.0  # s from `play` until the hand decides
+        self._decision: tuple[float, np.void] | None = None  # when the hand decides next, by which state of the game
         self._make_hand = lambda seed: ScriptedHand(game, opponent, 2 * seed + 1)
         self.hand = self._make_hand(self._seed)
         self.board: EmulatedBoard | None = None
@@ -67,11 +71,19 @@ class Twin(LiveTable):
         return self._opened(self.board).now()
 
     def pass_time(self, until: float) -> None:
-        """Let virtual time pass, with the frames that are due."""
+        """Let virtual time pass, with the frames and the hand's decision that are due."""
         board = self._opened(self.board)
-        while self.camera.next_exposure <= until:
-            board.run(self.camera.next_exposure)
-            self.camera.expose(self.plant)
+        while True:
+            decision = self._decision[0] if self._decision else math.inf
+            due = min(self.camera.next_exposure, decision)
+            if due > until:
+                break
+            board.run(due)
+            if due == self.camera.next_exposure:
+                self.camera.expose(self.plant)
+            elif self._decision:
+                self.plant.play(self.hand.decide(self.plant, self._decision[1]))
+                self._decision = None
         board.run(until)
 
     def _shut(self) -> None:
@@ -81,6 +93,7 @@ class Twin(LiveTable):
 
     def put_puck(self, puck: np.ndarray) -> None:
         """The hand puts the puck down and its mallet home."""
+        self._decision = None
         self.plant.put_puck(puck)
         self.plant.put_opponent(self.hand.home)
         self.hand.begin_point()
@@ -96,8 +109,9 @@ class Twin(LiveTable):
             line.poll()
 
     def play(self, game: np.void) -> None:
-        """The hand decides what to do next."""
-        self.plant.play(self.hand.decide(self.plant, game))
+        """The hand decides what to do next: as in the simulator, at the moment at which the robot's action acts. Actions
+        that are given from outside act at once, for they are of the table as it is now."""
+        self._decision = self.now() + self._reaction, game.copy()
 
 
 def refuse_unmodelled(parameters: Mapping[str, float]) -> None:

@@ -124,7 +124,7 @@ def test_the_more_urgent_exception_is_served_and_interrupts_the_other() -> None:
 
 def test_a_peripheral_without_a_clock_is_an_error() -> None:
     machine = Machine(PLAIN)
-    machine._write(None, 0x12C34, 4, 1, 0x40000000)
+    machine._write(0x40000000, None, 0x12C34, 4, 1, None)
     assert "TIM1_CCR1): its clock is off" in str(machine.cpu._error)
 
 

@@ -1,0 +1,132 @@
+"""Whole games on the twin, in parallel and resumable: how they end, and how fast the twin is."""
+
+from __future__ import annotations
+
+import functools
+import json
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import closing
+from dataclasses import asdict, dataclass
+from multiprocessing import get_context
+from pathlib import Path
+
+import numpy as np
+
+from puckpilot_env.files.whole_file import write_text_whole
+from puckpilot_env.variants import find_variant
+from sim2real.table.play import play_game
+from sim2real.table.robot_seat import make_robot_seat
+
+FORMAT = "puckpilot-twin-game/1"
+WARM = 0.3  # s of a game before the first one that is timed, in which all is compiled
+RESAMPLES = 2000  # of the bootstrap
+
+
+@dataclass(frozen=True)
+class Meeting:
+    """Who meets on the twin: `player` at the robot's seat, its `opponent`, the `variant`'s id, and the game's `seed`.
+
+    seconds: of play at most; None for a whole game.
+    """
+
+    player: str
+    opponent: str
+    variant: str
+    seed: int
+    seconds: float | None = None
+
+
+@dataclass(frozen=True)
+class TwinGame:
+    """What came of a game: outcome 1, 0, -1 as the player won, drew or lost; goals of both; `seconds` of play.
+
+    virtual: the twin's time from power-on to the end [s]; processor, wall: what it took on this computer [s].
+    """
+
+    outcome: int
+    goals: tuple[int, int]
+    seconds: float
+    virtual: float
+    processor: float
+    wall: float
+
+
+def play_on_twin(meeting: Meeting) -> TwinGame:
+    """Play a game. ValueError, in one line, for an unknown name, and where the table stopped."""
+    _warm_up(meeting.player, meeting.opponent, meeting.variant)
+    return _play(meeting)
+
+
+@functools.cache
+def _warm_up(player: str, opponent: str, variant: str) -> None:
+    _play(Meeting(player, opponent, variant, 0, WARM))
+
+
+def _play(meeting: Meeting) -> TwinGame:
+    begin = time.process_time(), time.perf_counter()
+    with closing(make_robot_seat(find_variant(meeting.variant), "twin", opponent=meeting.opponent)) as env:
+        log = play_game(
+            env, meeting.player, meeting.seed, meeting.seconds, lambda line: None, lambda fault: False,
+            lambda loop, action, info: None,
+        )  # fmt: skip
+        virtual = env.backend.now()
+    processor, wall = time.process_time() - begin[0], time.perf_counter() - begin[1]
+    return TwinGame(log.outcome, log.score, log.seconds, virtual, processor, wall)
+
+
+def play_all(
+    meetings: list[Meeting], folder: Path, processes: int, progress: Callable[[int, int], None]
+) -> list[TwinGame]:
+    """Play the games whose results are not in `folder` yet, and return all of them, in the order of `meetings`.
+
+    Each result is written there as soon as its game is over. ValueError, in one line, for a file of another meeting.
+    """
+    missing = [one for one in meetings if _read(folder, one) is None]
+    for done, _ in enumerate(_results(missing, folder, processes), len(meetings) - len(missing) + 1):
+        progress(done, len(meetings))
+    return [game for one in meetings if (game := _read(folder, one)) is not None]
+
+
+def _results(missing: list[Meeting], folder: Path, processes: int) -> Iterator[None]:
+    if processes == 1 or len(missing) < 2:
+        yield from (_play_and_write(one, folder) for one in missing)
+        return
+    with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
+        coming = [pool.submit(_play_and_write, one, folder) for one in missing]
+        try:
+            yield from (one.result() for one in as_completed(coming))
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _file(folder: Path, meeting: Meeting) -> Path:
+    return folder / f"game_{meeting.seed}.json"
+
+
+def _play_and_write(meeting: Meeting, folder: Path) -> None:
+    content = {"format": FORMAT, "meeting": asdict(meeting), "game": asdict(play_on_twin(meeting))}
+    write_text_whole(_file(folder, meeting), json.dumps(content, indent=1) + "\n")
+
+
+def _read(folder: Path, meeting: Meeting) -> TwinGame | None:
+    path = _file(folder, meeting)
+    if not path.exists():
+        return None
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+        if content["format"] != FORMAT or content["meeting"] != asdict(meeting):
+            raise ValueError
+        return TwinGame(**content["game"] | {"goals": tuple(content["game"]["goals"])})
+    except (ValueError, KeyError, TypeError):
+        raise ValueError(f"{path}: is no result of this meeting; name another folder, or remove it") from None
+
+
+def goals_a_minute(games: list[TwinGame], side: int) -> tuple[float, float, float]:
+    """Goals of the player (0) or its opponent (1) a minute of play, and the ends of the 95 % interval by bootstrap of
+    the games."""
+    goals, minutes = np.array([(game.goals[side], game.seconds / 60.0) for game in games]).T
+    drawn = np.random.default_rng(0).integers(0, len(games), (RESAMPLES, len(games)))
+    low, high = np.percentile(goals[drawn].sum(axis=1) / minutes[drawn].sum(axis=1), [2.5, 97.5])
+    return float(goals.sum() / minutes.sum()), float(low), float(high)
