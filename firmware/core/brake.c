@@ -21,6 +21,10 @@ void brake_end(struct brake *brake) {
     brake->going = false;
 }
 
+bool brake_moves(const struct brake *brake) {
+    return brake->going && brake->resting == 0;
+}
+
 /* Change of speed in a tick by a volt [m/s/V]: TICK R / (2 C6). */
 static float push_of(const struct axis *axis) {
     return axis->rest_gain * axis->slow_rate * TICK;

@@ -95,6 +95,7 @@ static int take_arm(struct robot *robot, const struct arm *arm) {
     if (!encoders_good(robot)) {
         return REFUSAL_NO_ENCODERS;
     }
+    brake_end(&robot->brake);
     control_start(&robot->control);
     enter(robot, STATE_ARMED);
     return OBEYED;
@@ -237,7 +238,7 @@ static int refused_unread(const struct robot *robot, enum message id) {
     if (!in_its_state(id, robot->state)) {
         return REFUSAL_WRONG_STATE;
     }
-    if (robot->brake.going && needs_rest(id)) {
+    if (brake_moves(&robot->brake) && needs_rest(id)) {
         return REFUSAL_BUSY;
     }
     bool another = (id == MESSAGE_CONFIG || id == MESSAGE_HOME) && (robot->read >> id & 1);

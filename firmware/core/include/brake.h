@@ -25,6 +25,9 @@ void brake_start(struct brake *brake);
 /* The motors off at once. */
 void brake_end(struct brake *brake);
 
+/* Whether the mallet is braked and did not yet come to rest; then a motor has volts, from the first tick on. */
+bool brake_moves(const struct brake *brake);
+
 /* One tick of TICK_US: voltages of motors 0 and 1, neither above most [V], 0 once it is over. Ends by itself when both
  * axes rest, when one does not slow down as it should, or after BRAKE_TICKS. speed: of the axes in the last tick, by
  * the encoders [m/s]. */

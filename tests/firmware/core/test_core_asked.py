@@ -217,7 +217,7 @@ def test_homing_beyond_any_side_of_the_area_is_refused(place: tuple[float, float
 def test_homing_again_moves_the_place_it_believes_in():
     bench = Bench().armed()
     bench.send(Disarm())
-    bench.run(10)
+    bench.tick()
     bench.send(Home(0.3, 0.4))
     assert bench.state == State.IDLE and bench.telemetry is not None
     assert bench.telemetry.place == pytest.approx((0.3, 0.4), abs=3e-5)
@@ -247,7 +247,7 @@ def test_homing_outside_the_area_or_without_encoders_is_refused():
 def test_a_new_pulley_radius_makes_the_place_unknown():
     bench = Bench().armed()
     bench.send(Disarm())
-    bench.run(10)
+    bench.tick()
     bench.send(config(pulley_radius=0.036))
     assert bench.state == State.UNHOMED
 

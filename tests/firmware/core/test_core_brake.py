@@ -144,7 +144,7 @@ def test_from_drawn_motions_in_all_directions(seed: int):
         assert (-stop.speeds * np.sign(stop.speeds[0]))[:, np.abs(stop.speeds[0]) > MOVING].max() < 0.06
 
 
-@pytest.mark.parametrize("corner", itertools.product((0.1, 0.9), repeat=2))
+@pytest.mark.parametrize("corner", [*itertools.product((0.1, 0.9), repeat=2)])
 def test_a_host_that_falls_silent_on_the_way_into_a_corner_leaves_the_mallet_inside_its_area(corner: tuple):
     """At any moment of the fastest plan there is; the area is the walls'."""
     for silent in range(30, 280, 25):
@@ -184,7 +184,6 @@ def test_motors_or_encoders_on_each_others_plug_are_let_go_soon(fault: str, spee
     bench = gantry()
     bench.swapped = fault == "motors"
     bench.wires = ((1, 1), (0, 1)) if fault == "encoders" else bench.wires
-    bench.encoders[0].spoil = bench.encoders[1].spoil = lambda answer: answer
     pushed(bench, speed)
     stop = stopped(bench, Disarm())
     assert stop.off <= 12
@@ -254,6 +253,14 @@ def test_what_is_for_a_mallet_at_rest_is_refused_meanwhile(braking: Plugged):
     braking.send(arm(meant))
     braking.tick()
     assert braking.state == State.ARMED
+
+
+def test_it_arms_as_soon_as_telemetry_shows_motors_without_volts(braking: Plugged):
+    while braking.pwm != (0, 0):
+        braking.tick()
+    braking.send(braking.config, arm(braking.config))
+    braking.tick()
+    assert braking.state == State.ARMED and max(map(abs, braking.speed)) < MOVING and not braking.refusals
 
 
 def test_a_clear_does_not_end_it():
