@@ -95,7 +95,6 @@ static int take_arm(struct robot *robot, const struct arm *arm) {
     if (!encoders_good(robot)) {
         return REFUSAL_NO_ENCODERS;
     }
-    brake_end(&robot->brake);
     control_start(&robot->control);
     enter(robot, STATE_ARMED);
     return OBEYED;
@@ -257,6 +256,9 @@ void obey(struct robot *robot, const struct frame *frame, uint32_t received) {
     int refusal = refused_unread(robot, id);
     if (refusal == OBEYED) {
         robot->read |= (uint16_t)(1u << id);
+        if (needs_rest(id)) {
+            brake_end(&robot->brake); /* it rests by now, and both would take too long */
+        }
         bool within = wire_read(frame->layout, frame->body, &body);
         if (id == MESSAGE_HELLO && body.hello.boots != 0) {
             return; /* a board's, so an echo too */

@@ -105,7 +105,7 @@ def _printed(what: str, stops: list[Stop]) -> None:
 
 
 def _drawn(count: int, random: np.random.Generator) -> list[Stop]:
-    """Stops from motions in all directions, with noise, by motors up to 30 % stronger or weaker than the core is told."""
+    """Stops from motions in all directions, noisy, by motors up to 30 % stronger or weaker than the core is told."""
     stops = []
     for seed in range(count):
         angle, speed = random.uniform(0.0, 2.0 * np.pi), random.uniform(0.2, 3.0)

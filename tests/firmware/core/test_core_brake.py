@@ -1,4 +1,4 @@
-"""A stop that stops the mallet: braked by its motors within their volts, without a way back, unless they do not obey."""
+"""A stop that stops the mallet: braked by its motors within their volts, without a way back, if they obey."""
 
 from __future__ import annotations
 
