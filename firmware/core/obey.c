@@ -26,7 +26,7 @@ static int take_hello(struct robot *robot, const struct hello *hello) {
         return OBEYED;
     }
     if (robot->state == STATE_ARMED) {
-        enter(robot, STATE_IDLE); /* another host took over, and would not be understood */
+        stand_down(robot); /* another host took over, and would not be understood */
     }
     return REFUSAL_WRONG_VERSION;
 }
@@ -212,7 +212,7 @@ static int take(struct robot *robot, const struct frame *frame, const union body
     case MESSAGE_CONFIG: return take_config(robot, &body->config, frame->crc);
     case MESSAGE_HOME: return take_home(robot, &body->home);
     case MESSAGE_ARM: return take_arm(robot, &body->arm);
-    case MESSAGE_DISARM: enter(robot, STATE_IDLE); return OBEYED;
+    case MESSAGE_DISARM: stand_down(robot); return OBEYED;
     case MESSAGE_ESTOP: raise_fault(robot, FAULT_ESTOP); return OBEYED;
     case MESSAGE_CLEAR: recover(robot); return OBEYED;
     case MESSAGE_TRAJ: return take_traj(robot, &body->traj);
@@ -224,6 +224,11 @@ static bool from_host(enum message id) {
     return id != MESSAGE_PONG && id != MESSAGE_TELEMETRY && id != MESSAGE_EVENT;
 }
 
+/* What is for a mallet at rest. */
+static bool needs_rest(enum message id) {
+    return id == MESSAGE_CONFIG || id == MESSAGE_HOME || id == MESSAGE_ARM;
+}
+
 /* Why to refuse a message without a look at its numbers, which takes its time. */
 static int refused_unread(const struct robot *robot, enum message id) {
     if (id == MESSAGE_ARM && !robot->greeted) {
@@ -231,6 +236,9 @@ static int refused_unread(const struct robot *robot, enum message id) {
     }
     if (!in_its_state(id, robot->state)) {
         return REFUSAL_WRONG_STATE;
+    }
+    if (brake_moves(&robot->brake) && needs_rest(id)) {
+        return REFUSAL_BUSY;
     }
     bool another = (id == MESSAGE_CONFIG || id == MESSAGE_HOME) && (robot->read >> id & 1);
     return another || (id == MESSAGE_TRAJ && robot->doubted.there) ? REFUSAL_BUSY : OBEYED;
@@ -248,6 +256,9 @@ void obey(struct robot *robot, const struct frame *frame, uint32_t received) {
     int refusal = refused_unread(robot, id);
     if (refusal == OBEYED) {
         robot->read |= (uint16_t)(1u << id);
+        if (needs_rest(id)) {
+            brake_end(&robot->brake); /* it rests by now, and both would take too long */
+        }
         bool within = wire_read(frame->layout, frame->body, &body);
         if (id == MESSAGE_HELLO && body.hello.boots != 0) {
             return; /* a board's, so an echo too */

@@ -84,19 +84,37 @@ static int16_t nearest(float value) {
     return (int16_t)(value + (value < 0.0f ? -0.5f : 0.5f));
 }
 
-static void drive(struct robot *robot) {
+/* Volts of the motors by which the mallet follows its path. */
+static void follow_volts(struct robot *robot, float motors[2]) {
     const struct track *playing = &robot->playing;
-    robot->pwm[0] = robot->pwm[1] = 0;
-    if (robot->state != STATE_ARMED || !playing->there) {
-        return;
-    }
-    float forward[2], error[2], motors[2];
+    float forward[2], error[2];
     uint32_t time = robot->now - playing->traj.apply;
     for (int i = 0; i < 2; i++) {
         forward[i] = path_volts(&playing->paths[i], time, TICK_US);
         error[i] = robot->path[i] - robot->place[i];
     }
     control_volts(&robot->control, &robot->config, forward, error, motors);
+}
+
+/* Volts of the motors by which the mallet comes to rest. */
+static void rest_volts(struct robot *robot, float motors[2]) {
+    float speed[2];
+    const float per_tick = RADIANS * (1e6f / TICK_US);
+    float turning[2] = {(float)robot->encoders[0].step * per_tick, (float)robot->encoders[1].step * per_tick};
+    mallet_place(turning, robot->config.pulley_radius, speed);
+    brake_volts(&robot->brake, robot->axes, robot->config.most_volts, speed, motors);
+}
+
+static void drive(struct robot *robot) {
+    float motors[2];
+    robot->pwm[0] = robot->pwm[1] = 0;
+    if (robot->brake.going) {
+        rest_volts(robot, motors);
+    } else if (robot->state == STATE_ARMED && robot->playing.there) {
+        follow_volts(robot, motors);
+    } else {
+        return;
+    }
     float per_volt = PWM_FULL / robot->config.supply;
     for (int i = 0; i < 2; i++) {
         robot->pwm[i] = nearest(motors[i] * per_volt);

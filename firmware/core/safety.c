@@ -29,15 +29,30 @@ static bool place_is_lost(enum fault why) {
     return why >= FAULT_ENCODER_PARITY && why <= FAULT_OFF_PATH;
 }
 
+/* Of the faults found in play these alone leave encoders, motors and clock to be relied on. */
+static bool may_brake(enum fault why) {
+    return why == FAULT_HOST_SILENT || why == FAULT_OUT_OF_AREA;
+}
+
 void raise_fault(struct robot *robot, enum fault why) {
     if (place_is_lost(why)) {
         robot->homed = false;
+    }
+    if (may_brake(why)) {
+        brake_start(&robot->brake);
+    } else {
+        brake_end(&robot->brake);
     }
     if (robot->state != STATE_FAULT) {
         robot->fault = why;
         tell(robot, NOTICE_FAULTED, why);
         enter(robot, STATE_FAULT);
     }
+}
+
+void stand_down(struct robot *robot) {
+    enter(robot, STATE_IDLE);
+    brake_start(&robot->brake);
 }
 
 void recover(struct robot *robot) {
@@ -80,10 +95,14 @@ static enum fault astray(const struct robot *robot) {
     return off ? FAULT_OFF_PATH : FAULT_NONE;
 }
 
+static bool late(const struct robot *robot, uint16_t missed) {
+    uint32_t since = robot->now - robot->before;
+    return missed > 0 || since < TICK_US / 2 || since > TICK_US * 3 / 2;
+}
+
 /* The first reason not to go on while armed. */
 static enum fault reason(struct robot *robot, uint16_t missed) {
-    uint32_t since = robot->now - robot->before;
-    if (missed > 0 || since < TICK_US / 2 || since > TICK_US * 3 / 2) {
+    if (late(robot, missed)) {
         return FAULT_TICK_OVERRUN; /* a clock that stands still would never tell that the host is silent */
     }
     if (robot->now - robot->heard > robot->config.silence * 1000u) {
@@ -104,6 +123,9 @@ void watch(struct robot *robot, uint16_t missed) {
         if (robot->encoders[i].fault != FAULT_NONE) {
             raise_fault(robot, robot->encoders[i].fault);
         }
+    }
+    if (late(robot, missed)) {
+        brake_end(&robot->brake); /* its speeds are those of ticks */
     }
     if (robot->state == STATE_ARMED) {
         enum fault why = reason(robot, missed);

@@ -51,6 +51,7 @@ def count_ticks() -> dict[str, int]:
         raise RuntimeError(f"the board is in state {board.telemetry.state}; expected a flood to be borne")
     board.most(0.005, Disarm())
     found["no play, the line full of what is done"] = max(map(board.flood, (*asked[:3], Ping(1))))
+    found["braking, the line full of what is refused"] = max(map(board.flood_while_braking, refused))
     return found
 
 
@@ -89,6 +90,16 @@ class _Board:
         """Saturate the line: alternately a configuration, the longest message, and two ticks full of this message (or
         these bytes). Returns the greatest number of instructions of a tick."""
         self.most(0.015, self.plan())
+        return self._saturate(message)
+
+    def flood_while_braking(self, message: object) -> int:
+        """The same while the board brakes a moving mallet."""
+        self.most(0.005, Arm(frame_crc(self.config)))
+        self.most(0.08, self.plan())
+        self.machine.send(encode(Disarm()))
+        return self._saturate(message)
+
+    def _saturate(self, message: object) -> int:
         one = message if isinstance(message, bytes) else encode(message)
         self.machine.send((encode(self.config) + one * (2 * PER_TICK // len(one))) * 8)
         most = max(self.machine.instructions(self.machine.now + 20_000))

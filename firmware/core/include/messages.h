@@ -14,9 +14,9 @@
 enum state {
     STATE_BOOT, /* has not yet read its encoders */
     STATE_UNHOMED, /* does not know where the mallet is; motors off */
-    STATE_IDLE, /* knows where the mallet is; motors off */
+    STATE_IDLE, /* knows where the mallet is; motors off, once a disarmed mallet is braked */
     STATE_ARMED, /* plays */
-    STATE_FAULT, /* motors off until `clear`; the first reason is kept */
+    STATE_FAULT, /* stopped until `clear`, after a silent host or outside its area by braking; the first reason is kept */
 };
 
 /* Why the board stopped the motors by itself. */
@@ -58,7 +58,7 @@ enum refusal {
     REFUSAL_OFF_START, /* the path does not begin where the mallet is */
     REFUSAL_TOO_LATE, /* the time to apply it is past */
     REFUSAL_TOO_EARLY, /* the time to apply it is too far ahead */
-    REFUSAL_BUSY, /* one of its kind that came just before is still being looked at */
+    REFUSAL_BUSY, /* one of its kind that came just before is still being looked at, or the mallet is being braked */
 };
 
 enum message {
@@ -66,7 +66,7 @@ enum message {
     MESSAGE_CONFIG = 2, /* The table and how to control it; taken in every state but ARMED. */
     MESSAGE_HOME = 3, /* The mallet stands here now, at rest (report L.2); in UNHOMED and IDLE. */
     MESSAGE_ARM = 4, /* Let the motors play; in IDLE. */
-    MESSAGE_DISARM = 5, /* Motors off; in ARMED. */
+    MESSAGE_DISARM = 5, /* Brake the mallet, then motors off; in ARMED. */
     MESSAGE_ESTOP = 6, /* Motors off now, in any state. */
     MESSAGE_CLEAR = 7, /* Leave FAULT: to IDLE if the mallet's place is still known, else to UNHOMED. */
     MESSAGE_TRAJ = 8, /* A plan: volts until t1, reversed until t2, then none; from the state that the modes say. The newest wins. */
@@ -97,7 +97,7 @@ struct config {
     float integral[2]; /* V/m/s */
     float derivative[2]; /* V s/m */
     float off_path; /* m; farther from its path the mallet stops */
-    uint16_t silence; /* ms; longer without a message it stops */
+    uint16_t silence; /* ms; longer without a message it brakes and stops */
 };
 
 struct home {

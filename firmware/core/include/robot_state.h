@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "brake.h"
 #include "control.h"
 #include "encoder.h"
 #include "frame.h"
@@ -49,6 +50,7 @@ struct robot {
     uint8_t vetted;        /* parts of it that were, one a tick at most */
     float path[2];         /* m: where the path has the mallet */
     struct control control;
+    struct brake brake;    /* goes on in FAULT or IDLE, whatever the host says but estop */
     int16_t pwm[2];
     uint16_t driven[2];    /* ticks that a motor was driven without its encoder moving */
 

@@ -10,8 +10,12 @@ void tell(struct robot *robot, enum notice notice, uint32_t detail);
 /* Change state; whatever is played ends where the new state does not play. */
 void enter(struct robot *robot, enum state state);
 
-/* Stop the motors and stay stopped; the first reason is kept. */
+/* Stop the mallet and stay stopped; the first reason is kept. It is braked where that can be relied on (brake.h), else
+ * the motors are off at once. */
 void raise_fault(struct robot *robot, enum fault why);
+
+/* From ARMED to IDLE; the mallet is braked. */
+void stand_down(struct robot *robot);
 
 /* Leave FAULT, for IDLE if it is still known where the mallet is. */
 void recover(struct robot *robot);

@@ -18,9 +18,9 @@ class State(IntEnum):
 
     BOOT = 0  # has not yet read its encoders
     UNHOMED = 1  # does not know where the mallet is; motors off
-    IDLE = 2  # knows where the mallet is; motors off
+    IDLE = 2  # knows where the mallet is; motors off, once a disarmed mallet is braked
     ARMED = 3  # plays
-    FAULT = 4  # motors off until `clear`; the first reason is kept
+    FAULT = 4  # stopped until `clear`, after a silent host or outside its area by braking; the first reason is kept
 
 
 class Fault(IntEnum):
@@ -65,7 +65,7 @@ class Refusal(IntEnum):
     OFF_START = 11  # the path does not begin where the mallet is
     TOO_LATE = 12  # the time to apply it is past
     TOO_EARLY = 13  # the time to apply it is too far ahead
-    BUSY = 14  # one of its kind that came just before is still being looked at
+    BUSY = 14  # one of its kind that came just before is still being looked at, or the mallet is being braked
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,7 @@ class Config:
     integral: tuple[float, float]  # V/m/s
     derivative: tuple[float, float]  # V s/m
     off_path: float  # m; farther from its path the mallet stops
-    silence: int  # ms; longer without a message it stops
+    silence: int  # ms; longer without a message it brakes and stops
 
 
 @dataclass(frozen=True)
@@ -115,7 +115,7 @@ class Arm:
 
 @dataclass(frozen=True)
 class Disarm:
-    """Motors off; in ARMED."""
+    """Brake the mallet, then motors off; in ARMED."""
 
 
 @dataclass(frozen=True)

@@ -61,6 +61,16 @@ class Axis:
     def place(self) -> float:
         return self.rest + self.slow + self.fast
 
+    @property
+    def speed(self) -> float:
+        slow_rate, fast_rate, *_ = self.constants
+        return -slow_rate * self.slow - fast_rate * self.fast
+
+    def push(self, speed: float) -> None:
+        """Give it this speed [m/s], where it is."""
+        slow = -speed / self.constants[0]
+        self.rest, self.slow, self.fast = self.place - slow, slow, 0.0
+
 
 @dataclass
 class Bench:
@@ -128,6 +138,11 @@ class Bench:
     def place(self) -> tuple[float, float]:
         """Where the mallet truly is [m]."""
         return self.axes[0].place, self.axes[1].place
+
+    @property
+    def speed(self) -> tuple[float, float]:
+        """Of the mallet, truly [m/s]."""
+        return self.axes[0].speed, self.axes[1].speed
 
     @property
     def state(self) -> int:

@@ -7,7 +7,7 @@ import itertools
 import numpy as np
 import pytest
 
-from sim2real.link.wire.messages import Disarm, Fault, Home, Notice, Ping, State
+from sim2real.link.wire.messages import Fault, Home, Notice, Ping, State
 from tests.firmware.core.bench import CORNER, FULL, Bench, with_parity
 from tests.firmware.core.line import arm, config, hello
 
@@ -130,16 +130,6 @@ def test_arming_takes_a_hello_a_configuration_and_a_home():
     bench.send(bench.config, arm(), Home(*CORNER), arm())
     bench.run(20)
     assert [number for number, _ in bench.refusals] == [4, 4, 3, 4] and bench.state == State.ARMED
-
-
-def test_disarming_lets_go_at_once():
-    bench = Bench().armed()
-    bench.send(bench.trajectory(TARGET))
-    bench.run(60)
-    assert bench.pwm != (0, 0)
-    bench.send(Disarm())
-    bench.tick()
-    assert bench.pwm == (0, 0) and bench.state == State.IDLE
 
 
 def test_reset_in_mid_game_comes_back_unhomed_with_the_motors_off():

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import itertools
+import math
 import time
 
 import pytest
 
 pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
 
-from sim2real.link.wire.messages import Clear, Fault, Hello, Notice, Ping, Pong, State, Telemetry
-from tests.firmware.core.line import frame, hello
+from sim2real.link.wire.messages import Clear, Disarm, Fault, Hello, Notice, Ping, Pong, State, Telemetry
+from tests.firmware.core.line import arm, config, frame, hello
 from tests.sim2real.emulate.preempted import play
 from tests.sim2real.emulate.robot import START, TARGET, Robot
 
@@ -75,10 +76,21 @@ def test_it_plays_just_so_when_interrupts_come_between_any_two_blocks(fuzz: int)
 
 
 def test_a_silent_host_stops_it() -> None:
-    robot = Robot().armed().goes()
-    robot.run(110_000, alive=False)
-    assert robot.events(Notice.FAULTED) == [Fault.HOST_SILENT]
+    """By braking, from full speed, since the board has noticed."""
+    robot = Robot().armed()
+    robot.run(6000, Disarm())
+    robot.run(20_000, config(silence=50, most_volts=15.0))
+    robot.run(6000, arm(config(silence=50, most_volts=15.0)))
+    robot.sends((0.9, 0.9), 10.0)
+    robot.run(120_000)
+    robot.run(25_000, alive=False)
+    speed = math.hypot(*robot.gantry.velocity(robot.machine.now))
+    assert speed > 1.5 and robot.telemetry.state == State.ARMED
+    robot.run(60_000, alive=False)
+    assert robot.events(Notice.FAULTED) == [Fault.HOST_SILENT] and robot.telemetry.state == State.FAULT
+    assert math.hypot(*robot.gantry.velocity(robot.machine.now)) < 0.02
     assert robot.machine.motors.duties == (0.0, 0.0)
+    assert max(max(map(abs, duties)) for _, *duties in robot.machine.pwm) <= 15.0 / 24.0 + 1e-3
 
 
 @pytest.mark.parametrize(
