@@ -52,8 +52,16 @@ class BoardLine:
         self._refused = ""
         self._until(lambda: session.connected and len(session.clock) >= EXCHANGES, "no board answers on this line")
         self._until(lambda: session.state is not None, "the board sends no telemetry")
+        if session.state != State.ARMED:  # one that is still armed has just been disarmed
+            self._until(lambda: not self._driving, "the board does not switch the motors off")
         if session.state == State.FAULT:
             self._until(self._cleared, "the board does not leave FAULT")
+
+    @property
+    def _driving(self) -> bool:
+        """Whether a motor is driven, as to brake after a stop, by the newest telemetry."""
+        telemetry = self.session.telemetry
+        return telemetry is not None and any(telemetry.pwm)
 
     def _cleared(self) -> bool:
         if self.session.state == State.FAULT:
@@ -179,7 +187,7 @@ class BoardLine:
         with suppress(ValueError):  # not connected
             session.disarm()
         end = self._now() + BRAKES_WITHIN
-        while session.state == State.ARMED and session.port_is_open and self._now() < end:
+        while (session.state == State.ARMED or self._driving) and session.port_is_open and self._now() < end:
             self._serve(self._now() + POLL)
             self.poll()
         if session.state == State.ARMED and session.port_is_open:

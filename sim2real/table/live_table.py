@@ -46,7 +46,7 @@ class Person(Protocol):
 class LiveTable(Backend):
     """See `Backend`. A subclass opens `line`, `eyes` and `person`, knows the time and lets it pass.
 
-    config: of the board; frame_rate: of the camera [Hz].
+    config: of the board; frame_rate: of the camera [Hz]; stopped_at: when it was stopped last [s].
     """
 
     def __init__(self, config: Config, frame_rate: float) -> None:
@@ -54,6 +54,7 @@ class LiveTable(Backend):
         self.line: BoardLine | None = None
         self.eyes: Eyes | None = None
         self.person: Person | None = None
+        self.stopped_at = -math.inf
         self._frames: list[SeenFrame] = []
         self._watchdog: CameraWatchdog | None = None
 
@@ -159,7 +160,8 @@ class LiveTable(Backend):
 
     def stop(self) -> None:
         """See `Backend.stop`."""
-        self._watchdog = None
+        if self._watchdog is not None:
+            self._watchdog, self.stopped_at = None, self.now()
         if self.line is not None:
             self.line.stop()
 

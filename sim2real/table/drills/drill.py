@@ -85,7 +85,7 @@ class Drill:
             self.play(NOTICED_WITHIN)
             cause, noticed = "", math.nan
         except TableFaultError as stop:
-            cause, noticed = str(stop.cause), twin.now() - begun[0]
+            cause, noticed = str(stop.cause), twin.stopped_at - begun[0]
         if cause:
             twin.pass_time(twin.now() + AFTER)
         at_rest = monitor.moving_at - begun[0] if cause else math.nan
