@@ -43,7 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--seconds", type=float, metavar="S", help="end a game after so much play, before its clock does"
     )
     parser.add_argument(
-        "--record", type=Path, metavar="DIR", help="record the game as this new folder; several games as game_1 ... in it"
+        "--record", type=Path, metavar="DIR", help="record the game as this new folder; several games as DIR/game_1 ..."
     )
     parser.add_argument("--seed", type=int, default=0, help="of serves, noise and players (default 0)")
     parser.add_argument("--view", action="store_true", help="show what is seen, planned and late while it plays")
@@ -58,8 +58,7 @@ def run(args: argparse.Namespace) -> int:
     whole_number(args.games, "--games", 1, 1000)
     if args.seconds is not None and not args.seconds > 0.0:
         raise ValueError(f"--seconds is {args.seconds:g}; expected more than 0")
-    if args.record is not None and args.record.exists():
-        raise ValueError(f"{args.record} exists already; choose another name or remove it")
+    _refuse_record(args)
     env, other, logs = seat(args), OTHERS.get(args.backend) or args.opponent or INTERCEPTOR, []
     try:
         for game in range(args.games):
@@ -100,6 +99,16 @@ def seat(args: argparse.Namespace) -> RobotSeat:
 
         parameters, options = stated_sizes(read_recording(args.recording)), {"recording": args.recording}
     return make_robot_seat(find_variant(args.variant), args.backend, parameters=parameters, **options)
+
+
+def _refuse_record(args: argparse.Namespace) -> None:
+    """ValueError, in one line, for a recording that cannot be made."""
+    from sim2real.table.recorder.draft import refuse_existing
+
+    if args.record is not None:
+        if args.backend == "replay":
+            raise ValueError("--record is given with --backend replay, where nothing moves; leave one of them")
+        refuse_existing(args.record)
 
 
 def _recorded(args: argparse.Namespace, env: RobotSeat, game: int) -> AbstractContextManager[object]:

@@ -23,8 +23,9 @@ PROGRAMS = ("puck", "gantry", "play")
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
-    parser.add_argument("recording", type=Path, metavar="DIR", help="the recording, a new folder")
-    parser.add_argument("--backend", default="twin", metavar="NAME", help="the table: twin (default)")
+    parser.add_argument("folder", type=Path, metavar="DIR", help="the recording, a new folder")
+    parser.add_argument("--backend", default="twin", metavar="NAME", help="twin (default) or table")
+    parser.add_argument("--table", type=Path, metavar="FILE", help="the table.toml of a physical table")
     parser.add_argument("--program", default="puck", choices=PROGRAMS, help="what happens meanwhile (puck)")
     parser.add_argument("--seconds", type=float, default=60.0, metavar="S", help="of the table's time (60)")
     parser.add_argument("--volts", type=float, nargs="+", metavar="V", help="of --program gantry (4 7 10 14)")
@@ -32,31 +33,36 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--opponent", metavar="PLAYER", help="of --program play on a twin (interceptor)")
     parser.add_argument("--seed", type=int, default=0, help="of the program, noise and players (0)")
     parser.add_argument("--json", action="store_true", help="print one JSON object in the end")
+    parser.set_defaults(variant="match-v0", recording=None)
 
 
 def run(args: argparse.Namespace) -> int:
     """Record. 0: recorded, also until Ctrl-C. ValueError, in one line, for what cannot be recorded, before anything
     moves, and where the table stopped; what came until then is recorded."""
     from puckpilot_env.options.inputs import seed_number
+    from sim2real.commands.play import seat
     from sim2real.table.recorder.recorded_game import recorded
-    from sim2real.table.robot_seat import make_robot_seat
 
+    if args.backend == "replay":
+        raise ValueError("--backend is replay, where nothing moves; expected twin or table")
     if not 0.0 < args.seconds <= 1e5:
         raise ValueError(f"--seconds is {args.seconds:g}; expected more than 0, at most 1e5")
     _refuse_others(args)
     seed = seed_number(args.seed)
-    others = {"opponent": args.opponent or "interceptor"} if args.backend == "twin" else {}
-    env = make_robot_seat("puckpilot/match-v0", args.backend, seed=seed, **others)
+    env = seat(args)
+    env.backend.seed(seed)
     report = (lambda line: None) if args.json else print
     note = f"puckpilot record --program {args.program} --backend {args.backend} --seed {seed}"
-    with recorded(env, args.recording, note) as draft, _ended_by_interrupt(report):
+    with recorded(env, args.folder, note) as draft, _ended_by_interrupt(report):
         summary = _PROGRAMS[args.program](args, env, seed, report)
         report(summary)
     rows = ", ".join(f"{count} rows of {name}" for name, count in draft.rows.items())
+    if not any(draft.rows.values()):
+        raise ValueError("ended before anything was recorded")
     if args.json:
-        print(json.dumps({"recording": str(args.recording), "program": args.program, "rows": draft.rows}, indent=1))
+        print(json.dumps({"recording": str(args.folder), "program": args.program, "rows": draft.rows}, indent=1))
     else:
-        print(f"{args.recording}: {rows}; next: puckpilot diagnose {args.recording}")
+        print(f"{args.folder}: {rows}; next: puckpilot diagnose {args.folder}")
     return 0
 
 
@@ -106,10 +112,12 @@ def _gantry(args: argparse.Namespace, env: RobotSeat, seed: int, report: Callabl
 
 
 def _play(args: argparse.Namespace, env: RobotSeat, seed: int, report: Callable[[str], None]) -> str:
+    from sim2real.commands.play import INTERCEPTOR
     from sim2real.table.play import play_game
 
-    log = play_game(env, args.player or "interceptor", seed, args.seconds, report, lambda fault: False)
-    return f"{args.player or 'interceptor'} {log.score[0]}:{log.score[1]} in {log.seconds:.0f} s of play"
+    player = args.player or INTERCEPTOR
+    log = play_game(env, player, seed, args.seconds, report, lambda fault: False, lambda loop, action, info: None)
+    return f"{player} {log.score[0]}:{log.score[1]} in {log.seconds:.0f} s of play"
 
 
 _PROGRAMS = {"puck": _puck, "gantry": _gantry, "play": _play}

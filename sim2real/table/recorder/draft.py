@@ -26,12 +26,11 @@ class RecordingDraft:
 
     def __init__(self, folder: Path, meta: Mapping[str, Any]) -> None:
         self.folder, self._draft = folder, draft_of(folder)
-        if folder.exists() or folder.is_symlink():
-            raise RecordingError(folder, "exists already; choose another name or remove it")
+        refuse_existing(folder)
         check_folder(folder.absolute().parent)
         folder.absolute().parent.mkdir(parents=True, exist_ok=True)
-        if self._draft.exists():
-            _finish_left(self._draft, folder)
+        if self._draft.exists() and _finish_left(self._draft, folder):
+            raise RecordingError(folder, "is what a killed run had recorded, complete now; choose another name")
         self._draft.mkdir()
         text = json.dumps(dict(meta), indent=1, ensure_ascii=False, allow_nan=False)
         self._meta = (self._draft / "meta.json").open("w", encoding="utf-8")
@@ -69,6 +68,17 @@ class RecordingDraft:
             self._meta.close()  # and with it the lock
 
 
+def refuse_existing(folder: Path) -> None:
+    """RecordingError, in one line, if the folder exists. What a killed run left in it, of one of several games, is
+    finished before."""
+    if not (folder.exists() or folder.is_symlink()):
+        return
+    for meta in folder.glob(".*.tmp/meta.json"):
+        draft = meta.parent
+        _finish_left(draft, folder / draft.name.removeprefix(".").removesuffix(".tmp"))
+    raise RecordingError(folder, "exists already; choose another name or remove it")
+
+
 def columns(stream: str) -> tuple[str, ...]:
     """The columns of a stream that a table has: all but whether the puck was obstructed."""
     required, optional = STREAMS[stream]
@@ -95,21 +105,19 @@ def _put(draft: Path, folder: Path) -> bool:
     return True
 
 
-def _finish_left(draft: Path, folder: Path) -> None:
-    """Finish what a killed run left, and say so as RecordingError; return if there is nothing in it."""
+def _finish_left(draft: Path, folder: Path) -> bool:
+    """Finish what a killed run left; False, and the draft is removed, if there is nothing in it. RecordingError if
+    another process records it."""
     meta = draft / "meta.json"
-    if meta.exists():
-        with meta.open("a") as file:
-            _lock(file, folder)
-            for path in draft.glob("*.csv"):
-                whole = path.read_bytes()
-                path.write_bytes(whole[: whole.rfind(b"\n") + 1])  # the last row may be cut off
-            if _put(draft, folder):
-                raise RecordingError(
-                    folder, "is what a run that was killed had recorded, complete now; choose another name"
-                )
-    else:
+    if not meta.exists():
         shutil.rmtree(draft)
+        return False
+    with meta.open("a") as file:
+        _lock(file, folder)
+        for path in draft.glob("*.csv"):
+            whole = path.read_bytes()
+            path.write_bytes(whole[: whole.rfind(b"\n") + 1])  # the last row may be cut off
+        return _put(draft, folder)
 
 
 def _lock(file: IO[str], folder: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -42,15 +43,17 @@ def record_launches(
         report(f"{table.now() - begin:6.1f} s  launch {len(coverage.launches) + 1}: {launch.words}")
         table.place_puck(_puck(coverage, launch, p, place, random))
         watcher.begin(table.now())
-        asked, known = table.now(), len(coverage.launches)
-        while table.now() < min(asked + LONGEST, begin + seconds):
+        known, end = len(coverage.launches), table.now() + table.patience
+        while table.now() < min(end, begin + seconds):
             table.send(driver.plan([*place, HOLDING_VOLTS, HOLDING_VOLTS], table.now() + AHEAD))
             table.wait(table.now() + HOLD)
             for frame in table.read().frames:
                 watcher.take(frame)
-            progress(table.now() - begin, seconds)
-            if len(coverage.launches) > known and not watcher.moving:
-                break
+            progress(min(table.now() - begin, seconds), seconds)
+            if len(coverage.launches) > known:
+                if not watcher.moving:
+                    break
+                known, end = math.inf, table.now() + LONGEST
     return coverage
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from sim2real.study.independent_table.physics.law import Law
 from sim2real.study.independent_table.physics.march import LOG_COLUMNS, march
-from sim2real.study.independent_table.physics.volts import profile
+from sim2real.study.independent_table.physics.volts import at_the_motors, profile
 from sim2real.study.independent_table.simulate import LONG_AGO, begin
 from sim2real.table.backend import Place
 
@@ -71,8 +71,8 @@ class Plant:
         self._plan = None
 
     def drive(self, first: float, second: float) -> None:
-        """The volts of the robot's motors from now on: axes get V1 - V2 and -V1 - V2."""
-        self._volts = first - second, -first - second
+        """The volts of the robot's motors from now on: axes get V1 - V2 and -V1 - V2, less what the law loses."""
+        self._volts = at_the_motors(self.law, first - second, -first - second)
 
     def play(self, plan: OpponentPlan) -> None:
         """The opponent's plan from now on."""

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from sim2real.recording.folder import RecordingError, read_recording
-from sim2real.table.recorder.draft import RecordingDraft, columns
+from sim2real.table.recorder.draft import RecordingDraft, columns, refuse_existing
 from tests.places import ROOT
 
 META = {
@@ -75,8 +75,19 @@ def test_a_second_run_of_the_same_name_is_refused(tmp_path: Path) -> None:
 def test_what_a_killed_run_left_is_finished_by_the_next_one(tmp_path: Path) -> None:
     killed = subprocess.run([sys.executable, "-c", KILLED], cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT)})
     assert killed.returncode == -signal.SIGKILL and not (tmp_path / "one").exists()
-    with pytest.raises(RecordingError, match="a run that was killed had recorded, complete now; choose another name"):
+    with pytest.raises(
+        RecordingError, match="one: is what a killed run had recorded, complete now; choose another name"
+    ):
         RecordingDraft(tmp_path / "one", META)
     mallet = read_recording(tmp_path / "one").mallet
     assert mallet is not None and mallet.rows == 20  # without the row that was cut off
     assert [path.name for path in tmp_path.iterdir()] == ["one"]
+
+
+def test_what_a_killed_run_left_of_several_games_is_finished(tmp_path: Path) -> None:
+    draft = RecordingDraft(tmp_path / "all" / "game_2", META)
+    draft.add("drive", [(0.0, 0.1, 0.1)])
+    draft._meta.close()  # as if it were killed: the lock is gone
+    with pytest.raises(RecordingError, match="all: exists already"):
+        refuse_existing(tmp_path / "all")
+    assert [path.name for path in (tmp_path / "all").iterdir()] == ["game_2"]
