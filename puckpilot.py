@@ -40,6 +40,7 @@ COMMANDS = {
     "play": ("sim2real.commands.play", "a player at the robot's seat of a table: firmware, camera and all, on a twin"),
     "table check": ("sim2real.commands.table_check", "bring a table up, step by step: what works, and what to mend"),
     "table drill": ("sim2real.commands.table_drill", "faults at random moments on a twin: does the mallet stop?"),
+    "record": ("sim2real.commands.record", "camera and board of a table, in one recording, while a program excites it"),
     "compare": ("sim2real.commands.compare", "where a recording of a table departs from the simulator"),
     "diagnose": ("sim2real.commands.diagnose", "which physics the simulator lacks, with proof on untouched data"),
     "study": ("sim2real.commands.study", "how often a diagnosis is right, on cases with something hidden"),

@@ -14,11 +14,13 @@ import argparse
 import json
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from contextlib import AbstractContextManager
+
     from sim2real.table.faults import TableFaultError
     from sim2real.table.game_log import GameLog
     from sim2real.table.play import Show
@@ -41,6 +43,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--seconds", type=float, metavar="S", help="end a game after so much play, before its clock does"
     )
+    parser.add_argument(
+        "--record", type=Path, metavar="DIR", help="record the game as this new folder; several games as DIR/game_1 ..."
+    )
     parser.add_argument("--seed", type=int, default=0, help="of serves, noise and players (default 0)")
     parser.add_argument("--view", action="store_true", help="show what is seen, planned and late while it plays")
     parser.add_argument("--json", action="store_true", help="print the results as JSON alone")
@@ -54,10 +59,11 @@ def run(args: argparse.Namespace) -> int:
     whole_number(args.games, "--games", 1, 1000)
     if args.seconds is not None and not args.seconds > 0.0:
         raise ValueError(f"--seconds is {args.seconds:g}; expected more than 0")
-    env, other, logs = _seat(args), OTHERS.get(args.backend) or args.opponent or INTERCEPTOR, []
+    _refuse_record(args)
+    env, other, logs = seat(args), OTHERS.get(args.backend) or args.opponent or INTERCEPTOR, []
     try:
         for game in range(args.games):
-            with _reports(args) as (report, show):
+            with _recorded(args, env, game), _reports(args) as (report, show):
                 seed = seed_number(args.seed) + game
                 logs.append(play_game(env, args.player, seed, args.seconds, report, _may_clear(args), show))
             if not args.json:
@@ -69,7 +75,7 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _seat(args: argparse.Namespace) -> RobotSeat:
+def seat(args: argparse.Namespace) -> RobotSeat:
     """The robot's seat at the backend that is asked for. ValueError, in one line, for options that do not fit it."""
     from puckpilot_env.variants import find_variant
     from sim2real.table.robot_seat import make_robot_seat
@@ -94,6 +100,26 @@ def _seat(args: argparse.Namespace) -> RobotSeat:
 
         parameters, options = stated_sizes(read_recording(args.recording)), {"recording": args.recording}
     return make_robot_seat(find_variant(args.variant), args.backend, parameters=parameters, **options)
+
+
+def _refuse_record(args: argparse.Namespace) -> None:
+    """ValueError, in one line, for a recording that cannot be made."""
+    from sim2real.table.recorder.draft import refuse_existing
+
+    if args.record is not None:
+        if args.backend == "replay":
+            raise ValueError("--record is given with --backend replay, where nothing moves; leave one of them")
+        refuse_existing(args.record)
+
+
+def _recorded(args: argparse.Namespace, env: RobotSeat, game: int) -> AbstractContextManager[object]:
+    """Records what happens inside, if that was asked for."""
+    from sim2real.table.recorder.recorded_game import recorded
+
+    if args.record is None:
+        return nullcontext()
+    folder = args.record if args.games == 1 else args.record / f"game_{game + 1}"
+    return recorded(env, folder, f"puckpilot play {args.player} --backend {args.backend} --seed {args.seed + game}")
 
 
 def _option(names: set[str]) -> str:

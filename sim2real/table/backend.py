@@ -85,8 +85,8 @@ class Backend(ABC):
         "begin": "s", "volts": "V, of axes x and y, signed", "t1": "s, of x and y", "t2": "s, of x and y",
         "modes": "m, (3, 2): rest, slow, fast of x and y",
     }  # fmt: skip
-    obeys: ClassVar[bool] = True
-    patience: ClassVar[float] = 1.0
+    obeys: bool = True
+    patience: float = 1.0
 
     @abstractmethod
     def seed(self, seed: int) -> None:

@@ -21,7 +21,8 @@ class PersonAtTerminal:
 
     def put_puck(self, puck: np.ndarray) -> None:
         """Ask for the puck at (x, y) [m]; play begins as soon as it is seen."""
-        how = "let it go slowly" if math.hypot(puck[2], puck[3]) > 0.0 else "let it lie"
+        speed = math.hypot(puck[2], puck[3])
+        how = f"let it go at about {speed:.1f} m/s" if speed > 0.0 else "let it lie"
         _say(f"puck, please: at ({puck[0]:.2f}, {puck[1]:.2f}) m from the robot's right-hand corner, and {how}")
 
     def home_mallet(self, home: Place) -> None:

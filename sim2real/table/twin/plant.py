@@ -9,7 +9,7 @@ from numba import njit
 
 from sim2real.study.independent_table.physics.law import Law
 from sim2real.study.independent_table.physics.march import LOG_COLUMNS, march
-from sim2real.study.independent_table.physics.volts import profile
+from sim2real.study.independent_table.physics.volts import at_the_motors, profile
 from sim2real.study.independent_table.simulate import LONG_AGO, begin
 from sim2real.table.backend import Place
 
@@ -73,8 +73,8 @@ class Plant:
         self._inputs[START:] = 0.0
 
     def drive(self, first: float, second: float) -> None:
-        """The volts of the robot's motors from now on: axes get V1 - V2 and -V1 - V2."""
-        self._inputs[0], self._inputs[1] = first - second, -first - second
+        """The volts of the robot's motors from now on: axes get V1 - V2 and -V1 - V2, less what the law loses."""
+        self._inputs[:START] = at_the_motors(self.law, first - second, -first - second)
 
     def play(self, plan: OpponentPlan) -> None:
         """The opponent's plan from now on."""

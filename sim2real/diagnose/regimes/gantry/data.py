@@ -120,14 +120,15 @@ def _check_enough(windows: StreamWindows) -> None:
 
 
 def find_drive_inputs(recording: Recording, supply: float) -> DriveInputs:
-    """The motors' drive inputs from the plans, or else from the motors' log. Raises UnusableError if neither exists."""
+    """The motors' drive inputs from their log, or else from the plans, which a board's feedback changes. Raises
+    UnusableError if neither exists."""
     sources = (
-        ("commands", recording.commands, from_commands),
         ("drive", recording.drive, lambda drive: from_drive(drive, supply)),
+        ("commands", recording.commands, from_commands),
     )
     recorded = [(name, read(stream)) for name, stream, read in sources if stream is not None and stream.rows]
     if not recorded:
-        raise UnusableError("neither the plans (commands.csv) nor the motors' log (drive.csv) was recorded")
+        raise UnusableError("neither the motors' log (drive.csv) nor the plans (commands.csv) was recorded")
     name, drive_inputs = next(((name, one) for name, one in recorded if len(one.t)), recorded[0])
     if not len(drive_inputs.t):
         raise UnusableError(f"{name}.csv holds no complete row")

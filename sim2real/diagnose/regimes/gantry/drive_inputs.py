@@ -1,4 +1,4 @@
-"""Drive inputs of the motors: piecewise constant volts, from plans or from the motors' log."""
+"""Drive inputs of the motors: piecewise constant volts, from the motors' log or from plans."""
 
 from __future__ import annotations
 

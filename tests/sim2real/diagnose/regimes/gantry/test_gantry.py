@@ -129,7 +129,7 @@ def test_a_long_log_keeps_windows_with_enough_samples(baseline: Recording, monke
     "change, reason",
     [
         ({"mallet": None}, "the mallet's path was not recorded"),
-        ({"commands": None}, "neither the plans"),
+        ({"commands": None}, "neither the motors' log"),
     ],
 )
 def test_a_missing_stream_is_named(tmp_path: Path, change: dict[str, None], reason: str) -> None:

@@ -1,0 +1,70 @@
+"""The motors' duties of every control tick, from telemetry of every second one and the plans that were sent.
+
+A tick's duty is the plan's mean voltage in that tick plus the board's feedback (`firmware/core/robot.c`, `drive`). The
+plan is known, and between neighbouring ticks the feedback changes by a few steps of the encoders, some 10 mV. So the
+duty of a tick without telemetry is the plan's, plus the mean feedback of the ticks before and after it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+
+from sim2real.table.backend import SeenMallet
+from sim2real.table.mallet_driver import MalletPlan
+
+TICK = 0.001  # s, of the board's control (TICK_US in firmware/core/include/robot.h)
+JITTER = 0.0005  # s by which two telemetry messages may be off two ticks: the estimate of the board's clock moves
+KEPT = 8  # plans that may still act on ticks of which no telemetry has come
+Duties = tuple[float, float, float]  # time of the tick [s]; duties of motors left and right, nan where unknown
+
+
+class MotorLog:
+    """Duties as telemetry and plans come. supply: at a duty of 1 [V]."""
+
+    def __init__(self, supply: float) -> None:
+        self._supply = supply
+        self._plans: deque[MalletPlan] = deque(maxlen=KEPT)
+        self._last: SeenMallet | None = None
+
+    def send(self, plan: MalletPlan) -> None:
+        """Take a plan that was sent."""
+        self._plans.append(plan)
+
+    def take(self, mallet: SeenMallet) -> list[Duties]:
+        """The duties up to the tick of this telemetry, those of ticks since the telemetry before it included. Where
+        some of it was lost, the duties in between are unknown."""
+        last, self._last = self._last, mallet
+        here = (mallet.time, *mallet.duties)
+        if last is None:
+            return [here]
+        if abs(mallet.time - last.time - 2.0 * TICK) > JITTER:
+            return [(last.time + TICK, math.nan, math.nan), here]
+        return [self._between(last, mallet), here]
+
+    def _between(self, before: SeenMallet, after: SeenMallet) -> Duties:
+        time = 0.5 * (before.time + after.time)
+        planned, earlier, later = (self._planned(one) for one in (time, before.time, after.time))
+        left, right = (
+            planned[k] + 0.5 * (before.duties[k] - earlier[k] + after.duties[k] - later[k]) for k in range(2)
+        )
+        return time, min(max(left, -1.0), 1.0), min(max(right, -1.0), 1.0)
+
+    def _planned(self, tick: float) -> tuple[float, float]:
+        """The duties of motors left and right that the plan alone gives in the tick that begins at `tick` [s]."""
+        plan = next((one for one in reversed(self._plans) if one.begin <= tick), None)
+        if plan is None or tick - plan.begin > plan.life:
+            return 0.0, 0.0
+        x, y = (
+            _mean_volts(*axis, tick - plan.begin) / self._supply
+            for axis in zip(plan.volts, plan.t1, plan.t2, strict=True)
+        )
+        return 0.5 * (x - y), -0.5 * (x + y)
+
+
+def _mean_volts(volts: float, t1: float, t2: float, since: float) -> float:
+    """The mean voltage [V] of a plan's axis in the tick that begins `since` [s] after the plan."""
+    until = since + TICK
+    forth = max(min(t1, until) - since, 0.0)
+    back = max(min(t2, until) - max(t1, since), 0.0)
+    return volts * (forth - back) / TICK
