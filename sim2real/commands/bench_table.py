@@ -20,9 +20,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Play and print. Returns 0. ValueError, in one line, if it cannot be played here."""
+    from sim2real.table.game_record import GameRecord
     from sim2real.table.loop import home_of
     from sim2real.table.loop_times import histogram, summary
-    from sim2real.table.game_record import GameRecord
     from sim2real.table.physical.rehearsal import rehearsal_table
     from sim2real.table.play import play_game
     from sim2real.table.robot_seat import RobotSeat

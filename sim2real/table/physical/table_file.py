@@ -8,10 +8,9 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from puckpilot_env.options.profile_file import read_profile
-
 from puckpilot_env.files.toml_file import check_format, read_toml, refuse_unknown, section
 from puckpilot_env.options.inputs import in_short, real_number
+from puckpilot_env.options.profile_file import read_profile
 from puckpilot_env.parameters import checked
 from sim2real.camera.region import RegionOfInterest
 from sim2real.camera.settings import CameraSettings
