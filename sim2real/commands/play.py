@@ -35,9 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("player", metavar="PLAYER", help="a script, or a policy by name, .npz file or run's folder")
     parser.add_argument("--backend", default="twin", metavar="NAME", help="twin (default), table or replay")
     parser.add_argument("--opponent", metavar="PLAYER", help="who has the other seat of a twin (default interceptor)")
-    parser.add_argument(
-        "--camera", metavar="KIND", help="of a twin: places (default), or pictures, drawn and looked at"
-    )
+    parser.add_argument("--camera", metavar="KIND", help="of a twin: places (default) or pictures, rendered and seen")
     parser.add_argument("--table", type=Path, metavar="FILE", help="the table.toml of a physical table")
     parser.add_argument("--recording", type=Path, metavar="DIR", help="the recording to replay")
     parser.add_argument("--variant", default="match-v0", metavar="ID", help="the game (default match-v0)")
