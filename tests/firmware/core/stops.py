@@ -52,7 +52,8 @@ class Stop:
 
 def gantry(strength: float = 1.0, **changed: object) -> Plugged:
     """Armed, with motors of this strength beside what the core is told."""
-    bench = Plugged(config(most_volts=MOST, **{**WIDE, **changed}), start=(0.5, 0.5)).armed()
+    bench = Plugged(config(most_volts=MOST, **{**WIDE, **changed}), start=(0.5, 0.5))
+    bench.armed()
     for axis in bench.axes:
         slow_rate, fast_rate, *gains = axis.constants
         rest_gain, slow_gain, fast_gain = (strength * one for one in gains)
