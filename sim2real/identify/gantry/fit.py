@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -55,12 +56,11 @@ class Fit:
 
 
 def errors(law: Law, log: GantryLog, windows: Windows) -> np.ndarray:
-    """Measured minus predicted places (w, h, 2) [m] of free runs."""
-    found = np.empty((*windows.ahead.shape, 2))
-    free_runs(
-        law.constants(), log.t, log.volts, log.place, windows.begin, windows.start, windows.ahead, GANTRY.noise,
-        SPREAD, found,
-    )  # fmt: skip
+    """Measured minus predicted places (w, h, 2) [m] of free runs; NaN for a law that cannot be simulated."""
+    found = np.full((*windows.ahead.shape, 2), np.nan)
+    at = windows.begin, windows.start, windows.ahead
+    with suppress(np.linalg.LinAlgError):  # an axis that is not overdamped, or a motion without bounds
+        free_runs(law.constants(), log.t, log.volts, log.place, *at, GANTRY.noise, SPREAD, found)
     return found
 
 

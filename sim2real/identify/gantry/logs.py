@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -68,8 +68,9 @@ def read_log(recording: Recording, supply: float) -> GantryLog:
     """The log of a recording; `supply` [V]. Raises ValueError, in one line, for a recording that has none."""
     if recording.mallet is None or not recording.mallet.rows:
         raise ValueError(f"{recording.name}: the mallet's path was not recorded (mallet.csv); record it too")
-    try:
-        inputs = find_drive_inputs(recording, supply)
+    logged = recording.drive is not None and recording.drive.rows > 0
+    try:  # what the motors got, feedback and all, rather than what was planned
+        inputs = find_drive_inputs(replace(recording, commands=None) if logged else recording, supply)
     except UnusableError as error:
         raise ValueError(f"{recording.name}: {error}; record one of them") from None
     path = np.column_stack([recording.mallet["mallet_x"], recording.mallet["mallet_y"]])

@@ -57,6 +57,12 @@ def test_a_number_is_determined_only_by_an_interval_that_says_something() -> Non
     assert found.half({"c6_x": 0.5, "c7_x": 0.5}) == pytest.approx(2.0 * np.hypot(0.0005, 0.01))
 
 
+def test_a_law_that_cannot_be_simulated_predicts_nothing() -> None:
+    one = piece(6, 3.0)
+    assert np.isfinite(errors(as_shipped(RADIUS), one.log, one.fit)).all()
+    assert np.isnan(errors(as_shipped(RADIUS).at({"lag": 100.0}), one.log, one.fit)).all()
+
+
 @pytest.mark.slow
 def test_a_log_that_differs_widens_the_intervals_of_all() -> None:
     alike = fit(as_shipped(RADIUS), [piece(k, 3.0, push=0.05) for k in range(4)])

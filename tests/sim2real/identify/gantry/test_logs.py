@@ -42,6 +42,12 @@ def test_plans_are_taken_where_no_pwm_was_logged(recording: Recording) -> None:
         assert (left - right, -left - right) == pytest.approx(axes)
 
 
+def test_the_pwm_counts_where_both_were_recorded(recording: Recording) -> None:
+    plan = {name: np.zeros(1) for name in ("t", "x_f", "y_f", "V_x", "V_y", "t_x1", "t_x2", "t_y1", "t_y2")}
+    both = read_log(replace(recording, commands=Stream(plan)), SUPPLY)
+    assert np.array_equal(both.volts, read_log(recording, SUPPLY).volts) and np.ptp(both.volts) > 10.0
+
+
 def test_no_window_spans_a_gap_of_either_stream(recording: Recording) -> None:
     mallet, drive = recording.mallet, recording.drive
     assert mallet is not None and drive is not None
