@@ -47,8 +47,8 @@ def find_camera(setup: Setup, geometry: TableGeometry, image: np.ndarray) -> tup
 def clear_markers(
     setup: Setup, geometry: TableGeometry, motion: np.ndarray, image: np.ndarray
 ) -> dict[int, np.ndarray]:
-    """The corners (4, 2) [pixels], by marker, of those that a picture uint8 (rows, columns) clearly shows where a camera
-    with this motion (6,) must see them."""
+    """The corners (4, 2) [pixels], by marker, of those that a picture uint8 (rows, columns) clearly shows where a
+    camera with this motion (6,) must see them."""
     due = _corners_in_picture(setup.camera, geometry, motion, image.shape)
     found = _refined(setup, geometry, motion, smoothed(image))
     return {name: one for name, one in found.items() if np.abs(one - due[name]).max() < MOST_SPREAD + FAR}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -154,6 +155,6 @@ def test_a_setting_is_refused_where_the_source_takes_none(word: str, settings: C
 
 
 @pytest.mark.parametrize("wrong", [{"rate": 0.0}, {"rate": float("nan")}, {"exposure": 100.0}, {"exposure": -1e-4}])
-def test_an_impossible_rate_or_exposure_is_refused(wrong: dict[str, float]) -> None:
+def test_an_impossible_rate_or_exposure_is_refused(wrong: dict[str, Any]) -> None:
     with pytest.raises(CameraError, match=f"{next(iter(wrong))} is .*; expected"):
         open_source("synthetic", CameraSettings(**wrong))

@@ -197,7 +197,7 @@ class Spin:
 
     def __init__(self, cameras: int = 1) -> None:
         self.cameras, self.calls, self.values, self.count, self.released = cameras, [], {}, 0, 0
-        self.steps: dict[str, int] = {}  # by which a feature differs from what it was set to
+        self.steps: dict[str, float] = {}  # by which a feature differs from what it was set to
         self.System = SimpleNamespace(GetInstance=lambda: self)
 
     def __getattr__(self, name: str):

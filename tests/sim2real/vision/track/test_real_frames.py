@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.ndimage import map_coordinates
 
 import puckpilot
 from sim2real.camera.frame import Frame
@@ -19,9 +20,12 @@ from sim2real.camera.grey_image import read_grey
 from sim2real.camera.region import RegionOfInterest
 from sim2real.camera.settings import CameraSettings
 from sim2real.vision.calibrate.calibration_view import read_view
+from sim2real.vision.calibrate.find_camera import find_camera
 from sim2real.vision.calibrate.multiview import solve
 from sim2real.vision.calibrate.table_file import TableCalibration, write_table
 from sim2real.vision.camera_file import read_setup
+from sim2real.vision.locate import Locator
+from sim2real.vision.photograph import smoothed
 from sim2real.vision.track.detector import Detections
 from sim2real.vision.track.tracker import Targets, Tracker
 from tests.places import UBC
@@ -72,6 +76,30 @@ def test_puck_and_ring_are_found_in_both() -> None:
     assert at[1, 0] == pytest.approx((0.878, 0.306), abs=3e-3)  # as it was found by hand, with an assumed radius
     assert tracker.film.radius == pytest.approx(0.0309, abs=1.5e-3) and tracker.film.covariance[0, 0] < 0.5e-3**2
     assert tracker.pose is not None and len(tracker.pose.residuals) == 16 and tracker.pose.rms < 0.5
+
+
+def halfway_line(image: np.ndarray, locator: Locator) -> np.ndarray:
+    """Where along the table [m] the line across its middle is seen, at places left and right of the logo: the centroid
+    of what is brighter than a third of it."""
+    x, even, found = np.linspace(1.15, 1.22, 141), smoothed(image), []
+    for y in (0.1, 0.2, 0.3, 0.4, 0.75, 0.85, 0.95, 1.03):
+        rows = [np.column_stack([x, np.full_like(x, y + d)]) for d in np.linspace(-0.015, 0.015, 7)]
+        seen = [map_coordinates(even, locator.pixels(row, 0.0).T[::-1], order=1) for row in rows]
+        level = np.mean(seen, axis=0)
+        light = np.clip(level - np.median(level) - 0.3 * np.ptp(level), 0.0, None)
+        found.append((light * x).sum() / light.sum())
+    return np.array(found)
+
+
+def test_the_halfway_line_is_where_the_photographs_have_it() -> None:
+    """Nothing that locates the camera uses it: it tells how far its pose, along the table, can be trusted."""
+    table, (image, _), (_, tracker) = calibration(), pictures(), found(None)
+    assert tracker.locator is not None
+    photograph = read_grey(UBC / "calibration" / "view_3" / "view.png")
+    pose, _ = find_camera(table.setup, table.geometry, photograph)
+    before = Locator(table.setup.camera, pose.motion, table.geometry.surface, table.geometry.warp)
+    off = halfway_line(image, tracker.locator) - halfway_line(photograph, before)
+    assert abs(off.mean()) < 2.0 * tracker.place_std < STATED and off.std() < 0.3e-3
 
 
 def test_noise_changes_little() -> None:
