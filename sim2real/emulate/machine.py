@@ -226,7 +226,7 @@ class Machine:
             if base == self.nvic.base:
                 return self.nvic.read(offset, size)
             raise self._refusal(f"read of {size} bytes", base + offset)
-        except BaseException as error:  # noqa: BLE001 - Unicorn's C code is between here and who handles it
+        except BaseException as error:  # Unicorn's code is between here and who handles it
             self.cpu.fail(error)
             return 0
 
@@ -239,7 +239,7 @@ class Machine:
                 self.nvic.write(offset, value, size)
             else:
                 raise self._refusal(f"write of {size} bytes", base + offset)
-        except BaseException as error:  # noqa: BLE001
+        except BaseException as error:
             self.cpu.fail(error)
 
     def _refusal(self, what: str, address: int) -> NotModelledError:
