@@ -120,8 +120,8 @@ def _lines(result: dict[str, Any]) -> list[str]:
         one = result[name]
         scored, conceded = one["goals_a_minute"]
         lines.append(
-            f"{name:11}{player} {one['wins'][0]}:{one['wins'][1]} {opponent} in {result['games']} games; goals a minute "
-            f"{scored:.2f} and {conceded:.2f}, {one['minutes']:.1f} minutes of play"
+            f"{name:11}{player} {one['wins'][0]}:{one['wins'][1]} {opponent} in {result['games']} games; "
+            f"goals a minute {scored:.2f} and {conceded:.2f}, {one['minutes']:.1f} minutes of play"
         )
     if result["goals_ratio"] is not None:
         lines.append(
@@ -129,7 +129,7 @@ def _lines(result: dict[str, Any]) -> list[str]:
             "goals a minute"
         )
     lines.append(
-        f"the twin ran at {speed['times_real_time']:.2f} times real time of one core, {speed['slowest_game']:.2f} in the "
-        f"slowest game, {speed['times_real_time_by_the_clock']:.2f} by the clock on the wall"
+        f"the twin ran at {speed['times_real_time']:.2f} times real time of one core, {speed['slowest_game']:.2f} in "
+        f"the slowest game, {speed['times_real_time_by_the_clock']:.2f} by the clock on the wall"
     )
     return lines

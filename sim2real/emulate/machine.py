@@ -226,7 +226,7 @@ class Machine:
             if base == self.nvic.base:
                 return self.nvic.read(offset, size)
             raise self._refusal(f"read of {size} bytes", base + offset)
-        except BaseException as error:
+        except BaseException as error:  # Unicorn's code is between here and who handles it
             self.cpu.fail(error)
             return 0
 

@@ -167,8 +167,8 @@ class BoardClock:
         return due + _signed(board_us - due)
 
     def _lines(self) -> EnvelopeLines:
-        """The lines that satisfy all exchanges, as far as their slopes are possible. x: the board's time since it received the newest ping [s]; y: the
-        host's time since it sent that ping, minus x [s]."""
+        """The lines that satisfy all exchanges, as far as their slopes are possible. x: the board's time since it
+        received the newest ping [s]; y: the host's time since it sent that ping, minus x [s]."""
         ping_sent, received = self._newest()[:2]
         lower = np.array([((one[1] - received) * MICRO, one[0] - ping_sent) for one in self._below])
         upper = np.array([((one[2] - received) * MICRO, one[3] - ping_sent) for one in self._above])

@@ -60,6 +60,7 @@ class Twin(LiveTable):
 
     def open(self, home: Place) -> None:
         """Switch board and camera on."""
+        self._decision = None
         self.plant = Plant(self._law, home, self.hand.home)
         self.board = EmulatedBoard(self.plant, float(self.p["max_voltage"]), self._seed)
         self.eyes = self.camera = self._make_camera(self._seed)
@@ -109,8 +110,8 @@ class Twin(LiveTable):
             line.poll()
 
     def play(self, game: np.void) -> None:
-        """The hand decides what to do next: as in the simulator, at the moment at which the robot's action acts. Actions
-        that are given from outside act at once, for they are of the table as it is now."""
+        """The hand decides what to do next: as in the simulator, at the moment at which the robot's action acts. An
+        action that is given from outside acts at once, for it is of the table as it is now."""
         self._decision = self.now() + self._reaction, game.copy()
 
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sim2real.link.board_clock import BoardClock
+from sim2real.link.board_clock import MOST_DRIFT, BoardClock
 from tests.sim2real.link.simulated_line import Line, error_us
 
 SETTLED = 5.0  # s of pings after which the bar holds
@@ -139,3 +139,20 @@ def test_no_answers_at_all_upset_it(answers):
         sent, now = now + wait, now + wait + trip
         if clock.add(sent, received, (received + spent) % 2**32, now):
             assert sent - clock.error_s(sent) - 2e-6 <= clock.to_host(received) <= now + clock.error_s(now) + 2e-6
+
+
+def test_superfluous_exchanges_bind_no_line():
+    """Against the lines by all exchanges of the window, whatever the slope; few of them are kept."""
+    clock, line = BoardClock(), Line(3, 50e-6)
+    for exchange in line.exchanges(40.0):
+        clock.add(*exchange)
+    ping_sent, received = clock._newest()[:2]
+    since = np.array([(a - ping_sent, b - received, c - received, d - ping_sent) for a, b, c, d in clock._exchanges])
+    there, back = 1e-6 * since[:, 1], 1e-6 * since[:, 2]
+    slopes = np.linspace(-MOST_DRIFT, MOST_DRIFT, 41)[:, None]
+    lowest = (since[:, 0] - there - 1e-6 - slopes * there).max(axis=1)
+    highest = (since[:, 3] - back - slopes * back).min(axis=1)
+    lines = clock._lines()
+    assert lines._lowest(slopes[:, 0]) == pytest.approx(lowest, abs=1e-12)
+    assert lines._highest(slopes[:, 0]) == pytest.approx(highest, abs=1e-12)
+    assert len(clock._below) < len(clock) / 2 and len(clock._above) < len(clock) / 2
