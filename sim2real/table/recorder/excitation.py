@@ -68,11 +68,11 @@ def excite_gantry(
     seconds: float,
     volts: Sequence[float],
     seed: int,
-    progress: Callable[[float, float], None],
+    progress: Callable[[int, int], None],
 ) -> int:
     """Drive a connected table's mallet through `excitation` for `seconds`; return the number of moves.
 
-    progress: called with the seconds done and all of them. TableFaultError, in one line, as of the backend.
+    progress: called with the milliseconds done and all of them. TableFaultError, in one line, as of the backend.
     """
     driver, begin, count = MalletDriver(p), table.now(), 0
     driver.stand(*table.place(), begin)
@@ -84,7 +84,7 @@ def excite_gantry(
         while not driver.standing(table.now()):
             _pass(table, SLICE)
         _pass(table, move.rest)
-        progress(min(table.now() - begin, seconds), seconds)
+        progress(round(1e3 * min(table.now() - begin, seconds)), round(1e3 * seconds))
     return count
 
 

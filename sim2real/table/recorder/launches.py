@@ -25,11 +25,11 @@ def record_launches(
     seconds: float,
     seed: int,
     report: Callable[[str], None],
-    progress: Callable[[float, float], None],
+    progress: Callable[[int, int], None],
 ) -> LaunchCoverage:
     """Have the puck launched again and again for `seconds` at a connected table, while its mallet is held where it is.
 
-    report: takes the advice for each launch, a line; progress: called with the seconds done and all of them. Returns
+    report: takes the advice for each launch, a line; progress: called with the milliseconds done and all of them. Returns
     what was seen. TableFaultError, in one line, as of the backend.
     """
     random = np.random.default_rng(seed)
@@ -49,7 +49,7 @@ def record_launches(
             table.wait(table.now() + HOLD)
             for frame in table.read().frames:
                 watcher.take(frame)
-            progress(min(table.now() - begin, seconds), seconds)
+            progress(round(1e3 * min(table.now() - begin, seconds)), round(1e3 * seconds))
             if len(coverage.launches) > known:
                 if not watcher.moving:
                     break

@@ -1,8 +1,9 @@
 """The motors' duties of every control tick, from telemetry of every second one and the plans that were sent.
 
-A tick's duty is the plan's mean voltage in that tick plus the board's feedback (`firmware/core/robot.c`, `drive`). The
-plan is known, and between neighbouring ticks the feedback changes by a few steps of the encoders, some 10 mV. So the
-duty of a tick without telemetry is the plan's, plus the mean feedback of the ticks before and after it.
+A tick's duty is the plan's mean voltage in that tick plus the board's feedback, scaled down to what a motor may get
+(`firmware/core/robot.c`, `drive`). The plan is known, and between neighbouring ticks the feedback changes by a few steps
+of the encoders, some 10 mV. So the duty of a tick without telemetry is the plan's, plus the mean feedback of the ticks
+before and after it; of one of them, where at the other another plan was followed or the motors got all they may.
 """
 
 from __future__ import annotations
@@ -10,20 +11,23 @@ from __future__ import annotations
 import math
 from collections import deque
 
+import numpy as np
+
 from sim2real.table.backend import SeenMallet
 from sim2real.table.mallet_driver import MalletPlan
 
 TICK = 0.001  # s, of the board's control (TICK_US in firmware/core/include/robot.h)
 JITTER = 0.0005  # s by which two telemetry messages may be off two ticks: the estimate of the board's clock moves
+ROUNDING = 1e-3  # of a duty: the board writes it in steps of 1/3600
 KEPT = 8  # plans that may still act on ticks of which no telemetry has come
 Duties = tuple[float, float, float]  # time of the tick [s]; duties of motors left and right, nan where unknown
 
 
 class MotorLog:
-    """Duties as telemetry and plans come. supply: at a duty of 1 [V]."""
+    """Duties as telemetry and plans come. supply: at a duty of 1 [V]; most: that a motor ever gets [V]."""
 
-    def __init__(self, supply: float) -> None:
-        self._supply = supply
+    def __init__(self, supply: float, most: float) -> None:
+        self._supply, self._most = supply, most / supply
         self._plans: deque[MalletPlan] = deque(maxlen=KEPT)
         self._last: SeenMallet | None = None
 
@@ -44,16 +48,23 @@ class MotorLog:
 
     def _between(self, before: SeenMallet, after: SeenMallet) -> Duties:
         time = 0.5 * (before.time + after.time)
-        planned, earlier, later = (self._planned(one) for one in (time, before.time, after.time))
-        left, right = (
-            planned[k] + 0.5 * (before.duties[k] - earlier[k] + after.duties[k] - later[k]) for k in range(2)
-        )
-        return time, min(max(left, -1.0), 1.0), min(max(right, -1.0), 1.0)
+        plan = self._playing(time)
+        near = [one for one in (before, after) if self._playing(one.time) is plan] or [before, after]
+        free = [one for one in near if max(map(abs, one.duties)) < self._most - ROUNDING] or near
+        feedback = np.mean([np.subtract(one.duties, self._planned(one.time)) for one in free], axis=0)
+        left, right = feedback + self._planned(time) if plan is not None else (0.0, 0.0)
+        scale = min(self._most / max(abs(left), abs(right), self._most), 1.0)
+        return time, float(scale * left), float(scale * right)
+
+    def _playing(self, tick: float) -> MalletPlan | None:
+        """The plan that is followed in the tick that begins at `tick` [s]."""
+        plan = next((one for one in reversed(self._plans) if one.begin <= tick), None)
+        return None if plan is None or tick - plan.begin > plan.life else plan
 
     def _planned(self, tick: float) -> tuple[float, float]:
         """The duties of motors left and right that the plan alone gives in the tick that begins at `tick` [s]."""
-        plan = next((one for one in reversed(self._plans) if one.begin <= tick), None)
-        if plan is None or tick - plan.begin > plan.life:
+        plan = self._playing(tick)
+        if plan is None:
             return 0.0, 0.0
         x, y = (
             _mean_volts(*axis, tick - plan.begin) / self._supply

@@ -11,7 +11,7 @@ from puckpilot_env.physics.gantry.mallet import axis_coefficients
 from sim2real.recording.checks import FORMAT
 from sim2real.recording.table_parameters import FROM_META
 from sim2real.table.backend import Backend, Motion, Place, Reading, SeenFrame, SeenMallet
-from sim2real.table.mallet_driver import MalletPlan
+from sim2real.table.mallet_driver import MalletPlan, operating_volts
 from sim2real.table.recorder.draft import RecordingDraft
 from sim2real.table.recorder.motor_log import MotorLog
 
@@ -30,7 +30,7 @@ class RecordedTable(Backend):
 
     def __init__(self, table: Backend, draft: RecordingDraft, p: np.void) -> None:
         self._table, self._draft, self._p = table, draft, p
-        self._motors = MotorLog(float(p["max_voltage"]))
+        self._motors = MotorLog(float(p["max_voltage"]), operating_volts(p))
         self._zero: float | None = None  # host's time at which the recording's is 0 [s]
         self._plans: list[MalletPlan] = []  # sent before that was known
         self.obeys, self.patience = table.obeys, table.patience

@@ -11,7 +11,7 @@ from sim2real.table.backend import SeenMallet
 from sim2real.table.mallet_driver import MalletPlan
 from sim2real.table.recorder.motor_log import MotorLog
 
-SUPPLY = 24.0
+SUPPLY, MOST = 24.0, 15.0  # V
 
 
 def seen(time: float, left: float = 0.0, right: float = 0.0) -> SeenMallet:
@@ -23,7 +23,7 @@ def plan(begin: float, volts: tuple[float, float], t1: tuple[float, float], t2: 
 
 
 def test_a_switch_between_two_ticks_is_the_plans_mean() -> None:
-    log = MotorLog(SUPPLY)
+    log = MotorLog(SUPPLY, MOST)
     log.send(plan(1.0, (12.0, 0.0), (0.0035, 0.0), (0.1, 0.0)))  # 12 V for 3.5 ms, then -12 V
     assert log.take(seen(1.0, 0.25, -0.25)) == [(1.0, 0.25, -0.25)]
     rows = log.take(seen(1.002, 0.25, -0.25))
@@ -33,7 +33,7 @@ def test_a_switch_between_two_ticks_is_the_plans_mean() -> None:
 
 
 def test_y_drives_both_motors_the_same_way_and_feedback_is_interpolated() -> None:
-    log = MotorLog(SUPPLY)
+    log = MotorLog(SUPPLY, MOST)
     log.send(plan(1.0, (0.0, 12.0), (0.0, 0.05), (0.0, 0.1)))
     log.take(seen(1.0, -0.25 + 0.02, -0.25))
     rows = log.take(seen(1.002, -0.25 + 0.04, -0.25))
@@ -41,14 +41,14 @@ def test_y_drives_both_motors_the_same_way_and_feedback_is_interpolated() -> Non
 
 
 def test_a_plan_that_is_over_gives_nothing() -> None:
-    log = MotorLog(SUPPLY)
+    log = MotorLog(SUPPLY, MOST)
     log.send(plan(1.0, (12.0, 0.0), (0.5, 0.0), (0.6, 0.0)))
     log.take(seen(1.8))  # its life ended at 1.7 s
     np.testing.assert_allclose(log.take(seen(1.802))[0], (1.801, 0.0, 0.0))
 
 
 def test_lost_telemetry_leaves_the_duties_between_unknown() -> None:
-    log = MotorLog(SUPPLY)
+    log = MotorLog(SUPPLY, MOST)
     log.take(seen(1.0, 0.1, 0.1))
     (time, left, right), last = log.take(seen(1.006, 0.2, 0.2))
     assert time == pytest.approx(1.001) and math.isnan(left) and math.isnan(right)
