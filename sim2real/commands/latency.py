@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from sim2real.table.latency.part import Part
 
-SECONDS = (6.0, 600.0)  # s that a measurement may take
+SECONDS = (8.0, 600.0)  # s that a measurement may take
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

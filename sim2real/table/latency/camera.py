@@ -1,4 +1,4 @@
-"""The camera's parts: by a ring on the robot's mallet against the encoders, or by the mallet's contacts with the puck."""
+"""The camera's parts: by a ring on the robot's mallet, or by its contacts with the puck, against the encoders."""
 
 from __future__ import annotations
 

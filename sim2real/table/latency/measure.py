@@ -10,8 +10,8 @@ from puckpilot_env.game.start import HOME
 from sim2real.recording.folder import Recording, Stream
 from sim2real.table.backend import Place, Reading, SeenFrame, SeenMallet
 from sim2real.table.faults import Cause, TableFaultError
-from sim2real.table.live_table import LiveTable
 from sim2real.table.latency.strokes import strokes
+from sim2real.table.live_table import LiveTable
 from sim2real.table.mallet_driver import AHEAD, MalletDriver
 
 SETTLING = 1.0  # s of pings before the first stroke

@@ -10,7 +10,7 @@ KEPT = ("camera", "camera_drift", "frame", "line", "command", "follow", "total")
 
 
 def table_lines(parts: Sequence[Part], injected: Mapping[str, float] | None = None) -> list[str]:
-    """A line for each part: value, interval, from what to what, by what; `injected`: what is true of a twin, by name."""
+    """A line for each part: value, interval, from what to what, by what; `injected`: what is true of a twin."""
     head = ["part", "value", "95 % interval", *(["injected"] if injected else []), "what", "by"]
     rows = [head] + [_row(one, injected) for one in parts if one.determined]
     widths = [max(len(row[k]) for row in rows) for k in range(len(head) - 1)]

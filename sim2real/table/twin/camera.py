@@ -16,8 +16,7 @@ from sim2real.table.twin.plant import Plant
 class CameraErrors:
     """Frames a second, delay from exposure until a place can be used [s], and its noise, each coordinate [m].
 
-    A frame exposed at t [s] is stamped `(1 + drift) t + stamp_late`: the camera's clock is `stamp_late` [s] ahead, and
-    gains `drift` [1].
+    The camera's clock is `stamp_late` [s] ahead, and gains `drift` [1].
     """
 
     rate: float = 120.0
@@ -25,6 +24,10 @@ class CameraErrors:
     noise: float = 0.0001
     stamp_late: float = 0.0
     drift: float = 0.0
+
+    def stamp(self, exposed: float) -> float:
+        """The stamp [s] of a frame exposed at a time [s]."""
+        return (1.0 + self.drift) * exposed + self.stamp_late
 
 
 class TwinCamera:
@@ -46,10 +49,10 @@ class TwinCamera:
         """Take a frame of the plant as it is now."""
         self._taken += 1
         if not self.unplugged:
-            stamp = (1.0 + self.errors.drift) * plant.time + self.errors.stamp_late
             puck, opponent = (self._measured(place, self._random) for place in (plant.puck[:2], plant.mallet(1)[:2]))
             robot = self._measured(plant.mallet(0)[:2], self._ring_random)
-            self._coming.append((plant.time + self.errors.delay, SeenFrame(stamp, puck, opponent, robot=robot)))
+            frame = SeenFrame(self.errors.stamp(plant.time), puck, opponent, robot=robot)
+            self._coming.append((plant.time + self.errors.delay, frame))
 
     def _measured(self, place: ArrayLike, random: np.random.Generator) -> Place | None:
         x, y = np.asarray(place) + self.errors.noise * random.standard_normal(2)
