@@ -98,8 +98,12 @@ def _of_table(args: argparse.Namespace) -> int:
 
 def _result(args: argparse.Namespace, injected: dict, true: dict, parts: Sequence[Part]) -> dict[str, Any]:
     found = {one.name: one.as_dict() for one in parts}
-    for name, value in true.items():
-        found[name]["injected"] = value
+    for one in parts:
+        if one.name in true:
+            known = (
+                {"injected": true[one.name], "off": abs(one.value - true[one.name])} if one.value is not None else {}
+            )
+            found[one.name] |= known
     return {"backend": args.backend, "seconds": args.seconds, "seed": args.seed, "inject": injected, "parts": found}
 
 

@@ -77,9 +77,7 @@ def test_without_a_ring_the_camera_is_not_determined(everything: Measurement) ->
 
 @pytest.mark.slow
 def test_the_same_measurement_as_a_recording_says_the_same(everything: Measurement) -> None:
-    live, later = (by_name(one(of)) for one, of in (
-        (parts_of_measurement, everything), (parts_of_recording, everything.recording)
-    ))  # fmt: skip
+    live, later = by_name(parts_of_measurement(everything)), by_name(parts_of_recording(everything.recording))
     for name in ("camera", "camera_drift", "command", "follow"):
         near = 0.01 if live[name].unit == "ppm" else 1e-6
         assert later[name].value == pytest.approx(live[name].value, abs=near), name
