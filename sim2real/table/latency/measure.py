@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
 
 from puckpilot_env.game.start import HOME
+from sim2real.link.board_clock import WINDOW, BoardClock
 from sim2real.recording.folder import Recording, Stream
 from sim2real.table.backend import Place, Reading, SeenFrame, SeenMallet
 from sim2real.table.faults import Cause, TableFaultError
@@ -17,6 +19,7 @@ from sim2real.table.mallet_driver import AHEAD, MalletDriver
 SETTLING = 1.0  # s of pings before the first stroke
 PAUSE = 0.03  # s of rest after a stroke
 LOOK = 0.0005  # s between looks at what came
+SURE = 0.5 * WINDOW  # s after which a time of the board's clock is taken: then pings from before and after it are used
 
 
 @dataclass(frozen=True)
@@ -70,9 +73,10 @@ def measure(table: LiveTable, p: np.void, home: Place, seconds: float) -> Measur
         table.send(driver.plan(action, begin))
         while table.now() < begin or not driver.standing(table.now() - PAUSE):
             table.wait(table.now() + LOOK)
-            watched.take(table.now(), table.read())
+            watched.take(table.now(), table.read(), session.clock)
         errors.append(session.clock.error_s())
     clock = session.clock
+    watched.tell_times(clock, -np.inf)
     echo = Echo(np.array(session.pings.round_trips), max(errors), clock.drift, clock.drift_error)
     table.stop()
     return Measurement(watched.recording(p), np.array(watched.arrived).reshape(-1, 2), echo)
@@ -83,13 +87,22 @@ class _Watched:
         self.frames: list[SeenFrame] = []
         self.mallets: list[SeenMallet] = []
         self.arrived: list[tuple[float, float]] = []
+        self.times: list[float] = []  # of `mallets`, on the host's clock [s]
+        self._ticks: deque[int] = deque()  # of those whose time is not taken yet, on the board's clock [us]
         self._looked = now
 
-    def take(self, now: float, reading: Reading) -> None:
+    def take(self, now: float, reading: Reading, clock: BoardClock) -> None:
         self.frames += reading.frames
         self.arrived += [(self._looked, now)] * len(reading.frames)
         self.mallets += reading.mallets
+        self._ticks += [clock.to_board(one.time) for one in reading.mallets]
         self._looked = now
+        self.tell_times(clock, SURE)
+
+    def tell_times(self, clock: BoardClock, after: float) -> None:
+        """Take the host's times of telemetry that is older than `after` [s]."""
+        while self._ticks and self._looked - clock.to_host(self._ticks[0]) > after:
+            self.times.append(clock.to_host(self._ticks.popleft()))
 
     def recording(self, p: np.void) -> Recording:
         if not self.frames or not self.mallets:
@@ -98,7 +111,7 @@ class _Watched:
         frames = {"t": np.array([one.time for one in self.frames])}
         for name in ("puck", "opponent", "robot"):
             frames |= _columns(name, [getattr(one, name) for one in self.frames])
-        t = np.array([one.time for one in self.mallets])
+        t = np.array(self.times)
         path = _columns("expected", [one.path for one in self.mallets])
         mallet = {"t": t, **_columns("mallet", [one.place for one in self.mallets]), **path}
         meta = {
