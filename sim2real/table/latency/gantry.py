@@ -17,6 +17,7 @@ from sim2real.table.latency.path_shift import NotDeterminedError, path_shift
 
 COMMAND = Kind("command", "volts to the mallet's motion", "the gantry's law, its delay free")
 FOLLOW = Kind("follow", "the plan's path to the mallet", "the encoders against the path")
+TICK_WORK = 0.00017  # s, of a tick's 12,000 instructions: so long after its stamp may it read encoders or drive motors
 STARTS = (0.0, 0.01, 0.03, 0.06)  # s, of the delay
 
 
@@ -37,7 +38,7 @@ def command_delay(recording: Recording) -> Part:
     tries = [fit(few, {name: start}, free, few.everything, GANTRY_FIT.rounds) for start in STARTS]
     best = min(tries, key=lambda one: one.loss)
     found = fit(problem, best.values, free, problem.everything, GANTRY_FIT.rounds).estimate(name)
-    return COMMAND.between(found.value, found.low, found.high)
+    return COMMAND.between(found.value, max(found.low - TICK_WORK, 0.0), found.high + TICK_WORK)
 
 
 def _pushes(recording: Recording) -> np.ndarray:

@@ -14,7 +14,8 @@ from sim2real.table.backend import Place, Reading, SeenFrame, SeenMallet
 from sim2real.table.faults import Cause, TableFaultError
 from sim2real.table.latency.strokes import strokes
 from sim2real.table.live_table import LiveTable
-from sim2real.table.mallet_driver import AHEAD, MalletDriver
+from sim2real.table.mallet_driver import AHEAD, MalletDriver, operating_volts
+from sim2real.table.recorder.motor_log import Duties, MotorLog
 
 SETTLING = 1.0  # s of pings before the first stroke
 PAUSE = 0.03  # s of rest after a stroke
@@ -65,12 +66,12 @@ def measure(table: LiveTable, p: np.void, home: Place, seconds: float) -> Measur
     ahead = AHEAD + max(session.pings.round_trips)
     driver.stand(*table.place(), table.now())
     table.read()
-    watched, errors, end = _Watched(table.now()), [], table.now() + seconds
+    watched, errors, end = _Watched(table.now(), p), [], table.now() + seconds
     for action in strokes(home):
         if table.now() >= end:
             break
         begin = table.now() + ahead
-        table.send(driver.plan(action, begin))
+        watched.motors.send(table.send(driver.plan(action, begin)))
         while table.now() < begin or not driver.standing(table.now() - PAUSE):
             table.wait(table.now() + LOOK)
             watched.take(table.now(), table.read(), session.clock)
@@ -83,7 +84,9 @@ def measure(table: LiveTable, p: np.void, home: Place, seconds: float) -> Measur
 
 
 class _Watched:
-    def __init__(self, now: float) -> None:
+    def __init__(self, now: float, p: np.void) -> None:
+        self.motors = MotorLog(float(p["max_voltage"]), operating_volts(p))
+        self.duties: list[Duties] = []
         self.frames: list[SeenFrame] = []
         self.mallets: list[SeenMallet] = []
         self.arrived: list[tuple[float, float]] = []
@@ -95,6 +98,7 @@ class _Watched:
         self.frames += reading.frames
         self.arrived += [(self._looked, now)] * len(reading.frames)
         self.mallets += reading.mallets
+        self.duties += [row for one in reading.mallets for row in self.motors.take(one)]
         self._ticks += [clock.to_board(one.time) for one in reading.mallets]
         self._looked = now
         self.tell_times(clock, SURE)
@@ -118,7 +122,7 @@ class _Watched:
             "table": {"length_m": float(p["length"]), "width_m": float(p["width"])},
             "gantry": {"supply_V": float(p["max_voltage"]), "pulley_radius_m": float(p["pulley_radius"])},
         }
-        return Recording("measurement", meta, Stream(frames), Stream(mallet), drive=_drive(t, self.mallets))
+        return Recording("measurement", meta, Stream(frames), Stream(mallet), drive=_drive(t, self.duties))
 
 
 def _columns(name: str, places: list[Place | None]) -> dict[str, np.ndarray]:
@@ -126,9 +130,8 @@ def _columns(name: str, places: list[Place | None]) -> dict[str, np.ndarray]:
     return {f"{name}_x": x, f"{name}_y": y}
 
 
-def _drive(t: np.ndarray, mallets: list[SeenMallet]) -> Stream:
-    """The motors' duties at the board's ticks: telemetry has every other, the mean of its neighbours is put between."""
-    duties = np.array([one.duties for one in mallets])
-    times = np.column_stack([t[:-1], 0.5 * (t[:-1] + t[1:])]).ravel()
-    values = np.stack([duties[:-1], 0.5 * (duties[:-1] + duties[1:])], axis=1).reshape(-1, 2)
-    return Stream({"t": times, "pwm_left": values[:, 0], "pwm_right": values[:, 1]})
+def _drive(t: np.ndarray, duties: list[Duties]) -> Stream:
+    """The motors' duties of every tick: those of telemetry, at its times `t` (n,) [s], and of the ticks between."""
+    times = np.sort(np.concatenate([t, 0.5 * (t[:-1] + t[1:])]))
+    _, left, right = np.array(duties).T
+    return Stream({"t": times, "pwm_left": left, "pwm_right": right})
