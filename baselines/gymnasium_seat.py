@@ -28,7 +28,7 @@ from puckpilot_env.options.inputs import in_short, whole_number
 from puckpilot_env.tables import MOST_TABLES, Tables
 from puckpilot_env.variants import Variant
 
-TABLE_SEAT = "sim2real.table.robot_seat"  # of a package above this one, so loaded only where a backend is named
+TABLE_SEAT = "sim2real.table.game.robot_seat"  # of a package above this one, so loaded only where a backend is named
 AnyOpponent = str | Callable[[Seat], Player] | Opponent  # a name, a function from a seat to a player, or a player
 
 

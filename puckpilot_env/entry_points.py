@@ -11,14 +11,14 @@ from puckpilot_env.variants import Variant
 if TYPE_CHECKING:
     from pettingzoo import AECEnv, ParallelEnv
 
-TWO_SEATS = "sim2real.table.two_seats"  # of a package above this one, so loaded only where a backend is named
+TWO_SEATS = "sim2real.table.game.two_seats"  # of a package above this one, so loaded only where a backend is named
 
 
 def entry_points(
     variant: Variant,
 ) -> tuple[Callable[..., AECEnv], Callable[..., ParallelEnv], Callable[..., AECEnv]]:
     """PettingZoo's `(env, parallel_env, raw_env)` of a variant; `parallel_env.TableEnv` describes their arguments, and
-    with a `backend`, a table outside the simulator, `sim2real.table.two_seats.TwoSeats` does."""
+    with a `backend`, a table outside the simulator, `sim2real.table.game.two_seats.TwoSeats` does."""
 
     def parallel_env(*, backend: str | None = None, **options: Any) -> ParallelEnv:
         from puckpilot_env.adapters.parallel_env import TableEnv

@@ -20,12 +20,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Play and print. Returns 0. ValueError, in one line, if it cannot be played here."""
-    from sim2real.table.game_record import GameRecord
-    from sim2real.table.loop import home_of
-    from sim2real.table.loop_times import histogram, summary
+    from sim2real.table.game.game_record import GameRecord
+    from sim2real.table.game.loop import home_of
+    from sim2real.table.game.loop_times import histogram, summary
+    from sim2real.table.game.play import play_game
+    from sim2real.table.game.robot_seat import RobotSeat
     from sim2real.table.physical.rehearsal import rehearsal_table
-    from sim2real.table.play import play_game
-    from sim2real.table.robot_seat import RobotSeat
 
     if not 1.0 <= args.seconds <= 3600.0:
         raise ValueError(f"--seconds is {args.seconds:g}; expected 1 to 3600")

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from contextlib import AbstractContextManager
 
     from sim2real.table.faults import TableFaultError
-    from sim2real.table.game_log import GameLog
-    from sim2real.table.play import Show
-    from sim2real.table.robot_seat import RobotSeat
+    from sim2real.table.game.game_log import GameLog
+    from sim2real.table.game.play import Show
+    from sim2real.table.game.robot_seat import RobotSeat
 
 INTERCEPTOR = "interceptor"
 OTHERS = {"table": "person", "replay": "recording"}  # who has the other seat, where that is not chosen
@@ -54,7 +54,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Play and print. 0: played. ValueError, in one line, for what cannot be played, or where the table stopped."""
     from puckpilot_env.options.inputs import seed_number, whole_number
-    from sim2real.table.play import play_game
+    from sim2real.table.game.play import play_game
 
     whole_number(args.games, "--games", 1, 1000)
     if args.seconds is not None and not args.seconds > 0.0:
@@ -78,7 +78,7 @@ def run(args: argparse.Namespace) -> int:
 def seat(args: argparse.Namespace) -> RobotSeat:
     """The robot's seat at the backend that is asked for. ValueError, in one line, for options that do not fit it."""
     from puckpilot_env.variants import find_variant
-    from sim2real.table.robot_seat import make_robot_seat
+    from sim2real.table.game.robot_seat import make_robot_seat
 
     needs = {"twin": {"opponent", "camera"}, "table": {"table"}, "replay": {"recording"}}
     for name in ("opponent", "camera", "table", "recording"):
@@ -87,7 +87,8 @@ def seat(args: argparse.Namespace) -> RobotSeat:
             raise ValueError(f"--{name} is given with --backend {args.backend}; it takes {_option(wanted)}")
         if name in wanted and not given and args.backend != "twin":
             raise ValueError(f"--backend {args.backend} needs {_option(wanted)}")
-    parameters, options = None, {}
+    parameters: dict[str, float] | None = None
+    options: dict[str, Any] = {}
     if args.backend == "twin":
         options = {"opponent": args.opponent or INTERCEPTOR, "camera": args.camera or "places"}
     elif args.backend == "table":
@@ -141,7 +142,7 @@ def _may_clear(args: argparse.Namespace) -> Callable[[TableFaultError], bool]:
 @contextmanager
 def _reports(args: argparse.Namespace) -> Iterator[tuple[Callable[[str], None], Show]]:
     """What takes a line for each goal, foul and fault, and what shows each step."""
-    from sim2real.table.view import picture
+    from sim2real.table.game.view import picture
 
     if not args.view:
         yield (lambda line: None) if args.json else print, lambda loop, action, info: None
@@ -159,7 +160,7 @@ def _reports(args: argparse.Namespace) -> Iterator[tuple[Callable[[str], None], 
 
 
 def _result(args: argparse.Namespace, variant: str, other: str, logs: list[GameLog]) -> dict[str, Any]:
-    from sim2real.table.loop_times import LoopTimes, summary
+    from sim2real.table.game.loop_times import LoopTimes, summary
 
     times = LoopTimes()
     for log in logs:
@@ -187,7 +188,7 @@ def _result(args: argparse.Namespace, variant: str, other: str, logs: list[GameL
 
 
 def _summary(result: dict[str, Any], logs: list[GameLog]) -> list[str]:
-    from sim2real.table.loop_times import histogram
+    from sim2real.table.game.loop_times import histogram
 
     (won, lost), (scored, conceded) = result["wins"], result["goals"]
     lines = [

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from sim2real.table.robot_seat import RobotSeat
+    from sim2real.table.game.robot_seat import RobotSeat
 
 PROGRAMS = ("puck", "gantry", "play")
 
@@ -85,7 +85,7 @@ def _ended_by_interrupt(report: Callable[[str], None]) -> Iterator[None]:
 
 
 def _connect(env: RobotSeat) -> None:
-    from sim2real.table.loop import Loop
+    from sim2real.table.game.loop import Loop
 
     env.backend.connect(Loop(env.backend, env.game).home)
 
@@ -113,7 +113,7 @@ def _gantry(args: argparse.Namespace, env: RobotSeat, seed: int, report: Callabl
 
 def _play(args: argparse.Namespace, env: RobotSeat, seed: int, report: Callable[[str], None]) -> str:
     from sim2real.commands.play import INTERCEPTOR
-    from sim2real.table.play import play_game
+    from sim2real.table.game.play import play_game
 
     player = args.player or INTERCEPTOR
     log = play_game(env, player, seed, args.seconds, report, lambda fault: False, lambda loop, action, info: None)

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from sim2real.table.bring_up.run import StepResult
-    from sim2real.table.game_record import GameRecord
+    from sim2real.table.game.game_record import GameRecord
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -38,9 +38,9 @@ def run(args: argparse.Namespace) -> int:
     from sim2real.table.backends import make_backend
     from sim2real.table.bring_up.rig import Rig
     from sim2real.table.bring_up.run import run_steps
-    from sim2real.table.game_record import GameRecord
+    from sim2real.table.game.game_record import GameRecord
+    from sim2real.table.game.loop import home_of
     from sim2real.table.live_table import LiveTable
-    from sim2real.table.loop import home_of
 
     variant = find_variant("match-v0")
     if args.table is None:

@@ -8,7 +8,7 @@ import inspect
 from typing import Any
 
 from sim2real.table.backend import Backend
-from sim2real.table.game_record import GameRecord
+from sim2real.table.game.game_record import GameRecord
 
 BACKENDS = {  # name -> module and class, loaded when asked for
     "twin": ("sim2real.table.twin.twin", "Twin"),

@@ -165,7 +165,7 @@ class BoardLine:
         self.check()
         session = self.session
         t1, t2 = ((round(x / MICRO), round(y / MICRO)) for x, y in (plan.t1, plan.t2))
-        rest, slow, fast = ((float(row[0]), float(row[1])) for row in np.float32(plan.modes))
+        rest, slow, fast = ((float(row[0]), float(row[1])) for row in np.asarray(plan.modes, np.float32))
         volts = float(np.float32(plan.volts[0])), float(np.float32(plan.volts[1]))
         try:
             begin = session.clock.to_board(plan.begin)

@@ -10,7 +10,7 @@ import numpy as np
 from sim2real.link.wire.messages import Event, Notice, Refusal, Traj
 from sim2real.table.backend import Place, Reading, SeenMallet
 from sim2real.table.board_line import BoardLine
-from sim2real.table.game_record import GameRecord
+from sim2real.table.game.game_record import GameRecord
 from sim2real.table.live_table import LiveTable
 from sim2real.table.mallet_driver import AHEAD, MalletDriver
 

@@ -14,7 +14,7 @@ import numpy as np
 from sim2real.table.drills.drill import Drill, Stop
 from sim2real.table.drills.faults import FAULTS
 from sim2real.table.faults import TableFaultError
-from sim2real.table.robot_seat import make_robot_seat
+from sim2real.table.game.robot_seat import make_robot_seat
 
 PART = 120.0  # s of play of a part
 BETWEEN = (1.0, 6.0)  # s of play between two faults

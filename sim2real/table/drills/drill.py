@@ -12,7 +12,7 @@ from baselines.player import Seat
 from sim2real.table.drills.faults import Fault
 from sim2real.table.drills.monitor import MalletMonitor
 from sim2real.table.faults import TableFaultError
-from sim2real.table.robot_seat import RobotSeat
+from sim2real.table.game.robot_seat import RobotSeat
 from sim2real.table.twin.twin import Twin
 
 NOTICED_WITHIN = 5.0  # s of play after which a fault that stopped nothing is mended

@@ -6,6 +6,7 @@ import numpy as np
 
 from sim2real.camera.frame import Frame
 from sim2real.camera.frame_monitor import FrameMonitor, colour_mosaic, over_exposed
+from sim2real.camera.settings import CameraSettings
 from sim2real.camera.valid_frames import INVALIDATING
 from sim2real.table.backend import Place, SeenFrame
 from sim2real.vision.calibrate.table_file import TableCalibration
@@ -14,12 +15,13 @@ from sim2real.vision.track.tracker import Targets, Tracker
 
 
 class FrameReader:
-    """Reads the pictures of one camera, in order of time; the first shows the table with its markers."""
+    """Reads the pictures of one camera, in order of time; the first shows the table with its markers, unless a setup
+    picture did (`tracker.set_up`). settings: of the camera, which say what its pictures are."""
 
-    def __init__(self, table: TableCalibration, targets: Targets) -> None:
-        self.tracker = Tracker(table, targets)
-        checks = (over_exposed, colour_mosaic, self.tracker.check_camera)
-        self._monitor = FrameMonitor(table.setup.camera.size, checks)
+    def __init__(self, table: TableCalibration, targets: Targets, settings: CameraSettings | None = None) -> None:
+        self.tracker = Tracker(table, targets, settings)
+        kinds = () if settings is not None and settings.mosaic else (colour_mosaic,)
+        self._monitor = FrameMonitor(self.tracker.camera.size, (over_exposed, *kinds, self.tracker.check_camera))
 
     def read(self, frame: Frame) -> SeenFrame:
         """The measured places, without any from a picture that is not to be believed. Raises ValueError, in one line,

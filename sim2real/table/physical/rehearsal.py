@@ -19,7 +19,7 @@ from sim2real.camera.scene_states import simulated_states
 from sim2real.link.serial_port import SerialPort
 from sim2real.table.backend import Place
 from sim2real.table.board_config import board_config
-from sim2real.table.game_record import GameRecord
+from sim2real.table.game.game_record import GameRecord
 from sim2real.table.physical.eyes import LiveEyes
 from sim2real.table.physical.frame_reader import FrameReader
 from sim2real.table.physical.real_time import RealTimeTable

@@ -9,7 +9,7 @@ import numpy as np
 from sim2real.recording.folder import Recording, Stream, read_recording
 from sim2real.recording.table_parameters import stated_sizes
 from sim2real.table.backend import Backend, Motion, Place, Reading, SeenFrame, SeenMallet
-from sim2real.table.game_record import GameRecord
+from sim2real.table.game.game_record import GameRecord
 from sim2real.table.mallet_driver import MalletPlan
 
 LIKE = 1e-3  # m within which the recording's sizes are the game's

@@ -16,8 +16,8 @@ import numpy as np
 
 from puckpilot_env.files.whole_file import write_text_whole
 from puckpilot_env.variants import find_variant
-from sim2real.table.play import play_game
-from sim2real.table.robot_seat import make_robot_seat
+from sim2real.table.game.play import play_game
+from sim2real.table.game.robot_seat import make_robot_seat
 
 FORMAT = "puckpilot-twin-game/1"
 WARM = 0.3  # s of a game before the first one that is timed, in which all is compiled

@@ -12,7 +12,7 @@ from puckpilot_env.game.start import HOME
 from puckpilot_env.kernel import kernel
 from puckpilot_env.physics.gantry.plan import plan_mallet
 from sim2real.table.backend import Place
-from sim2real.table.game_record import GameRecord
+from sim2real.table.game.game_record import GameRecord
 from sim2real.table.twin.plant import OpponentPlan, Plant
 
 GAME = ("score", "time", "held", "steps", "defending", "fouls")  # what the opponent may know

@@ -14,7 +14,7 @@ from sim2real.study.independent_table.physics.law import Law
 from sim2real.table.backend import Place
 from sim2real.table.board_config import board_config
 from sim2real.table.board_line import BoardLine
-from sim2real.table.game_record import GameRecord
+from sim2real.table.game.game_record import GameRecord
 from sim2real.table.live_table import LiveTable
 from sim2real.table.mallet_driver import AHEAD
 from sim2real.table.twin.board import BoardErrors, EmulatedBoard

@@ -11,7 +11,7 @@ pytest.importorskip("unicorn", reason="unicorn is not installed: the program can
 import puckpilot_env  # noqa: F401 - registers the ids
 from sim2real.table.board_config import SILENCE
 from sim2real.table.faults import TableFaultError
-from sim2real.table.robot_seat import RobotSeat, make_robot_seat
+from sim2real.table.game.robot_seat import RobotSeat, make_robot_seat
 from sim2real.table.twin.twin import Twin
 
 MATCH = "puckpilot/match-v0"
@@ -180,7 +180,6 @@ def test_a_policy_that_hangs_leaves_the_mallet_at_its_target(seat: RobotSeat, ha
     if hang == 1.0:
         assert twin.plant.mallet(0) == pytest.approx((0.9, 0.9, 0.0, 0.0), abs=0.002)
         assert twin.board.machine.motors.duties == (0.0, 0.0)
-    twin._since = twin.now()
     for _ in range(10):
         seat.step(STAY)
     assert twin.plant.mallet(0)[:2] == pytest.approx(STAY[:2], abs=0.002)

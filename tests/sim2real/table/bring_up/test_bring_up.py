@@ -10,7 +10,7 @@ pytest.importorskip("unicorn", reason="unicorn is not installed: the program can
 
 from sim2real.table.bring_up.rig import Rig
 from sim2real.table.bring_up.run import StepResult, run_steps
-from sim2real.table.game_record import GameRecord
+from sim2real.table.game.game_record import GameRecord
 from sim2real.table.twin.camera import CameraErrors
 from sim2real.table.twin.twin import Twin
 

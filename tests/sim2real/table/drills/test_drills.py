@@ -8,7 +8,7 @@ pytest.importorskip("unicorn", reason="unicorn is not installed: the program can
 
 from sim2real.table.drills.drill import Drill
 from sim2real.table.drills.faults import FAULTS, Fault
-from sim2real.table.robot_seat import make_robot_seat
+from sim2real.table.game.robot_seat import make_robot_seat
 
 
 @pytest.mark.slow

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from puckpilot_env.game import mirror
-from sim2real.table.game_record import GameRecord
+from sim2real.table.game.game_record import GameRecord
 from sim2real.table.recorder.excitation import MARGIN, SHORTEST, VOLTS, excitation, refuse_volts
 
 START = (0.25, 0.5)

@@ -42,7 +42,7 @@ def calibration() -> TableCalibration:
     """The table by its three photographs."""
     setup = read_setup(UBC / "calibration" / "camera.json")
     views = [read_view(UBC / "calibration" / f"view_{k}", setup) for k in (1, 2, 3)]
-    return TableCalibration.of(setup, solve(setup, views))
+    return TableCalibration.of(setup, solve(setup, tuple(views)))
 
 
 @cache
@@ -112,7 +112,7 @@ def test_the_command_says_so(tmp_path: Path, capsys) -> None:
     file = tmp_path / "table.json"
     setup = read_setup(UBC / "calibration" / "camera.json")
     views = [read_view(UBC / "calibration" / f"view_{k}", setup) for k in (1, 2, 3)]
-    write_table(file, setup, solve(setup, views))
+    write_table(file, setup, solve(setup, tuple(views)))
     command = ["track", str(UBC / "frames"), "--calibration", str(file), "--stills"]
     assert puckpilot.main([*command, "--out", str(tmp_path / "no")]) == 2
     error = capsys.readouterr().err

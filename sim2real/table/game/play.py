@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from baselines import find_player
 from baselines.player import Seat
 from sim2real.table.faults import TableFaultError
-from sim2real.table.game_log import GameLog
-from sim2real.table.loop import Loop
-from sim2real.table.robot_seat import RobotSeat
+from sim2real.table.game.game_log import GameLog
+from sim2real.table.game.loop import Loop
+from sim2real.table.game.robot_seat import RobotSeat
 
 Show = Callable[[Loop, NDArray[np.float32], dict[str, Any]], None]
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from puckpilot_env.game import rules
-from sim2real.table.game_record import GameRecord, Motion
-from sim2real.table.moving_objects import SeenTable
-from sim2real.table.referee import Referee
+from sim2real.table.game.game_record import GameRecord, Motion
+from sim2real.table.game.moving_objects import SeenTable
+from sim2real.table.game.referee import Referee
 
 ROBOT, OPPONENT = (0.25, 0.5, 0.0, 0.0), (1.75, 0.5, 0.0, 0.0)
 FRAME, PERIOD = 1 / 120, 0.1

@@ -12,7 +12,7 @@ from pettingzoo import ParallelEnv
 
 from puckpilot_env.adapters.parallel_env import AGENTS, fresh_seed
 from puckpilot_env.variants import Variant
-from sim2real.table.robot_seat import RobotSeat, make_robot_seat
+from sim2real.table.game.robot_seat import RobotSeat, make_robot_seat
 from sim2real.table.twin.twin import Twin
 
 ROBOT, OPPONENT = AGENTS

@@ -20,8 +20,8 @@ from puckpilot_env.variants import Variant
 from sim2real.table.backend import Backend, Motion
 from sim2real.table.backends import make_backend
 from sim2real.table.faults import Cause, TableFaultError
-from sim2real.table.game_record import GameRecord
-from sim2real.table.loop import Loop
+from sim2real.table.game.game_record import GameRecord
+from sim2real.table.game.loop import Loop
 
 
 class RobotSeat(gymnasium.Env[NDArray[Any], NDArray[Any]]):

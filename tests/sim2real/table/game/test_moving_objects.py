@@ -8,7 +8,7 @@ import pytest
 from puckpilot_env.parameters import make_records
 from sim2real.study.independent_table.physics.law import Law
 from sim2real.study.independent_table.simulate import run
-from sim2real.table.moving_objects import SeenTable
+from sim2real.table.game.moving_objects import SeenTable
 
 P = make_records(1)[0]
 RATE = 120.0

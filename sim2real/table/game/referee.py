@@ -7,8 +7,8 @@ import numpy as np
 from puckpilot_env.game import mirror, reward, rules
 from puckpilot_env.physics.contacts import bounce
 from sim2real.table.backend import Motion
-from sim2real.table.game_record import GameRecord
-from sim2real.table.moving_objects import SeenTable
+from sim2real.table.game.game_record import GameRecord
+from sim2real.table.game.moving_objects import SeenTable
 
 Seen = tuple[float, Motion]  # time of a frame [s], and the motion then
 SAMPLES = 5  # of the time between two frames at which contacts are looked for

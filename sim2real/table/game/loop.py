@@ -11,11 +11,11 @@ from puckpilot_env.game import rules
 from puckpilot_env.game.start import HOME, face_off
 from sim2real.table.backend import Backend, Place
 from sim2real.table.faults import Cause, TableFaultError
-from sim2real.table.game_record import GameRecord, Motion
-from sim2real.table.loop_times import LoopTimes
+from sim2real.table.game.game_record import GameRecord, Motion
+from sim2real.table.game.loop_times import LoopTimes
+from sim2real.table.game.moving_objects import SeenTable
+from sim2real.table.game.referee import GONE, Referee
 from sim2real.table.mallet_driver import AHEAD, MalletDriver
-from sim2real.table.moving_objects import SeenTable
-from sim2real.table.referee import GONE, Referee
 
 HOMING_VOLTS = 5.0  # V, of the way home between points
 POINT_PAUSE = 0.02  # s between looks at whether the mallet is home

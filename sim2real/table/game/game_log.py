@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from sim2real.table.loop_times import LoopTimes
+from sim2real.table.game.loop_times import LoopTimes
 
 
 @dataclass

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from sim2real.table.game_record import GameRecord
-from sim2real.table.loop import Loop
+from sim2real.table.game.game_record import GameRecord
+from sim2real.table.game.loop import Loop
 
 COLUMNS, ROWS = 64, 20
 PUCK, EXPECTED, ROBOT, TARGET, OPPONENT = "o", "·", "R", "x", "P"

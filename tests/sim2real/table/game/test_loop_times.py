@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from sim2real.table.loop_times import LoopTimes, histogram, summary
+from sim2real.table.game.loop_times import LoopTimes, histogram, summary
 
 
 def test_overruns_are_counted_and_games_joined() -> None:

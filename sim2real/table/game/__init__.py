@@ -1,0 +1,6 @@
+"""A game at a table: the loop from frames to plans, the rules on what is seen, and its environments.
+
+- `loop`: estimates (`moving_objects`), plans, rules (`referee`) on the simulator's record (`game_record`);
+- `robot_seat`: the robot's seat as a Gymnasium environment; `two_seats`: both seats in PettingZoo's form;
+- `play`: whole games, what came of them (`game_log`, `loop_times`), and a `view` of them.
+"""
