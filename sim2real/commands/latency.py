@@ -68,7 +68,7 @@ def _of_table(args: argparse.Namespace) -> int:
     from puckpilot_env.options.inputs import seed_number
     from puckpilot_env.variants import find_variant
     from sim2real.table.backends import make_backend
-    from sim2real.table.game_record import GameRecord
+    from sim2real.table.game.game_record import GameRecord
     from sim2real.table.latency.injection import read_injection, truth, twin_options
     from sim2real.table.latency.measure import measure, strokes_home
     from sim2real.table.latency.parts import parts_of_measurement

@@ -12,7 +12,7 @@ pytest.importorskip("unicorn", reason="unicorn is not installed: the program can
 from puckpilot_env.variants import find_variant
 from sim2real.recording.folder import Stream
 from sim2real.table.backends import make_backend
-from sim2real.table.game_record import GameRecord
+from sim2real.table.game.game_record import GameRecord
 from sim2real.table.latency.injection import truth, twin_options
 from sim2real.table.latency.measure import Measurement, measure, strokes_home
 from sim2real.table.latency.part import Part
