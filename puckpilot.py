@@ -42,6 +42,7 @@ COMMANDS = {
     "table check": ("sim2real.commands.table_check", "bring a table up, step by step: what works, and what to mend"),
     "table drill": ("sim2real.commands.table_drill", "faults at random moments on a twin: does the mallet stop?"),
     "record": ("sim2real.commands.record", "camera and board of a table, in one recording, while a program excites it"),
+    "latency": ("sim2real.commands.latency", "the delay of a table's loop, in parts with intervals"),
     "compare": ("sim2real.commands.compare", "where a recording of a table departs from the simulator"),
     "diagnose": ("sim2real.commands.diagnose", "which physics the simulator lacks, with proof on untouched data"),
     "study": ("sim2real.commands.study", "how often a diagnosis is right, on cases with something hidden"),

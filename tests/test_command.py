@@ -63,6 +63,7 @@ OPTIONS = {
         "--seed",
         "--json",
     ],
+    "latency": ["--backend", "--seconds", "--seed", "--inject", "--json"],
     "compare": ["--json", "--out"],
     "diagnose": ["--holdout", "--baseline", "--out", "--json"],
     "study": ["--cases", "--seed", "--out", "--only", "--mechanism", "--filmed", "--peer", "--workers", "--json"],

@@ -13,8 +13,9 @@ from mkdocs.structure.files import File, Files
 
 from sim2real import compare, diagnose, identify, recording, segmentation, statistics
 from sim2real.statistics.tuned import listed
+from sim2real.table import latency
 
-PACKAGES = (recording, segmentation, statistics, compare, diagnose, identify)
+PACKAGES = (recording, segmentation, statistics, compare, diagnose, identify, latency)
 HEAD = """\
 # Thresholds
 

@@ -21,7 +21,7 @@ Motion = tuple[float, float, float, float]  # x, y [m], vx, vy [m/s]
 class SeenFrame:
     """What the camera measured in one frame: `time` of its exposure on the host's clock [s]; places, None if unseen;
     the number of candidates for the puck; what is wrong with the picture; covariances (2, 2) of the places [m^2], None
-    where they are as usual."""
+    where they are as usual; the place of a ring on the robot's mallet, None if it is unseen or the mallet has none."""
 
     time: float
     puck: Place | None
@@ -30,6 +30,7 @@ class SeenFrame:
     troubles: tuple[Trouble, ...] = ()
     puck_covariance: np.ndarray | None = None
     opponent_covariance: np.ndarray | None = None
+    robot: Place | None = None
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -39,7 +39,7 @@ class PictureCamera:
     """Takes pictures of a plant at its `errors.rate`, the first at half a period, which shows where the camera is.
 
     rendered: the table as it is calibrated; renderer: draws it; `renderer` may be replaced by one of a table or a view
-    that was changed since, as by a knock; errors: rate and delay, while the noise is the pictures' own.
+    that was changed since, as by a knock; errors: rate, delay and clock, while the noise is the pictures' own.
     """
 
     def __init__(self, rendered: RenderedTable, renderer: Renderer, errors: CameraErrors, seed: int) -> None:
@@ -47,7 +47,7 @@ class PictureCamera:
         self.unplugged, self.late = False, 0.0
         self._reader = FrameReader(rendered.calibration(), rendered.targets())
         self._seed, self._taken = seed, 0
-        self._coming: deque[SeenFrame] = deque()
+        self._coming: deque[tuple[float, SeenFrame]] = deque()  # with the time at which it can be used [s]
 
     @property
     def next_exposure(self) -> float:
@@ -62,7 +62,8 @@ class PictureCamera:
         if not (self.unplugged or missed):
             frame = Frame(self.picture(plant, number), plant.time, plant.time, number)
             try:
-                self._coming.append(self._reader.read(frame))
+                seen = replace(self._reader.read(frame), time=self.errors.stamp(plant.time))
+                self._coming.append((plant.time + self.errors.delay, seen))
             except ValueError as error:
                 raise TableFaultError(Cause.CAMERA_TROUBLE, f"{error}; then connect anew") from None
 
@@ -79,6 +80,6 @@ class PictureCamera:
     def take(self, now: float) -> list[SeenFrame]:
         """The frames that can be used at `now` [s] and were not taken before."""
         found = []
-        while self._coming and self._coming[0].time + self.errors.delay + self.late <= now:
-            found.append(self._coming.popleft())
+        while self._coming and self._coming[0][0] + self.late <= now:
+            found.append(self._coming.popleft()[1])
         return found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 
 import numpy as np
 from numba import njit
@@ -23,7 +24,8 @@ _volts = njit(profile)
 class Plant:
     """The table at `time` [s], which only goes forward.
 
-    law: its physics; robot, opponent: places of the mallets at rest [m].
+    law: its physics; robot, opponent: places of the mallets at rest [m]. Volts reach the robot's motors late by the
+    law's `command_delay`.
     """
 
     def __init__(self, law: Law, robot: Place, opponent: Place) -> None:
@@ -33,6 +35,7 @@ class Plant:
         self._motor = self._mallets.shape[1] - 6  # the motors' own state, where a belt or a gap separates them
         self._puck = np.full(6, math.nan)
         self._inputs = np.zeros(INPUTS)
+        self._coming: deque[tuple[float, Place]] = deque()  # volts of the robot's axes that come late, and when [s]
         self._held: np.ndarray | None = None  # the robot's mallet at rest, while it is held fast
 
     def hold(self, held: bool) -> None:
@@ -73,8 +76,12 @@ class Plant:
         self._inputs[START:] = 0.0
 
     def drive(self, first: float, second: float) -> None:
-        """The volts of the robot's motors from now on: axes get V1 - V2 and -V1 - V2, less what the law loses."""
-        self._inputs[:START] = at_the_motors(self.law, first - second, -first - second)
+        """The volts of the robot's motors: axes get V1 - V2 and -V1 - V2, less what the law loses, after its delay."""
+        volts = at_the_motors(self.law, first - second, -first - second)
+        if self.law.command_delay:
+            self._coming.append((self.time + self.law.command_delay, volts))
+        else:
+            self._inputs[:START] = volts
 
     def play(self, plan: OpponentPlan) -> None:
         """The opponent's plan from now on."""
@@ -82,6 +89,13 @@ class Plant:
 
     def advance(self, time: float) -> None:
         """Go on until `time` [s]."""
+        while self._coming and self._coming[0][0] <= time:
+            comes, volts = self._coming.popleft()
+            self._march(comes)
+            self._inputs[:START] = volts
+        self._march(time)
+
+    def _march(self, time: float) -> None:
         if time <= self.time:
             return
         _advance(self._numbers, self._puck, self._mallets, self._inputs, self.time, time)

@@ -17,7 +17,7 @@ from sim2real.table.board_line import BoardLine
 from sim2real.table.game.game_record import GameRecord
 from sim2real.table.live_table import LiveTable
 from sim2real.table.mallet_driver import AHEAD
-from sim2real.table.twin.board import EmulatedBoard
+from sim2real.table.twin.board import BoardErrors, EmulatedBoard
 from sim2real.table.twin.camera import CameraErrors
 from sim2real.table.twin.cameras import camera_maker
 from sim2real.table.twin.hand import ScriptedHand
@@ -31,7 +31,8 @@ class Twin(LiveTable):
     """A table with a scripted hand at the other end; see `backend.Backend`.
 
     game: whose table it is; opponent: a player, by name or itself; law: physics of the plant, as the game's parameters
-    say by default; errors: of the camera; camera: "places" or "pictures". ValueError, in one line, for an unknown name.
+    say by default; errors: of the camera; camera: "places" or "pictures"; board_errors: of the board's clock and
+    line. ValueError, in one line, for an unknown name.
     """
 
     def __init__(
@@ -41,12 +42,13 @@ class Twin(LiveTable):
         law: Law | None = None,
         errors: CameraErrors | None = None,
         camera: str = "places",
+        board_errors: BoardErrors | None = None,
     ) -> None:
         errors, self._seed = errors or CameraErrors(), 0
         super().__init__(board_config(game.p), errors.rate)
         self._make_camera = camera_maker(camera, game.p, errors)
         refuse_unmodelled(game.given)
-        self.p, self._law = game.p, law or law_of(game.p)
+        self.p, self._law, self._board_errors = game.p, law or law_of(game.p), board_errors
         self._reaction = AHEAD if isinstance(opponent, str) else 0.0  # s from `play` until the hand decides
         self._decision: tuple[float, np.void] | None = None  # when the hand decides next, by which state of the game
         self._make_hand = lambda seed: ScriptedHand(game, opponent, 2 * seed + 1)
@@ -62,7 +64,7 @@ class Twin(LiveTable):
         """Switch board and camera on."""
         self._decision = None
         self.plant = Plant(self._law, home, self.hand.home)
-        self.board = EmulatedBoard(self.plant, float(self.p["max_voltage"]), self._seed)
+        self.board = EmulatedBoard(self.plant, float(self.p["max_voltage"]), self._seed, self._board_errors)
         self.eyes = self.camera = self._make_camera(self._seed)
         self.line = BoardLine(lambda: self._opened(self.board), self.now, self.pass_time)
         self.person = self

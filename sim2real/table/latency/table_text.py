@@ -1,0 +1,38 @@
+"""Parts of the delay as an aligned table, and as lines for a table's file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from sim2real.table.latency.part import Part
+
+KEPT = ("camera", "camera_drift", "frame", "line", "command", "follow", "total")  # of a table's file
+
+
+def table_lines(parts: Sequence[Part], injected: Mapping[str, float] | None = None) -> list[str]:
+    """A line for each part: value, interval, from what to what, by what; `injected`: what is true of a twin."""
+    head = ["part", "value", "95 % interval", *(["injected"] if injected else []), "what", "by"]
+    rows = [head] + [_row(one, injected) for one in parts if one.determined]
+    widths = [max(len(row[k]) for row in rows) for k in range(len(head) - 1)]
+    lines = ["  ".join([*(f"{cell:{w}}" for cell, w in zip(row, widths, strict=False)), row[-1]]) for row in rows]
+    return lines + [f"{one.name}: not determined, because {one.why}" for one in parts if not one.determined]
+
+
+def _row(one: Part, injected: Mapping[str, float] | None) -> list[str]:
+    assert one.value is not None and one.low is not None and one.high is not None
+    size, unit, digits = (1e3, "ms", 2) if one.unit == "s" else (1.0, one.unit, 1)
+    shown = [f"{size * number:.{digits}f}" for number in (one.value, one.low, one.high)]
+    known = injected or {}
+    true = [f"{size * known[one.name]:.{digits}f}" if one.name in known else ""] if injected else []
+    return [one.name, f"{shown[0]} {unit}", f"{shown[1]} to {shown[2]}", *true, one.what, one.by]
+
+
+def toml_lines(parts: Sequence[Part]) -> list[str]:
+    """The section [latency] for a table's file: what is determined, in s and ppm."""
+    found = {one.name: one for one in parts if one.determined}
+    digits = {"s": 6, "ppm": 1}
+    return ["[latency]"] + [
+        f"{name} = {found[name].value:.{digits[found[name].unit]}f}  # {found[name].unit}"
+        for name in KEPT
+        if name in found
+    ]
