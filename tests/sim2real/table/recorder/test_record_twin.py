@@ -17,12 +17,12 @@ pytest.importorskip("unicorn", reason="unicorn is not installed: the program can
 import puckpilot
 from sim2real.diagnose.pipeline import Diagnosis, diagnose
 from sim2real.recording.folder import Recording, read_recording
-from sim2real.table.game_record import GameRecord
-from sim2real.table.loop import Loop
+from sim2real.table.game.game_record import GameRecord
+from sim2real.table.game.loop import Loop
+from sim2real.table.game.robot_seat import RobotSeat, make_robot_seat
 from sim2real.table.recorder.excitation import VOLTS, excite_gantry
 from sim2real.table.recorder.launches import record_launches
 from sim2real.table.recorder.recorded_game import recorded
-from sim2real.table.robot_seat import RobotSeat, make_robot_seat
 from sim2real.table.twin.twin import Twin, law_of
 
 MATCH = "puckpilot/match-v0"
