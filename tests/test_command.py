@@ -55,6 +55,8 @@ OPTIONS = {
     "play": ["--backend", "--opponent", "--variant", "--games", "--seconds", "--record", "--seed", "--json"],
     "record": [
         "--backend",
+        "--table",
+        "--camera",
         "--program",
         "--seconds",
         "--volts",

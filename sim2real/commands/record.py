@@ -26,6 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("folder", type=Path, metavar="DIR", help="the recording, a new folder")
     parser.add_argument("--backend", default="twin", metavar="NAME", help="twin (default) or table")
     parser.add_argument("--table", type=Path, metavar="FILE", help="the table.toml of a physical table")
+    parser.add_argument("--camera", metavar="KIND", help="of a twin: places (default) or pictures, rendered and seen")
     parser.add_argument("--program", default="puck", choices=PROGRAMS, help="what happens meanwhile (puck)")
     parser.add_argument("--seconds", type=float, default=60.0, metavar="S", help="of the table's time (60)")
     parser.add_argument("--volts", type=float, nargs="+", metavar="V", help="of --program gantry (4 7 10 14)")

@@ -29,8 +29,8 @@ def record_launches(
 ) -> LaunchCoverage:
     """Have the puck launched again and again for `seconds` at a connected table, while its mallet is held where it is.
 
-    report: takes the advice for each launch, a line; progress: called with the milliseconds done and all of them. Returns
-    what was seen. TableFaultError, in one line, as of the backend.
+    report: takes the advice for each launch, a line; progress: called with the milliseconds done and all of them.
+    Returns what was seen. TableFaultError, in one line, as of the backend.
     """
     random = np.random.default_rng(seed)
     coverage = LaunchCoverage(float(p["length"]), float(p["width"]))

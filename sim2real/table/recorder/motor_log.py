@@ -1,9 +1,9 @@
 """The motors' duties of every control tick, from telemetry of every second one and the plans that were sent.
 
 A tick's duty is the plan's mean voltage in that tick plus the board's feedback, scaled down to what a motor may get
-(`firmware/core/robot.c`, `drive`). The plan is known, and between neighbouring ticks the feedback changes by a few steps
-of the encoders, some 10 mV. So the duty of a tick without telemetry is the plan's, plus the mean feedback of the ticks
-before and after it; of one of them, where at the other another plan was followed or the motors got all they may.
+(`firmware/core/robot.c`, `drive`). The plan is known, and between neighbouring ticks the feedback changes by a few
+steps of the encoders, some 10 mV. So the duty of a tick without telemetry is the plan's, plus the mean feedback of the
+ticks before and after it; of one of them, where at the other another plan was followed or the motors got all they may.
 """
 
 from __future__ import annotations
@@ -49,10 +49,13 @@ class MotorLog:
     def _between(self, before: SeenMallet, after: SeenMallet) -> Duties:
         time = 0.5 * (before.time + after.time)
         plan = self._playing(time)
-        near = [one for one in (before, after) if self._playing(one.time) is plan] or [before, after]
+        near = [one for one in (before, after) if self._playing(one.time) is plan]
+        if not near and plan is None:
+            return time, 0.0, 0.0
+        near = near or [before, after]
         free = [one for one in near if max(map(abs, one.duties)) < self._most - ROUNDING] or near
         feedback = np.mean([np.subtract(one.duties, self._planned(one.time)) for one in free], axis=0)
-        left, right = feedback + self._planned(time) if plan is not None else (0.0, 0.0)
+        left, right = feedback + self._planned(time)
         scale = min(self._most / max(abs(left), abs(right), self._most), 1.0)
         return time, float(scale * left), float(scale * right)
 

@@ -13,12 +13,14 @@ from sim2real.recording.table_parameters import FROM_META
 from sim2real.table.backend import Backend, Motion, Place, Reading, SeenFrame, SeenMallet
 from sim2real.table.mallet_driver import MalletPlan, operating_volts
 from sim2real.table.recorder.draft import RecordingDraft
-from sim2real.table.recorder.motor_log import MotorLog
+from sim2real.table.recorder.motor_log import TICK, MotorLog
 
+STEADY = 1.5  # s after connecting in which the estimate of the board's clock still moves by 0.1 ms
+WAIT = 0.02  # s between two pings, about
+GOLDEN = 0.618  # of a tick by which a wait is longer than the one before: no two are alike
 UNSEEN = (math.nan, math.nan)
 DRIVE_NOTE = (
-    "drive.csv: every second row is telemetry; the row between is the plan's duty in that tick plus the mean feedback "
-    "of its neighbours"
+    "drive.csv: every second row is telemetry; the row between is the plan's duty in that tick plus the feedback around"
 )
 
 
@@ -65,8 +67,15 @@ class RecordedTable(Backend):
         self._table.seed(seed)
 
     def connect(self, home: Place) -> None:
-        """See `Backend.connect`."""
+        """See `Backend.connect`; wait until stamps of the board are steady, and record from then on.
+
+        The board's clock is known the better the more moments between its ticks pings have come at. Waits of unequal
+        length have them come at all moments.
+        """
         self._table.connect(home)
+        for part in range(round(STEADY / WAIT)):
+            self._table.wait(self._table.now() + WAIT + TICK * (part * GOLDEN % 1.0))
+        self._table.read()
 
     def clear(self, home: Place) -> None:
         """See `Backend.clear`."""

@@ -125,7 +125,7 @@ def test_a_plan_comes_to_rest_where_the_row_says(game: GameRecord, tmp_path: Pat
 
 
 def test_the_table_behind_it_is_asked_for_everything(game: GameRecord, tmp_path: Path) -> None:
-    behind = ScriptedTable([])
+    behind = ScriptedTable([Reading([], [mallet(BEGIN)])])
     table = RecordedTable(behind, RecordingDraft(tmp_path / "one", recording_meta(game.p, "")), game.p)
     table.seed(1)
     table.connect(HOME)
@@ -136,6 +136,7 @@ def test_the_table_behind_it_is_asked_for_everything(game: GameRecord, tmp_path:
     table.show(game.record)
     table.stop()
     table.close()
+    assert not behind.readings  # what came while the clock's estimate moved is not recorded
     assert behind.asked == ["seed", "connect", "clear", "place_puck", "show", "stop", "close"]
     assert (table.now(), table.place(), table.patience, table.obeys) == (BEGIN + 2.0, HOME, 7.0, True)
     assert table.mallet_motion(BEGIN) is None
