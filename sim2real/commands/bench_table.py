@@ -33,13 +33,14 @@ def run(args: argparse.Namespace) -> int:
     with rehearsal_table(game, home_of(game.p), frames=360) as table:
         env = RobotSeat(table, game)
         try:
-            log = play_game(env, args.player, 0, args.seconds, lambda line: None, lambda fault: False,
+            log = play_game(env, args.player, 0, args.seconds, lambda line: None, lambda fault: True,
                             lambda loop, action, info: None)  # fmt: skip
         finally:
             env.close()
         reactions = list(table.reactions)
     result = {
         "seconds": log.seconds, "decisions": len(log.times.lateness), "overruns": log.times.overruns,
+        "stops": log.faults,
         **summary("reaction_s", reactions), **summary("late_s", log.times.lateness),
     }  # fmt: skip
     if args.json:
@@ -47,6 +48,9 @@ def run(args: argparse.Namespace) -> int:
         return 0
     print(f"frame arrived -> plan on the line: median {1e3 * result['reaction_s_median']:.2f} ms, 99 % within "
           f"{1e3 * result['reaction_s_p99']:.2f} ms, at most {1e3 * result['reaction_s_max']:.2f} ms")  # fmt: skip
-    print(f"{result['decisions']} decisions, {result['overruns']} more than 5 ms late")
+    print(
+        f"{result['decisions']} decisions, {result['overruns']} more than 5 ms late; {len(log.faults)} stops"
+        f"{': ' + ', '.join(log.faults) if log.faults else ''}"
+    )
     print("\n".join(histogram("frame arrived -> plan on the line", reactions)))
     return 0

@@ -23,6 +23,7 @@ BRAKES_WITHIN = 0.1  # s in which a board that was asked to shows that it has st
 EXCHANGES = 10  # pings that are answered before the board's clock is relied on
 POLL = 0.001  # s between polls
 STALE = 0.03  # s without telemetry, which comes every 2 ms, after which the board counts as lost
+MOST_MISSED = 1  # plans that may come too late, one after the other, before the table is stopped
 MICRO = 1e-6
 NAMES = {number: message.__name__.lower() for message, (number, _) in FORMATS.items()}
 
@@ -41,6 +42,7 @@ class BoardLine:
         self.session = Session(connect, now)
         self._armed = False
         self._refused = ""  # the first message that the board refused, and why
+        self._missed = 0  # plans that came too late, since they were taken
         self._said: list[Telemetry] = []  # since it was taken
 
     # Bring-up, step by step
@@ -130,9 +132,19 @@ class BoardLine:
         said, self._said = self._said, []
         return [_seen(telemetry, self.session.clock.to_host(telemetry.time)) for telemetry in said]
 
+    def take_missed(self) -> int:
+        """The number of plans since the last call that came too late to the board."""
+        missed, self._missed = self._missed, 0
+        return missed
+
     def _take(self, event: Event) -> None:
-        if event.code == Notice.REFUSED and not self._refused:
-            self._refused = f"{NAMES.get(event.detail >> 8, 'message')}, {Refusal(event.detail & 0xFF).name}"
+        if event.code != Notice.REFUSED:
+            return
+        name, reason = NAMES.get(event.detail >> 8, "message"), Refusal(event.detail & 0xFF)
+        if name == "traj" and reason == Refusal.TOO_LATE and self._missed < MOST_MISSED:
+            self._missed += 1
+        elif not self._refused:
+            self._refused = f"{name}, {reason.name}"
 
     def _refuse_refusals(self) -> None:
         if self._refused:

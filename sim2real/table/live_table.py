@@ -140,7 +140,8 @@ class LiveTable(Backend):
         """See `Backend.read`."""
         frames, self._frames = self._frames, []
         late = self.now() - frames[-1].time if frames else math.nan
-        return Reading(frames, self._opened(self.line).take_mallets(), late)
+        line = self._opened(self.line)
+        return Reading(frames, line.take_mallets(), late, line.take_missed())
 
     def send(self, plan: MalletPlan) -> MalletPlan:
         """See `Backend.send`."""

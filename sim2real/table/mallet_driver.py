@@ -61,7 +61,8 @@ class MalletDriver:
     def __init__(self, p: np.void) -> None:
         self._p = p
         self._limit = operating_volts(p) - FEEDBACK_VOLTS
-        self._mallet = np.zeros(1, MALLET)[0]
+        self._mallets = np.zeros(1, MALLET)
+        self._mallet = self._mallets[0]  # a view
         _prepare(self._mallet, p)
         self._begin = 0.0
         self._before, self._before_begin = self._mallet.copy(), 0.0  # the plan that was followed until `_begin`
@@ -88,6 +89,11 @@ class MalletDriver:
         volts, t1, t2 = ((float(axes[0][name]), float(axes[1][name])) for name in ("volts", "t1", "t2"))
         modes = np.array([[float(axis[name]) for axis in axes] for name in ("rest", "slow", "fast")])
         return MalletPlan(begin, volts, t1, t2, modes)
+
+    def revert(self) -> None:
+        """The last plan came too late: the one before it goes on."""
+        self._mallets[0] = self._before
+        self._begin = self._before_begin
 
     def motion(self, time: float) -> tuple[float, float, float, float]:
         """The path's x, y [m] and vx, vy [m/s] at `time` [s], by the last plan or the one before it."""

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from puckpilot_env.game import rules
 from puckpilot_env.game.start import HOME, face_off
-from sim2real.table.backend import Backend, Place
+from sim2real.table.backend import Backend, Place, Reading
 from sim2real.table.faults import Cause, TableFaultError
 from sim2real.table.game.game_record import GameRecord, Motion
 from sim2real.table.game.loop_times import LoopTimes
@@ -32,7 +32,7 @@ def home_of(p: np.void) -> Place:
 class Loop:
     """A backend, what is known of its game, and the mallet's plans; `record`'s clock goes on with each `step`.
 
-    times: of the decisions; plans: number of plans sent; parked: seconds in which the mallet was parked because the
+    times: of the decisions; plans: number of plans sent; missed: of these, that came to the board too late; parked: seconds in which the mallet was parked because the
     puck was lost. TableFaultError, in one line, from every method in which time passes; the mallet is stopped then.
     """
 
@@ -41,6 +41,7 @@ class Loop:
         self.referee, self.seen = Referee(game), SeenTable(game.p)
         self.times, self.plans, self.parked = LoopTimes(), 0, 0.0
         self.off_path = 0.0  # m, the farthest since it was taken
+        self.missed = 0
         self.over = False  # whether the backend has ended
         self._driver = MalletDriver(game.p)
         self._placed = self._decided = -math.inf
@@ -88,7 +89,7 @@ class Loop:
         self.referee.order(0, self.motion(begin + AHEAD), action)
         self.backend.show(self.game.record)
         self._send(action, begin + AHEAD)
-        self.backend.wait(begin + period - HALF_FRAME)
+        self._watch(begin + period - HALF_FRAME)
         self.backend.wait_for_frame(begin + period + HALF_FRAME)
         self._take_frames()
         again = self.referee.end_step(self.backend.now(), self.seen)
@@ -123,11 +124,16 @@ class Loop:
         """The robot's mallet at `time` [s], as planned, or as it was where it does not obey."""
         return self.backend.mallet_motion(time) or self._driver.motion(time)
 
+    def _watch(self, until: float) -> None:
+        """Take each frame as it comes until `until` [s], so that a decision has one frame to wait for and no more."""
+        while self.backend.now() < until - 1e-9:
+            self.backend.wait_for_frame(until)
+            self._take_frames()
+
     def _take_frames(self) -> None:
         """Update the estimates, and show the referee each frame in which the puck is seen."""
-        reading = self.backend.read()
-        self._frame_age, self.over = reading.late_s, self.over or reading.over
-        self.off_path = max(self.off_path, reading.off_path)
+        reading = self._read()
+        self._frame_age = reading.late_s if reading.frames else self._frame_age
         for frame in reading.frames:
             if frame.time <= self._placed:  # of the point before
                 continue
@@ -137,6 +143,16 @@ class Loop:
             if frame.puck is not None and puck is not None:
                 self.referee.watch(frame.time, puck, self.motion(frame.time), self.seen.opponent.motion())
 
+    def _read(self) -> Reading:
+        """What came since the last time; after a plan that came too late the one before goes on."""
+        reading = self.backend.read()
+        self.over = self.over or reading.over
+        self.off_path = max(self.off_path, reading.off_path)
+        if reading.missed:
+            self._driver.revert()
+            self.missed += reading.missed
+        return reading
+
     def _send(self, action: ArrayLike, begin: float) -> None:
         self.backend.send(self._driver.plan(action, begin))
         self.plans += 1
@@ -145,7 +161,7 @@ class Loop:
         """Drive the mallet home and wait until it stands there."""
         while self.backend.obeys:
             self._hold(self.home)
-            self.backend.read()
+            self._read()
             if self._driver.standing(self.backend.now()):
                 return
 

@@ -22,6 +22,7 @@ from sim2real.table.backends import make_backend
 from sim2real.table.faults import Cause, TableFaultError
 from sim2real.table.game.game_record import GameRecord
 from sim2real.table.game.loop import Loop
+from sim2real.table.game.warm_up import warm_up
 
 
 class RobotSeat(gymnasium.Env[NDArray[Any], NDArray[Any]]):
@@ -59,6 +60,7 @@ class RobotSeat(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         with self._stopped_by_errors():
             loop = self.loop or Loop(self.backend, self.game)
             if self.loop is None:
+                warm_up(self.game)
                 loop.connect()
             elif self._stopped:
                 loop.clear()

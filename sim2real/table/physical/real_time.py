@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import time
 from collections import deque
 from collections.abc import Callable
@@ -15,6 +16,8 @@ from sim2real.table.live_table import LiveTable, Person
 from sim2real.table.mallet_driver import MalletPlan
 from sim2real.table.physical.eyes import LiveEyes
 
+FIRST_FRAME = 5.0  # s within which it comes
+WARM_UP = 30  # frames that are read before the motors are armed
 KEPT = 100_000  # reaction times kept: some hours of decisions
 
 
@@ -22,7 +25,7 @@ class RealTimeTable(LiveTable):
     """See `Backend`. connect_line: opens the serial line, which does not wait for bytes; make_eyes: makes the camera's
     eyes, not yet opened; make_person: makes who has the other seat, from what serves camera and line meanwhile.
 
-    reactions: times [s] from a frame's arrival until a plan that was made with it was written to the line.
+    reactions: times [s] from the arrival of a frame that was waited for until the plan made of it was on the line.
     """
 
     patience = float("inf")
@@ -38,7 +41,7 @@ class RealTimeTable(LiveTable):
         super().__init__(config, frame_rate)
         self._connect_line, self._make_eyes, self._make_person = connect_line, make_eyes, make_person
         self._live: LiveEyes | None = None
-        self._answered = 0.0  # arrival of the frame after which a plan was sent last
+        self._awaited = False  # whether nothing was waited for since the newest frame came
         self.reactions: deque[float] = deque(maxlen=KEPT)
 
     def seed(self, seed: int) -> None:
@@ -60,14 +63,37 @@ class RealTimeTable(LiveTable):
         if self.line is not None:
             self.line.poll()
 
+    def arm(self) -> None:
+        """See `LiveTable.arm`; after some frames were read, of which the first takes long. TableFaultError if none
+        comes."""
+        eyes, patient = self._opened(self._live), self.now() + FIRST_FRAME
+        read = 0
+        while read < WARM_UP:
+            self._look()
+            read += len(eyes.take(self.now()))
+            if not read and self.now() > patient:
+                raise TableFaultError(Cause.CAMERA_SILENT, f"no frame comes in {FIRST_FRAME:g} s; check the camera")
+        gc.collect()
+        gc.freeze()  # a full collection of all that was imported takes a tenth of a second, and would come in play
+        super().arm()
+
     def send(self, plan: MalletPlan) -> MalletPlan:
         """See `Backend.send`."""
         sent = super().send(plan)
-        arrived = self._opened(self._live).arrived
-        if arrived > self._answered:
-            self._answered = arrived
-            self.reactions.append(self.now() - arrived)
+        if self._awaited:
+            self.reactions.append(self.now() - self._opened(self._live).arrived)
+            self._awaited = False
         return sent
+
+    def wait(self, until: float) -> None:
+        """See `Backend.wait`."""
+        self._awaited = False
+        super().wait(until)
+
+    def wait_for_frame(self, until: float) -> None:
+        """See `Backend.wait_for_frame`."""
+        super().wait_for_frame(until)
+        self._awaited = self.now() < until
 
     def now(self) -> float:
         """The host's clock [s]."""

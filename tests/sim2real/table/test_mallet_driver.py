@@ -85,3 +85,15 @@ def test_what_is_no_number_is_refused_and_the_path_kept(bad: float) -> None:
     with pytest.raises(ValueError, match="expected four finite numbers"):
         driver.plan([bad, 0.5, 5.0, 5.0], 0.1)
     assert driver.motion(0.5)[:2] == pytest.approx(HOME)
+
+
+def test_a_plan_that_came_too_late_is_forgotten_and_the_one_before_goes_on() -> None:
+    driver, twin = (MalletDriver(P) for _ in range(2))
+    for one in (driver, twin):
+        one.stand(0.25, 0.5, 1.0)
+        one.plan([0.6, 0.3, 8.0, 8.0], 1.0)
+    driver.plan([0.2, 0.8, 6.0, 6.0], 1.05)
+    assert driver.motion(1.1) != pytest.approx(twin.motion(1.1), abs=1e-3)
+    driver.revert()
+    for time in (1.06, 1.1, 1.3):
+        assert driver.motion(time) == pytest.approx(twin.motion(time), abs=1e-12)
