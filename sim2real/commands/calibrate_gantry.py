@@ -68,6 +68,7 @@ def run(args: argparse.Namespace) -> int:
             "pulley_radius": found.pulley_radius,
             "sideways": found.sideways,
             "home": corner,
+            "offsets": found.offset,
             "file": str(args.out),
         }
         print(json.dumps(result, indent=1))
@@ -75,6 +76,8 @@ def run(args: argparse.Namespace) -> int:
     print(f"pulley radius {1000 * found.pulley_radius:.3f} mm; the corners differ by "
           f"{1000 * abs(found.sideways):.2f} mm along x")  # fmt: skip
     print(f"wrote {args.out}, for --baseline of `puckpilot diagnose`")
+    print(f"for [board] of a table.toml: pulley_radius = {found.pulley_radius:.6g}, "
+          f"offsets = [{found.offset[0]:.5f}, {found.offset[1]:.5f}]")  # fmt: skip
     print(f"home of the mallet in the right-hand corner: x {corner[0]:.4f} m, y {corner[1]:.4f} m")
     return 0
 

@@ -1,7 +1,7 @@
 """Two frames of play on the real table: a region of interest of the sensor, raw mosaic, exposed for 100 us.
 
 They lie beside the project. Noise of up to two grey levels is drawn by pictures, as `python -m
-tests.sim2real.vision.track.test_real_frames 100` does a hundred times.
+tests.sim2real.vision.track.regions.test_real_frames 100` does a hundred times.
 """
 
 from __future__ import annotations

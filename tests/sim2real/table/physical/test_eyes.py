@@ -1,0 +1,73 @@
+"""Live eyes: frames of a camera whose clock is its own, read at the host's time; a camera that fails."""
+
+from __future__ import annotations
+
+from typing import Self
+
+import numpy as np
+import pytest
+
+from sim2real.camera.frame import CameraError, Frame
+from sim2real.table.backend import SeenFrame
+from sim2real.table.faults import Cause, TableFaultError
+from sim2real.table.physical.eyes import LiveEyes
+
+OFFSET, DELAY = 1234.5, 0.006  # s of the camera's clock before the host's, and from exposure to arrival
+
+
+class Scripted:
+    """A source whose frames are given one by one."""
+
+    def __init__(self) -> None:
+        self.frame: Frame | None = None
+        self.error: CameraError | None = None
+        self.open = False
+
+    over, total = False, None
+
+    def newest(self, wait: float) -> Frame | None:
+        if self.error:
+            raise self.error
+        frame, self.frame = self.frame, None
+        return frame
+
+    def __enter__(self) -> Self:
+        self.open = True
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.open = False
+
+
+class Reader:
+    """Reads every frame as a puck in the middle."""
+
+    def read(self, frame: Frame) -> SeenFrame:
+        return SeenFrame(frame.time, (1.0, 0.5), None)
+
+
+def test_frames_are_read_at_the_time_of_their_exposure_on_the_hosts_clock() -> None:
+    source = Scripted()
+    eyes = LiveEyes(source, Reader(), DELAY)  # pyright: ignore[reportArgumentType] - what it reads with
+    eyes.open()
+    assert source.open and eyes.take(0.0) == []
+    for number in range(200):
+        host = 10.0 + number / 120.0
+        source.frame = Frame(np.zeros((2, 2), np.uint8), host + OFFSET, host + DELAY, number)
+        eyes.rest(0.0)
+        (seen,) = eyes.take(host + DELAY)
+        assert seen.puck == (1.0, 0.5) and eyes.arrived == host + DELAY
+        assert seen.time == pytest.approx(host, abs=2e-4)
+    eyes.close()
+    assert not source.open
+
+
+def test_a_camera_that_fails_is_a_fault_of_the_table() -> None:
+    source = Scripted()
+    eyes = LiveEyes(source, Reader(), DELAY)  # pyright: ignore[reportArgumentType]
+    eyes.open()
+    source.error = CameraError("aravis: gives no more pictures; plug it in again")
+    eyes.rest(0.0)  # a stop must be able to go on
+    with pytest.raises(TableFaultError, match="plug it in again") as caught:
+        eyes.take(0.0)
+    assert caught.value.cause == Cause.CAMERA_SILENT

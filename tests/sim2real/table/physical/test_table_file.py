@@ -1,0 +1,84 @@
+"""`table.toml`: what it holds, and what is refused in one line before anything moves."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import puckpilot
+from sim2real.camera.region import RegionOfInterest
+from sim2real.table.physical.table_file import EXAMPLE, read_table_file
+
+LEAST = """
+format = "puckpilot-table/1"
+[camera]
+source = "device:0"
+calibration = "table.json"
+[board]
+port = "/dev/ttyUSB0"
+"""
+
+
+def written(folder: Path, text: str) -> Path:
+    file = folder / "table.toml"
+    file.write_text(text)
+    return file
+
+
+def test_the_example_is_read_with_all_that_it_says(tmp_path: Path) -> None:
+    found = read_table_file(written(tmp_path, EXAMPLE[: EXAMPLE.index("[gantry]")]))  # there is no such profile
+    assert found.parameters["length"] == 2.362 and found.parameters["max_voltage"] == 24.0
+    assert found.parameters["pulley_radius"] == 0.0353 and found.board.offsets == (0.51, -1.22)
+    assert found.camera.settings.region == RegionOfInterest(396, 20, 1300, 1450) and found.camera.settings.mosaic
+    assert found.camera.calibration == tmp_path / "table.json" and found.camera.delay == 0.006
+    assert found.board.gains.proportional == (400.0, 400.0) and found.board.gains.derivative == (2.0, 2.0)
+
+
+def test_what_is_left_out_has_the_default(tmp_path: Path) -> None:
+    found = read_table_file(written(tmp_path, LEAST))
+    assert found.parameters == {} and found.board.offsets is None and found.camera.setup is None
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (('port = "/dev/ttyUSB0"', ""), "board.port is missing"),
+        (('source = "device:0"', ""), "camera.source is missing"),
+        (('format = "puckpilot-table/1"', ""), "there is no line with its format"),
+        (("[board]", "[bord]"), "unknown entry 'bord'; did you mean 'board'?"),
+        (("[board]", "[board]\nsuply = 24.0"), "unknown key of board 'suply'; did you mean 'supply'?"),
+        (("[board]", "[board]\nsupply = 2400.0"), "max_voltage"),
+        (("[board]", "[board]\noffsets = [1.0]"), "board.offsets is [1.0]; expected two numbers"),
+        (("[board]", '[board]\nbaud = "fast"'), "board.baud is 'fast'; expected a whole number above 0"),
+        (("[camera]", '[camera]\nregion = "12"'), "a region of interest is '12'"),
+        (("[camera]", "[camera]\ndelay = -1.0"), "camera.delay is -1.0; expected a number, 0 or more"),
+        (("[camera]", "[camera]\nrate = 0.0"), "rate is 0.0; expected frames a second"),
+        (("[board]", '[gantry]\nprofile = "none.toml"\n[board]'), "none.toml"),
+    ],
+)
+def test_a_file_that_cannot_be_used_is_refused_in_one_line(tmp_path: Path, change: tuple[str, str], words: str) -> None:
+    file = written(tmp_path, LEAST.replace(*change))
+    with pytest.raises(ValueError) as caught:
+        read_table_file(file)
+    assert words in str(caught.value) and str(file) in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_commands_refuse_a_table_without_calibration_before_anything_moves(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = str(written(tmp_path, LEAST))
+    for words in (["table", "check", file], ["play", "goalie", "--backend", "table", "--table", file]):
+        assert puckpilot.main(words) == 2
+        error = capsys.readouterr().err
+        assert "table.json" in error and error.count("\n") == 1
+
+
+def test_play_asks_for_what_its_backend_needs(capsys: pytest.CaptureFixture[str]) -> None:
+    for words, message in (
+        (["--backend", "table"], "--backend table needs --table"),
+        (["--backend", "replay"], "--backend replay needs --recording"),
+        (["--backend", "replay", "--opponent", "goalie"], "--opponent is given with --backend replay"),
+    ):
+        assert puckpilot.main(["play", "goalie", *words]) == 2
+        assert message in capsys.readouterr().err
