@@ -1,5 +1,6 @@
 """Whole games on the twin and in the simulator of the same table: how fast the twin is, and whether the game is the
-same.
+same. A plan acts on the twin 14 ms after its decision, so the simulator's table has this `command_delay` too; beside it
+stands the simulator without one, which a timing-sensitive player may like better.
 
 The twin runs with measured places instead of pictures, in lock-step. Its speed is virtual time by processor time of one
 core. The simulator plays as many games, half of them with the seats exchanged, to which it is indifferent. With
@@ -13,6 +14,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from baselines.matches.match import MatchResult
+    from puckpilot_env.options.effects_file import Effects
     from sim2real.table.twin.fidelity import TwinGame
 
 MOST = 10_000
@@ -43,6 +46,7 @@ def run(args: argparse.Namespace) -> int:
     from puckpilot_env.files.whole_file import check_folder
     from puckpilot_env.options.inputs import seed_number, whole_number
     from puckpilot_env.variants import find_variant
+    from sim2real.table.mallet_driver import AHEAD
     from sim2real.table.twin.fidelity import Meeting, play_all
 
     whole_number(args.games, "--games", 1, MOST)
@@ -59,21 +63,28 @@ def run(args: argparse.Namespace) -> int:
         folder = args.folder or Path(passing)
         check_folder(folder)
         games = play_all(meetings, folder, args.processes, progress)
-    simulated = play(variant, args.player, args.opponent, args.games, seed)
-    minutes = float(simulated.lengths.sum()) * variant.period / 60.0
+    late: Effects = {"command_delay": {"delay_s": AHEAD}}
+    simulated = {
+        name: play(variant, args.player, args.opponent, args.games, seed, effects=effects)
+        for name, effects in (("simulator", late), ("without_delay", None))
+    }
     result = {
         "variant": variant.id, "players": [args.player, args.opponent], "seed": seed, "games": args.games,
         "speed": _speed(games),
         "twin": _figures(games),
-        "simulator": {
-            "wins": list(simulated.wins), "goals": list(simulated.goals), "minutes": minutes,
-            "win_rate": simulated.wins[0] / args.games,
-            "goals_a_minute": [goals / minutes for goals in simulated.goals],
-        },
+        **{name: _simulated(match, variant.period) for name, match in simulated.items()},
     }  # fmt: skip
     result |= _compared(result)
     print(json.dumps(result, indent=1) if args.json else "\n".join(_lines(result)))
     return 0
+
+
+def _simulated(match: MatchResult, period: float) -> dict[str, Any]:
+    minutes = float(match.lengths.sum()) * period / 60.0
+    return {
+        "wins": list(match.wins), "goals": list(match.goals), "minutes": minutes,
+        "win_rate": match.wins[0] / match.games, "goals_a_minute": [goals / minutes for goals in match.goals],
+    }  # fmt: skip
 
 
 def _speed(games: list[TwinGame]) -> dict[str, float]:
@@ -116,8 +127,8 @@ def _compared(result: dict[str, Any]) -> dict[str, Any]:
 def _lines(result: dict[str, Any]) -> list[str]:
     player, opponent = result["players"]
     speed, lines = result["speed"], []
-    for name in ("twin", "simulator"):
-        one = result[name]
+    for name, key in (("twin", "twin"), ("simulator", "simulator"), ("  no delay", "without_delay")):
+        one = result[key]
         scored, conceded = one["goals_a_minute"]
         lines.append(
             f"{name:11}{player} {one['wins'][0]}:{one['wins'][1]} {opponent} in {result['games']} games; "

@@ -32,7 +32,7 @@ def home_of(p: np.void) -> Place:
 class Loop:
     """A backend, what is known of its game, and the mallet's plans; `record`'s clock goes on with each `step`.
 
-    times: of the decisions; plans: number of plans sent; missed: of these, those that came too late to the board; parked:
+    times: of the decisions; plans: number of plans sent; missed: of these, those that came too late; parked:
     seconds in which the mallet was parked because the puck was lost. TableFaultError, in one line, from every method in
     which time passes; the mallet is stopped then.
     """
