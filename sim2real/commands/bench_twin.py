@@ -43,7 +43,6 @@ def run(args: argparse.Namespace) -> int:
     from baselines import find_player
     from baselines.commands.options import progress_bar
     from baselines.matches.match import play
-    from puckpilot_env.files.whole_file import check_folder
     from puckpilot_env.options.inputs import seed_number, whole_number
     from puckpilot_env.variants import find_variant
     from sim2real.table.mallet_driver import AHEAD
@@ -61,7 +60,7 @@ def run(args: argparse.Namespace) -> int:
     ]
     with TemporaryDirectory() as passing, progress_bar("games on the twin") as progress:
         folder = args.folder or Path(passing)
-        check_folder(folder)
+        folder.mkdir(parents=True, exist_ok=True)
         games = play_all(meetings, folder, args.processes, progress)
     late: Effects = {"command_delay": {"delay_s": AHEAD}}
     simulated = {
