@@ -113,6 +113,7 @@ static void check(const struct robot *robot, const struct robot_output *out) {
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     static struct robot robot;
+    static struct kept kept;
     struct input input = {data, size};
     struct robot_output out = {.count = 0};
     uint8_t line[512];
@@ -120,7 +121,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     int32_t angles[2] = {100, 200};
     uint32_t now = 0xFFFF0000u;
 
-    robot_start(&robot, 0, 1);
+    robot_start(&robot, 0, 1, &kept);
     while (input.left > 0) {
         uint8_t flags = draw_byte(&input);
         for (int quiet = (flags >> 4) * 4; quiet >= 0; quiet--) {
