@@ -31,10 +31,11 @@ static bool beyond(int32_t value, int32_t most) {
     return value > most || value < -most;
 }
 
-/* From one good angle to the next a motor turns no farther than it can, and nearly as it did before: a free one gains
- * some 20 a tick at 24 V, one that hits something loses more. */
+/* From one good angle to the next a motor turns no farther than it can, and nearly as it did before, if that is known: a
+ * free one gains some 20 a tick at 24 V, one that hits something loses more. */
 static bool possible(const struct encoder *encoder, int32_t step, int32_t ticks) {
-    return !beyond(step, QUICKEST * ticks) && !beyond(step - encoder->step * ticks, MOST_CHANGE * ticks);
+    bool as_before = !encoder->paced || !beyond(step - encoder->step * ticks, MOST_CHANGE * ticks);
+    return as_before && !beyond(step, QUICKEST * ticks);
 }
 
 static void take_angle(struct encoder *encoder, uint16_t angle) {
@@ -47,6 +48,7 @@ static void take_angle(struct encoder *encoder, uint16_t angle) {
         }
         encoder->turned += step;
         encoder->step = step / ticks;
+        encoder->paced = true;
     } else {
         encoder->turned = angle;
         encoder->seen = true;

@@ -18,6 +18,14 @@ bool axis_make(struct axis *axis, float c5, float c6, float c7, float radius) {
     return true;
 }
 
+bool axes_make(struct axis axes[2], const struct config *config) {
+    bool made = true;
+    for (int i = 0; i < 2; i++) {
+        made = made && axis_make(&axes[i], config->c5[i], config->c6[i], config->c7[i], config->pulley_radius);
+    }
+    return made;
+}
+
 void mallet_place(const float angle[2], float radius, float place[2]) {
     float half = 0.5f * radius;
     place[0] = (angle[0] - angle[1]) * half;

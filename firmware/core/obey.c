@@ -34,10 +34,7 @@ static int take_hello(struct robot *robot, const struct hello *hello) {
 static int take_config(struct robot *robot, const struct config *config, uint32_t crc) {
     struct axis axes[2];
     bool fits = config->x[0] < config->x[1] && config->y[0] < config->y[1] && config->most_volts <= config->supply;
-    for (int i = 0; i < 2; i++) {
-        fits = fits && axis_make(&axes[i], config->c5[i], config->c6[i], config->c7[i], config->pulley_radius);
-    }
-    if (!fits) {
+    if (!fits || !axes_make(axes, config)) {
         return REFUSAL_BAD_CONFIG;
     }
     if (robot->homed && config->pulley_radius != robot->config.pulley_radius) {
@@ -96,6 +93,7 @@ static int take_arm(struct robot *robot, const struct arm *arm) {
         return REFUSAL_NO_ENCODERS;
     }
     control_start(&robot->control);
+    kept_hold(robot->kept, &robot->config);
     enter(robot, STATE_ARMED);
     return OBEYED;
 }

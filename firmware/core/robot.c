@@ -10,8 +10,10 @@
 #define TELEMETRY_TICKS 2
 #define FEW_BYTES 24 /* in a tick that brings more, hearing is work enough: looking at a trajectory waits */
 
-void robot_start(struct robot *robot, uint32_t cause, uint32_t boots) {
+void robot_start(struct robot *robot, uint32_t cause, uint32_t boots, struct kept *kept) {
     memset(robot, 0, sizeof *robot);
+    robot->kept = kept;
+    robot->coasts = kept_take(kept, &robot->config) && axes_make(robot->axes, &robot->config);
     robot->boots = boots != 0 ? boots : 1; /* 0 is a host's */
     robot->state = STATE_BOOT;
     encoder_start(&robot->encoders[0]);
@@ -54,6 +56,16 @@ static void listen(struct robot *robot, const struct robot_input *in) {
 static void leave_boot(struct robot *robot) {
     if (robot->state == STATE_BOOT && robot->ticks > BOOT_TICKS) {
         enter(robot, STATE_UNHOMED);
+    }
+}
+
+/* A mallet that was driven when the board was reset: brake it as soon as two angles of each encoder tell its speed. */
+static void catch(struct robot *robot) {
+    const struct encoder *encoders = robot->encoders;
+    bool known = encoders[0].paced && encoders[1].paced && encoders[0].bad + encoders[1].bad == 0;
+    if (robot->coasts && known && robot->state == STATE_BOOT) {
+        robot->coasts = false;
+        brake_start(&robot->brake);
     }
 }
 
@@ -181,7 +193,11 @@ void robot_step(struct robot *robot, const struct robot_input *in, struct robot_
     choose_track(robot);
     follow(robot);
     watch(robot, in->missed);
+    catch(robot);
     drive(robot);
+    if (robot->state != STATE_ARMED && !robot->brake.going) {
+        kept_drop(robot->kept);
+    }
     out->pwm[0] = robot->pwm[0];
     out->pwm[1] = robot->pwm[1];
     speak(robot, out, in->now);

@@ -105,7 +105,7 @@ static void check(const struct robot *robot, const struct robot_output *out) {
             most = (int)(robot->config.most_volts / robot->config.supply * PWM_FULL + 1.0f);
         }
         require(abs(out->pwm[i]) <= most);
-        require(robot->state == STATE_ARMED || out->pwm[i] == 0);
+        require(robot->state == STATE_ARMED || robot->brake.going || out->pwm[i] == 0);
         require(isfinite(robot->place[i]) && isfinite(robot->control.integral[i]));
     }
     require(robot->state != STATE_ARMED || (robot->homed && robot->configured && robot->greeted));
@@ -115,12 +115,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     static struct robot robot;
     struct input input = {data, size};
     struct robot_output out = {.count = 0};
+    struct kept kept = {.crc = 0};
     uint8_t line[512];
     uint32_t zeros[ROBOT_ZEROS];
     int32_t angles[2] = {100, 200};
     uint32_t now = 0xFFFF0000u;
 
-    robot_start(&robot, 0, 1);
+    robot_start(&robot, 0, 1, &kept);
     while (input.left > 0) {
         uint8_t flags = draw_byte(&input);
         for (int quiet = (flags >> 4) * 4; quiet >= 0; quiet--) {

@@ -3,7 +3,8 @@
 Faults: the camera unplugged, late frames, the puck taken away, the serial cable cut, damaged bytes, the board reset, a
 policy that hangs, the mallet held fast. After each the table is cleared, and play goes on. Where the mallet is and how
 fast, and what its motors get, is looked at every millisecond in the plant's own truth. Ends with 0 if the mallet never
-left its area, never got more than 15 V, and always stood 50 ms after a fault was noticed, with 1 if not.
+left its area, never got more than 15 V, and always stood 50 ms after a fault was noticed, or after it began, if the
+board can notice it by itself (70 ms, if only the camera's frames tell), with 1 if not.
 """
 
 from __future__ import annotations
@@ -60,7 +61,6 @@ def run(args: argparse.Namespace) -> int:
 def _result(parts: list[Part]) -> dict[str, Any]:
     import numpy as np
 
-    from sim2real.table.drills.campaign import STILL
     from sim2real.table.drills.faults import FAULTS
     from sim2real.table.mallet_driver import OPERATING_VOLTS
 
@@ -78,7 +78,7 @@ def _result(parts: list[Part]) -> dict[str, Any]:
                 "at_rest_after_notice_s": _spread([stop.after_notice for stop in stopped]),
                 "at_rest_s": _spread([stop.at_rest for stop in stopped]),
             }
-    moving = sum(stop.after_notice > STILL for stop in stops)
+    late = [stop for stop in stops if not stop.in_time]
     volts, outside = max(part.volts for part in parts), max(part.outside for part in parts)
     ended = [part.ended for part in parts if part.ended]
     return {
@@ -86,9 +86,9 @@ def _result(parts: list[Part]) -> dict[str, Any]:
         "faults": rows,
         "most_volts": volts,
         "farthest_outside_m": outside,
-        "moving_50_ms_after_notice": moving,
+        "too_late": [f"{stop.fault}, {stop.speed:.1f} m/s: {1e3 * stop.at_rest:.0f} ms" for stop in late],
         "not_cleared": ended,
-        "safe": volts <= OPERATING_VOLTS and outside <= 0.0 and moving == 0 and not ended,
+        "safe": volts <= OPERATING_VOLTS and outside <= 0.0 and not late and not ended,
     }
 
 
@@ -101,16 +101,20 @@ def _spread(seconds: list[float]) -> dict[str, float] | None:
 
 
 def _summary(result: dict[str, Any]) -> list[str]:
-    lines = [f"{'fault':12} {'times':>6} {'stopped':>8} {'noticed, at most':>17} {'at rest after, at most':>23}  by"]
+    lines = [f"{'fault':12} {'times':>6} {'stopped':>8} {'noticed, at most':>17} {'at rest, at most':>17} {'99 %':>7}  by"]
     for name, row in result["faults"].items():
-        noticed, rest = (
-            f"{1e3 * row[key]['max']:.0f} ms" if row[key] else "" for key in ("noticed_s", "at_rest_after_notice_s")
+        noticed, rest, most = (
+            f"{1e3 * row[key][which]:.0f} ms" if row[key] else ""
+            for key, which in (("noticed_s", "max"), ("at_rest_s", "max"), ("at_rest_s", "p99"))
         )
-        lines.append(f"{name:12} {row['times']:6} {row['stopped']:8} {noticed:>17} {rest:>23}  {', '.join(row['by'])}")
+        lines.append(
+            f"{name:12} {row['times']:6} {row['stopped']:8} {noticed:>17} {rest:>17} {most:>7}  {', '.join(row['by'])}"
+        )
     return [
         *lines,
         f"{result['hours']:.2f} h of play: at most {result['most_volts']:.2f} V at a motor; mallet at most "
-        f"{1e3 * max(result['farthest_outside_m'], 0.0):.1f} mm outside its area; moving 50 ms after a notice: "
-        f"{result['moving_50_ms_after_notice']} times",
+        f"{1e3 * max(result['farthest_outside_m'], 0.0):.1f} mm outside its area; too late at rest: "
+        f"{len(result['too_late'])} times",
+        *(f"too late: {line}" for line in result["too_late"]),
         *(f"not cleared: {line}" for line in result["not_cleared"]),
     ]

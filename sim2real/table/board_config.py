@@ -12,7 +12,7 @@ from sim2real.link.wire.messages import Config
 from sim2real.table.mallet_driver import operating_volts
 
 OFF_PATH = 0.05  # m from its path at which the board stops the mallet
-SILENCE = 25  # ms without a message after which the board stops: it has as long again to brake within 50 ms
+SILENCE = 12  # ms without a message after which the board stops: then it has 37 ms left to brake within 50 ms
 AREA_SLACK = 0.002  # m beyond the area of plans in which the mallet may err before the board stops it
 
 

@@ -18,7 +18,7 @@ from puckpilot_env.physics.gantry.mallet import (
     set_constants,
     settle,
 )
-from puckpilot_env.physics.gantry.plan import plan_mallet
+from sim2real.table.brakeable_plan import plan_brakeable
 
 OPERATING_VOLTS = 15.0  # V that a motor ever gets on a table (report)
 FEEDBACK_VOLTS = 1.0  # V of these that plans leave to the board's feedback
@@ -76,14 +76,14 @@ class MalletDriver:
     def plan(self, action: ArrayLike, begin: float) -> MalletPlan:
         """Plan for an action (4,), target x, y [m] and volts x, y [V] in the robot's frame, that acts at `begin` [s].
 
-        The target is brought into the mallet's area and the volts to the operating limit, as far as it can still stop
-        inside. ValueError for a number that is none.
+        The target is brought into the mallet's area and the volts to the operating limit, or to less, so that the board's
+        braking stop could end the plan soon and inside at any moment. ValueError for a number that is none.
         """
         x, y, vx, vy = (float(one) for one in np.asarray(action, float))
         if not np.isfinite([x, y, vx, vy]).all():
             raise ValueError(f"the action is {np.asarray(action).tolist()}; expected four finite numbers")
         self._before, self._before_begin = self._mallet.copy(), self._begin
-        _plan(self._mallet, self._p, begin - self._begin, x, y, vx, vy, self._limit)
+        _plan(self._mallet, self._p, begin - self._begin, x, y, vx, vy, self._limit, self._limit + FEEDBACK_VOLTS)
         self._begin = begin
         axes = (self._mallet["x"], self._mallet["y"])
         volts, t1, t2 = ((float(axes[0][name]), float(axes[1][name])) for name in ("volts", "t1", "t2"))
@@ -122,6 +122,6 @@ def _stand(mallet, x, y):
 
 
 @kernel
-def _plan(mallet, p, since, x, y, vx, vy, limit):
+def _plan(mallet, p, since, x, y, vx, vy, limit, most):
     settle(mallet, since)
-    plan_mallet(mallet, x, y, vx, vy, mirror.area(0, p), limit)
+    plan_brakeable(mallet, x, y, vx, vy, mirror.area(0, p), limit, most)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from sim2real.table.backend import SeenFrame
 from sim2real.table.faults import Cause, TableFaultError
 
-BLIND = 0.03  # s without a new frame after which the camera counts as lost: three frames of 120 Hz are missing then
+BLIND = 0.021  # s without a new frame after which the camera counts as lost: two frames of 120 Hz are missing then
 LATE = 0.05  # s of a frame's age when it comes; predictions from older ones are no ground to move on
 LATE_FRAMES = 3  # so many late frames in a row: one alone is a hiccup
 CROWDED = 12  # frames in a row with more than one candidate for the puck: a tenth of a second

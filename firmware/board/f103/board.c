@@ -1,17 +1,20 @@
 /* The main loop: each millisecond gathers what came in, lets the core take one step, and does what it says. */
 #include "board.h"
+#include "kept.h"
 #include "registers.h"
 #include "robot.h"
 #include "robot_state.h"
 
 #define READ_ANGLE 0xFFFFu
 #define EXCEPTION_SYSTICK 15
+#define POWER_ON BIT(27 - 24) /* PORRSTF, of what RCC_CSR says of the cause */
 
 static struct robot robot;
 static volatile uint16_t due; /* ticks so far, modulo 2^16 */
 
 /* Not cleared at reset: whatever the memory holds at power-on, and another number after each reset. */
 __attribute__((section(".noinit"))) static uint32_t boots;
+__attribute__((section(".noinit"))) static struct kept kept;
 
 void tick_interrupt(void);
 void tick_interrupt(void)
@@ -82,13 +85,15 @@ int main(void)
     const uint32_t cause = RCC->CSR >> 24;
     RCC->CSR |= RCC_CSR_RMVF;
     boots = boots * 1664525u + 1013904223u;
+    if (cause & POWER_ON)
+        kept.crc = ~kept.crc; /* what has lost its supply may have its memory, and no mallet that moves */
 
     watchdog_start();
     motors_start();
     encoders_start();
     counter_start(megahertz);
     usart_start(megahertz);
-    robot_start(&robot, cause, boots);
+    robot_start(&robot, cause, boots, &kept);
     out.commands[0] = out.commands[1] = READ_ANGLE;
     tick_start(megahertz);
     for (;;) {

@@ -17,6 +17,7 @@
 
 struct board {
     struct robot robot;
+    struct kept kept;
     struct robot_input in;
     struct robot_output out;
     uint32_t zeros[ROBOT_ZEROS];
@@ -95,7 +96,7 @@ int main(void) {
     board.in.bytes = board.bytes;
     board.in.zeros = board.zeros;
     clock_gettime(CLOCK_MONOTONIC, &next);
-    robot_start(&board.robot, 0, (uint32_t)next.tv_nsec);
+    robot_start(&board.robot, 0, (uint32_t)next.tv_nsec, &board.kept);
     for (;;) {
         step(&board, line);
         next.tv_nsec += 1000 * TICK_US;

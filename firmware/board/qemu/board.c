@@ -82,12 +82,13 @@ int main(void)
 {
     static struct robot robot;
     static struct robot_output out;
+    static struct kept kept;
     struct start start;
 
     line_open();
     give("", 1);
     take(&start, sizeof start);
-    robot_start(&robot, start.cause, start.boots);
+    robot_start(&robot, start.cause, start.boots, &kept);
     for (;;)
         one_tick(&robot, &out);
 }

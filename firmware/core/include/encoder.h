@@ -34,6 +34,7 @@ struct encoder {
     uint8_t doubt;          /* see ENCODER_BAD */
     uint8_t zeros;          /* answers of nothing but zeros in a row */
     bool seen;              /* a good angle came since the start */
+    bool paced;             /* two of them did, so that its step is known */
     uint8_t fault;          /* enum fault: why its answers are not believed any more */
 };
 

@@ -19,6 +19,9 @@ struct axis {
 /* An axis from its coefficients [V s^3, V s^2, V s] and the pulley's radius [m]; false unless it is overdamped. */
 bool axis_make(struct axis *axis, float c5, float c6, float c7, float radius);
 
+/* Both axes of a configuration; false unless they are overdamped. */
+bool axes_make(struct axis axes[2], const struct config *config);
+
 /* Place [m] of a mallet, x and y, whose pulleys of this radius stand at these angles [rad] (report 37, 38). */
 void mallet_place(const float angle[2], float radius, float place[2]);
 

@@ -29,9 +29,12 @@ struct robot_output {
 };
 
 struct robot;
+struct kept;
 
-/* Begin: motors off, mallet unknown. cause: what reset the board, in its own numbers; boots: a number of this start. */
-void robot_start(struct robot *robot, uint32_t cause, uint32_t boots);
+/* Begin: motors off, mallet unknown; but where one was driven when the board was reset, it is braked as soon as its speed
+ * is known. cause: what reset the board, in its own numbers; boots: a number of this start; kept: what the board held
+ * through the reset, nothing or random memory after a power-on. */
+void robot_start(struct robot *robot, uint32_t cause, uint32_t boots, struct kept *kept);
 
 /* One tick. */
 void robot_step(struct robot *robot, const struct robot_input *in, struct robot_output *out);

@@ -10,6 +10,7 @@
 #include "encoder.h"
 #include "frame.h"
 #include "gantry.h"
+#include "kept.h"
 #include "messages.h"
 #include "path.h"
 #include "robot.h"
@@ -51,6 +52,8 @@ struct robot {
     float path[2];         /* m: where the path has the mallet */
     struct control control;
     struct brake brake;    /* goes on in FAULT or IDLE, whatever the host says but estop */
+    struct kept *kept;     /* holds the configuration while a motor may be driven */
+    bool coasts;           /* since a reset, in BOOT: the mallet was driven then */
     int16_t pwm[2];
     uint16_t driven[2];    /* ticks that a motor was driven without its encoder moving */
 

@@ -18,7 +18,6 @@ from sim2real.table.game.robot_seat import make_robot_seat
 
 PART = 120.0  # s of play of a part
 BETWEEN = (1.0, 6.0)  # s of play between two faults
-STILL = 0.05  # s after a fault was noticed by which the mallet has to stand
 
 
 @dataclass(frozen=True)

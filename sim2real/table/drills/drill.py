@@ -9,13 +9,14 @@ import numpy as np
 
 from baselines import find_player
 from baselines.player import Seat
-from sim2real.table.drills.faults import Fault
+from sim2real.table.drills.faults import FAULTS, Fault
 from sim2real.table.drills.monitor import MalletMonitor
 from sim2real.table.faults import TableFaultError
 from sim2real.table.game.robot_seat import RobotSeat
 from sim2real.table.twin.twin import Twin
 
 NOTICED_WITHIN = 5.0  # s of play after which a fault that stopped nothing is mended
+STILL = 0.05  # s after a fault was noticed by which the mallet has to stand
 AFTER = 0.6  # s that the mallet is watched after a stop
 TRIES = 5  # of clearing
 
@@ -35,6 +36,12 @@ class Stop:
     def after_notice(self) -> float:
         """From the notice until the mallet stood [s]; 0 if it stood already."""
         return max(self.at_rest - self.noticed, 0.0)
+
+    @property
+    def in_time(self) -> bool:
+        """Whether the mallet stood as soon as it has to: of what can be known at once, counted from its first moment."""
+        within = next(fault.rest_within for fault in FAULTS if fault.name == self.fault)
+        return not self.cause or (self.after_notice <= STILL and (within is None or self.at_rest <= within))
 
 
 class Drill:

@@ -14,19 +14,22 @@ from sim2real.table.twin.twin import Twin
 HANG = 0.3  # s
 DAMAGED = 0.02  # of the bytes on the line
 LATE = 0.08  # s
+UNPLUGGED = 0.05  # s from the first moment of what the board notices by itself until the mallet stands
+UNSEEN = 0.07  # s of what only the camera's frames tell, which come 120 times a second
 
 
 @dataclass(frozen=True)
 class Fault:
     """A fault by name. begin, end: let it happen to a twin, and mend it; causes: by which it may be noticed, none if
-    play goes on; sudden: whether the mallet has to stop from its first moment on."""
+    play goes on; rest_within: s from its first moment until the mallet has to stand, none where nobody can know it yet
+    then."""
 
     name: str
     words: str
     begin: Callable[[Twin], None]
     end: Callable[[Twin], None]
     causes: frozenset[Cause]
-    sudden: bool = True
+    rest_within: float | None = None
 
 
 def _unplug(twin: Twin) -> None:
@@ -95,17 +98,17 @@ def _nothing(twin: Twin) -> None:
 
 
 FAULTS = (
-    Fault("camera", "the camera is unplugged", _unplug, _plug, frozenset({Cause.CAMERA_SILENT})),
+    Fault("camera", "the camera is unplugged", _unplug, _plug, frozenset({Cause.CAMERA_SILENT}), UNSEEN),
     Fault("late-frames", f"frames come {1e3 * LATE:.0f} ms later", _delay, _hurry,
-          frozenset({Cause.CAMERA_SILENT, Cause.CAMERA_LATE})),
-    Fault("no-puck", "the puck is taken away", _take_puck, _lay_puck, frozenset({Cause.PUCK_LOST}), sudden=False),
+          frozenset({Cause.CAMERA_SILENT, Cause.CAMERA_LATE}), UNSEEN),
+    Fault("no-puck", "the puck is taken away", _take_puck, _lay_puck, frozenset({Cause.PUCK_LOST})),
     Fault("cable", "the serial cable is cut", _cut, _join,
-          frozenset({Cause.PORT_LOST, Cause.BOARD_STOPPED})),
+          frozenset({Cause.PORT_LOST, Cause.BOARD_STOPPED}), UNPLUGGED),
     Fault("noise", f"{100 * DAMAGED:.0f} % of the bytes are damaged", _damage, _heal,
-          frozenset({Cause.PLAN_REFUSED, Cause.BOARD_STOPPED, Cause.BOARD_SILENT}), sudden=False),
+          frozenset({Cause.PLAN_REFUSED, Cause.BOARD_STOPPED, Cause.BOARD_SILENT})),
     Fault("reset", "the board is reset", _reset, _nothing,
-          frozenset({Cause.BOARD_NOT_ARMED, Cause.BOARD_SILENT})),
+          frozenset({Cause.BOARD_NOT_ARMED, Cause.BOARD_SILENT}), UNPLUGGED),
     Fault("hang", f"the policy hangs for {1e3 * HANG:.0f} ms", _hang, _nothing,
-          frozenset({Cause.BOARD_STOPPED, Cause.BOARD_SILENT})),
-    Fault("held", "the mallet is held fast", _hold, _release, frozenset({Cause.BOARD_STOPPED}), sudden=False),
+          frozenset({Cause.BOARD_STOPPED, Cause.BOARD_SILENT}), UNPLUGGED),
+    Fault("held", "the mallet is held fast", _hold, _release, frozenset({Cause.BOARD_STOPPED})),
 )  # fmt: skip

@@ -63,10 +63,16 @@ class Core:
     cause: int = 0
     boots: int = 1
     robot: c.Array = field(init=False)
+    kept: c.Array = field(init=False)
 
     def __post_init__(self) -> None:
+        self.kept = c.create_string_buffer(library().kept_size())
+        self.start()
+
+    def start(self) -> None:
+        """From a reset on, by which nothing remains but what is kept."""
         self.robot = c.create_string_buffer(library().robot_size())
-        library().robot_start(self.robot, self.cause, self.boots)
+        library().robot_start(self.robot, self.cause, self.boots, self.kept)
 
     def step(
         self, now: int, answers: tuple[int, int], received: bytes = b"", *, missed: int = 0, lost: int = 0,

@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
 
-from sim2real.link.wire.messages import Clear, Disarm, Fault, Hello, Notice, Ping, Pong, State, Telemetry
+from sim2real.link.wire.messages import Clear, Estop, Disarm, Fault, Hello, Notice, Ping, Pong, State, Telemetry
 from tests.firmware.core.line import arm, config, frame, hello
 from tests.sim2real.emulate.preempted import play
 from tests.sim2real.emulate.robot import START, TARGET, Robot
@@ -131,16 +131,45 @@ def test_a_step_that_takes_too_long_stops_it() -> None:
     assert robot.telemetry.state == State.IDLE
 
 
-def test_a_reset_in_the_middle_of_play_leaves_the_motors_off() -> None:
+def _reset_on_its_way(cause: str) -> tuple[Robot, float]:
+    """A robot that is reset as its mallet moves, and when [us]."""
     robot = Robot().armed().goes()
-    robot.machine.reset("watchdog")
+    robot.run(20_000)
+    robot.machine.reset(cause)
     robot.machine.received()
     robot._rest = b""
-    duties = robot.machine.motors.duties
-    robot.run(100_000)
-    assert duties == robot.machine.motors.duties == (0.0, 0.0)
+    assert robot.machine.motors.duties == (0.0, 0.0)
+    assert min(robot.gantry.velocity(robot.machine.now)) > 0.6
+    return robot, robot.machine.now
+
+
+def test_a_reset_in_the_middle_of_play_brakes_the_mallet() -> None:
+    """The chip keeps its memory; clocks and two angles take 5 ms."""
+    robot, reset = _reset_on_its_way("watchdog")
+    robot.run(45_000)
+    assert max(map(abs, robot.gantry.velocity(robot.machine.now))) < 0.05
+    robot.run(60_000)
+    assert robot.machine.motors.duties == (0.0, 0.0)
+    driven = [when - reset for when, *duties in robot.machine.pwm if when > reset and any(duties)]
+    assert driven[0] < 5000 and driven[-1] < 45_000
     assert robot.events(Notice.BOOTED)[-1] == 0x24  # IWDGRSTF and PINRSTF
     assert robot.telemetry.state == State.UNHOMED
+
+
+def test_after_a_power_on_no_motor_is_driven_whatever_the_memory_holds() -> None:
+    robot, reset = _reset_on_its_way("power")
+    robot.run(100_000)
+    assert all(when <= reset for when, *duties in robot.machine.pwm if any(duties))
+    assert robot.telemetry.state == State.UNHOMED
+
+
+def test_a_reset_of_a_board_that_was_stopped_drives_no_motor() -> None:
+    robot = Robot().armed().goes()
+    robot.run(10_000, Estop())
+    robot.machine.reset("watchdog")
+    reset = robot.machine.now
+    robot.run(100_000)
+    assert all(when <= reset for when, *duties in robot.machine.pwm if any(duties))
 
 
 def _play(**options) -> tuple:

@@ -45,8 +45,9 @@ static void obey(struct robot *robot, uint8_t order, const struct robot_input *i
     }
 }
 
-void robot_start(struct robot *robot, uint32_t cause, uint32_t boots)
+void robot_start(struct robot *robot, uint32_t cause, uint32_t boots, struct kept *kept)
 {
+    (void)kept;
     *robot = (struct robot){.cause = cause, .boots = boots, .command = 0xFFFF};
 }
 
