@@ -9,7 +9,15 @@ from functools import partial
 
 import unicorn
 from unicorn import arm_const as arm
-from unicorn.unicorn_py3.unicorn import MMIO_READ_CFUNC, MMIO_WRITE_CFUNC, Uc, UcError, uclib
+from unicorn.unicorn_py3.unicorn import (
+    HOOK_CODE_CFUNC,
+    HOOK_INTR_CFUNC,
+    MMIO_READ_CFUNC,
+    MMIO_WRITE_CFUNC,
+    Uc,
+    UcError,
+    uclib,
+)
 
 from sim2real.emulate.elf import Elf
 from sim2real.emulate.peripherals.nvic import HARD_FAULT, Nvic
@@ -57,7 +65,8 @@ class CortexM:
     """The processor.
 
     elf: the program; nvic: the interrupt controller; read, write: accesses to peripherals, in the form of Unicorn's
-    callbacks `(base, handle, offset, size, data)` and `(base, handle, offset, size, value, data)`, which do not raise.
+    callbacks `(base, handle, offset, size, data)` and `(base, handle, offset, size, value, data)`, which do not raise;
+    goes_on: whether the program runs on after the return from an exception, with nothing else to do first.
     """
 
     def __init__(
@@ -66,8 +75,9 @@ class CortexM:
         nvic: Nvic,
         read: Callable[..., int],
         write: Callable[..., None],
+        goes_on: Callable[[], bool],
     ) -> None:
-        self.nvic = nvic
+        self.nvic, self._goes_on = nvic, goes_on
         self.faults: list[tuple[int, str]] = []  # address and reason of each fault
         self.asleep = self.locked = False
         self._running = self._event = False
@@ -80,7 +90,7 @@ class CortexM:
         self._callbacks: list[object] = []  # to be kept as long as Unicorn calls them
         for base, size in ((_PERIPHERALS, _PERIPHERALS_SIZE), (_SYSTEM, _SYSTEM_SIZE)):
             self._map(base, size, MMIO_READ_CFUNC(partial(read, base)), MMIO_WRITE_CFUNC(partial(write, base)))
-        uc.hook_add(unicorn.UC_HOOK_INTR, self._interrupted)
+        self._add_hook(unicorn.UC_HOOK_INTR, HOOK_INTR_CFUNC(self._interrupted), 1, 0)  # at every address
         for segment in elf.segments:
             uc.mem_write(segment.address, segment.data)
             if segment.executable:
@@ -93,6 +103,15 @@ class CortexM:
         """Map peripherals, whose accesses are most of the work: through Unicorn's binding each takes twice as long."""
         self._callbacks += [read, write]
         if status := uclib.uc_mmio_map(self.uc._uch, base, size, read, None, write, None):
+            raise UcError(status)
+
+    def _add_hook(self, kind: int, callback: object, begin: int, end: int) -> None:
+        """Have a callback called that does not raise; through Unicorn's binding each call takes twice as long."""
+        self._callbacks.append(callback)
+        where = ctypes.c_uint64(begin), ctypes.c_uint64(end)
+        if status := uclib.uc_hook_add(
+            self.uc._uch, ctypes.byref(ctypes.c_size_t()), kind, ctypes.cast(callback, ctypes.c_void_p), None, *where
+        ):
             raise UcError(status)
 
     def _watch(self, address: int, code: bytes) -> None:
@@ -108,27 +127,44 @@ class CortexM:
                 self.uc.mem_write(address + at, _NOP)
                 self._hook(address + at, self._wait_for_event)
 
-    def _unmasked(self, *_: object) -> None:
-        if self.deliverable() is not None:
+    def _unmasked(self) -> None:
+        if self.nvic.pending and self.deliverable() is not None:
             self.stop()
 
-    def _wait_for_event(self, *_: object) -> None:
+    def _wait_for_event(self) -> None:
         if self._event:
             self._event = False
         else:
             self._why = "event"
             self.uc.emu_stop()
 
-    def _interrupted(self, uc: Uc, number: int, _: object) -> None:
-        self._why = "return" if number == _EXCEPTION_RETURN else f"fault: exception {number}"
-        uc.emu_stop()
+    def _interrupted(self, handle: object, number: int, _: object) -> None:
+        """Handle an exception that Unicorn raised. A return from an exception is made at once, and the program goes on
+        if nothing has to be done first: that takes less time than to stop and to start again."""
+        try:
+            if number == _EXCEPTION_RETURN:
+                self._state = self._registers.read()
+                self._leave()
+                if not self._why and self._goes_on():
+                    self._registers.write(self._state)
+                    return
+            self._why = "return" if number == _EXCEPTION_RETURN else f"fault: exception {number}"
+            uclib.uc_emu_stop(handle)
+        except BaseException as error:  # Unicorn's code is between here and who handles it
+            self.fail(error)
 
     def at(self, address: int, what: Callable[[], None]) -> None:
         """Call `what` whenever the program reaches `address`; if it calls `stop`, it is called again on resumption."""
-        self._hook(address, lambda *_: what())
+        self._hook(address, what)
 
-    def _hook(self, address: int, what: Callable[..., None]) -> None:
-        self.uc.hook_add(unicorn.UC_HOOK_CODE, what, begin=address, end=address)
+    def _hook(self, address: int, what: Callable[[], None]) -> None:
+        def reached(*_: object) -> None:
+            try:
+                what()
+            except BaseException as error:
+                self.fail(error)
+
+        self._add_hook(unicorn.UC_HOOK_CODE, HOOK_CODE_CFUNC(reached), address, address)
 
     def reset(self) -> None:
         """Restart at the reset vector; memory keeps its contents."""
@@ -184,12 +220,12 @@ class CortexM:
             self._why = f"fault: {error}"
         finally:
             self._running = False
-        self._state = self._registers.read()
         if self._error is not None:
             raise self._error
         if self._why == "return":
-            self._leave()
-        elif self._why == "event":
+            return self._why
+        self._state = self._registers.read()
+        if self._why == "event":
             self._state[_PC] += 2
             self.asleep = True
         elif self._why.startswith("fault"):

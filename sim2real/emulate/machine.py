@@ -58,11 +58,11 @@ class Machine:
         self.timeline = Timeline()
         program = read_elf(elf)
         self.nvic = Nvic()
-        self.cpu = CortexM(program, self.nvic, self._read, self._write)
+        self.cpu = CortexM(program, self.nvic, self._read, self._write, self._goes_on)
         self.encoders = (As5147(), As5147())
         self.resets: list[tuple[float, str]] = []  # time [us] and cause of each
         self._build(crystal)
-        self._bitten = False
+        self._bitten, self._until = False, 0
         self._slice = _SLICE if may_hang else 0
         self.blocks: BlockTiming | None = None
         if timed or fuzz is not None:
@@ -148,7 +148,7 @@ class Machine:
 
     def run(self, until_us: float) -> None:
         """Run until a time [us]. The result does not depend on how a run is divided into calls."""
-        until = round(until_us * PER_US)
+        until = self._until = round(until_us * PER_US)
         while self.timeline.now < until:
             if self._bitten:
                 self.reset("watchdog")
@@ -192,6 +192,15 @@ class Machine:
             self._stepped = False
             if self.cpu.woken:  # by an interrupt that was pending before; it takes a cycle all the same
                 self._pass_until(self.timeline.now + self.rcc.cycle)
+
+    def _goes_on(self) -> bool:
+        """Whether `run` has nothing to do before the program runs on."""
+        return (
+            self.blocks is None
+            and self.timeline.now < self._until
+            and not self._bitten
+            and self.cpu.deliverable() is None
+        )
 
     def _pass_until(self, tick: int) -> bool:
         """Let time pass while the processor is busy. Returns whether it reached the tick: if an interrupt or a reset
