@@ -101,7 +101,9 @@ def _spread(seconds: list[float]) -> dict[str, float] | None:
 
 
 def _summary(result: dict[str, Any]) -> list[str]:
-    lines = [f"{'fault':12} {'times':>6} {'stopped':>8} {'noticed, at most':>17} {'at rest, at most':>17} {'99 %':>7}  by"]
+    lines = [
+        f"{'fault':12} {'times':>6} {'stopped':>8} {'noticed, at most':>17} {'at rest, at most':>17} {'99 %':>7}  by"
+    ]
     for name, row in result["faults"].items():
         noticed, rest, most = (
             f"{1e3 * row[key][which]:.0f} ms" if row[key] else ""

@@ -23,7 +23,7 @@ BRAKES_WITHIN = 0.1  # s in which a board that was asked to shows that it has st
 EXCHANGES = 10  # pings that are answered before the board's clock is relied on
 POLL = 0.001  # s between polls
 STALE = 0.03  # s without telemetry, which comes every 2 ms, after which the board counts as lost
-MOST_MISSED = 1  # plans that may come too late, one after the other, before the table is stopped
+MOST_MISSED = 3  # plans that may come too late, one after the other, before the table is stopped
 MICRO = 1e-6
 NAMES = {number: message.__name__.lower() for message, (number, _) in FORMATS.items()}
 
@@ -43,6 +43,8 @@ class BoardLine:
         self._armed = False
         self._refused = ""  # the first message that the board refused, and why
         self._missed = 0  # plans that came too late, since they were taken
+        self._in_a_row = 0  # of them, since one was followed
+        self._sent = 0  # sequence number of the newest plan
         self._said: list[Telemetry] = []  # since it was taken
 
     # Bring-up, step by step
@@ -50,10 +52,14 @@ class BoardLine:
     def greet(self) -> None:
         """Greet the board, until it answers and its clock is known, and have it leave FAULT. TableFaultError if it does
         not."""
-        session = self.session
-        self._refused = ""
+        session, begun = self.session, self._now()
+        self._refused, self._missed, self._in_a_row = "", 0, 0
         self._until(lambda: session.connected and len(session.clock) >= EXCHANGES, "no board answers on this line")
-        self._until(lambda: session.state is not None, "the board sends no telemetry")
+        self._until(
+            lambda: session.state is not None and session.telemetry_status.arrived > begun,
+            "the board sends no telemetry",
+        )
+        self._refused = ""  # of what was sent before
         if session.state != State.ARMED:  # one that is still armed has just been disarmed
             self._until(lambda: not self._driving, "the board does not switch the motors off")
         if session.state == State.FAULT:
@@ -100,9 +106,9 @@ class BoardLine:
 
     def arm(self) -> None:
         """Enable the motors. TableFaultError if the board does not."""
+        self._armed = True  # from now on it may be
         self.session.arm()
         self._until(lambda: self.session.state in (State.ARMED, State.FAULT), "the board does not arm")
-        self._armed = True
         self.check()
 
     def _until(self, done: Callable[[], bool], otherwise: str) -> None:
@@ -126,6 +132,8 @@ class BoardLine:
         for telemetry in session.take_telemetry():
             if telemetry.state in (State.IDLE, State.ARMED) and len(session.clock):
                 self._said.append(telemetry)
+            if telemetry.sequence == self._sent:
+                self._in_a_row = 0
 
     def take_mallets(self) -> list[SeenMallet]:
         """What telemetry said of the mallet since the last call."""
@@ -141,8 +149,9 @@ class BoardLine:
         if event.code != Notice.REFUSED:
             return
         name, reason = NAMES.get(event.detail >> 8, "message"), Refusal(event.detail & 0xFF)
-        if name == "traj" and reason == Refusal.TOO_LATE and self._missed < MOST_MISSED:
+        if name == "traj" and reason == Refusal.TOO_LATE and self._in_a_row < MOST_MISSED:
             self._missed += 1
+            self._in_a_row += 1
         elif not self._refused:
             self._refused = f"{name}, {reason.name}"
 
@@ -181,7 +190,7 @@ class BoardLine:
         volts = float(np.float32(plan.volts[0])), float(np.float32(plan.volts[1]))
         try:
             begin = session.clock.to_board(plan.begin)
-            session.traj(Traj(0, begin, round(plan.life / MICRO), volts, t1, t2, rest, slow, fast))
+            self._sent = session.traj(Traj(0, begin, round(plan.life / MICRO), volts, t1, t2, rest, slow, fast))
         except ValueError as error:
             raise TableFaultError(Cause.NOT_READY, str(error)) from None
         seconds = ((MICRO * first, MICRO * second) for first, second in (t1, t2))
@@ -190,11 +199,13 @@ class BoardLine:
     def stop(self) -> None:
         """Have the board brake and switch the motors off; an emergency stop if it does not show that it did. A board
         that cannot be reached stops by itself. Raises nothing."""
-        self._armed = False
-        session = self.session
-        if session.state != State.ARMED or not session.port_is_open:
-            if session.port_is_open and session.state is None:
-                session.estop()
+        session, armed, self._armed = self.session, self._armed, False
+        if not session.port_is_open:
+            return
+        if session.state is None:
+            session.estop()
+            return
+        if not armed and session.state != State.ARMED:
             return
         with suppress(ValueError):  # not connected
             session.disarm()
@@ -206,9 +217,11 @@ class BoardLine:
             session.estop()
 
     def close(self) -> None:
-        """Stop and close the line."""
-        self.stop()
-        self.session.close()
+        """Stop and close the line, whatever happens meanwhile."""
+        try:
+            self.stop()
+        finally:
+            self.session.close()
 
 
 def _seen(telemetry: Telemetry, time: float) -> SeenMallet:

@@ -1,7 +1,7 @@
 """Plans that the board's braking stop could end at any moment: soon enough, and inside the mallet's area.
 
-The board brakes (`firmware/core/brake.c`) with at most `most` volts at a motor, 2 `most` on both axes together, of which
-each axis gets half if it needs it. Under volts V against its speed v an axis (rates and gains as in
+The board brakes (`firmware/core/brake.c`) with at most `most` volts at a motor, 2 `most` on both axes together, of
+which each axis gets half if it needs it. Under volts V against its speed v an axis (rates and gains as in
 `puckpilot_env/physics/gantry/mallet.py`, without the fast mode) rests after `log(1 + v/(rest_gain V))/slow_rate`.
 """
 
@@ -13,7 +13,9 @@ from puckpilot_env.kernel import kernel
 from puckpilot_env.physics.gantry.mallet import motion_at
 from puckpilot_env.physics.gantry.plan import plan_mallet
 
-LONGEST = 0.034  # s that braking may take by the closed form; the board needs up to 3 ms more (`tests.firmware.core.stops`)
+LONGEST = (
+    0.034  # s that braking may take by the closed form; the board needs up to 3 ms more (`tests.firmware.core.stops`)
+)
 COASTS = 0.005  # s without volts before it brakes: what a board that is reset takes until it knows the speed
 EDGE = 0.004  # m off the edge of its area that a plan stays: what the mallet errs from its path, and brakes otherwise
 LEAST = 0.2  # of a plan's volts: with less it is not worth moving
@@ -35,7 +37,7 @@ def _braking_way(axis, speed, volts):
 
 @kernel
 def _time_to_rest(mallet, t, most):
-    """Seconds in which the board stops the mallet at time `t` of its plan: as one axis after the other with all volts."""
+    """Seconds in which the board stops the mallet at time `t` of its plan, as one axis after the other."""
     _, _, vx, vy = motion_at(mallet, t)
     return _braking_time(mallet.x, abs(vx), 2.0 * most) + _braking_time(mallet.y, abs(vy), 2.0 * most)
 
@@ -66,8 +68,8 @@ def _brakeable(mallet, area, most):
 
 @kernel
 def plan_brakeable(mallet, x, y, vx, vy, area, limit, most):
-    """`plan_mallet` within `limit` [V], with as large a share of its volts as leaves the mallet brakeable with `most` [V]
-    at a motor. True, if it is less than all; all, where no share does."""
+    """`plan_mallet` within `limit` [V], with as large a share of its volts as leaves the mallet brakeable with `most`
+    [V] at a motor. True, if it is less than all; all, where no share does."""
     inner = (area[0] + EDGE, area[1] - EDGE, area[2] + EDGE, area[3] - EDGE)
     plan_mallet(mallet, x, y, vx, vy, inner, limit)
     if _brakeable(mallet, area, most):

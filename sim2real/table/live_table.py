@@ -168,11 +168,13 @@ class LiveTable(Backend):
 
     def close(self) -> None:
         """See `Backend.close`."""
-        self.stop()
-        if self.line is not None:
-            self.line.close()
-        self._shut()
-        self.line = self.eyes = self.person = None
+        try:
+            self.stop()
+            if self.line is not None:
+                self.line.close()
+        finally:
+            self._shut()
+            self.line = self.eyes = self.person = None
 
     def _opened(self, part: Part | None) -> Part:
         if part is None:

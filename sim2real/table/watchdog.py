@@ -32,9 +32,7 @@ class CameraWatchdog:
             )
 
     def _check_frame(self, now: float, frame: SeenFrame) -> None:
-        if frame.troubles:
-            trouble = frame.troubles[0]
-            raise TableFaultError(Cause.CAMERA_TROUBLE, f"{trouble.name}: {trouble.text}; then clear")
+        refuse_troubles(frame)
         age = now - frame.time
         self._late = self._late + 1 if age > LATE else 0
         if self._late >= LATE_FRAMES:
@@ -48,3 +46,10 @@ class CameraWatchdog:
             raise TableFaultError(
                 Cause.SEVERAL_PUCKS, f"{frame.pucks} pucks are seen; leave one on the table, then clear"
             )
+
+
+def refuse_troubles(frame: SeenFrame) -> None:
+    """TableFaultError for a frame with something wrong."""
+    if frame.troubles:
+        trouble = frame.troubles[0]
+        raise TableFaultError(Cause.CAMERA_TROUBLE, f"{trouble.name}: {trouble.text}; then clear")

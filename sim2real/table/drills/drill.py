@@ -39,7 +39,7 @@ class Stop:
 
     @property
     def in_time(self) -> bool:
-        """Whether the mallet stood as soon as it has to: of what can be known at once, counted from its first moment."""
+        """Whether the mallet stood as soon as it has to: of what can be known at once, from its first moment."""
         within = next(fault.rest_within for fault in FAULTS if fault.name == self.fault)
         return not self.cause or (self.after_notice <= STILL and (within is None or self.at_rest <= within))
 

@@ -54,8 +54,9 @@ class RobotSeat(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         used. With a seed, the backend is connected anew with it, so that the same seed gives the same game."""
         reset_options(options)
         super().reset(seed=seed)
-        if seed is not None:
+        if seed is not None or (self.loop is not None and self.loop.over):
             self.close()
+        if seed is not None:
             self.backend.seed(int(seed))
         with self._stopped_by_errors():
             loop = self.loop or Loop(self.backend, self.game)
@@ -83,12 +84,12 @@ class RobotSeat(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         return self._observed(True)
 
     def step(self, action: NDArray[np.float32]) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
-        """Play one step. Raises ValueError, having sent nothing, for an action that is not in the space."""
+        """Play one step. Raises ValueError for an action that is not in the space, having sent nothing, and with the
+        mallet stopped and the table closed."""
         if self._over or self.loop is None:
             raise ValueError("the episode is over (or has not begun); call reset() before step()")
-        wanted = self.checked_action(action, "the action")
         with self._stopped_by_errors():
-            return self._step(self.loop, wanted)
+            return self._step(self.loop, self.checked_action(action, "the action"))
 
     def checked_action(self, action: ArrayLike, what: str) -> NDArray[np.float32]:
         """An action (4,) within the space, rounding allowed for. ValueError, in one line that begins with `what`, for
@@ -119,7 +120,10 @@ class RobotSeat(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         observation, info = self._observed(new_point)
         self.tables.terminated[0], self.tables.truncated[0] = terminated, truncated
         if self._over:
-            loop.finish()
+            try:
+                loop.finish()
+            except TableFaultError:  # the game is over all the same; reset() clears
+                self._stopped = True
             info |= only_row(outcome_info(self.tables, np.zeros(1, int)))
         return observation, float(loop.referee.rewards[0]), terminated, truncated, info
 

@@ -35,6 +35,11 @@ class LiveEyes:
         except CameraError as error:
             raise TableFaultError(Cause.NOT_READY, str(error)) from None
 
+    @property
+    def failed(self) -> bool:
+        """Whether the camera has failed, so that no frame will come."""
+        return self._failed is not None
+
     def rest(self, seconds: float) -> None:
         """Rest for so many seconds [s], or until a frame comes."""
         try:
@@ -47,7 +52,7 @@ class LiveEyes:
         """The newest frame, read, if one came; older ones are dropped. TableFaultError if the camera failed, or a
         picture does not show what it must."""
         if self._failed is not None:
-            raise TableFaultError(Cause.CAMERA_SILENT, f"{self._failed}; then begin anew")
+            raise TableFaultError(Cause.CAMERA_SILENT, f"{self._failed}; then clear")
         frame, self._coming = self._coming, None
         if frame is None:
             return []

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import select
 import sys
+import termios
 from collections.abc import Callable
 
 import numpy as np
@@ -35,6 +36,8 @@ class PersonAtTerminal:
 
     def confirm(self, words: str) -> None:
         """Say something, and serve the table until Enter is pressed. TableFaultError where nobody can press it."""
+        if sys.stdin.isatty():
+            termios.tcflush(sys.stdin, termios.TCIFLUSH)  # what was typed before this was asked is no answer
         _say(words)
         while not select.select([sys.stdin], [], [], 0.0)[0]:
             self._serve()

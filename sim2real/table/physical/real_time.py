@@ -15,6 +15,7 @@ from sim2real.table.faults import Cause, TableFaultError
 from sim2real.table.live_table import LiveTable, Person
 from sim2real.table.mallet_driver import MalletPlan
 from sim2real.table.physical.eyes import LiveEyes
+from sim2real.table.watchdog import refuse_troubles
 
 FIRST_FRAME = 5.0  # s within which it comes
 WARM_UP = 30  # frames that are read before the motors are armed
@@ -52,10 +53,18 @@ class RealTimeTable(LiveTable):
         self.eyes = self._live = self._make_eyes()
         self._live.open()
         try:
-            self.line = BoardLine(self._connect_line, self.now, self.pass_time)
+            self.line = BoardLine(self._connect_line, self.now, lambda until: self.pass_time(until))
         except PortError as error:
             raise TableFaultError(Cause.NOT_READY, str(error)) from None
         self.person = self._make_person(self._look)
+
+    def clear(self, home: Place) -> None:
+        """See `Backend.clear`; a camera that had failed is opened anew."""
+        if self._opened(self._live).failed:
+            self._shut()
+            self.eyes = self._live = self._make_eyes()
+            self._live.open()
+        super().clear(home)
 
     def _look(self) -> None:
         """Serve line and camera for a moment, while a person takes their time."""
@@ -64,15 +73,19 @@ class RealTimeTable(LiveTable):
             self.line.poll()
 
     def arm(self) -> None:
-        """See `LiveTable.arm`; after some frames were read, of which the first takes long. TableFaultError if none
-        comes."""
+        """See `LiveTable.arm`; after some frames were read, of which the first takes long. TableFaultError if they do
+        not come, or cannot be believed."""
         eyes, patient = self._opened(self._live), self.now() + FIRST_FRAME
         read = 0
         while read < WARM_UP:
             self._look()
-            read += len(eyes.take(self.now()))
-            if not read and self.now() > patient:
-                raise TableFaultError(Cause.CAMERA_SILENT, f"no frame comes in {FIRST_FRAME:g} s; check the camera")
+            for frame in eyes.take(self.now()):
+                read += 1
+                refuse_troubles(frame)
+            if self.now() > patient:
+                raise TableFaultError(
+                    Cause.CAMERA_SILENT, f"{read} frames came in {FIRST_FRAME:g} s; check the camera and clear"
+                )
         gc.collect()
         gc.freeze()  # a full collection of all that was imported takes a tenth of a second, and would come in play
         super().arm()

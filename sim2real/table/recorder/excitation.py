@@ -82,12 +82,13 @@ def excite_gantry(
         table.send(driver.plan([*move.place, *move.volts], table.now() + AHEAD))
         count += 1
         while not driver.standing(table.now()):
-            _pass(table, SLICE)
-        _pass(table, move.rest)
+            _pass(table, driver, SLICE)
+        _pass(table, driver, move.rest)
         progress(round(1e3 * min(table.now() - begin, seconds)), round(1e3 * seconds))
     return count
 
 
-def _pass(table: Backend, seconds: float) -> None:
+def _pass(table: Backend, driver: MalletDriver, seconds: float) -> None:
     table.wait(table.now() + seconds)
-    table.read()
+    if table.read().missed:
+        driver.revert()

@@ -47,7 +47,10 @@ def record_launches(
         while table.now() < min(end, begin + seconds):
             table.send(driver.plan([*place, HOLDING_VOLTS, HOLDING_VOLTS], table.now() + AHEAD))
             table.wait(table.now() + HOLD)
-            for frame in table.read().frames:
+            reading = table.read()
+            if reading.missed:
+                driver.revert()
+            for frame in reading.frames:
                 watcher.take(frame)
             progress(round(1e3 * min(table.now() - begin, seconds)), round(1e3 * seconds))
             if len(coverage.launches) > known:

@@ -35,6 +35,11 @@ class MotorLog:
         """Take a plan that was sent."""
         self._plans.append(plan)
 
+    def forget(self, plan: MalletPlan) -> None:
+        """A plan that was sent last came too late, and was not followed."""
+        if self._plans and self._plans[-1] is plan:
+            self._plans.pop()
+
     def take(self, mallet: SeenMallet) -> list[Duties]:
         """The duties up to the tick of this telemetry, those of ticks since the telemetry before it included. Where
         some of it was lost, the duties in between are unknown."""

@@ -34,7 +34,7 @@ class RecordedTable(Backend):
         self._table, self._draft, self._p = table, draft, p
         self._motors = MotorLog(float(p["max_voltage"]), operating_volts(p))
         self._zero: float | None = None  # host's time at which the recording's is 0 [s]
-        self._plans: list[MalletPlan] = []  # sent before that was known
+        self._plans: list[MalletPlan] = []  # sent and not yet kept
         self.obeys, self.patience = table.obeys, table.patience
 
     def read(self) -> Reading:
@@ -48,7 +48,11 @@ class RecordedTable(Backend):
         return reading
 
     def _keep(self, reading: Reading, zero: float) -> None:
-        plans, self._plans = self._plans, []
+        if reading.missed and self._plans:
+            self._motors.forget(self._plans.pop())
+        now = self._table.now()  # a plan is refused, if at all, before it acts
+        plans = [one for one in self._plans if one.begin <= now]
+        self._plans = self._plans[len(plans) :]
         self._draft.add("commands", (_command(one, zero, self._p) for one in plans))
         self._draft.add("frames", (_frame(one, zero) for one in reading.frames))
         self._draft.add("mallet", (_mallet(one, zero) for one in reading.mallets))
@@ -115,6 +119,9 @@ class RecordedTable(Backend):
 
     def close(self) -> None:
         """See `Backend.close`; the draft stays open."""
+        if self._zero is not None:
+            self._draft.add("commands", (_command(one, self._zero, self._p) for one in self._plans))
+            self._plans = []
         self._table.close()
 
 

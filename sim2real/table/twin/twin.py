@@ -66,7 +66,7 @@ class Twin(LiveTable):
         self.plant = Plant(self._law, home, self.hand.home)
         self.board = EmulatedBoard(self.plant, float(self.p["max_voltage"]), self._seed, self._board_errors)
         self.eyes = self.camera = self._make_camera(self._seed)
-        self.line = BoardLine(lambda: self._opened(self.board), self.now, self.pass_time)
+        self.line = BoardLine(lambda: self._opened(self.board), self.now, lambda until: self.pass_time(until))
         self.person = self
 
     def now(self) -> float:
@@ -85,8 +85,8 @@ class Twin(LiveTable):
             if due == self.camera.next_exposure:
                 self.camera.expose(self.plant)
             elif self._decision:
-                self.plant.play(self.hand.decide(self.plant, self._decision[1]))
-                self._decision = None
+                (_, game), self._decision = self._decision, None
+                self.plant.play(self.hand.decide(self.plant, game))
         board.run(until)
 
     def _shut(self) -> None:

@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
 
-from sim2real.link.wire.messages import Clear, Estop, Disarm, Fault, Hello, Notice, Ping, Pong, State, Telemetry
+from sim2real.link.wire.messages import Clear, Disarm, Estop, Fault, Hello, Notice, Ping, Pong, State, Telemetry
 from tests.firmware.core.line import arm, config, frame, hello
 from tests.sim2real.emulate.preempted import play
 from tests.sim2real.emulate.robot import START, TARGET, Robot
