@@ -1,4 +1,4 @@
-#include "kept.h"
+#include "brake.h"
 
 #include "crc32.h"
 

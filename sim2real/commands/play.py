@@ -191,6 +191,8 @@ def _summary(result: dict[str, Any], logs: list[GameLog]) -> list[str]:
     from sim2real.table.game.loop_times import histogram
 
     (won, lost), (scored, conceded) = result["wins"], result["goals"]
+    if result["backend"] == "replay":  # nobody played
+        return [f"{result['decisions']} decisions in {result['seconds']:.0f} s of the recording; plans went nowhere"]
     lines = [
         f"{result['players'][0]}: {won} won, {lost} lost of {result['games']}; goals {scored}:{conceded} in "
         f"{result['seconds']:.0f} s of play",

@@ -13,11 +13,10 @@ from puckpilot_env.kernel import kernel
 from puckpilot_env.physics.gantry.mallet import motion_at
 from puckpilot_env.physics.gantry.plan import plan_mallet
 
-LONGEST = (
-    0.034  # s that braking may take by the closed form; the board needs up to 3 ms more (`tests.firmware.core.stops`)
-)
+LONGEST = 0.034  # s that braking may take by the closed form; the board needs up to 3 ms more
 COASTS = 0.005  # s without volts before it brakes: what a board that is reset takes until it knows the speed
-EDGE = 0.004  # m off the edge of its area that a plan stays: what the mallet errs from its path, and brakes otherwise
+ENDLESS = 60.0  # s that no plan takes, but one whose volts all go to the other axis
+ROOM = 0.0005  # m about such a mallet, that belong to its area: `plan_mallet` keeps clear of the edge
 LEAST = 0.2  # of a plan's volts: with less it is not worth moving
 HALVINGS = 6  # of the share of the volts: 1 % of it remains
 PARTS = 4  # of the top speed at which the way is looked at
@@ -70,22 +69,27 @@ def _brakeable(mallet, area, most):
 def plan_brakeable(mallet, x, y, vx, vy, area, limit, most):
     """`plan_mallet` within `limit` [V], with as large a share of its volts as leaves the mallet brakeable with `most`
     [V] at a motor. True, if it is less than all; all, where no share does."""
-    inner = (area[0] + EDGE, area[1] - EDGE, area[2] + EDGE, area[3] - EDGE)
-    plan_mallet(mallet, x, y, vx, vy, inner, limit)
+    plan_mallet(mallet, x, y, vx, vy, area, limit)
+    if (
+        max(mallet.x.t2, mallet.y.t2) > ENDLESS
+    ):  # a stop left it at the edge: all volts for that axis, none for the other
+        x0, y0, _, _ = motion_at(mallet, 0.0)
+        area = (min(area[0], x0 - ROOM), max(area[1], x0 + ROOM), min(area[2], y0 - ROOM), max(area[3], y0 + ROOM))
+        plan_mallet(mallet, x, y, vx, vy, area, limit)
     if _brakeable(mallet, area, most):
         return False
     all_x, all_y = abs(mallet.x.volts), abs(mallet.y.volts)
-    plan_mallet(mallet, x, y, LEAST * all_x, LEAST * all_y, inner, limit)
+    plan_mallet(mallet, x, y, LEAST * all_x, LEAST * all_y, area, limit)
     if not _brakeable(mallet, area, most):
-        plan_mallet(mallet, x, y, vx, vy, inner, limit)
+        plan_mallet(mallet, x, y, vx, vy, area, limit)
         return False
     good, bad = LEAST, 1.0
     for _ in range(HALVINGS):
         share = 0.5 * (good + bad)
-        plan_mallet(mallet, x, y, share * all_x, share * all_y, inner, limit)
+        plan_mallet(mallet, x, y, share * all_x, share * all_y, area, limit)
         if _brakeable(mallet, area, most):
             good = share
         else:
             bad = share
-    plan_mallet(mallet, x, y, good * all_x, good * all_y, inner, limit)
+    plan_mallet(mallet, x, y, good * all_x, good * all_y, area, limit)
     return True

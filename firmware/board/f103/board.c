@@ -1,6 +1,6 @@
 /* The main loop: each millisecond gathers what came in, lets the core take one step, and does what it says. */
 #include "board.h"
-#include "kept.h"
+#include "brake.h"
 #include "registers.h"
 #include "robot.h"
 #include "robot_state.h"

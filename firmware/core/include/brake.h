@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "gantry.h"
+#include "messages.h"
 
 struct brake {
     bool going;
@@ -32,5 +33,22 @@ bool brake_moves(const struct brake *brake);
  * axes rest, when one does not slow down as it should, or after BRAKE_TICKS. speed: of the axes in the last tick, by
  * the encoders [m/s]. */
 void brake_volts(struct brake *brake, const struct axis axes[2], float most, const float speed[2], float motors[2]);
+
+/* What outlives a reset: how to brake a mallet that was driven then, and would coast on for up to half a metre. It lies
+ * in memory that the start-up code does not clear. It holds something as long as a motor may be driven, is good for one
+ * start, and believed by its CRC. */
+struct kept {
+    struct config config;
+    uint32_t crc;
+};
+
+/* From now on a motor may be driven, by this configuration. */
+void kept_hold(struct kept *kept, const struct config *config);
+
+/* No more. */
+void kept_drop(struct kept *kept);
+
+/* Take what was held when the board was reset, and drop it; false, if nothing was. */
+bool kept_take(struct kept *kept, struct config *config);
 
 #endif

@@ -10,7 +10,6 @@
 #include "encoder.h"
 #include "frame.h"
 #include "gantry.h"
-#include "kept.h"
 #include "messages.h"
 #include "path.h"
 #include "robot.h"

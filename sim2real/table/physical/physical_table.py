@@ -71,6 +71,6 @@ def _refuse_other_parameters(parameters: dict[str, float], game: GameRecord) -> 
     for name, value in parameters.items():
         if abs(value - float(game.p[name])) > 1e-9 * abs(value):
             raise ValueError(
-                f"table.toml has {name} {value:g}, the game {float(game.p[name]):g}; "
-                "make the game with the file's parameters, as `puckpilot play` does"
+                f"the table's file has {name} {value:g}, the game {float(game.p[name]):g}; "
+                "give parameters=read_table_file(FILE).parameters, of sim2real.table.physical.table_file"
             )

@@ -34,7 +34,7 @@ pixel_format = "BayerRG8"
 exposure = 1e-4                 # s
 gain = 25.0                     # dB
 rate = 120.0                    # Hz
-delay = 0.006                   # s from the middle of the exposure until a frame comes, of `puckpilot latency`
+delay = 0.006                   # s from the middle of the exposure until a frame comes: `frame` of `puckpilot latency`
 ring_height = 0.05              # m, of the opponent's ring above the table
 film_radius = 0.0309            # m, of the puck's film; left out, it is measured
 
@@ -45,12 +45,16 @@ pulley_radius = 0.0353          # m, of `puckpilot calibrate gantry`
 offsets = [0.51, -1.22]         # rad, of the shafts' encoders, of the same; left out, the home is where the jig is
 proportional = [400.0, 400.0]   # V/m, of axes x and y; and so integral [V/m/s], derivative [V s/m]
 
-[gantry]
+[gantry]                        # leave it out, and the simulator's constants hold
 profile = "gantry.toml"         # of `puckpilot identify gantry`
+
+[latency]                       # the last lines of `puckpilot latency`, as they are; `frame` is the camera's delay
 """
-SETTINGS = ("exposure", "setup_exposure", "gain", "rate", "trigger_line", "pixel_format")  # of the camera, as they are
+NUMBERS = ("exposure", "setup_exposure", "gain", "rate")  # of the camera's settings
+SETTINGS = (*NUMBERS, "trigger_line", "pixel_format")
 CAMERA = ("source", "calibration", "setup", "region", "delay", "level", "ring_height", "film_radius", *SETTINGS)
 BOARD = ("port", "baud", "supply", "pulley_radius", "offsets", "proportional", "integral", "derivative")
+LATENCY = ("camera", "camera_drift", "frame", "line", "command", "follow", "total")  # what `puckpilot latency` prints
 Pair = tuple[float, float]
 
 
@@ -95,7 +99,7 @@ def read_table_file(path: str | PathLike[str]) -> TableFile:
 
 
 def _table(content: Mapping[str, Any], folder: Path) -> TableFile:
-    check_format(content, FORMAT, ("parameters", "camera", "board", "gantry"))
+    check_format(content, FORMAT, ("parameters", "camera", "board", "gantry", "latency"))
     board, gantry = section(content, "board"), section(content, "gantry")
     refuse_unknown(board, BOARD, "key of board")
     refuse_unknown(gantry, ("profile",), "key of gantry")
@@ -106,12 +110,17 @@ def _table(content: Mapping[str, Any], folder: Path) -> TableFile:
         if key in board:
             given[name] = board[key]
     parameters = {name: checked(name, value) for name, value in given.items()}
-    return TableFile(parameters, _camera(section(content, "camera"), folder), _board(board))
+    camera, latency = dict(section(content, "camera")), section(content, "latency")
+    refuse_unknown(latency, LATENCY, "key of latency")
+    if "frame" in latency:
+        camera.setdefault("delay", latency["frame"])
+    return TableFile(parameters, _camera(camera, folder), _board(board))
 
 
 def _camera(camera: Mapping[str, Any], folder: Path) -> CameraPart:
     refuse_unknown(camera, CAMERA, "key of camera")
     given = {name: camera[name] for name in SETTINGS if name in camera}
+    given |= {name: _number(camera, name, "camera") for name in NUMBERS if name in camera}
     if "region" in camera:
         given["region"] = RegionOfInterest.parse(_text(camera, "region", "camera"))
     numbers = {name: _number(camera, name, "camera") for name in ("delay", "level", "ring_height", "film_radius")

@@ -110,9 +110,10 @@ def _streams(recording: Recording) -> tuple[Stream, Stream]:
 
 
 def _refuse_other_sizes(recording: Recording, game: GameRecord) -> None:
-    for name, size in stated_sizes(recording).items():
+    stated = stated_sizes(recording)
+    for name, size in stated.items():
         if abs(size - float(game.p[name])) > LIKE:
             raise ValueError(
                 f"recording {recording.name} states {name} {size:g}, the game {float(game.p[name]):g}; "
-                f"give parameters={{'{name}': {size:g}}}"
+                f"give parameters={stated}"
             )

@@ -41,7 +41,8 @@ def test_a_plan_ends_at_its_target_at_rest() -> None:
     driver = MalletDriver(P)
     driver.stand(*HOME, 1.0)
     plan = driver.plan([0.6, 0.3, 9.0, 5.0], 1.5)
-    assert plan.begin == 1.5 and plan.volts == pytest.approx((9.0, -5.0))
+    assert plan.begin == 1.5 and plan.volts[0] / plan.volts[1] == pytest.approx(9.0 / -5.0)
+    assert 8.0 < plan.volts[0] <= 9.0  # as far as the board could brake it
     end = integrated(plan, at_rest(*HOME), 1.0)
     assert end[:, 0] == pytest.approx([0.6, 0.3], abs=1e-5)
     assert end[:, 1] == pytest.approx([0.0, 0.0], abs=1e-4)
@@ -97,3 +98,13 @@ def test_a_plan_that_came_too_late_is_forgotten_and_the_one_before_goes_on() -> 
     driver.revert()
     for time in (1.06, 1.1, 1.3):
         assert driver.motion(time) == pytest.approx(twin.motion(time), abs=1e-12)
+
+
+@pytest.mark.parametrize("place", [(0.051, 0.2), (0.25, 0.0506), (0.0506, 0.0506)])
+def test_a_mallet_that_rests_at_the_edge_of_its_area_gets_a_plan_like_any_other(place: tuple[float, float]) -> None:
+    driver = MalletDriver(P)
+    driver.stand(*place, 0.0)
+    plan = driver.plan([0.4, 0.6, 14.0, 14.0], 0.0)
+    assert max(plan.t2) < 1.0 and min(map(abs, plan.volts)) > 0.5
+    end = integrated(plan, np.array([[place[0], 0, 0], [place[1], 0, 0]]), plan.life)
+    assert end[:, 0] == pytest.approx([0.4, 0.6], abs=1e-4)

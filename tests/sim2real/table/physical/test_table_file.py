@@ -35,6 +35,11 @@ def test_the_example_is_read_with_all_that_it_says(tmp_path: Path) -> None:
     assert found.board.gains.proportional == (400.0, 400.0) and found.board.gains.derivative == (2.0, 2.0)
 
 
+def test_the_section_that_latency_prints_gives_the_cameras_delay(tmp_path: Path) -> None:
+    text = LEAST + "[latency]\ncamera = 0.0324\nframe = 0.0389\ntotal = 0.0529\n"
+    assert read_table_file(written(tmp_path, text)).camera.delay == 0.0389
+
+
 def test_what_is_left_out_has_the_default(tmp_path: Path) -> None:
     found = read_table_file(written(tmp_path, LEAST))
     assert found.parameters == {} and found.board.offsets is None and found.camera.setup is None
@@ -54,6 +59,8 @@ def test_what_is_left_out_has_the_default(tmp_path: Path) -> None:
         (("[camera]", '[camera]\nregion = "12"'), "a region of interest is '12'"),
         (("[camera]", "[camera]\ndelay = -1.0"), "camera.delay is -1.0; expected a number, 0 or more"),
         (("[camera]", "[camera]\nrate = 0.0"), "rate is 0.0; expected frames a second"),
+        (("[camera]", '[camera]\nexposure = "x"'), "camera.exposure is 'x'; expected a number, 0 or more"),
+        (("[board]", "[latency]\nfram = 0.01\n[board]"), "unknown key of latency 'fram'; did you mean 'frame'?"),
         (("[board]", '[gantry]\nprofile = "none.toml"\n[board]'), "none.toml"),
     ],
 )

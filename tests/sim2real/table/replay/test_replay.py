@@ -67,7 +67,7 @@ def test_the_episode_is_truncated_where_the_recording_ends(tmp_path: Path) -> No
     [
         ({"recording": "nowhere"}, "is not a folder"),
         ({}, "backend 'replay' needs recording; give recording=..."),
-        ({"recording": "{small}"}, "states width 0.9, the game 1; give parameters={'width': 0.9}"),
+        ({"recording": "{small}"}, "states width 0.9, the game 1; give parameters={'length': 2.0, 'width': 0.9}"),
         ({"recording": "{frames}"}, "has no rows in mallet.csv; a replay needs frames and mallet"),
     ],
 )
