@@ -6,6 +6,7 @@ import ctypes
 import struct
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import unicorn
 from unicorn import arm_const as arm
@@ -105,7 +106,7 @@ class CortexM:
         if status := uclib.uc_mmio_map(self.uc._uch, base, size, read, None, write, None):
             raise UcError(status)
 
-    def _add_hook(self, kind: int, callback: object, begin: int, end: int) -> None:
+    def _add_hook(self, kind: int, callback: Any, begin: int, end: int) -> None:
         """Have a callback called that does not raise; through Unicorn's binding each call takes twice as long."""
         self._callbacks.append(callback)
         where = ctypes.c_uint64(begin), ctypes.c_uint64(end)

@@ -42,11 +42,6 @@ def motors_off(twin: Twin) -> None:
     twin.plant.drive = lambda first, second: None
 
 
-def motors_swapped(twin: Twin) -> None:
-    drive = twin.plant.drive
-    twin.plant.drive = lambda first, second: drive(second, first)
-
-
 def no_frames(twin: Twin) -> None:
     twin.camera.unplugged = True
 
@@ -62,10 +57,8 @@ def no_answers(twin: Twin) -> None:
     [
         (no_answers, {}, "link", "no board answers"),
         (motors_off, {}, "power", "the board stopped the motors|is the motors' supply on"),
-        (motors_swapped, {}, "power", "the board stopped the motors|is the motors' supply on"),
         (no_frames, {}, "power", "no frame for"),
         (lambda twin: None, {"errors": CameraErrors(noise=0.002)}, "film", "a scatter of . mm|a scatter of ...."),
-        (lambda twin: None, {"errors": CameraErrors(delay=0.04)}, "latency", "frames are 4. ms old"),
     ],
 )
 def test_what_is_wrong_is_named_by_its_step(spoil: Callable, options: dict, step: str, words: str) -> None:

@@ -107,14 +107,12 @@ def test_a_supply_that_sags_is_named(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_tilted_table_is_named_and_a_level_one_lacks_nothing(tmp_path: Path) -> None:
+def test_a_tilted_table_is_named(tmp_path: Path) -> None:
     found = diagnosed(made(seat(tilt_x=0.03, tilt_y=-0.02), tmp_path / "one", launches))
     assert [one.mechanism for one in found.findings] == ["table_tilt"]
     tilt = found.findings[0].parameters
     assert tilt["tilt_x"].value == pytest.approx(0.03, rel=0.02)
     assert tilt["tilt_y"].value == pytest.approx(-0.02, rel=0.02)
-    level = diagnosed(made(seat(), tmp_path / "level", launches))
-    assert level.verdict in ("agrees", "parameters_only")
 
 
 @pytest.mark.slow
