@@ -201,7 +201,7 @@ def test_after_a_fault_a_new_episode_begins_or_the_game_goes_on_where_the_mallet
     for _ in range(3):
         *_, info = seat.step(np.array([0.9, 0.9, 5.0, 5.0], np.float32))
     twin.camera.unplugged = True
-    with pytest.raises(TableFaultError, match=r"no frame for 3. ms; check the camera and clear"):
+    with pytest.raises(TableFaultError, match=r"no frame for 2. ms; check the camera and clear"):
         seat.step(STAY)
     with pytest.raises(TableFaultError, match="no frame for"):  # it is still unplugged
         seat.clear()
