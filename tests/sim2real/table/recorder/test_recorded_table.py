@@ -118,6 +118,7 @@ def test_a_plan_comes_to_rest_where_the_row_says(game: GameRecord, tmp_path: Pat
         table.send(driver.plan([*target, *random.uniform(4.0, 14.0, 2)], BEGIN + 0.1 * k))
         ends.append(driver.motion(BEGIN + 0.1 * k + 5.0)[:2])
     table.read()
+    table.close()  # plans that do not act yet are kept then
     draft.finish()
     commands = read_recording(tmp_path / "one").commands
     assert commands is not None
