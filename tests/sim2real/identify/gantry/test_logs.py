@@ -80,7 +80,7 @@ def test_what_holds_no_log_is_refused_in_one_line(recording: Recording) -> None:
     assert mallet is not None
     faults = {
         "the mallet's path was not recorded": replace(recording, mallet=None),
-        "neither the plans": replace(recording, drive=None),
+        "neither the motors' log": replace(recording, drive=None),
         "windows of 0.2 s without a gap": with_rows(recording, "mallet", mallet.t < 1.0),
         "record the mallet at 500 Hz or more": with_rows(recording, "mallet", np.arange(mallet.rows) % 8 == 0),
     }
