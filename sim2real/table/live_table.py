@@ -100,7 +100,7 @@ class LiveTable(Backend):
         line.take_mallets()
         self._opened(self.eyes).take(self.now())  # what came meanwhile is old
         self._frames = []
-        self._watchdog = CameraWatchdog(self.now())
+        self._watchdog = CameraWatchdog(self.now(), self.frame_rate)
 
     def _at_home(self, home: Place) -> Place:
         """Where the mallet is exactly [m], that was put at `home` by hand."""

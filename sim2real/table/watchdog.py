@@ -7,17 +7,18 @@ from collections.abc import Sequence
 from sim2real.table.backend import SeenFrame
 from sim2real.table.faults import Cause, TableFaultError
 
-BLIND = 0.021  # s without a new frame after which the camera counts as lost: two frames of 120 Hz are missing then
+BLIND = 2.5  # periods without a new frame after which the camera counts as lost: two frames are missing then
 LATE = 0.05  # s of a frame's age when it comes; predictions from older ones are no ground to move on
 LATE_FRAMES = 3  # so many late frames in a row: one alone is a hiccup
 CROWDED = 12  # frames in a row with more than one candidate for the puck: a tenth of a second
 
 
 class CameraWatchdog:
-    """Judges every frame, and their absence; `begin` [s] is the host's time from which frames are expected."""
+    """Judges every frame, and their absence. begin: host's time from which frames are expected [s]; rate: of these
+    [Hz]."""
 
-    def __init__(self, begin: float) -> None:
-        self._newest_came = begin
+    def __init__(self, begin: float, rate: float) -> None:
+        self._newest_came, self._blind = begin, BLIND / rate
         self._late = self._crowded = 0
 
     def check(self, now: float, frames: Sequence[SeenFrame]) -> None:
@@ -26,7 +27,7 @@ class CameraWatchdog:
             self._newest_came = now
             self._check_frame(now, frame)
         silent = now - self._newest_came
-        if silent > BLIND:
+        if silent > self._blind:
             raise TableFaultError(
                 Cause.CAMERA_SILENT, f"no frame for {1e3 * silent:.0f} ms; check the camera and clear"
             )
