@@ -20,6 +20,7 @@ from unicorn.unicorn_py3.unicorn import (
     uclib,
 )
 
+from sim2real.emulate.core_registers import LR, MASK, PC, PSR, SP, CoreRegisters
 from sim2real.emulate.elf import Elf
 from sim2real.emulate.peripherals.nvic import HARD_FAULT, Nvic
 
@@ -33,33 +34,6 @@ _EXCEPTION_RETURN = 8  # Unicorn's number for a jump to one of these
 _WFI, _WFE, _NOP, _CPSIE = b"\x30\xbf", b"\x20\xbf", b"\x00\xbf", b"\x62\xb6"
 _THUMB = 1 << 24
 _FRAME = struct.Struct("<8I")
-_LR, _PC, _PSR, _SP, _MASK = 5, 6, 7, 8, 9  # places in `_Registers`
-
-
-class _Registers:
-    """R0 to R3, R12, LR, PC, xPSR, SP and PRIMASK, read and written in one call: single calls through Unicorn's Python
-    binding take 10 times as long."""
-
-    IDS = (
-        arm.UC_ARM_REG_R0, arm.UC_ARM_REG_R1, arm.UC_ARM_REG_R2, arm.UC_ARM_REG_R3, arm.UC_ARM_REG_R12,
-        arm.UC_ARM_REG_LR, arm.UC_ARM_REG_PC, arm.UC_ARM_REG_XPSR, arm.UC_ARM_REG_SP, arm.UC_ARM_REG_PRIMASK,
-    )  # fmt: skip
-
-    def __init__(self, handle: object) -> None:
-        size = len(self.IDS)
-        self._handle, self._size = handle, size
-        self._ids = (ctypes.c_int * size)(*self.IDS)
-        self._values = (ctypes.c_uint32 * size)()
-        start = ctypes.addressof(self._values)
-        self._places = (ctypes.c_void_p * size)(*(start + 4 * index for index in range(size)))
-
-    def read(self) -> list[int]:
-        uclib.uc_reg_read_batch(self._handle, self._ids, self._places, self._size)
-        return self._values[:]
-
-    def write(self, values: list[int]) -> None:
-        self._values[:] = values
-        uclib.uc_reg_write_batch(self._handle, self._ids, self._places, self._size)
 
 
 class CortexM:
@@ -96,7 +70,7 @@ class CortexM:
             uc.mem_write(segment.address, segment.data)
             if segment.executable:
                 self._watch(segment.address, segment.data)
-        self._registers = _Registers(uc._uch)
+        self._registers = CoreRegisters(uc._uch)
         self._frame = ctypes.create_string_buffer(_FRAME.size)
         self._state = self._registers.read()  # registers while the processor does not run
 
@@ -203,12 +177,12 @@ class CortexM:
 
     @property
     def _masked(self) -> bool:
-        return bool((self.uc.reg_read(arm.UC_ARM_REG_PRIMASK) if self._running else self._state[_MASK]) & 1)
+        return bool((self.uc.reg_read(arm.UC_ARM_REG_PRIMASK) if self._running else self._state[MASK]) & 1)
 
     @property
     def program_counter(self) -> int:
         """The address of the next instruction."""
-        return self._state[_PC]
+        return self._state[PC]
 
     def run(self, most: int) -> str:
         """Run, and return why it ended: "sleep" (WFI), "event" (WFE), "stop", "slice" (after `most` instructions; 0 is
@@ -216,7 +190,7 @@ class CortexM:
         self._why, self._running = "", True
         self._registers.write(self._state)
         try:
-            self.uc.emu_start(self._state[_PC] | 1, _NOWHERE, 0, most)
+            self.uc.emu_start(self._state[PC] | 1, _NOWHERE, 0, most)
         except UcError as error:
             self._why = f"fault: {error}"
         finally:
@@ -227,38 +201,38 @@ class CortexM:
             return self._why
         self._state = self._registers.read()
         if self._why == "event":
-            self._state[_PC] += 2
+            self._state[PC] += 2
             self.asleep = True
         elif self._why.startswith("fault"):
             self._fault(self._why)
         elif not self._why:
-            self.asleep = self._state[_PC] - 2 in self._waits
+            self.asleep = self._state[PC] - 2 in self._waits
             self._why = "sleep" if self.asleep else "slice"
         return self._why
 
     def enter(self, number: int) -> None:
         """Enter an exception: push the frame on the stack and continue at its vector."""
         values = self._state
-        odd = values[_SP] >> 2 & 1
-        stack = values[_SP] - 32 - 4 * odd
-        _FRAME.pack_into(self._frame, 0, *values[:_PSR], values[_PSR] | odd << 9)
+        odd = values[SP] >> 2 & 1
+        stack = values[SP] - 32 - 4 * odd
+        _FRAME.pack_into(self._frame, 0, *values[:PSR], values[PSR] | odd << 9)
         if uclib.uc_mem_write(self.uc._uch, stack, self._frame, _FRAME.size):
             self.locked = self.asleep = True  # no stack left: lockup
             return
-        values[_SP], values[_PC] = stack, self._vectors[number]
-        values[_LR] = _RETURN_TO_HANDLER if self.nvic.active else _RETURN_TO_THREAD
-        values[_PSR] = values[_PSR] & 0xF8000000 | _THUMB | number
+        values[SP], values[PC] = stack, self._vectors[number]
+        values[LR] = _RETURN_TO_HANDLER if self.nvic.active else _RETURN_TO_THREAD
+        values[PSR] = values[PSR] & 0xF8000000 | _THUMB | number
         self.nvic.enter(number)
         self._event = not self.asleep  # otherwise the loop around WFE would only run once more
         self.asleep = False
 
     def _leave(self) -> None:
-        stack = self._state[_SP]
+        stack = self._state[SP]
         uclib.uc_mem_read(self.uc._uch, stack, self._frame, _FRAME.size)
         frame = list(_FRAME.unpack(self._frame))
-        odd = frame[_PSR] >> 9 & 1
-        frame[_PSR] &= ~(1 << 9)
-        self._state = [*frame, stack + 32 + 4 * odd, self._state[_MASK]]
+        odd = frame[PSR] >> 9 & 1
+        frame[PSR] &= ~(1 << 9)
+        self._state = [*frame, stack + 32 + 4 * odd, self._state[MASK]]
         self.nvic.leave()
 
     def _fault(self, why: str) -> None:

@@ -19,7 +19,7 @@ from sim2real.emulate.peripherals.gpio import GpioPort
 from sim2real.emulate.peripherals.motors import Motors
 from sim2real.emulate.peripherals.nvic import NMI, Nvic
 from sim2real.emulate.peripherals.rcc import Flash, Rcc
-from sim2real.emulate.peripherals.registers import NotModelledError, Peripheral
+from sim2real.emulate.peripherals.registers import Peripheral, refusal
 from sim2real.emulate.peripherals.spi import Spi
 from sim2real.emulate.peripherals.systick import SysTick
 from sim2real.emulate.peripherals.timers import Counter, PwmTimer
@@ -99,7 +99,7 @@ class Machine:
             self.dma, self.watchdog,
         )  # fmt: skip
         self._registers = {
-            one.base + 4 * index: (one, name)
+            one.base + 4 * index: (one, name, one.get, one.set)
             for one in (self.rcc, *self._peripherals)
             for index, name in enumerate(one.offsets)
             if name
@@ -149,13 +149,13 @@ class Machine:
     def run(self, until_us: float) -> None:
         """Run until a time [us]. The result does not depend on how a run is divided into calls."""
         until = self._until = round(until_us * PER_US)
+        cpu, nvic = self.cpu, self.nvic
         while self.timeline.now < until:
             if self._bitten:
                 self.reset("watchdog")
-            number = self.cpu.deliverable()
-            if number is not None:
-                self.cpu.enter(number)
-            if self.cpu.asleep and not self.cpu.woken:
+            if nvic.pending and (number := cpu.deliverable()) is not None:
+                cpu.enter(number)
+            if cpu.asleep and not cpu.woken:
                 self._sleep(until)
             else:
                 self._compute()
@@ -195,24 +195,21 @@ class Machine:
 
     def _goes_on(self) -> bool:
         """Whether `run` has nothing to do before the program runs on."""
-        return (
-            self.blocks is None
-            and self.timeline.now < self._until
-            and not self._bitten
-            and self.cpu.deliverable() is None
-        )
+        busy = self._bitten or self.blocks is not None or self.timeline.now >= self._until
+        return not busy and self.cpu.deliverable() is None
 
     def _pass_until(self, tick: int) -> bool:
         """Let time pass while the processor is busy. Returns whether it reached the tick: if an interrupt or a reset
         comes first, the processor is stopped, and the call is repeated later."""
-        timeline = self.timeline
+        timeline, nvic = self.timeline, self.nvic
         while True:
-            if self._bitten or (self.nvic.pending and self.cpu.deliverable() is not None):
+            if self._bitten or (nvic.pending and self.cpu.deliverable() is not None):
                 self.cpu.stop()
                 return False
             following = timeline.next()
             if following is None or following > tick:
-                timeline.now = max(timeline.now, tick)
+                if tick > timeline.now:
+                    timeline.now = tick
                 return True
             timeline.step()
 
@@ -231,10 +228,10 @@ class Machine:
         try:
             known = self._registers.get(base + offset)
             if known is not None and size == 4 and known[0].clocked:
-                return known[0].get(known[1])
+                return known[2](known[1])
             if base == self.nvic.base:
                 return self.nvic.read(offset, size)
-            raise self._refusal(f"read of {size} bytes", base + offset)
+            raise refusal(f"read of {size} bytes", base + offset, known and known[:2])
         except BaseException as error:  # Unicorn's code is between here and who handles it
             self.cpu.fail(error)
             return 0
@@ -243,16 +240,10 @@ class Machine:
         try:
             known = self._registers.get(base + offset)
             if known is not None and size == 4 and known[0].clocked:
-                known[0].set(known[1], value)
+                known[3](known[1], value)
             elif base == self.nvic.base:
                 self.nvic.write(offset, value, size)
             else:
-                raise self._refusal(f"write of {size} bytes", base + offset)
+                raise refusal(f"write of {size} bytes", base + offset, known and known[:2])
         except BaseException as error:
             self.cpu.fail(error)
-
-    def _refusal(self, what: str, address: int) -> NotModelledError:
-        known = self._registers.get(address)
-        name = f" ({known[0].name}_{known[1]})" if known else ""
-        why = "its clock is off in RCC" if known and not known[0].clocked else "not modelled"
-        return NotModelledError(f"{what} at 0x{address:08X}{name}: {why}")

@@ -195,12 +195,13 @@ class Session:
         if self._connection.reopen():
             self._begin()
         data = self._connection.read()
-        came = self._now()
-        for message in self._receiver.feed(data):
-            self._take(message, came)
+        now = self._now()
+        if data:
+            for message in self._receiver.feed(data):
+                self._take(message, now)
+            now = self._now()
         if not self._connection.open:
             return
-        now = self._now()
         if self._estop_repeater.due(now):
             self._send_estop()
         if self._greeted and now - self.pings.answered_at > SILENCE:

@@ -27,20 +27,22 @@ class GpioPort(Peripheral):
         """As after a reset: every pin floats."""
         super().reset()
         self._modes()
-        self._levels()
+        self.high = self.low = 0
 
     def set(self, register: str, value: int) -> None:
         """See `Peripheral`."""
         values = self.values
-        if register in ("BSRR", "BRR"):
+        if register == "BSRR" or register == "BRR":
             before = values["ODR"]
-            values["ODR"] = before & ~(value >> 16) | value & 0xFFFF if register == "BSRR" else before & ~value
-            if values["ODR"] == before:
+            after = before & ~(value >> 16) | value & 0xFFFF if register == "BSRR" else before & ~value
+            if after == before:
                 return
+            values["ODR"] = after
         else:
             values[register] = value
             self._modes()
-        self._levels()
+        held = self._held
+        self.high, self.low = held & values["ODR"], held & ~values["ODR"]
         self.changed()
 
     def get(self, register: str) -> int:
@@ -52,8 +54,4 @@ class GpioPort(Peripheral):
         modes = [config >> 4 * pin & 15 for pin in range(16)]
         self.driven = sum(1 << pin for pin, mode in enumerate(modes) if mode & 3 and not mode & 8)
         self.alternate = sum(1 << pin for pin, mode in enumerate(modes) if mode & 3 and mode & 8)
-        self._pulled = sum(1 << pin for pin, mode in enumerate(modes) if mode == _PULLED)
-
-    def _levels(self) -> None:
-        held, levels = self.driven | self._pulled, self.values["ODR"]
-        self.high, self.low = held & levels, held & ~levels
+        self._held = self.driven | sum(1 << pin for pin, mode in enumerate(modes) if mode == _PULLED)

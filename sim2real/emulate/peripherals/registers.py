@@ -37,3 +37,10 @@ class Peripheral:
     def set(self, register: str, value: int) -> None:
         """Write a register by its name. Raises NotModelledError for a value that is not modelled."""
         self.values[register] = value
+
+
+def refusal(what: str, address: int, known: tuple[Peripheral, str] | None) -> NotModelledError:
+    """The error for an access (`what`) to an address; known: peripheral and register there, None if there is none."""
+    name = f" ({known[0].name}_{known[1]})" if known else ""
+    why = "its clock is off in RCC" if known and not known[0].clocked else "not modelled"
+    return NotModelledError(f"{what} at 0x{address:08X}{name}: {why}")

@@ -36,18 +36,21 @@ class Spi(Peripheral):
         self._command: int | None = None
         self._received: int | None = None
         self._over = 0
+        self._low = 0  # select pins that were low at the last change
         self._selected: int | None = None
 
     def select(self) -> None:
         """Update the selected encoder after a change of the pins. Raises NotModelledError during a frame, or if both
         encoders are selected."""
         low = self._port.low & _SELECTS
+        if low == self._low:
+            return
         selected = _ENCODER.get(low)
         if selected != self._selected and self._timeline.now < self._over:
             raise NotModelledError("a chip select changes in the middle of a frame")
         if low == _SELECTS:
             raise NotModelledError("both encoders are selected at once")
-        self._selected = selected
+        self._low, self._selected = low, selected
 
     def get(self, register: str) -> int:
         """See `Peripheral`."""

@@ -11,8 +11,9 @@ from sim2real.link.wire.bodies import Message
 from sim2real.link.wire.messages import FORMATS, SCHEMA, UNCHECKED
 
 KINDS = {number: kind for kind, (number, _) in FORMATS.items()}
+_SIZES = {number: struct.calcsize(text) for number, text in FORMATS.values()}
 CRC = 4  # bytes
-_PLAIN = 1 + max(struct.calcsize(text) for _, text in FORMATS.values()) + CRC
+_PLAIN = 1 + max(_SIZES.values()) + CRC
 LONGEST = _PLAIN + 1 + _PLAIN // 254  # bytes of a frame without its zero
 
 
@@ -94,7 +95,7 @@ class Receiver:
             self.counts.wrong_crc += 1
         elif plain[0] not in KINDS:
             self.counts.unknown_id += 1
-        elif len(plain) - 1 - CRC != struct.calcsize(FORMATS[KINDS[plain[0]]][1]):
+        elif len(plain) - 1 - CRC != _SIZES[plain[0]]:
             self.counts.wrong_length += 1
         else:
             return self._unpack(KINDS[plain[0]], plain[1:-CRC])
