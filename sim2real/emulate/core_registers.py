@@ -7,12 +7,13 @@ import ctypes
 from unicorn import arm_const as arm
 from unicorn.unicorn_py3.unicorn import uclib
 
-LR, PC, PSR, SP, MASK = 5, 6, 7, 8, 9  # places in `CoreRegisters.IDS`
+LR, PC, PSR, SP, MASK = 5, 6, 7, 8, 9  # places in `CoreRegisters.values`
+FRAME = 32  # bytes that an exception pushes on the stack: the first eight of the registers, in their order
 
 
 class CoreRegisters:
-    """R0 to R3, R12, LR, PC, xPSR, SP and PRIMASK, read and written in one call: single calls through Unicorn's Python
-    binding take 10 times as long."""
+    """R0 to R3, R12, LR, PC, xPSR, SP and PRIMASK as `values`, read from and written to the processor in one call:
+    single calls through Unicorn's Python binding take 10 times as long."""
 
     IDS = (
         arm.UC_ARM_REG_R0, arm.UC_ARM_REG_R1, arm.UC_ARM_REG_R2, arm.UC_ARM_REG_R3, arm.UC_ARM_REG_R12,
@@ -23,16 +24,23 @@ class CoreRegisters:
         size = len(self.IDS)
         self._handle, self._size = handle, size
         self._ids = (ctypes.c_int * size)(*self.IDS)
-        self._values = (ctypes.c_uint32 * size)()
-        start = ctypes.addressof(self._values)
+        self.values = (ctypes.c_uint32 * size)()
+        self._bytes = (ctypes.c_char * ctypes.sizeof(self.values)).from_buffer(self.values)  # the same memory
+        start = ctypes.addressof(self.values)
         self._places = (ctypes.c_void_p * size)(*(start + 4 * index for index in range(size)))
 
-    def read(self) -> list[int]:
-        """Their values, in the order of `IDS`."""
+    def read(self) -> None:
+        """Take the processor's values."""
         uclib.uc_reg_read_batch(self._handle, self._ids, self._places, self._size)
-        return self._values[:]
 
-    def write(self, values: list[int]) -> None:
-        """Set them to values in the order of `IDS`."""
-        self._values[:] = values
+    def write(self) -> None:
+        """Give the processor these values."""
         uclib.uc_reg_write_batch(self._handle, self._ids, self._places, self._size)
+
+    def push(self, stack: int) -> bool:
+        """Write the frame of an exception to memory at `stack`; whether there is memory."""
+        return not uclib.uc_mem_write(self._handle, stack, self._bytes, FRAME)
+
+    def pull(self, stack: int) -> None:
+        """Take the values of a frame at `stack`."""
+        uclib.uc_mem_read(self._handle, stack, self._bytes, FRAME)

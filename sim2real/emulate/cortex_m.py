@@ -20,7 +20,7 @@ from unicorn.unicorn_py3.unicorn import (
     uclib,
 )
 
-from sim2real.emulate.core_registers import LR, MASK, PC, PSR, SP, CoreRegisters
+from sim2real.emulate.core_registers import FRAME, LR, MASK, PC, PSR, SP, CoreRegisters
 from sim2real.emulate.elf import Elf
 from sim2real.emulate.peripherals.nvic import HARD_FAULT, Nvic
 
@@ -33,7 +33,6 @@ _RETURN_TO_THREAD, _RETURN_TO_HANDLER = 0xFFFFFFF9, 0xFFFFFFF1
 _EXCEPTION_RETURN = 8  # Unicorn's number for a jump to one of these
 _WFI, _WFE, _NOP, _CPSIE = b"\x30\xbf", b"\x20\xbf", b"\x00\xbf", b"\x62\xb6"
 _THUMB = 1 << 24
-_FRAME = struct.Struct("<8I")
 
 
 class CortexM:
@@ -71,8 +70,8 @@ class CortexM:
             if segment.executable:
                 self._watch(segment.address, segment.data)
         self._registers = CoreRegisters(uc._uch)
-        self._frame = ctypes.create_string_buffer(_FRAME.size)
-        self._state = self._registers.read()  # registers while the processor does not run
+        self._registers.read()
+        self._state = self._registers.values  # while the processor does not run
 
     def _map(self, base: int, size: int, read: object, write: object) -> None:
         """Map peripherals, whose accesses are most of the work: through Unicorn's binding each takes twice as long."""
@@ -111,17 +110,17 @@ class CortexM:
             self._event = False
         else:
             self._why = "event"
-            self.uc.emu_stop()
+            uclib.uc_emu_stop(self.uc._uch)
 
     def _interrupted(self, handle: object, number: int, _: object) -> None:
         """Handle an exception that Unicorn raised. A return from an exception is made at once, and the program goes on
         if nothing has to be done first: that takes less time than to stop and to start again."""
         try:
             if number == _EXCEPTION_RETURN:
-                self._state = self._registers.read()
+                self._registers.read()
                 self._leave()
                 if not self._why and self._goes_on():
-                    self._registers.write(self._state)
+                    self._registers.write()
                     return
             self._why = "return" if number == _EXCEPTION_RETURN else f"fault: exception {number}"
             uclib.uc_emu_stop(handle)
@@ -145,7 +144,7 @@ class CortexM:
         """Restart at the reset vector; memory keeps its contents."""
         stack, start, *others = struct.unpack("<59I", self.uc.mem_read(FLASH, 4 * 59))
         self._vectors = [0, 0, *(vector & ~1 for vector in others)]
-        self._state = [0, 0, 0, 0, 0, 0xFFFFFFFF, start & ~1, _THUMB, stack, 0]
+        self._state[:] = [0, 0, 0, 0, 0, 0xFFFFFFFF, start & ~1, _THUMB, stack, 0]
         self.nvic.reset()
         self.asleep = self.locked = self._event = False
 
@@ -154,12 +153,12 @@ class CortexM:
         resumption."""
         if self._running:
             self._why = self._why or "stop"
-            self.uc.emu_stop()
+            uclib.uc_emu_stop(self.uc._uch)
 
     def fail(self, error: BaseException) -> None:
         """Make `run` raise this error."""
         self._error = error
-        self.uc.emu_stop()
+        uclib.uc_emu_stop(self.uc._uch)
 
     def deliverable(self) -> int | None:
         """The number of the exception that has to be entered now; None if there is none."""
@@ -188,18 +187,16 @@ class CortexM:
         """Run, and return why it ended: "sleep" (WFI), "event" (WFE), "stop", "slice" (after `most` instructions; 0 is
         no limit), "return" (from an exception), or "fault: ..."."""
         self._why, self._running = "", True
-        self._registers.write(self._state)
-        try:
-            self.uc.emu_start(self._state[PC] | 1, _NOWHERE, 0, most)
-        except UcError as error:
-            self._why = f"fault: {error}"
-        finally:
-            self._running = False
+        self._registers.write()
+        status = uclib.uc_emu_start(self.uc._uch, self._state[PC] | 1, _NOWHERE, 0, most)
+        self._running = False
+        if status:
+            self._why = f"fault: {UcError(status)}"
         if self._error is not None:
             raise self._error
         if self._why == "return":
             return self._why
-        self._state = self._registers.read()
+        self._registers.read()
         if self._why == "event":
             self._state[PC] += 2
             self.asleep = True
@@ -214,25 +211,26 @@ class CortexM:
         """Enter an exception: push the frame on the stack and continue at its vector."""
         values = self._state
         odd = values[SP] >> 2 & 1
-        stack = values[SP] - 32 - 4 * odd
-        _FRAME.pack_into(self._frame, 0, *values[:PSR], values[PSR] | odd << 9)
-        if uclib.uc_mem_write(self.uc._uch, stack, self._frame, _FRAME.size):
+        stack, before = values[SP] - FRAME - 4 * odd, values[PSR]
+        values[PSR] = before | odd << 9
+        if not self._registers.push(stack):
+            values[PSR] = before
             self.locked = self.asleep = True  # no stack left: lockup
             return
         values[SP], values[PC] = stack, self._vectors[number]
         values[LR] = _RETURN_TO_HANDLER if self.nvic.active else _RETURN_TO_THREAD
-        values[PSR] = values[PSR] & 0xF8000000 | _THUMB | number
+        values[PSR] = before & 0xF8000000 | _THUMB | number
         self.nvic.enter(number)
         self._event = not self.asleep  # otherwise the loop around WFE would only run once more
         self.asleep = False
 
     def _leave(self) -> None:
-        stack = self._state[SP]
-        uclib.uc_mem_read(self.uc._uch, stack, self._frame, _FRAME.size)
-        frame = list(_FRAME.unpack(self._frame))
-        odd = frame[PSR] >> 9 & 1
-        frame[PSR] &= ~(1 << 9)
-        self._state = [*frame, stack + 32 + 4 * odd, self._state[MASK]]
+        values = self._state
+        stack = values[SP]
+        self._registers.pull(stack)
+        odd = values[PSR] >> 9 & 1
+        values[PSR] &= ~(1 << 9)
+        values[SP] = stack + FRAME + 4 * odd
         self.nvic.leave()
 
     def _fault(self, why: str) -> None:

@@ -45,9 +45,15 @@ class Nvic:
         ready = self.pending & self.enabled
         if not ready:
             return None
-        best = min((self.level(number), number) for number in ready) if len(ready) > 1 else None
-        level, number = best or (self.level(number := next(iter(ready))), number)
-        return None if any(self.level(one) <= level for one in self.active) else number
+        if len(ready) > 1:
+            level, number = min((self.level(number), number) for number in ready)
+        else:
+            (number,) = ready
+            level = self.level(number)
+        for one in self.active:
+            if self.level(one) <= level:
+                return None
+        return number
 
     def enter(self, number: int) -> None:
         """Note that an exception is entered."""
