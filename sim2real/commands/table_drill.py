@@ -1,10 +1,11 @@
 """Play at the twin and let faults happen at random moments: does the mallet stop, and does play go on?
 
 Faults: the camera unplugged, late frames, the puck taken away, the serial cable cut, damaged bytes, the board reset, a
-policy that hangs, the mallet held fast. After each the table is cleared, and play goes on. Where the mallet is and how
-fast, and what its motors get, is looked at every millisecond in the plant's own truth. Ends with 0 if the mallet never
-left its area, never got more than 15 V, and always stood 50 ms after a fault was noticed, or after it began, if the
-board can notice it by itself (70 ms, if only the camera's frames tell), with 1 if not.
+policy that hangs, the mallet held fast; with --camera pictures also a lamp that fades or glares, a hand over the puck,
+a second puck, the camera knocked, a marker knocked. After each the table is cleared, and play goes on. Where the mallet
+is and how fast, and what its motors get, is looked at every millisecond in the plant's own truth. Ends with 0 if the
+mallet never left its area, never got more than 15 V, and always stood 50 ms after a fault was noticed, or after it
+began, if the board can notice it by itself (70 ms, if only the camera's frames tell), with 1 if not.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("faults", nargs="*", metavar="FAULT", help="those that happen (all), cable for example")
     parser.add_argument("--minutes", type=float, default=10.0, metavar="M", help="of play (default 10)")
     parser.add_argument("--player", default="policy:champion", metavar="PLAYER", help="(default policy:champion)")
+    parser.add_argument("--camera", default="places", metavar="KIND", help="places (default) or pictures, ten times as slow")
     parser.add_argument("--seed", type=int, default=0, help="of games and faults (default 0)")
     parser.add_argument("--processes", type=int, default=1, metavar="N", help="that play at once (default 1)")
     parser.add_argument(
@@ -39,9 +41,10 @@ def run(args: argparse.Namespace) -> int:
     from puckpilot_env.files.toml_file import refuse_unknown
     from puckpilot_env.options.inputs import seed_number, whole_number
     from sim2real.table.drills.campaign import run_campaign
-    from sim2real.table.drills.faults import FAULTS
+    from sim2real.table.drills.known_faults import BY_CAMERA
 
-    known = [fault.name for fault in FAULTS]
+    refuse_unknown([args.camera], BY_CAMERA, "camera")
+    known = [fault.name for fault in BY_CAMERA[args.camera]]
     refuse_unknown(args.faults, known, "fault")
     whole_number(args.processes, "--processes", 1, 64)
     if not 0.0 < args.minutes <= 1e5:
@@ -50,8 +53,8 @@ def run(args: argparse.Namespace) -> int:
     args.out.absolute().parent.mkdir(parents=True, exist_ok=True)
     with progress_bar("drilling") as progress:
         parts = run_campaign(
-            args.out, 60.0 * args.minutes, seed_number(args.seed), args.faults or known, args.player, args.processes,
-            progress,
+            args.out, 60.0 * args.minutes, seed_number(args.seed), args.faults or known, args.player, args.camera,
+            args.processes, progress,
         )  # fmt: skip
     result = _result(parts)
     print(json.dumps(result, indent=1) if args.json else "\n".join(_summary(result)))
@@ -61,16 +64,16 @@ def run(args: argparse.Namespace) -> int:
 def _result(parts: list[Part]) -> dict[str, Any]:
     import numpy as np
 
-    from sim2real.table.drills.faults import FAULTS
+    from sim2real.table.drills.known_faults import BY_NAME
     from sim2real.table.mallet_driver import OPERATING_VOLTS
 
     stops = [stop for part in parts for stop in part.stops]
     rows = {}
-    for fault in FAULTS:
-        own = [stop for stop in stops if stop.fault == fault.name]
+    for name in BY_NAME:
+        own = [stop for stop in stops if stop.fault == name]
         stopped = [stop for stop in own if stop.cause]
         if own:
-            rows[fault.name] = {
+            rows[name] = {
                 "times": len(own),
                 "stopped": len(stopped),
                 "by": sorted({stop.cause for stop in stopped}),
@@ -102,7 +105,7 @@ def _spread(seconds: list[float]) -> dict[str, float] | None:
 
 def _summary(result: dict[str, Any]) -> list[str]:
     lines = [
-        f"{'fault':12} {'times':>6} {'stopped':>8} {'noticed, at most':>17} {'at rest, at most':>17} {'99 %':>7}  by"
+        f"{'fault':14} {'times':>6} {'stopped':>8} {'noticed, at most':>17} {'at rest, at most':>17} {'99 %':>7}  by"
     ]
     for name, row in result["faults"].items():
         noticed, rest, most = (
@@ -110,7 +113,7 @@ def _summary(result: dict[str, Any]) -> list[str]:
             for key, which in (("noticed_s", "max"), ("at_rest_s", "max"), ("at_rest_s", "p99"))
         )
         lines.append(
-            f"{name:12} {row['times']:6} {row['stopped']:8} {noticed:>17} {rest:>17} {most:>7}  {', '.join(row['by'])}"
+            f"{name:14} {row['times']:6} {row['stopped']:8} {noticed:>17} {rest:>17} {most:>7}  {', '.join(row['by'])}"
         )
     return [
         *lines,

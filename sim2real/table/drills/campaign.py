@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from sim2real.table.drills.drill import Drill, Stop
-from sim2real.table.drills.faults import FAULTS
+from sim2real.table.drills.known_faults import BY_NAME
 from sim2real.table.faults import TableFaultError
 from sim2real.table.game.robot_seat import make_robot_seat
 
@@ -33,11 +33,11 @@ class Part:
     ended: str
 
 
-def play_part(seed: int, names: Sequence[str], player: str) -> Part:
-    """Play a part, with one fault after the other, drawn of those by `names`."""
+def play_part(seed: int, names: Sequence[str], player: str, camera: str) -> Part:
+    """Play a part, with one fault after the other, drawn of those by `names`, before a camera of that kind."""
     random = np.random.default_rng([seed, 21])
-    chosen = [fault for fault in FAULTS if fault.name in names]
-    env, stops, ended = make_robot_seat("puckpilot/match-v0", "twin", opponent="interceptor"), [], ""
+    chosen = [BY_NAME[name] for name in names]
+    env, stops, ended = make_robot_seat("puckpilot/match-v0", "twin", opponent="interceptor", camera=camera), [], ""
     try:
         drill = Drill(env, player, seed)
         try:
@@ -53,7 +53,7 @@ def play_part(seed: int, names: Sequence[str], player: str) -> Part:
 
 
 def run_campaign(
-    path: Path, seconds: float, seed: int, names: Sequence[str], player: str, processes: int,
+    path: Path, seconds: float, seed: int, names: Sequence[str], player: str, camera: str, processes: int,
     report: Callable[[int, int], None],
 ) -> list[Part]:  # fmt: skip
     """Play parts until they have `seconds` of play; each is kept as a line of `path`, and those that are there already
@@ -63,7 +63,7 @@ def run_campaign(
     missing = [one for one in seeds if one not in done]
     report(len(seeds) - len(missing), len(seeds))
     with ProcessPoolExecutor(processes) as pool, path.open("a", encoding="utf-8") as file:
-        running = [pool.submit(play_part, one, names, player) for one in missing]
+        running = [pool.submit(play_part, one, names, player, camera) for one in missing]
         try:
             for number, result in enumerate(as_completed(running), 1):
                 part = result.result()

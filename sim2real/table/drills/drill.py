@@ -9,7 +9,8 @@ import numpy as np
 
 from baselines import find_player
 from baselines.player import Seat
-from sim2real.table.drills.faults import FAULTS, Fault
+from sim2real.table.drills.faults import Fault
+from sim2real.table.drills.known_faults import BY_NAME
 from sim2real.table.drills.monitor import MalletMonitor
 from sim2real.table.faults import TableFaultError
 from sim2real.table.game.robot_seat import RobotSeat
@@ -40,7 +41,7 @@ class Stop:
     @property
     def in_time(self) -> bool:
         """Whether the mallet stood as soon as it has to: of what can be known at once, from its first moment."""
-        within = next(fault.rest_within for fault in FAULTS if fault.name == self.fault)
+        within = BY_NAME[self.fault].rest_within
         return not self.cause or (self.after_notice <= STILL and (within is None or self.at_rest <= within))
 
 

@@ -1,4 +1,4 @@
-"""What can go wrong at a twin: a row each."""
+"""What can go wrong at a twin, whatever its camera: a row each. `picture_faults.py` has what only pictures show."""
 
 from __future__ import annotations
 

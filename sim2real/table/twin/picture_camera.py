@@ -43,7 +43,7 @@ class PictureCamera:
     """
 
     def __init__(self, rendered: RenderedTable, renderer: Renderer, errors: CameraErrors, seed: int) -> None:
-        self.errors, self.renderer, self.scene = errors, renderer, Disturbances()
+        self.errors, self.rendered, self.renderer, self.scene = errors, rendered, renderer, Disturbances()
         self.unplugged, self.late = False, 0.0
         self._reader = FrameReader(rendered.calibration(), rendered.targets())
         self._seed, self._taken = seed, 0

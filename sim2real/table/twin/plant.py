@@ -6,8 +6,8 @@ import math
 from collections import deque
 
 import numpy as np
-from numba import njit
 
+from puckpilot_env.kernel import array_kernel, kernel
 from sim2real.study.independent_table.physics.law import Law
 from sim2real.study.independent_table.physics.march import LOG_COLUMNS, march
 from sim2real.study.independent_table.physics.volts import at_the_motors, profile
@@ -18,7 +18,7 @@ STEP = 1e-4  # s, of the small steps
 SWITCHES = 4  # of a plan
 START, INPUTS = 2, 9  # of what drives it: the robot's volts x, y; when the opponent's plan began, and the plan
 OpponentPlan = tuple[float, float, float, float, float, float]  # signed volts x, y [V]; t1 x, y; t2 x, y [s]
-_volts = njit(profile)
+_volts = kernel(profile)
 
 
 class Plant:
@@ -104,7 +104,7 @@ class Plant:
             self._mallets[0] = self._held
 
 
-@njit(error_model="numpy")
+@array_kernel
 def _advance(law, puck, mallets, inputs, now, until):
     """Go on from `now` until `until` [s] with the volts of the robot's axes, and those of the opponent's plan."""
     times, volts = np.zeros(1 + SWITCHES), np.empty((1 + SWITCHES, 2, 2))
@@ -126,7 +126,7 @@ def _advance(law, puck, mallets, inputs, now, until):
     )  # fmt: skip
 
 
-@njit(error_model="numpy")
+@kernel
 def _insert(times, count, at):
     """Put `at` in its place among the first `count` increasing times, unless it is there; the number of times then."""
     place = count
