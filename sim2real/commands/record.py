@@ -63,7 +63,8 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print(json.dumps({"recording": str(args.folder), "program": args.program, "rows": draft.rows}, indent=1))
     else:
-        print(f"{args.folder}: {rows}; next: puckpilot diagnose {args.folder}")
+        following = "identify gantry" if args.program == "gantry" else "diagnose"
+        print(f"{args.folder}: {rows}; next: puckpilot {following} {args.folder}")
     return 0
 
 
@@ -86,9 +87,12 @@ def _ended_by_interrupt(report: Callable[[str], None]) -> Iterator[None]:
 
 
 def _connect(env: RobotSeat) -> None:
-    from sim2real.table.game.loop import Loop
+    """Connect the table, after all is compiled that runs while motors are armed."""
+    from sim2real.table.game.loop import home_of
+    from sim2real.table.game.warm_up import warm_up
 
-    env.backend.connect(Loop(env.backend, env.game).home)
+    warm_up(env.game)
+    env.backend.connect(home_of(env.game.p))
 
 
 def _puck(args: argparse.Namespace, env: RobotSeat, seed: int, report: Callable[[str], None]) -> str:

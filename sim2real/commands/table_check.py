@@ -40,6 +40,7 @@ def run(args: argparse.Namespace) -> int:
     from sim2real.table.bring_up.run import run_steps
     from sim2real.table.game.game_record import GameRecord
     from sim2real.table.game.loop import home_of
+    from sim2real.table.game.warm_up import warm_up
     from sim2real.table.live_table import LiveTable
 
     variant = find_variant("match-v0")
@@ -60,6 +61,7 @@ def run(args: argparse.Namespace) -> int:
         if not args.json:
             print(f"{'passed' if result.passed else 'FAILED':8}{result.name:10}{result.text}", flush=True)
 
+    warm_up(game)  # nothing is to be compiled while motors are armed
     passed = run_steps(Rig(table, game, home), report)
     if args.json:
         print(json.dumps({"passed": passed, "steps": [vars(result) for result in results]}, indent=1))

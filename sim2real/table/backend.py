@@ -70,7 +70,8 @@ class Backend(ABC):
     """A table. Nothing is opened when it is made; `connect` opens, and every way out ends in `close`.
 
     `observes` and `takes` say what `read` gives and `send` takes, with units, before anything is connected.
-    `obeys`: whether the mallet goes where plans send it; `patience`: how long putting the puck down may take [s].
+    `obeys`: whether the mallet goes where plans send it; `patience`: how long putting the puck down may take [s];
+    `frame_rate`: of its camera [Hz].
 
     >>> with make_backend("twin", ...) as table:
     ...     table.connect(home)
@@ -90,6 +91,7 @@ class Backend(ABC):
     }  # fmt: skip
     obeys: bool = True
     patience: float = 1.0
+    frame_rate: float
 
     @abstractmethod
     def seed(self, seed: int) -> None:

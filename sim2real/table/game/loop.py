@@ -19,7 +19,6 @@ from sim2real.table.mallet_driver import AHEAD, MalletDriver
 
 HOMING_VOLTS = 5.0  # V, of the way home between points
 POINT_PAUSE = 0.02  # s between looks at whether the mallet is home
-HALF_FRAME = 0.004  # s, about half a frame of 120 Hz: a decision waits for the frame that is due
 LOST = 0.3  # s without a sight of the puck, on its way to no goal, after which the mallet is parked
 FOUND_WITHIN = 2.0  # s in which a lost puck comes back into sight
 
@@ -90,8 +89,9 @@ class Loop:
         self.referee.order(0, self.motion(begin + AHEAD), action)
         self.backend.show(self.game.record)
         self._send(action, begin + AHEAD)
-        self._watch(begin + period - HALF_FRAME)
-        self.backend.wait_for_frame(begin + period + HALF_FRAME)
+        half_frame = 0.48 / self.backend.frame_rate  # a decision waits for the frame that is due
+        self._watch(begin + period - half_frame)
+        self.backend.wait_for_frame(begin + period + half_frame)
         self._take_frames()
         again = self.referee.end_step(self.backend.now(), self.seen)
         running = int(self.game.record["ending"]) == rules.RUNNING

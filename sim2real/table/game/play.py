@@ -28,7 +28,8 @@ def play_game(
     may_clear: Callable[[TableFaultError], bool],
     show: Show,
 ) -> GameLog:
-    """Play a game, at most `seconds` of it, and return what came of it; the mallet is at rest in the end.
+    """Play a game, at most `seconds` of it, and return what came of it. A whole game ends with the mallet at home; one
+    that is cut off ends with the mallet on its way, until `env` is closed.
 
     report: takes a line for each goal, foul and fault; may_clear: whether to go on after a fault, when it is mended;
     show: takes loop, action and info of each step.

@@ -74,6 +74,12 @@ class TwoSeats(ParallelEnv):
         self.agents = list(AGENTS)
         return self._observations(observation), {agent: dict(info) for agent in AGENTS}
 
+    def clear(self) -> tuple[dict[str, NDArray[np.float32]], dict[str, dict[str, Any]]]:
+        """Play on after a TableFaultError; see `RobotSeat.clear`."""
+        observation, info = self._robot.clear()
+        self.agents = list(AGENTS)
+        return self._observations(observation), {ROBOT: info, OPPONENT: mirrored(info)}
+
     def step(
         self, actions: Mapping[str, Any]
     ) -> tuple[

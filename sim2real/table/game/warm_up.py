@@ -10,11 +10,13 @@ from sim2real.table.game.game_record import GameRecord
 from sim2real.table.game.loop import Loop
 from sim2real.table.mallet_driver import MalletPlan
 
-STEPS, RATE = 4, 120.0  # decisions; frames a second
+STEPS = 4  # decisions
 
 
 class ImaginedTable(Backend):
     """A table on which the puck goes from wall to wall, seen without an error, while the mallet is where it is sent."""
+
+    frame_rate = 120.0
 
     def __init__(self, p: np.void) -> None:
         self._length, self._width = float(p["length"]), float(p["width"])
@@ -47,15 +49,15 @@ class ImaginedTable(Backend):
 
     def read(self) -> Reading:
         """The frames since the last call."""
-        numbers = range(self._read, int(self._now * RATE) + 1)
+        numbers = range(self._read, int(self._now * self.frame_rate) + 1)
         self._read = numbers.stop
         mallets = [SeenMallet(self._now, self.place(), self.place(), (0.0, 0.0))]
         return Reading([self._frame(number) for number in numbers], mallets, 0.0)
 
     def _frame(self, number: int) -> SeenFrame:
-        way = (number / RATE) % 0.5
+        way = (number / self.frame_rate) % 0.5
         puck = (0.45 + 0.4 * abs(way - 0.25)) * self._length, 0.5 * self._width + way * 0.5 * self._width
-        return SeenFrame(number / RATE, puck, (0.9 * self._length, 0.5 * self._width))
+        return SeenFrame(number / self.frame_rate, puck, (0.9 * self._length, 0.5 * self._width))
 
     def send(self, plan: MalletPlan) -> MalletPlan:
         """The plan, as it is."""

@@ -18,7 +18,7 @@ def recorded(env: RobotSeat, folder: Path, note: str) -> Iterator[RecordingDraft
 
     RecordingError, in one line, and before anything moves, for a folder that exists or cannot be written.
     """
-    draft = RecordingDraft(folder, recording_meta(env.game.p, f"{note}; {DRIVE_NOTE}"))
+    draft = RecordingDraft(folder, recording_meta(env.game.p, env.backend.frame_rate, f"{note}; {DRIVE_NOTE}"))
     table = env.backend
     env.backend = RecordedTable(table, draft, env.game.p)
     try:

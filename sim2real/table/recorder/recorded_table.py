@@ -35,7 +35,7 @@ class RecordedTable(Backend):
         self._motors = MotorLog(float(p["max_voltage"]), operating_volts(p))
         self._zero: float | None = None  # host's time at which the recording's is 0 [s]
         self._plans: list[MalletPlan] = []  # sent and not yet kept
-        self.obeys, self.patience = table.obeys, table.patience
+        self.obeys, self.patience, self.frame_rate = table.obeys, table.patience, table.frame_rate
 
     def read(self) -> Reading:
         """See `Backend.read`."""
@@ -125,13 +125,12 @@ class RecordedTable(Backend):
         self._table.close()
 
 
-def recording_meta(p: np.void, note: str) -> dict[str, Any]:
-    """The content of meta.json for a table of these parameters."""
+def recording_meta(p: np.void, frame_rate: float, note: str) -> dict[str, Any]:
+    """The content of meta.json for a table of these parameters, whose camera has so many frames a second."""
     meta: dict[str, Any] = {"format": FORMAT}
     for name, (section, key) in FROM_META.items():
         meta.setdefault(section, {})[key] = float(p[name])
-    rate = float(p["frame_rate"])
-    return meta | {"camera": {"rate_hz": rate, "position_std_m": None, "place_std_m": None}, "note": note}
+    return meta | {"camera": {"rate_hz": frame_rate, "position_std_m": None, "place_std_m": None}, "note": note}
 
 
 def _frame(frame: SeenFrame, zero: float) -> tuple[float, ...]:

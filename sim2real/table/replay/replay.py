@@ -29,6 +29,7 @@ class Replay(Backend):
         found = read_recording(recording)
         self._frames, self._mallet = _streams(found)
         _refuse_other_sizes(found, game)
+        self.frame_rate = 1.0 / float(np.median(np.diff(self._frames.t))) if self._frames.rows > 1 else np.inf
         self._now, self._taken = -np.inf, 0
 
     def seed(self, seed: int) -> None:

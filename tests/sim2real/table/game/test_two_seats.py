@@ -9,6 +9,7 @@ import pytest
 pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
 
 import puckpilot_env  # noqa: F401 - registers the ids
+from sim2real.table.faults import TableFaultError
 
 MATCH = "puckpilot/match-v0"
 
@@ -34,6 +35,13 @@ def test_each_seat_drives_its_own_mallet_and_sees_the_table_from_its_own_end() -
         assert not any(terminated.values()) and not any(truncated.values())
         with pytest.raises(ValueError, match="no action for player_1"):
             env.step({"player_0": actions["player_0"]})
+        env.unwrapped._twin.camera.unplugged = True
+        with pytest.raises(TableFaultError, match="no frame for"):
+            env.step(actions)
+        env.unwrapped._twin.camera.unplugged = False
+        _, infos = env.clear()
+        assert set(infos) == set(env.agents) == {"player_0", "player_1"}
+        env.step(actions)
     finally:
         env.close()
 

@@ -120,7 +120,7 @@ def test_the_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     folder = tmp_path / "one"
     assert puckpilot.main(["record", str(folder), "--program", "gantry", "--volts", "5", "9", "--seconds", "1"]) == 0
     printed = capsys.readouterr().out
-    assert "moves of the mallet at 5, 9 V" in printed and f"next: puckpilot diagnose {folder}" in printed
+    assert "moves of the mallet at 5, 9 V" in printed and f"next: puckpilot identify gantry {folder}" in printed
     commands = read_recording(folder).commands
     assert commands is not None and {5.0} < set(np.abs(commands["V_x"]).round(3)) | {5.0, 9.0}
     assert np.abs(commands["V_x"]).max() <= 9.0  # less where the board could not brake it soon

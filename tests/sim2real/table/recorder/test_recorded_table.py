@@ -9,7 +9,7 @@ import pytest
 
 from sim2real.recording.folder import RecordingError, read_recording
 from sim2real.recording.table_parameters import stated_sizes
-from sim2real.table.backend import Backend, Place, Reading, SeenFrame, SeenMallet
+from sim2real.table.backend import Backend, Motion, Place, Reading, SeenFrame, SeenMallet
 from sim2real.table.game.game_record import GameRecord
 from sim2real.table.game.robot_seat import RobotSeat
 from sim2real.table.mallet_driver import MalletDriver, MalletPlan
@@ -24,7 +24,7 @@ BEGIN = 100.0  # s of the host's clock
 class ScriptedTable(Backend):
     """Shows what it was given, reading by reading, and remembers what was asked of it."""
 
-    obeys, patience = True, 7.0
+    obeys, patience, frame_rate = False, 7.0, 90.0
 
     def __init__(self, readings: list[Reading]) -> None:
         self.readings, self.asked, self.time = readings, [], BEGIN
@@ -49,6 +49,9 @@ class ScriptedTable(Backend):
 
     def place(self) -> Place:
         return HOME
+
+    def mallet_motion(self, time: float) -> Motion:
+        return time, 0.0, 0.0, 0.0
 
     def read(self) -> Reading:
         return self.readings.pop(0)
@@ -81,7 +84,7 @@ def mallet(time: float) -> SeenMallet:
 def test_all_streams_start_at_zero_of_one_clock(game: GameRecord, tmp_path: Path) -> None:
     first = Reading([SeenFrame(BEGIN + 0.001, None, (1.5, 0.5))], [mallet(BEGIN), mallet(BEGIN + 0.002)])
     second = Reading([SeenFrame(BEGIN + 0.009, (1.0, 0.6), None)], [mallet(BEGIN + 0.004)])
-    draft = RecordingDraft(tmp_path / "one", recording_meta(game.p, "a test"))
+    draft = RecordingDraft(tmp_path / "one", recording_meta(game.p, 120.0, "a test"))
     table = RecordedTable(ScriptedTable([Reading(), first, second]), draft, game.p)
     driver = MalletDriver(game.p)
     driver.stand(*HOME, BEGIN)
@@ -109,7 +112,7 @@ def test_all_streams_start_at_zero_of_one_clock(game: GameRecord, tmp_path: Path
 
 def test_a_plan_comes_to_rest_where_the_row_says(game: GameRecord, tmp_path: Path) -> None:
     """From any state: the final place is where the plan's own motion ends."""
-    draft = RecordingDraft(tmp_path / "one", recording_meta(game.p, "a test"))
+    draft = RecordingDraft(tmp_path / "one", recording_meta(game.p, 120.0, "a test"))
     table = RecordedTable(ScriptedTable([Reading([], [mallet(BEGIN)])]), draft, game.p)
     driver, random, ends = MalletDriver(game.p), np.random.default_rng(1), []
     driver.stand(*HOME, BEGIN)
@@ -127,7 +130,7 @@ def test_a_plan_comes_to_rest_where_the_row_says(game: GameRecord, tmp_path: Pat
 
 def test_the_table_behind_it_is_asked_for_everything(game: GameRecord, tmp_path: Path) -> None:
     behind = ScriptedTable([Reading([], [mallet(BEGIN)])])
-    table = RecordedTable(behind, RecordingDraft(tmp_path / "one", recording_meta(game.p, "")), game.p)
+    table = RecordedTable(behind, RecordingDraft(tmp_path / "one", recording_meta(game.p, 120.0, "")), game.p)
     table.seed(1)
     table.connect(HOME)
     table.clear(HOME)
@@ -139,8 +142,16 @@ def test_the_table_behind_it_is_asked_for_everything(game: GameRecord, tmp_path:
     table.close()
     assert not behind.readings  # what came while the clock's estimate moved is not recorded
     assert behind.asked == ["seed", "connect", "clear", "place_puck", "show", "stop", "close"]
-    assert (table.now(), table.place(), table.patience, table.obeys) == (BEGIN + 2.0, HOME, 7.0, True)
-    assert table.mallet_motion(BEGIN) is None
+    assert (table.now(), table.place(), table.patience, table.obeys) == (BEGIN + 2.0, HOME, 7.0, False)
+    assert table.mallet_motion(BEGIN) == (BEGIN, 0.0, 0.0, 0.0) and table.frame_rate == 90.0
+
+
+def test_a_reading_is_passed_on_whole(game: GameRecord, tmp_path: Path) -> None:
+    reading = Reading([], [mallet(BEGIN)], 0.004, 3, True)
+    table = RecordedTable(
+        ScriptedTable([reading]), RecordingDraft(tmp_path / "one", recording_meta(game.p, 120.0, "")), game.p
+    )
+    assert table.read() is reading
 
 
 def test_what_came_until_an_error_is_recorded(game: GameRecord, tmp_path: Path) -> None:

@@ -1,0 +1,50 @@
+"""A person at the terminal: what is asked for, and that the table is served meanwhile."""
+
+from __future__ import annotations
+
+import os
+
+import numpy as np
+import pytest
+
+from sim2real.table.faults import Cause, TableFaultError
+from sim2real.table.physical.person import PersonAtTerminal
+
+
+class Terminal:
+    """A standard input at which Enter is pressed, or which is closed, once the table was served three times."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, typed: bytes) -> None:
+        reads, self._writes = os.pipe()
+        monkeypatch.setattr("sys.stdin", os.fdopen(reads))
+        self._typed, self.served = typed, 0
+
+    def serve(self) -> None:
+        self.served += 1
+        if self.served == 3:
+            os.write(self._writes, self._typed)
+            os.close(self._writes)
+
+
+def test_the_table_is_served_until_enter_is_pressed(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    terminal = Terminal(monkeypatch, b"\n")
+    PersonAtTerminal(terminal.serve).home_mallet((0.25, 0.5))
+    assert terminal.served == 3
+    assert "mallet at (0.250, 0.500) m by hand" in capsys.readouterr().err
+
+
+def test_a_closed_terminal_is_no_enter(monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(TableFaultError, match="nobody pressed Enter") as caught:
+        PersonAtTerminal(Terminal(monkeypatch, b"").serve).home_mallet((0.25, 0.5))
+    assert caught.value.cause == Cause.NOT_READY
+
+
+@pytest.mark.parametrize(("velocity", "words"), [((0.0, 0.0), "let it lie"), ((0.3, -0.4), "about 0.5 m/s")])
+def test_a_puck_is_asked_for_with_its_speed(
+    velocity: tuple[float, float], words: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    PersonAtTerminal(lambda: None).put_puck(np.array([1.0, 0.4, *velocity]))
+    said = capsys.readouterr().err
+    assert "(1.00, 0.40) m" in said and words in said
