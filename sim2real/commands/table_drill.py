@@ -24,7 +24,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("faults", nargs="*", metavar="FAULT", help="those that happen (all), cable for example")
     parser.add_argument("--minutes", type=float, default=10.0, metavar="M", help="of play (default 10)")
     parser.add_argument("--player", default="policy:champion", metavar="PLAYER", help="(default policy:champion)")
-    parser.add_argument("--camera", default="places", metavar="KIND", help="places (default) or pictures, ten times as slow")
+    parser.add_argument(
+        "--camera", default="places", metavar="KIND", help="places (default) or pictures, ten times as slow"
+    )
     parser.add_argument("--seed", type=int, default=0, help="of games and faults (default 0)")
     parser.add_argument("--processes", type=int, default=1, metavar="N", help="that play at once (default 1)")
     parser.add_argument(

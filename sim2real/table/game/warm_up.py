@@ -83,6 +83,7 @@ def warm_up(game: GameRecord) -> None:
     loop.connect()
     own.tables.reset(0)
     loop.begin_point()
+    loop.clear()
     for _ in range(STEPS):
         loop.step(own.tables.action_bounds.mean(axis=0).astype(np.float32))
         loop.observe()

@@ -17,8 +17,8 @@ from sim2real.table.mallet_driver import MalletPlan
 from sim2real.table.physical.eyes import LiveEyes
 from sim2real.table.watchdog import refuse_troubles
 
-FIRST_FRAME = 5.0  # s within which it comes
-WARM_UP = 30  # frames that are read before the motors are armed
+FIRST_FRAME = 5.0  # s within which it comes, and each of those after it
+WARM_UP = 90  # frames that are read before the motors are armed, a check of the camera's place among them
 KEPT = 100_000  # reaction times kept: some hours of decisions
 
 
@@ -82,6 +82,7 @@ class RealTimeTable(LiveTable):
             for frame in eyes.take(self.now()):
                 read += 1
                 refuse_troubles(frame)
+                patient = self.now() + FIRST_FRAME  # what reads the first one may be compiled by then
             if self.now() > patient:
                 raise TableFaultError(
                     Cause.CAMERA_SILENT, f"{read} frames came in {FIRST_FRAME:g} s; check the camera and clear"
@@ -105,6 +106,7 @@ class RealTimeTable(LiveTable):
 
     def wait_for_frame(self, until: float) -> None:
         """See `Backend.wait_for_frame`."""
+        self._awaited = False  # where a fault ends it too
         super().wait_for_frame(until)
         self._awaited = self.now() < until
 

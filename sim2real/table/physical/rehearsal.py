@@ -3,6 +3,7 @@ process of its own, answers at a pseudo-terminal."""
 
 from __future__ import annotations
 
+import gc
 import multiprocessing
 import time
 from collections.abc import Iterator
@@ -106,6 +107,8 @@ def _serve_board(parent: Connection, place: Place) -> None:
 
     machine = Machine(ELF, seed=1)
     Gantry(machine, place=place)
+    gc.collect()
+    gc.freeze()  # as the host does: a full collection would hold a board of real time for tens of milliseconds
     with terminal() as (descriptor, name):
         parent.send(name)
         serve(machine, descriptor, lambda seconds: not parent.poll())

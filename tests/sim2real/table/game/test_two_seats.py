@@ -9,14 +9,16 @@ import pytest
 pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
 
 import puckpilot_env  # noqa: F401 - registers the ids
+from puckpilot_env.variants import find_variant
 from sim2real.table.faults import TableFaultError
+from sim2real.table.game.two_seats import make_two_seats
 
 MATCH = "puckpilot/match-v0"
 
 
 @pytest.mark.slow
 def test_each_seat_drives_its_own_mallet_and_sees_the_table_from_its_own_end() -> None:
-    env = pettingzoo.make("parallel", MATCH, backend="twin")
+    env = make_two_seats(find_variant(MATCH), "twin")
     simulated = pettingzoo.make("parallel", MATCH)
     assert env.possible_agents == simulated.possible_agents
     for agent in env.possible_agents:
@@ -35,10 +37,10 @@ def test_each_seat_drives_its_own_mallet_and_sees_the_table_from_its_own_end() -
         assert not any(terminated.values()) and not any(truncated.values())
         with pytest.raises(ValueError, match="no action for player_1"):
             env.step({"player_0": actions["player_0"]})
-        env.unwrapped._twin.camera.unplugged = True
+        env._twin.camera.unplugged = True
         with pytest.raises(TableFaultError, match="no frame for"):
             env.step(actions)
-        env.unwrapped._twin.camera.unplugged = False
+        env._twin.camera.unplugged = False
         _, infos = env.clear()
         assert set(infos) == set(env.agents) == {"player_0", "player_1"}
         env.step(actions)
