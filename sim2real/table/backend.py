@@ -51,7 +51,7 @@ class Reading:
     """All that came since the last reading, in order of time.
 
     `late_s`: age of the newest frame now [s], nan without frames; `missed`: number of plans that came to the board too
-    late, so that those before went on; `over`: nothing will come any more.
+    late, or never, so that those before went on; `over`: nothing will come any more.
     """
 
     frames: list[SeenFrame] = field(default_factory=list)

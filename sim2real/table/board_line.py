@@ -16,6 +16,7 @@ from sim2real.link.wire.messages import FORMATS, Config, Event, Fault, Notice, R
 from sim2real.table.backend import Place, SeenMallet
 from sim2real.table.faults import Cause, TableFaultError
 from sim2real.table.mallet_driver import MalletPlan
+from sim2real.table.plan_fates import PlanFates
 
 AT_HOME = 0.002  # m from the home that was sent, by the encoders
 PATIENCE = 2.0  # s that a step of the bring-up may take
@@ -23,7 +24,6 @@ BRAKES_WITHIN = 0.1  # s in which a board that was asked to shows that it has st
 EXCHANGES = 10  # pings that are answered before the board's clock is relied on
 POLL = 0.001  # s between polls
 STALE = 0.03  # s without telemetry, which comes every 2 ms, after which the board counts as lost
-MOST_MISSED = 3  # plans that may come too late, one after the other, before the table is stopped
 MICRO = 1e-6
 NAMES = {number: message.__name__.lower() for message, (number, _) in FORMATS.items()}
 
@@ -42,9 +42,7 @@ class BoardLine:
         self.session = Session(connect, now)
         self._armed = False
         self._refused = ""  # the first message that the board refused, and why
-        self._missed = 0  # plans that came too late, since they were taken
-        self._in_a_row = 0  # of them, since one was followed
-        self._sent = 0  # sequence number of the newest plan
+        self._fates = PlanFates()
         self._said: list[Telemetry] = []  # since it was taken
 
     # Bring-up, step by step
@@ -53,7 +51,7 @@ class BoardLine:
         """Greet the board, until it answers and its clock is known, and have it leave FAULT. TableFaultError if it does
         not."""
         session, begun = self.session, self._now()
-        self._refused, self._missed, self._in_a_row = "", 0, 0
+        self._refused, self._fates = "", PlanFates()
         self._until(lambda: session.connected and len(session.clock) >= EXCHANGES, "no board answers on this line")
         self._until(
             lambda: session.state is not None and session.telemetry_status.arrived > begun,
@@ -132,8 +130,7 @@ class BoardLine:
         for telemetry in session.take_telemetry():
             if telemetry.state in (State.IDLE, State.ARMED) and len(session.clock):
                 self._said.append(telemetry)
-            if telemetry.sequence == self._sent:
-                self._in_a_row = 0
+                self._fates.see(telemetry.sequence, session.clock.to_host(telemetry.time))
 
     def take_mallets(self) -> list[SeenMallet]:
         """What telemetry said of the mallet since the last call."""
@@ -141,17 +138,15 @@ class BoardLine:
         return [_seen(telemetry, self.session.clock.to_host(telemetry.time)) for telemetry in said]
 
     def take_missed(self) -> int:
-        """The number of plans since the last call that came too late to the board."""
-        missed, self._missed = self._missed, 0
-        return missed
+        """The number of plans since the last call that came too late to the board, or not at all."""
+        return self._fates.take_missed()
 
     def _take(self, event: Event) -> None:
         if event.code != Notice.REFUSED:
             return
         name, reason = NAMES.get(event.detail >> 8, "message"), Refusal(event.detail & 0xFF)
-        if name == "traj" and reason == Refusal.TOO_LATE and self._in_a_row < MOST_MISSED:
-            self._missed += 1
-            self._in_a_row += 1
+        if name == "traj" and reason == Refusal.TOO_LATE:
+            self._fates.refuse_late()
         elif not self._refused:
             self._refused = f"{name}, {reason.name}"
 
@@ -179,6 +174,11 @@ class BoardLine:
             name = State(session.state).name
             raise TableFaultError(Cause.BOARD_NOT_ARMED, f"the board is in {name} and not ARMED; clear to arm it again")
         self._refuse_refusals()
+        if self._fates.hopeless:
+            raise TableFaultError(
+                Cause.PLAN_REFUSED, "one plan after the other comes to the board too late, or not at all; check cable "
+                "and load, then clear"
+            )  # fmt: skip
 
     def send(self, plan: MalletPlan) -> MalletPlan:
         """Send a plan; return it with the numbers that the protocol carries. TableFaultError if there is no board that
@@ -190,9 +190,10 @@ class BoardLine:
         volts = float(np.float32(plan.volts[0])), float(np.float32(plan.volts[1]))
         try:
             begin = session.clock.to_board(plan.begin)
-            self._sent = session.traj(Traj(0, begin, round(plan.life / MICRO), volts, t1, t2, rest, slow, fast))
+            number = session.traj(Traj(0, begin, round(plan.life / MICRO), volts, t1, t2, rest, slow, fast))
         except ValueError as error:
             raise TableFaultError(Cause.NOT_READY, str(error)) from None
+        self._fates.send(number, plan.begin)
         seconds = ((MICRO * first, MICRO * second) for first, second in (t1, t2))
         return replace(plan, volts=volts, t1=next(seconds), t2=next(seconds), modes=np.array([rest, slow, fast]))
 

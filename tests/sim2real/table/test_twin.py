@@ -185,6 +185,19 @@ def test_a_policy_that_hangs_leaves_the_mallet_at_its_target(seat: RobotSeat, ha
     assert twin.plant.mallet(0)[:2] == pytest.approx(STAY[:2], abs=0.002)
 
 
+def test_after_a_plan_that_was_lost_on_the_line_the_next_begins_where_the_mallet_is(seat: RobotSeat) -> None:
+    seat.reset(seed=1)
+    board = twin_of(seat).board
+    assert board is not None and seat.loop is not None
+    write = board.write
+    board.write = lambda data: write(data) if len(data) < 40 else None  # trajectories are lost, pings are not
+    seat.step(np.array([0.9, 0.9, 10.0, 10.0], np.float32))
+    board.write = write
+    infos = [seat.step(np.array([0.3, 0.3, 10.0, 10.0], np.float32))[-1] for _ in range(5)]
+    assert seat.loop.missed == 1 and max(info["off_path"] for info in infos) < 0.002
+    assert twin_of(seat).plant.mallet(0)[:2] == pytest.approx((0.3, 0.3), abs=0.002)
+
+
 def test_a_refused_plan_ends_the_game(seat: RobotSeat) -> None:
     seat.reset(seed=1)
     assert seat.loop is not None

@@ -1,0 +1,49 @@
+"""What becomes of plans: followed, late, lost."""
+
+from __future__ import annotations
+
+from sim2real.table.plan_fates import PlanFates
+
+
+def test_a_plan_that_is_followed_is_not_missed() -> None:
+    fates = PlanFates()
+    fates.send(7, 1.0)
+    for time, number in ((0.999, 6), (1.001, 6), (1.003, 7), (1.2, 7), (9.0, 0)):
+        fates.see(number, time)
+    assert fates.take_missed() == 0
+
+
+def test_a_plan_that_nothing_is_heard_of_by_six_milliseconds_after_its_begin_was_lost() -> None:
+    fates = PlanFates()
+    fates.send(7, 1.0)
+    fates.see(6, 1.005)
+    assert fates.take_missed() == 0
+    for time in (1.007, 1.009):
+        fates.see(6, time)
+    assert (fates.take_missed(), fates.take_missed()) == (1, 0)
+
+
+def test_a_plan_that_is_refused_is_missed_once() -> None:
+    fates = PlanFates()
+    fates.send(7, 1.0)
+    fates.refuse_late()
+    fates.see(6, 1.1)
+    fates.refuse_late()  # of nothing that is known
+    assert fates.take_missed() == 1
+
+
+def test_the_fourth_in_a_row_is_hopeless_unless_one_was_followed_between() -> None:
+    fates = PlanFates()
+    for number in range(1, 4):
+        fates.send(number, 1.0 * number)
+        fates.see(0, number + 0.5)
+    assert not fates.hopeless
+    fates.send(4, 4.0)
+    fates.see(4, 4.001)
+    fates.send(5, 5.0)
+    fates.refuse_late()
+    assert not fates.hopeless
+    for number in range(6, 9):
+        fates.send(number, 1.0 * number)
+        fates.refuse_late()
+    assert fates.hopeless
