@@ -11,7 +11,9 @@ from sim2real.statistics.tuned import tuned
 class GantryNumbers:
     """Free runs of the gantry, their fit, and the choice of a law."""
 
-    past: float = tuned(0.02, "s", "a state that noise, or an old one that the law, decides", "issue 21: about 20 ms")
+    past: float = tuned(
+        0.02, "s", "a state that noise, or an old one that the law, decides", "choice: ten rows of telemetry"
+    )
     warm_up: float = tuned(0.1, "s", "volts and friction that are not known yet", "choice: many fast modes")
     fitted: tuple[float, ...] = tuned(
         (0.01, 0.02, 0.04, 0.06, 0.08, 0.1, 0.125, 0.15, 0.175, 0.2),
@@ -19,7 +21,9 @@ class GantryNumbers:
         "a fit to what decays at once, or to what a disturbance carried away",
         "choice: a period of play and twice that",
     )
-    judged: tuple[float, ...] = tuned((0.05, 0.1, 0.2, 0.5), "s", "a law that is good for one moment", "issue 21")
+    judged: tuple[float, ...] = tuned(
+        (0.05, 0.1, 0.2, 0.5), "s", "a law that is good for one moment", "choice: some periods"
+    )
     age: float = tuned(0.02, "s", "late errors, which are larger, deciding all", "choice: weight 1 / (time + age)")
     fit_every: float = tuned(0.1, "s", "a slow fit, or windows left out", "choice: the next begins inside the last")
     judge_every: float = tuned(0.02, "s", "a slow or a coarse judgement", "choice")
