@@ -23,6 +23,7 @@ from unicorn.unicorn_py3.unicorn import (
 from sim2real.emulate.core_registers import FRAME, LR, MASK, PC, PSR, SP, CoreRegisters
 from sim2real.emulate.elf import Elf
 from sim2real.emulate.peripherals.nvic import HARD_FAULT, Nvic
+from sim2real.emulate.unicorn_calls import emu_start, emu_stop
 
 FLASH, FLASH_SIZE = 0x08000000, 0x10000
 RAM, RAM_SIZE = 0x20000000, 0x5000
@@ -60,7 +61,9 @@ class CortexM:
         self._waits: set[int] = set()  # addresses of WFI
         self.uc = uc = Uc(unicorn.UC_ARCH_ARM, unicorn.UC_MODE_THUMB | unicorn.UC_MODE_MCLASS, arm.UC_CPU_ARM_CORTEX_M3)
         uc.mem_map(FLASH, FLASH_SIZE, unicorn.UC_PROT_READ | unicorn.UC_PROT_EXEC)
-        uc.mem_map(RAM, RAM_SIZE, unicorn.UC_PROT_READ | unicorn.UC_PROT_WRITE)
+        self._memory = (ctypes.c_char * RAM_SIZE)()
+        uc.mem_map_ptr(RAM, RAM_SIZE, unicorn.UC_PROT_READ | unicorn.UC_PROT_WRITE, ctypes.addressof(self._memory))
+        self.ram = memoryview(self._memory).cast("B")  # from address RAM on
         self._callbacks: list[object] = []  # to be kept as long as Unicorn calls them
         for base, size in ((_PERIPHERALS, _PERIPHERALS_SIZE), (_SYSTEM, _SYSTEM_SIZE)):
             self._map(base, size, MMIO_READ_CFUNC(partial(read, base)), MMIO_WRITE_CFUNC(partial(write, base)))
@@ -69,7 +72,7 @@ class CortexM:
             uc.mem_write(segment.address, segment.data)
             if segment.executable:
                 self._watch(segment.address, segment.data)
-        self._registers = CoreRegisters(uc._uch)
+        self._registers = CoreRegisters(uc._uch, self.ram, RAM)
         self._registers.read()
         self._state = self._registers.values  # while the processor does not run
 
@@ -110,20 +113,20 @@ class CortexM:
             self._event = False
         else:
             self._why = "event"
-            uclib.uc_emu_stop(self.uc._uch)
+            emu_stop(self.uc._uch)
 
-    def _interrupted(self, handle: object, number: int, _: object) -> None:
+    def _interrupted(self, _: object, number: int, __: object) -> None:
         """Handle an exception that Unicorn raised. A return from an exception is made at once, and the program goes on
         if nothing has to be done first: that takes less time than to stop and to start again."""
         try:
             if number == _EXCEPTION_RETURN:
                 self._registers.read()
                 self._leave()
-                if not self._why and self._goes_on():
+                if not (self._why or self.locked) and self._goes_on():
                     self._registers.write()
                     return
             self._why = "return" if number == _EXCEPTION_RETURN else f"fault: exception {number}"
-            uclib.uc_emu_stop(handle)
+            emu_stop(self.uc._uch)
         except BaseException as error:  # Unicorn's code is between here and who handles it
             self.fail(error)
 
@@ -148,17 +151,22 @@ class CortexM:
         self.nvic.reset()
         self.asleep = self.locked = self._event = False
 
+    def memory(self, address: int, size: int) -> bytes:
+        """The bytes of memory at an address."""
+        at = address - RAM
+        return bytes(self.ram[at : at + size] if at >= 0 else self.uc.mem_read(address, size))
+
     def stop(self) -> None:
         """Make `run` return before the next instruction. During a peripheral's read, the read is repeated on
         resumption."""
         if self._running:
             self._why = self._why or "stop"
-            uclib.uc_emu_stop(self.uc._uch)
+            emu_stop(self.uc._uch)
 
     def fail(self, error: BaseException) -> None:
         """Make `run` raise this error."""
         self._error = error
-        uclib.uc_emu_stop(self.uc._uch)
+        emu_stop(self.uc._uch)
 
     def deliverable(self) -> int | None:
         """The number of the exception that has to be entered now; None if there is none."""
@@ -188,7 +196,7 @@ class CortexM:
         no limit), "return" (from an exception), or "fault: ..."."""
         self._why, self._running = "", True
         self._registers.write()
-        status = uclib.uc_emu_start(self.uc._uch, self._state[PC] | 1, _NOWHERE, 0, most)
+        status = emu_start(self.uc._uch, self._state[PC] | 1, _NOWHERE, 0, most)
         self._running = False
         if status:
             self._why = f"fault: {UcError(status)}"
@@ -227,11 +235,13 @@ class CortexM:
     def _leave(self) -> None:
         values = self._state
         stack = values[SP]
-        self._registers.pull(stack)
+        self.nvic.leave()
+        if not self._registers.pull(stack):
+            self.locked = self.asleep = True
+            return
         odd = values[PSR] >> 9 & 1
         values[PSR] &= ~(1 << 9)
         values[SP] = stack + FRAME + 4 * odd
-        self.nvic.leave()
 
     def _fault(self, why: str) -> None:
         self.faults.append((self.program_counter, why))

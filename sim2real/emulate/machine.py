@@ -12,7 +12,7 @@ import random
 from pathlib import Path
 
 from sim2real.emulate.block_timing import BlockTiming
-from sim2real.emulate.cortex_m import RAM, RAM_SIZE, CortexM
+from sim2real.emulate.cortex_m import RAM_SIZE, CortexM
 from sim2real.emulate.elf import read_elf
 from sim2real.emulate.peripherals.as5147 import As5147
 from sim2real.emulate.peripherals.gpio import GpioPort
@@ -72,7 +72,7 @@ class Machine:
         self._over = 0  # tick at which a step that `step_us` lengthens ends
         if "robot_step" in program.symbols:
             self.cpu.at(program.symbols["robot_step"], self._step_begins)
-        self.cpu.uc.mem_write(RAM, random.Random(seed).randbytes(RAM_SIZE))
+        self.cpu.ram[:] = random.Random(seed).randbytes(RAM_SIZE)
         self.cpu.reset()
 
     def _build(self, crystal: bool) -> None:
@@ -90,7 +90,7 @@ class Machine:
         self.spi = Spi(timeline, self.rcc, self._pass_until, self.port_a, self.encoders)
         self.port_a.changed = self.spi.select
         self.usart = Usart(timeline, self.rcc, nvic, self.port_a)
-        self.dma = Dma(timeline, nvic, self.usart, lambda at, size: bytes(self.cpu.uc.mem_read(at, size)))
+        self.dma = Dma(timeline, nvic, self.usart, self.cpu.memory)
         self.watchdog = Watchdog(timeline, self._pass_until, self._bite)
         self.rcc.gates = [(register, bit, getattr(self, name)) for register, bit, name in _GATES]
         self.rcc.reset()

@@ -13,7 +13,6 @@ from sim2real.table.mallet_driver import operating_volts
 
 OFF_PATH = 0.05  # m from its path at which the board stops the mallet
 SILENCE = 12  # ms without a message after which the board stops: then it has 37 ms left to brake within 50 ms
-AREA_SLACK = 0.002  # m beyond the area of plans in which the mallet may err before the board stops it
 
 
 @dataclass(frozen=True)
@@ -28,10 +27,10 @@ class Gains:
 def board_config(p: np.void, gains: Gains | None = None) -> Config:
     """The configuration for a table of these parameters."""
     gains = gains or Gains()
-    x_low, x_high, y_low, y_high = mirror.area(0, p)
+    x_low, x_high, y_low, y_high = mirror.area(0, p)  # the board stops a mallet that is 5 mm beyond
     (c5x, c6x, c7x), (c5y, c6y, c7y) = axis_coefficients(p, 0), axis_coefficients(p, 1)
     return Config(
         (c5x, c5y), (c6x, c6y), (c7x, c7y), float(p["pulley_radius"]), float(p["max_voltage"]), operating_volts(p),
-        (x_low - AREA_SLACK, x_high + AREA_SLACK), (y_low - AREA_SLACK, y_high + AREA_SLACK),
+        (x_low, x_high), (y_low, y_high),
         gains.proportional, gains.integral, gains.derivative, OFF_PATH, SILENCE,
     )  # fmt: skip

@@ -22,6 +22,7 @@ from sim2real.table.brakeable_plan import plan_brakeable
 
 OPERATING_VOLTS = 15.0  # V that a motor ever gets on a table (report)
 FEEDBACK_VOLTS = 1.0  # V of these that plans leave to the board's feedback
+MARGIN = 0.002  # m inside the mallet's area that plans stay, for it errs by up to 1 mm on its path
 AHEAD = 0.014  # s from sending a plan until it acts: the board looks at it for 10 ms
 LEAST_LIFE, AFTER = 0.2, 0.1  # s of a plan, and from its end until the motors are off: it always brakes by itself
 LONGEST_LIFE = 5.0  # s, the protocol's; only plans of a volt or so are longer
@@ -76,7 +77,7 @@ class MalletDriver:
     def plan(self, action: ArrayLike, begin: float) -> MalletPlan:
         """Plan for an action (4,), target x, y [m] and volts x, y [V] in the robot's frame, that acts at `begin` [s].
 
-        The target is brought into the mallet's area and the volts to the operating limit, or to less, so that the
+        The target is brought into the mallet's area, less the margin, and the volts to the operating limit, or to less, so that the
         board's braking stop could end the plan soon and inside at any moment. ValueError for a number that is none.
         """
         x, y, vx, vy = (float(one) for one in np.asarray(action, float))
@@ -124,4 +125,6 @@ def _stand(mallet, x, y):
 @kernel
 def _plan(mallet, p, since, x, y, vx, vy, limit, most):
     settle(mallet, since)
-    plan_brakeable(mallet, x, y, vx, vy, mirror.area(0, p), limit, most)
+    x_low, x_high, y_low, y_high = mirror.area(0, p)
+    area = x_low + MARGIN, x_high - MARGIN, y_low + MARGIN, y_high - MARGIN
+    plan_brakeable(mallet, x, y, vx, vy, area, limit, most)

@@ -23,7 +23,7 @@ BETWEEN = (1.0, 6.0)  # s of play between two faults
 @dataclass(frozen=True)
 class Part:
     """A part of a campaign: its seed, seconds of play, what each fault did, the worst volts at a motor [V] and the
-    farthest outside the area of plans [m]; why it ended early, "" if it did not."""
+    farthest outside its area [m]; why it ended early, "" if it did not."""
 
     seed: int
     seconds: float

@@ -14,7 +14,7 @@ AT_REST = 0.05  # m/s: slower a mallet stands
 
 @dataclass
 class Worst:
-    """The worst that was seen: volts at a motor [V]; distance outside the area of plans [m]."""
+    """The worst that was seen: volts at a motor [V]; distance outside its area [m]."""
 
     volts: float = 0.0
     outside: float = 0.0

@@ -13,7 +13,7 @@ from sim2real.table.mallet_driver import AHEAD, FEEDBACK_VOLTS, MalletDriver, op
 
 VOLTS = (4.0, 7.0, 10.0, 14.0)  # V, from where friction matters to what a motor may get
 AXES = ((True, False), (False, True), (True, True))  # which axes a move drives
-MARGIN = 0.02  # m inside the area of plans: a gantry that is not yet identified overshoots
+MARGIN = 0.02  # m inside its area: a gantry that is not yet identified overshoots
 SHORTEST = 0.08  # m of a move along each axis that it drives
 RESTS = (0.1, 0.3)  # s between the end of a move and the next one, from and to
 SLICE = 0.1  # s between readings

@@ -153,6 +153,6 @@ def test_superfluous_exchanges_bind_no_line():
     lowest = (since[:, 0] - there - 1e-6 - slopes * there).max(axis=1)
     highest = (since[:, 3] - back - slopes * back).min(axis=1)
     lines = clock._lines()
-    assert lines._lowest(slopes[:, 0]) == pytest.approx(lowest, abs=1e-12)
-    assert lines._highest(slopes[:, 0]) == pytest.approx(highest, abs=1e-12)
+    assert [lines._lowest(slope)[0] for slope in slopes[:, 0]] == pytest.approx(lowest, abs=1e-12)
+    assert [lines._highest(slope)[0] for slope in slopes[:, 0]] == pytest.approx(highest, abs=1e-12)
     assert len(clock._below) < len(clock) / 2 and len(clock._above) < len(clock) / 2
