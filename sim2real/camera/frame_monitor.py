@@ -58,7 +58,8 @@ class FrameMonitor:
 
     size: columns and rows for which the camera is calibrated; those of the first picture if None. checks: of the
     pixels, run in order every EVERY seconds of the host's time until one finds a trouble. The tracker adds a check for
-    a moved camera.
+    a moved camera. Where a frame must not wait for them, `check_arrival` comes before it is used and `check_pixels`
+    after it.
     """
 
     def __init__(
@@ -68,6 +69,7 @@ class FrameMonitor:
         self._heard: float | None = None  # host's time of the last frame, or of the first check,
         self._came: float | None = None  # and of the last frame alone
         self._checked: float | None = None
+        self._unchecked: list[Check] = []  # of those that are due
         self._wait = 0.0  # s between the last two frames
         self._last: np.ndarray | None = None
 
@@ -75,18 +77,36 @@ class FrameMonitor:
         """The troubles of a frame, or of its absence at the time `now` [s] of the clock of `Frame.host_time`."""
         if frame is None:
             return self._silence(now)
+        troubles = self.check_arrival(frame)
+        self._begin_checks(frame)
+        while self._unchecked and not troubles:
+            troubles = self._check_next(frame)
+        return troubles
+
+    def check_arrival(self, frame: Frame) -> list[Trouble]:
+        """The troubles of a frame that show at once; its pixels are not looked at."""
         self._wait = frame.host_time - self._came if self._came is not None else 0.0
         self._heard = self._came = frame.host_time
         wrong = self._wrong_kind(frame.image) or self._same(frame.image)
-        if wrong:
-            return [wrong]
-        if self._checked is not None and 0.0 <= frame.host_time - self._checked < EVERY:
+        return [wrong] if wrong else []
+
+    def check_pixels(self, frame: Frame) -> list[Trouble]:
+        """The troubles by the next check of the pixels that is due, if one is: each of them takes time, and frames come
+        soon one after the other. The frame is one without troubles by `check_arrival`."""
+        self._begin_checks(frame)
+        return self._check_next(frame) if self._unchecked else []
+
+    def _begin_checks(self, frame: Frame) -> None:
+        if self._unchecked or (self._checked is not None and 0.0 <= frame.host_time - self._checked < EVERY):
+            return
+        self._checked, self._unchecked = frame.host_time, list(self._checks)
+
+    def _check_next(self, frame: Frame) -> list[Trouble]:
+        trouble = self._unchecked.pop(0)(frame.image)
+        if trouble is None:
             return []
-        self._checked = frame.host_time
-        for check in self._checks:
-            if trouble := check(frame.image):
-                return [trouble]  # the other checks may fail for the same reason
-        return []
+        self._unchecked.clear()  # the other checks may fail for the same reason
+        return [trouble]
 
     def _silence(self, now: float) -> list[Trouble]:
         self._heard = now if self._heard is None else self._heard

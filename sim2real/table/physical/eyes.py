@@ -41,7 +41,9 @@ class LiveEyes:
         return self._failed is not None
 
     def rest(self, seconds: float) -> None:
-        """Rest for so many seconds [s], or until a frame comes."""
+        """Rest for so many seconds [s], or until a frame comes. What the last frame was needed for is done by now, so
+        that its pixels can be checked."""
+        self._reader.check()
         try:
             self._coming = self._source.newest(seconds) or self._coming
         except CameraError as error:

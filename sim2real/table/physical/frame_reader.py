@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from sim2real.camera.frame import Frame
-from sim2real.camera.frame_monitor import FrameMonitor, colour_mosaic, over_exposed
+from sim2real.camera.frame_monitor import FrameMonitor, Trouble, colour_mosaic, over_exposed
 from sim2real.camera.settings import CameraSettings
 from sim2real.camera.valid_frames import INVALIDATING
 from sim2real.table.backend import Place, SeenFrame
@@ -22,18 +22,29 @@ class FrameReader:
         self.tracker = Tracker(table, targets, settings)
         kinds = () if settings is not None and settings.mosaic else (colour_mosaic,)
         self._monitor = FrameMonitor(self.tracker.camera.size, (over_exposed, *kinds, self.tracker.check_camera))
+        self._unchecked: Frame | None = None  # of which the pixels may be checked
+        self._troubles: list[Trouble] = []  # of the pixels of frames that were read
 
     def read(self, frame: Frame) -> SeenFrame:
-        """The measured places, without any from a picture that is not to be believed. Raises ValueError, in one line,
-        if the first picture does not show where the camera is."""
-        troubles = tuple(self._monitor.check(frame, frame.host_time))
+        """The measured places, without any from a picture that is not to be believed, and what `check` found since the
+        last one. Raises ValueError, in one line, if the first picture does not show where the camera is."""
+        arrival, self._unchecked = self._monitor.check_arrival(frame), None
+        troubles, self._troubles = (*arrival, *self._troubles), []
         if any(trouble.name in INVALIDATING for trouble in troubles):
             return SeenFrame(frame.time, None, None, troubles=troubles)
+        self._unchecked = frame
         found = self.tracker.add(frame)
         puck, opponent = found.measured_puck, found.measured_opponent
         return SeenFrame(
             frame.time, _place(puck), _place(opponent), found.pucks, troubles, _covariance(puck), _covariance(opponent)
         )  # fmt: skip
+
+    def check(self) -> None:
+        """Check the pixels of the last frame, as far as due. It takes a millisecond or two; call it after each frame,
+        when nothing waits for it any more."""
+        frame, self._unchecked = self._unchecked, None
+        if frame is not None:
+            self._troubles += self._monitor.check_pixels(frame)
 
 
 def _place(measured: Measurement | None) -> Place | None:

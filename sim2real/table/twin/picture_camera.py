@@ -64,6 +64,7 @@ class PictureCamera:
             try:
                 seen = replace(self._reader.read(frame), time=self.errors.stamp(plant.time))
                 self._coming.append((plant.time + self.errors.delay, seen))
+                self._reader.check()
             except ValueError as error:
                 raise TableFaultError(Cause.CAMERA_TROUBLE, f"{error}; then connect anew") from None
 

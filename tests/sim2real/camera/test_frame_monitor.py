@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sim2real.camera.frame import Frame
-from sim2real.camera.frame_monitor import EVERY, STALL, FrameMonitor, Trouble
+from sim2real.camera.frame_monitor import EVERY, STALL, Check, FrameMonitor, Trouble
 from sim2real.camera.grey_image import read_grey
 from tests.places import UBC
 
@@ -105,3 +105,18 @@ def test_pixels_are_looked_at_now_and_then_until_a_check_finds_something() -> No
     assert names(monitor, GOOD + 1, 1.0 + 0.9 * EVERY) == []
     assert names(monitor, GOOD, 1.0 + 1.1 * EVERY) == ["moved"]
     assert len(seen) == 2 and seen[0] is GOOD
+
+
+def test_pixels_can_be_checked_after_a_frame_was_used_one_check_at_a_time() -> None:
+    seen = []
+
+    def check(name: str) -> Check:
+        return lambda image: seen.append(name)
+
+    monitor = FrameMonitor(checks=[check("first"), check("second")])
+    for number, done in ((0, 1), (1, 2), (2, 2)):
+        frame = Frame(GOOD + number, 1.0 + 0.1 * number, 1.0 + 0.1 * number, number)
+        assert monitor.check_arrival(frame) == [] and len(seen) == min(number, done)
+        assert monitor.check_pixels(frame) == [] and seen == ["first", "second"][:done]
+    late = Frame(GOOD, 2.0, 1.1 + EVERY, 3)
+    assert monitor.check_pixels(late) == [] and seen == ["first", "second", "first"]

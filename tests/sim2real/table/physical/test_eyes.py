@@ -45,6 +45,9 @@ class Reader:
     def read(self, frame: Frame) -> SeenFrame:
         return SeenFrame(frame.time, (1.0, 0.5), None)
 
+    def check(self) -> None:
+        """Its frames are always good."""
+
 
 def test_frames_are_read_at_the_time_of_their_exposure_on_the_hosts_clock() -> None:
     source = Scripted()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from sim2real.camera.frame import Frame
@@ -12,12 +13,36 @@ from sim2real.camera.render.view import CameraView
 from sim2real.table.physical.frame_reader import FrameReader
 from sim2real.table.twin.rendered_table import RenderedTable
 
+RENDERED = RenderedTable(Table.with_markers(), CameraView.like_the_real_one(2.0, 1.0))
+
+
+@pytest.fixture
+def reader() -> FrameReader:
+    return FrameReader(RENDERED.calibration(), RENDERED.targets())
+
+
+@pytest.fixture
+def images() -> list[np.ndarray]:
+    renderer = Renderer(RENDERED.table, RENDERED.view)
+    return [renderer.picture(SceneState(puck=BodyState(0.8, 0.3)), number) for number in range(2)]
+
 
 @pytest.mark.slow
-def test_a_picture_that_comes_twice_gives_no_places() -> None:
-    rendered = RenderedTable(Table.with_markers(), CameraView.like_the_real_one(2.0, 1.0))
-    reader, renderer = FrameReader(rendered.calibration(), rendered.targets()), Renderer(rendered.table, rendered.view)
-    images = [renderer.picture(SceneState(puck=BodyState(0.8, 0.3)), number) for number in range(2)]
+def test_pixels_are_checked_after_a_picture_was_read_and_found_wanting_with_the_next(
+    reader: FrameReader, images: list[np.ndarray]
+) -> None:
+    for number in range(3):  # one check at a time
+        white = images[number % 2].copy()
+        white[:200] = 255
+        seen = reader.read(Frame(white, 0.01 * number, 0.01 * number, number))
+        assert [trouble.name for trouble in seen.troubles] == ["over-exposed"] * (number == 1)
+        assert seen.puck is not None
+        reader.check()
+        reader.check()  # does nothing more: there is no frame that was not checked
+
+
+@pytest.mark.slow
+def test_a_picture_that_comes_twice_gives_no_places(reader: FrameReader, images: list[np.ndarray]) -> None:
     first, second = (
         reader.read(Frame(image, 0.01 * number, 0.01 * number, number)) for number, image in enumerate(images)
     )  # fmt: skip
