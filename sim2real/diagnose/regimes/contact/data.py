@@ -10,7 +10,9 @@ import numpy as np
 
 from sim2real.diagnose.regimes.contact.motion import ContactMotion, ContactSide
 
-FIELD_TYPES: dict[str, type] = {"kind": int, "spin_chain": int, "spin_unknown": bool, "cluster": int}  # others: float
+FIELD_TYPES: dict[str, type] = {  # others: float
+    "kind": int, "spin_chain": int, "spin_unknown": bool, "cluster": int, "recording": int
+}  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -21,12 +21,16 @@ class MalletContacts(Contacts):
 
     `mallet_velocity` (n, 2) [m/s]: velocity of the mallet just before, in the table's frame; `mallet_step` (n,) [m/s]:
     its change at the contact, along the normal; `mallet_covariance` (n, 3, 3) [m^2/s^2]: covariance of the velocity
-    along the normal and the tangent, and of the step.
+    along the normal and the tangent, and of the step. `turning` (n,) [rad/s]: angle by which the normal is wrong for
+    each second by which the mallet's clock is early against the camera's; `recording` (n,): number of the recording,
+    each of which has such an error of its own.
     """
 
     mallet_velocity: np.ndarray
     mallet_step: np.ndarray
     mallet_covariance: np.ndarray
+    turning: np.ndarray
+    recording: np.ndarray
 
     @property
     def relative_velocity(self) -> np.ndarray:
@@ -34,15 +38,18 @@ class MalletContacts(Contacts):
         return self.velocity_before - self.mallet_velocity
 
 
-def mallet_contacts(contact_motions: Sequence[ContactMotion], path: MalletPath, geometry: Geometry) -> MalletContacts:
-    """Select the clear contacts with the robot's mallet among the motions of one recording, in order of time."""
+def mallet_contacts(
+    contact_motions: Sequence[ContactMotion], path: MalletPath, geometry: Geometry, recording: int = 0
+) -> MalletContacts:
+    """Select the clear contacts with the robot's mallet among the motions of one recording, in order of time;
+    `recording`: its number."""
     opponent = {  # first contact of each spin chain with the opponent's mallet; the spin after it is unknown
         motion.spin_chain: motion.contact.t
         for motion in reversed(contact_motions)
         if motion.contact.where == "opponent"
     }
     rows = [
-        {**row, "spin_unknown": motion.spin_unknown or motion.contact.t > opponent.get(motion.spin_chain, np.inf)}
+        {**row, "recording": recording, "spin_unknown": motion.spin_unknown or motion.contact.t > opponent.get(motion.spin_chain, np.inf)}
         for motion in contact_motions
         if (row := _fields(motion, path, geometry)) is not None
     ]
@@ -51,7 +58,7 @@ def mallet_contacts(contact_motions: Sequence[ContactMotion], path: MalletPath, 
 
 
 def _fields(motion: ContactMotion, path: MalletPath, geometry: Geometry) -> dict[str, Any] | None:
-    """The fields of a contact with the robot's mallet except `spin_unknown`; None if it is not a clear one."""
+    """The fields of a contact with the robot's mallet except those of the recording; None if it is not a clear one."""
     if motion.contact.where != "robot":
         return None
     before, after = motion.before, motion.after
@@ -76,7 +83,7 @@ def _fields(motion: ContactMotion, path: MalletPath, geometry: Geometry) -> dict
     return {
         "normal": normal, "t": t, "place": place, "velocity_before": before.velocity, "velocity_after": after.velocity,
         "mallet_velocity": velocity, "mallet_step": step @ normal, "mallet_covariance": _covariance(normal, covariance),
-        "normal_std": place_std / radii, "spin_chain": motion.spin_chain, "cluster": motion.cluster,
+        "turning": float(velocity @ [normal[1], -normal[0]]) / distance, "normal_std": place_std / radii, "spin_chain": motion.spin_chain, "cluster": motion.cluster,
         **velocity_errors(normal, before, after),
     }  # fmt: skip
 

@@ -64,7 +64,7 @@ class Mallet(ContactRegime):
 def _contacts(recordings: Sequence[Recording], found: Sequence[list[ContactMotion]]) -> MalletContacts | None:
     """The contacts in all recordings that contain the mallet's path; None if there are none."""
     read = [(robot_path(one), geometry(one), some) for one, some in zip(recordings, found, strict=True)]
-    parts = [mallet_contacts(some, path, g) for path, g, some in read if path is not None]
+    parts = [mallet_contacts(some, path, g, k) for k, (path, g, some) in enumerate(read) if path is not None]
     parts = [part for part in parts if len(part)]
     return join_contacts(parts) if parts else None
 

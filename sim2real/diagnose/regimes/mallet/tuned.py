@@ -31,6 +31,19 @@ class MalletNumbers:
         "for those of the mallet",
         "choice: as far as a wall may be off its place (`segmentation.causes.NEAR`)",
     )
+    clock_error: float = tuned(
+        0.0005,
+        "s",
+        "standard deviation of what remains of an offset between the mallet's clock and the camera's: less takes an "
+        "offset for a law of contacts, more loses friction at contacts of a mallet that always moves alike",
+        "choice: the smallest delay of the camera that is named (`regimes.sensing.tuned.CLOCK.least_delay`)",
+    )
+    turn_step: float = tuned(
+        1e-5,
+        "rad",
+        "less loses a derivative in rounding; more sees the curvature of the law",
+        "choice: a difference step far below the noise of any normal",
+    )
     frictions: tuple[float, ...] = tuned(
         (0.05, 0.1, 0.2, 0.4),
         "1",

@@ -1,5 +1,7 @@
 """The engine identifies the law of a mallet from contacts recorded by an independent table."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,7 +12,7 @@ from sim2real.diagnose.regimes.mallet.data import mallet_contacts
 from sim2real.diagnose.regimes.mallet.problem import MalletProblem
 from sim2real.diagnose.regimes.sliding.data import glide_data
 from sim2real.diagnose.regimes.sliding.problem import GlideProblem
-from sim2real.recording.folder import read_recording
+from sim2real.recording.folder import Stream, read_recording
 from sim2real.segmentation.causes import geometry, mallet_tracks
 from sim2real.segmentation.mallet_path import robot_path, wiener_covariance
 from sim2real.segmentation.segments import segment
@@ -18,10 +20,12 @@ from sim2real.study.independent_table import Law
 from sim2real.study.independent_table.recorder.record import make_recording
 
 
-def explained(folder, law: Law, seed: int):
-    """The mallet's law that the engine identifies from 60 s of a rally."""
+def explained(folder, law: Law, seed: int, late: float = 0.0):
+    """The mallet's law that the engine identifies from 60 s of a rally, of which the mallet's stamps are late [s]."""
     make_recording(folder, law, "rally", seed, 60.0, dt=5e-5)
     recording = read_recording(folder)
+    assert recording.mallet is not None
+    recording = replace(recording, mallet=Stream({**recording.mallet.columns, "t": recording.mallet.t + late}))
     segments, g = segment(recording), geometry(recording)
     assert recording.frames is not None
     sizes = {"length": g.length, "width": g.width, "puck_radius": g.puck_radius}
@@ -42,6 +46,14 @@ def test_a_rigid_mallet_of_another_restitution_lacks_nothing(tmp_path):
     found = explained(tmp_path, Law(mallet_restitution=0.6), 1)
     assert found.listed == () and found.unlisted is None and not found.defaults
     assert found.baseline.values["mallet_restitution"] == pytest.approx(0.6, abs=0.01)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("late", [-0.0003, 0.0003])
+def test_an_offset_of_the_mallets_clock_is_no_law_of_contacts(tmp_path, late):
+    """Less than sensing names, and yet several times the noise of a contact's normal."""
+    found = explained(tmp_path, Law(), 1, late)
+    assert found.listed == () and found.unlisted is None and not found.misfit
 
 
 @pytest.mark.slow
