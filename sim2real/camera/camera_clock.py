@@ -4,6 +4,9 @@ A frame never arrives before it is exposed, read out and sent. So the line that 
 passes below all arrivals less this least delay, and every now and then a frame is hardly later than that: in each
 block of frames the earliest is at most a certain excess late, as small a one as a line allows. A late frame gives a
 weaker constraint, never a wrong one, so heavy tails of the delays need no filter.
+
+Where no line fits any more, all frames come later by a step, or the camera's clock has jumped, which look alike.
+Frames that are late and are taken for fresh ones are dangerous; so a step of less than a second is lateness.
 """
 
 from __future__ import annotations
@@ -19,6 +22,7 @@ BLOCK = 0.25  # s of frames of which the earliest is kept
 WINDOW = 20.0  # s of blocks that are used: a crystal's rate changes by little more than 0.1 ppm in it
 MOST_DRIFT = 300e-6  # bound of the camera's clock rate minus 1; a bad crystal has 100e-6
 SHORT = 0.1  # s, span of frames below which the rate is taken as 1, because they hardly determine it
+LATENESS = 1.0  # s by which all frames may come later than before; a clock that was set anew is off by more
 LEAST_EXCESS, MOST_EXCESS = 50e-6, 3.2e-3  # s, of the earliest frames of blocks; beyond it the clock has jumped
 
 
@@ -32,6 +36,7 @@ class CameraClock:
     def __init__(self, least_delay: float = 0.0) -> None:
         self._least_delay = least_delay
         self.jumps = 0  # number of times that no line fitted the frames and older ones were dropped
+        self.late = 0.0  # s by which all frames come later than the first ones did
         self._earliest: deque[tuple[float, float]] = deque()  # of each block: camera's time, and the host's less that
         self._begun = -math.inf  # camera's time at which the present block began
         self._origin, self._offset, self._slope = 0.0, 0.0, 0.0
@@ -44,10 +49,12 @@ class CameraClock:
     def add(self, camera_s: float, host_s: float) -> None:
         """Add a frame by the camera's time of its exposure's middle and the host's time of its arrival [s], in order
         of time. A clock that runs back, or a line that fits no more, is a jump: older frames are dropped."""
-        point = camera_s, host_s - camera_s - self._least_delay
+        point = camera_s, host_s - camera_s - self._least_delay - self.late
         if self._earliest and camera_s < self._earliest[-1][0] - BLOCK:
             self.jumps += 1
+            self.late = 0.0
             self._earliest.clear()
+            point = camera_s, host_s - camera_s - self._least_delay
         if not self._earliest or camera_s - self._begun >= BLOCK:
             self._begun = camera_s
             self._earliest.append(point)
@@ -105,6 +112,22 @@ class CameraClock:
 
     def _fit(self) -> None:
         """The central line of the least excess that allows one; after a jump, of the newer frames alone."""
+        newest, jumps = self._earliest[-1][0], self.jumps
+        expected = self._offset + self._slope * (newest - self._origin)
+        self._fit_newest()
+        if self.jumps > jumps:
+            step = self._lateness(self._offset - expected)
+            self.late += step
+            self._offset -= step
+            self._earliest = deque((camera, host - step) for camera, host in self._earliest)
+
+    def _lateness(self, step: float) -> float:
+        """The part of a step of the offset [s] that is lateness, which begins with one and ends with another back."""
+        if step < 0.0:
+            return -self.late if self.late + step < MOST_EXCESS else step
+        return step if step < LATENESS else 0.0
+
+    def _fit_newest(self) -> None:
         self._origin = self._earliest[-1][0]
         while True:
             self._excess = LEAST_EXCESS

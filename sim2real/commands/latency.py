@@ -70,7 +70,8 @@ def _of_table(args: argparse.Namespace) -> int:
     from sim2real.table.backends import make_backend
     from sim2real.table.game.game_record import GameRecord
     from sim2real.table.latency.injection import read_injection, truth, twin_options
-    from sim2real.table.latency.measure import measure, strokes_home
+    from sim2real.table.game.loop import home_of
+    from sim2real.table.latency.measure import measure
     from sim2real.table.latency.parts import parts_of_measurement
     from sim2real.table.live_table import LiveTable
 
@@ -85,7 +86,7 @@ def _of_table(args: argparse.Namespace) -> int:
         if not isinstance(table, LiveTable):
             raise ValueError(f"backend '{args.backend}' has no board and no camera; expected a live table, e.g. twin")
         table.seed(seed_number(args.seed))
-        measured = measure(table, game.p, strokes_home(game.p), args.seconds)
+        measured = measure(table, game.p, home_of(game.p), args.seconds)
     parts = parts_of_measurement(measured)
     stamps = measured.recording.streams()["frames"].t
     true = truth(injected, 0.5 * float(stamps[0] + stamps[-1])) if args.backend == "twin" else {}

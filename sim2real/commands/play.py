@@ -132,7 +132,10 @@ def _may_clear(args: argparse.Namespace) -> Callable[[TableFaultError], bool]:
     if args.backend != "table" or not sys.stdin.isatty():
         return lambda fault: False
 
+    from sim2real.table.physical.person import forget_typed
+
     def ask(fault: TableFaultError) -> bool:
+        forget_typed()
         print(f"{fault}. Press Enter to go on, Ctrl-C to end", file=sys.stderr, flush=True)
         return bool(sys.stdin.readline())
 

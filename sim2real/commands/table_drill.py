@@ -91,7 +91,10 @@ def _result(parts: list[Part]) -> dict[str, Any]:
         "faults": rows,
         "most_volts": volts,
         "farthest_outside_m": outside,
-        "too_late": [f"{stop.fault}, {stop.speed:.1f} m/s: {1e3 * stop.at_rest:.0f} ms" for stop in late],
+        "too_late": [
+            f"{stop.fault}, {stop.speed:.1f} m/s: " + (f"{1e3 * stop.at_rest:.0f} ms" if stop.cause else "not noticed")
+            for stop in late
+        ],
         "not_cleared": ended,
         "safe": volts <= OPERATING_VOLTS and outside <= 0.0 and not late and not ended,
     }

@@ -201,7 +201,9 @@ class CortexM:
         if status:
             self._why = f"fault: {UcError(status)}"
         if self._error is not None:
-            raise self._error
+            error, self._error = self._error, None
+            self._registers.read()  # who catches it may run on
+            raise error
         if self._why == "return":
             return self._why
         self._registers.read()

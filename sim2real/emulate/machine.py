@@ -115,7 +115,7 @@ class Machine:
     @property
     def pwm(self) -> list[tuple[float, float, float]]:
         """The log of the motors: `(time [us], duty 0, duty 1)` at each change, with duties from -1 to 1."""
-        return self.motors.log
+        return list(self.motors.log)
 
     def send(self, data: bytes) -> None:
         """Send bytes from the host, now or after those that are still being sent."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
@@ -21,8 +22,10 @@ from sim2real.table.plan_fates import PlanFates
 AT_HOME = 0.002  # m from the home that was sent, by the encoders
 PATIENCE = 2.0  # s that a step of the bring-up may take
 BRAKES_WITHIN = 0.1  # s in which a board that was asked to shows that it has stopped, before it gets an emergency stop
+ESTOP_WITHIN = 0.05  # s in which it shows that it did that, before a person is told
 EXCHANGES = 10  # pings that are answered before the board's clock is relied on
 POLL = 0.001  # s between polls
+SHOWN_WITHIN = 0.01  # s in which telemetry shows what a message did
 STALE = 0.03  # s without telemetry, which comes every 2 ms, after which the board counts as lost
 MICRO = 1e-6
 NAMES = {number: message.__name__.lower() for message, (number, _) in FORMATS.items()}
@@ -41,6 +44,7 @@ class BoardLine:
         self._now, self._serve = now, serve
         self.session = Session(connect, now)
         self._armed = False
+        self._clears_at = -math.inf  # when a board in FAULT is asked to leave it next
         self._refused = ""  # the first message that the board refused, and why
         self._fates = PlanFates()
         self._said: list[Telemetry] = []  # since it was taken
@@ -52,11 +56,10 @@ class BoardLine:
         not."""
         session, begun = self.session, self._now()
         self._refused, self._fates = "", PlanFates()
-        self._until(lambda: session.connected and len(session.clock) >= EXCHANGES, "no board answers on this line")
-        self._until(
-            lambda: session.state is not None and session.telemetry_status.arrived > begun,
-            "the board sends no telemetry",
-        )
+        answers = "no board answers on this line"
+        self._await(lambda: session.connected and len(session.clock) >= EXCHANGES, answers)
+        known = lambda: session.state is not None and session.telemetry_status.arrived > begun  # noqa: E731
+        self._await(known, "the board sends no telemetry")
         self._refused = ""  # of what was sent before
         if session.state != State.ARMED:  # one that is still armed has just been disarmed
             self._until(lambda: not self._driving, "the board does not switch the motors off")
@@ -71,9 +74,10 @@ class BoardLine:
 
     def _cleared(self) -> bool:
         if self.session.state == State.FAULT:
-            with suppress(ValueError):  # while a stop is not confirmed
-                self.session.clear()
-            self._serve(self._now() + 0.01)
+            if self._now() >= self._clears_at:
+                with suppress(ValueError):  # while a stop is not confirmed
+                    self.session.clear()
+                self._clears_at = self._now() + SHOWN_WITHIN
             return False
         return self.session.state in (State.UNHOMED, State.IDLE)
 
@@ -110,13 +114,16 @@ class BoardLine:
         self.check()
 
     def _until(self, done: Callable[[], bool], otherwise: str) -> None:
+        """Wait for what follows from a message. TableFaultError if the board refuses it, or PATIENCE ends."""
+        self._await(lambda: self._refuse_refusals() or done(), otherwise)
+
+    def _await(self, done: Callable[[], bool], otherwise: str) -> None:
         end = self._now() + PATIENCE
         while not done():
             if self._now() > end:
                 raise TableFaultError(Cause.NOT_READY, f"{otherwise}; see puckpilot link test")
             self._serve(self._now() + POLL)
             self.poll()
-            self._refuse_refusals()
 
     # Play
 
@@ -161,7 +168,7 @@ class BoardLine:
             return
         if not session.port_is_open:
             raise TableFaultError(Cause.PORT_LOST, "the board's port is lost; plug it in and clear")
-        if (session.age or 0.0) > STALE:
+        if session.age is None or session.age > STALE or session.state is None:
             raise TableFaultError(
                 Cause.BOARD_SILENT, f"no telemetry for {1e3 * STALE:.0f} ms; check the cable and clear"
             )
@@ -170,7 +177,7 @@ class BoardLine:
             raise TableFaultError(
                 Cause.BOARD_STOPPED, f"the board stopped the motors: {reason}; see to the table and clear"
             )
-        if session.state not in (None, State.ARMED):
+        if session.state != State.ARMED:
             name = State(session.state).name
             raise TableFaultError(Cause.BOARD_NOT_ARMED, f"the board is in {name} and not ARMED; clear to arm it again")
         self._refuse_refusals()
@@ -210,12 +217,20 @@ class BoardLine:
             return
         with suppress(ValueError):  # not connected
             session.disarm()
-        end = self._now() + BRAKES_WITHIN
-        while (session.state == State.ARMED or self._driving) and session.port_is_open and self._now() < end:
-            self._serve(self._now() + POLL)
-            self.poll()
+        self._await_stop(BRAKES_WITHIN)
         if session.state == State.ARMED and session.port_is_open:
             session.estop()
+            self._await_stop(ESTOP_WITHIN)
+            if session.state == State.ARMED:
+                warnings.warn("the board shows no sign of a stop: cut the motors' supply", stacklevel=2)
+
+    def _await_stop(self, seconds: float) -> None:
+        """Serve the line for so many seconds [s], or until the board has stopped; what goes wrong meanwhile ends it."""
+        session, end = self.session, self._now() + seconds
+        with suppress(Exception):
+            while (session.state == State.ARMED or self._driving) and session.port_is_open and self._now() < end:
+                self._serve(self._now() + POLL)
+                self.poll()
 
     def close(self) -> None:
         """Stop and close the line, whatever happens meanwhile."""

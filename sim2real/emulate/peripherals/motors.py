@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable
 
 from sim2real.emulate.peripherals.gpio import GpioPort
 from sim2real.emulate.peripherals.timers import PwmTimer
 
+KEPT = 1_000_000  # changes: a quarter of an hour of play
 PWM_PINS, DIRECTION_PINS = (13, 14), (12, 15)  # of port B, of motors 0 and 1
 
 
 class Motors:
-    """Both drivers. log: `(time [us], duty 0, duty 1)` at each change, with duties from -1 to 1; listeners: called with
-    the same at each change."""
+    """Both drivers. log: `(time [us], duty 0, duty 1)` at each of the last KEPT changes, with duties from -1 to 1;
+    listeners: called with the same at each change."""
 
     def __init__(self, port: GpioPort, timer: PwmTimer, now: Callable[[], float]) -> None:
         self._port, self._timer, self._now = port, timer, now
         self.listeners: list[Callable[[float, float, float], None]] = []
-        self.log: list[tuple[float, float, float]] = [(0.0, 0.0, 0.0)]
+        self.log: deque[tuple[float, float, float]] = deque([(0.0, 0.0, 0.0)], maxlen=KEPT)
 
     @property
     def duties(self) -> tuple[float, float]:

@@ -15,6 +15,7 @@ from sim2real.table.live_table import LiveTable
 from sim2real.table.mallet_driver import AHEAD, MalletDriver
 
 PUCK_SEEN_WITHIN = 60.0  # s
+LONG_AHEAD = 0.4  # s from sending a plan that must be refused to its begin: if it is not, it can still be cancelled
 ANSWER = 0.05  # s in which a board says that it refuses something
 
 
@@ -71,19 +72,22 @@ class Rig:
 
     def refusal(self, volts: tuple[float, float], seconds: float) -> Refusal | None:
         """Why the board refuses a plan of these volts for x and y [V] for so many seconds, from where the mallet
-        stands; None if it does not."""
+        stands; None if it does not: then the table is stopped before the plan begins."""
         session = self.line.session
         x, y = self.line.place
         rest = np.array([x, y])
-        begin = session.clock.to_board(self.table.now() + AHEAD)
+        begin = session.clock.to_board(self.table.now() + LONG_AHEAD)
         micros = round(1e6 * seconds)
-        number = session.traj(
+        session.traj(
             Traj(0, begin, 3 * micros, volts, (micros, micros), (2 * micros, 2 * micros), (rest[0], rest[1]),
                  (0.0, 0.0), (0.0, 0.0))
         )  # fmt: skip
-        return self._refused(number)
+        reason = self._refused()
+        if reason is None:
+            self.table.stop()
+        return reason
 
-    def _refused(self, number: int) -> Refusal | None:
+    def _refused(self) -> Refusal | None:
         session, end = self.line.session, self.table.now() + ANSWER
         while self.table.now() < end:
             self.table.pass_time(self.table.now() + 0.001)

@@ -22,7 +22,7 @@ BETWEEN = (1.0, 6.0)  # s of play between two faults
 
 @dataclass(frozen=True)
 class Part:
-    """A part of a campaign: its seed, seconds of play, what each fault did, the worst volts at a motor [V] and the
+    """A part of a campaign: its seed and `conditions`, faults, player and camera; seconds of play, what each fault did, the worst volts at a motor [V] and the
     farthest outside its area [m]; why it ended early, "" if it did not."""
 
     seed: int
@@ -31,6 +31,7 @@ class Part:
     volts: float
     outside: float
     ended: str
+    conditions: str
 
 
 def play_part(seed: int, names: Sequence[str], player: str, camera: str) -> Part:
@@ -47,9 +48,14 @@ def play_part(seed: int, names: Sequence[str], player: str, camera: str) -> Part
         except TableFaultError as error:
             ended = str(error)
         worst = drill.monitor.worst
-        return Part(seed, drill.seconds, stops, worst.volts, worst.outside, ended)
+        return Part(seed, drill.seconds, stops, worst.volts, worst.outside, ended, conditions(names, player, camera))
     finally:
         env.close()
+
+
+def conditions(names: Sequence[str], player: str, camera: str) -> str:
+    """What parts of one campaign have in common."""
+    return f"{player}, {camera}: {', '.join(names)}"
 
 
 def run_campaign(
@@ -58,7 +64,10 @@ def run_campaign(
 ) -> list[Part]:  # fmt: skip
     """Play parts until they have `seconds` of play; each is kept as a line of `path`, and those that are there already
     are not played again. `report` takes how many are done, of how many. ValueError for a file of something else."""
+    same = conditions(names, player, camera)
     done = {part.seed: part for part in read_parts(path)}
+    if other := next((part.conditions for part in done.values() if part.conditions != same), None):
+        raise ValueError(f"{path} has parts of another campaign, {other}; expected {same}: choose another --out")
     seeds = [seed + number for number in range(int(np.ceil(seconds / PART)))]
     missing = [one for one in seeds if one not in done]
     report(len(seeds) - len(missing), len(seeds))

@@ -42,7 +42,9 @@ class Stop:
     def in_time(self) -> bool:
         """Whether the mallet stood as soon as it has to: of what can be known at once, from its first moment."""
         within = BY_NAME[self.fault].rest_within
-        return not self.cause or (self.after_notice <= STILL and (within is None or self.at_rest <= within))
+        if not self.cause:
+            return within is None
+        return self.after_notice <= STILL and (within is None or self.at_rest <= within)
 
 
 class Drill:

@@ -20,6 +20,7 @@ from sim2real.table.mallet_driver import AHEAD, MalletDriver
 HOMING_VOLTS = 5.0  # V, of the way home between points
 POINT_PAUSE = 0.02  # s between looks at whether the mallet is home
 LOST = 0.3  # s without a sight of the puck, on its way to no goal, after which the mallet is parked
+PUT_WITHIN = 0.15  # m from where a person was asked to put the puck
 FOUND_WITHIN = 2.0  # s in which a lost puck comes back into sight
 
 
@@ -45,6 +46,7 @@ class Loop:
         self.over = False  # whether the backend has ended
         self._driver = MalletDriver(game.p)
         self._placed = self._decided = -math.inf
+        self._asked: Place | None = None  # where a person was asked to put the puck, until it is seen there
         self._frame_age = math.nan
 
     @property
@@ -74,6 +76,8 @@ class Loop:
         self._drive_home()
         self.backend.place_puck(put)
         self._placed = self.backend.now()
+        person = self.backend.obeys and math.isinf(self.backend.patience)  # and no hand that puts it there at once
+        self._asked = (put[0], put[1]) if person else None
         self.seen.forget()
         self.referee.begin(self._placed)
         self._await_sight(self.backend.patience, self.home)
@@ -162,8 +166,7 @@ class Loop:
         """Drive the mallet home and wait until it stands there."""
         while self.backend.obeys:
             self._hold(self.home)
-            self._read()
-            if self._driver.standing(self.backend.now()):
+            if not self._read().missed and self._driver.standing(self.backend.now()):
                 return
 
     def _hold(self, place: Place) -> None:
@@ -186,9 +189,16 @@ class Loop:
 
     def _missing(self) -> str:
         """What has to be seen to play, and is not; empty if nothing is missing. A recording may have no opponent."""
-        if self.seen.puck.unseen_for(self.backend.now()) > GONE:
+        if self.seen.puck.unseen_for(self.backend.now()) > GONE or not self._put_where_asked():
             return "the puck"
         return "the opponent's mallet" if self.backend.obeys and self.seen.opponent.motion() is None else ""
+
+    def _put_where_asked(self) -> bool:
+        """Whether the puck was seen where a person was asked to put it; another one may still lie on the table."""
+        puck = self.seen.puck.motion()
+        if self._asked is not None and puck is not None and math.dist(puck[:2], self._asked) < PUT_WITHIN:
+            self._asked = None
+        return self._asked is None
 
     def _park(self) -> None:
         """Hold the mallet at home until the puck is seen again."""

@@ -122,6 +122,8 @@ class RobotSeat(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         if self._over:
             try:
                 loop.finish()
+                self.backend.stop()  # whoever plays may take their time until the next episode
+                self._stopped = True
             except TableFaultError:  # the game is over all the same; reset() clears
                 self._stopped = True
             info |= only_row(outcome_info(self.tables, np.zeros(1, int)))

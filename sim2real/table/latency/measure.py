@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from puckpilot_env.game.start import HOME
 from sim2real.link.board_clock import WINDOW, BoardClock
 from sim2real.recording.folder import Recording, Stream
 from sim2real.table.backend import Place, Reading, SeenFrame, SeenMallet
@@ -47,11 +46,6 @@ class Measurement:
     echo: Echo
 
 
-def strokes_home(p: np.void) -> Place:
-    """Where strokes are centred [m]: the mallet's place at the beginning of a point."""
-    return HOME * float(p["length"]), 0.5 * float(p["width"])
-
-
 def measure(table: LiveTable, p: np.void, home: Place, seconds: float) -> Measurement:
     """Move the mallet to and fro for `seconds` [s] and record. The table is connected here, and is stopped in the end.
 
@@ -71,10 +65,15 @@ def measure(table: LiveTable, p: np.void, home: Place, seconds: float) -> Measur
         if table.now() >= end:
             break
         begin = table.now() + ahead
-        watched.motors.send(table.send(driver.plan(action, begin)))
+        plan = table.send(driver.plan(action, begin))
+        watched.motors.send(plan)
         while table.now() < begin or not driver.standing(table.now() - PAUSE):
             table.wait(table.now() + LOOK)
-            watched.take(table.now(), table.read(), session.clock)
+            reading = table.read()
+            if reading.missed:
+                driver.revert()
+                watched.motors.forget(plan)
+            watched.take(table.now(), reading, session.clock)
         errors.append(session.clock.error_s())
     clock = session.clock
     watched.tell_times(clock, -np.inf)

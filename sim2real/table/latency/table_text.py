@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from sim2real.table.latency.part import Part
-
-KEPT = ("camera", "camera_drift", "frame", "line", "command", "follow", "total")  # of a table's file
+from sim2real.table.physical.table_file import LATENCY
 
 
 def table_lines(parts: Sequence[Part], injected: Mapping[str, float] | None = None) -> list[str]:
@@ -33,6 +32,6 @@ def toml_lines(parts: Sequence[Part]) -> list[str]:
     digits = {"s": 6, "ppm": 1}
     return ["[latency]"] + [
         f"{name} = {found[name].value:.{digits[found[name].unit]}f}  # {found[name].unit}"
-        for name in KEPT
+        for name in LATENCY
         if name in found
     ]

@@ -33,6 +33,7 @@ class LiveEyes:
         try:
             self._open.enter_context(self._source)
         except CameraError as error:
+            self._failed = error
             raise TableFaultError(Cause.NOT_READY, str(error)) from None
 
     @property

@@ -19,7 +19,7 @@ class FrameReader:
     picture did (`tracker.set_up`). settings: of the camera, which say what its pictures are."""
 
     def __init__(self, table: TableCalibration, targets: Targets, settings: CameraSettings | None = None) -> None:
-        self.tracker = Tracker(table, targets, settings)
+        self.tracker = Tracker(table, targets, settings, keep=False)
         kinds = () if settings is not None and settings.mosaic else (colour_mosaic,)
         self._monitor = FrameMonitor(self.tracker.camera.size, (over_exposed, *kinds, self.tracker.check_camera))
         self._unchecked: Frame | None = None  # of which the pixels may be checked

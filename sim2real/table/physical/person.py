@@ -36,13 +36,18 @@ class PersonAtTerminal:
 
     def confirm(self, words: str) -> None:
         """Say something, and serve the table until Enter is pressed. TableFaultError where nobody can press it."""
-        if sys.stdin.isatty():
-            termios.tcflush(sys.stdin, termios.TCIFLUSH)  # what was typed before this was asked is no answer
+        forget_typed()
         _say(words)
         while not select.select([sys.stdin], [], [], 0.0)[0]:
             self._serve()
         if not sys.stdin.readline():
             raise TableFaultError(Cause.NOT_READY, "nobody pressed Enter: a table is played at a terminal")
+
+
+def forget_typed() -> None:
+    """Drop what was typed up to now: it is no answer to what is asked next."""
+    if sys.stdin.isatty():
+        termios.tcflush(sys.stdin, termios.TCIFLUSH)
 
 
 def _say(words: str) -> None:

@@ -32,12 +32,12 @@ class PhysicalTable(RealTimeTable):
         self._file = read_table_file(table)
         _refuse_other_parameters(self._file.parameters, game)
         camera, board = self._file.camera, self._file.board
-        reader = frame_reader(camera)
+        frame_reader(camera)  # refuses what cannot be used, before anything is opened
         super().__init__(
             board_config(game.p, board.gains),
             camera.settings.rate or RATE,
             lambda: SerialPort(board.port, board.baud, wait=0.0),
-            lambda: LiveEyes(open_source(camera.source, camera.settings), reader, camera.delay),
+            lambda: LiveEyes(open_source(camera.source, camera.settings), frame_reader(camera), camera.delay),
             PersonAtTerminal,
         )
         self._pulley_radius = float(game.p["pulley_radius"])

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import gc
+import math
 import time
 from collections import deque
 from collections.abc import Callable
 
+from sim2real.camera.frame_monitor import EVERY
 from sim2real.link.serial_port import PortError, SerialLine
 from sim2real.link.wire.messages import Config
 from sim2real.table.backend import Place
@@ -18,7 +20,8 @@ from sim2real.table.physical.eyes import LiveEyes
 from sim2real.table.watchdog import refuse_troubles
 
 FIRST_FRAME = 5.0  # s within which it comes, and each of those after it
-WARM_UP = 90  # frames that are read before the motors are armed, a check of the camera's place among them
+WARM_UP = 90  # frames that are read before the motors are armed,
+CHECKED = 1.5 * EVERY  # and s in which they come, so that the camera's place is checked among them
 KEPT = 100_000  # reaction times kept: some hours of decisions
 
 
@@ -76,11 +79,11 @@ class RealTimeTable(LiveTable):
         """See `LiveTable.arm`; after some frames were read, of which the first takes long. TableFaultError if they do
         not come, or cannot be believed."""
         eyes, patient = self._opened(self._live), self.now() + FIRST_FRAME
-        read = 0
-        while read < WARM_UP:
+        read, checked = 0, math.inf
+        while read < WARM_UP or self.now() < checked:
             self._look()
             for frame in eyes.take(self.now()):
-                read += 1
+                read, checked = read + 1, min(checked, self.now() + CHECKED)
                 refuse_troubles(frame)
                 patient = self.now() + FIRST_FRAME  # what reads the first one may be compiled by then
             if self.now() > patient:

@@ -7,7 +7,7 @@ import gc
 import multiprocessing
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from itertools import islice
 from multiprocessing.connection import Connection
 
@@ -27,6 +27,7 @@ from sim2real.table.physical.real_time import RealTimeTable
 from sim2real.table.twin.rendered_table import RenderedTable
 
 RATE, DELAY = 120.0, 0.0  # Hz; s from exposure to arrival
+PATIENCE = 2.0  # s: nobody looks for a puck that is not seen
 PLAYERS = ("interceptor", "follower")
 
 
@@ -74,13 +75,15 @@ def rehearsal_table(game: GameRecord, home: Place, frames: int) -> Iterator[Real
     pictures = [renderer.picture(state, number) for number, state in enumerate(islice(states, frames))]
     reader = FrameReader(rendered.calibration(), rendered.targets())
     with emulated_board(home) as port:
-        yield RealTimeTable(
+        table = RealTimeTable(
             board_config(game.p),
             RATE,
             lambda: SerialPort(port, wait=0.0),
             lambda: LiveEyes(PacedPictures(pictures), reader, DELAY),
             lambda serve: Nobody(),
         )
+        table.patience = PATIENCE
+        yield table
 
 
 @contextmanager
@@ -90,10 +93,16 @@ def emulated_board(place: Place) -> Iterator[str]:
     here, there = context.Pipe()
     process = context.Process(target=_serve_board, args=(there, place), daemon=True)
     process.start()
+    there.close()  # so that the end of the other process ends what is received
     try:
-        yield here.recv()
+        try:
+            port = here.recv()
+        except EOFError:
+            raise ValueError("the board cannot be emulated here; run puckpilot firmware emulate to see why") from None
+        yield port
     finally:
-        here.send("end")
+        with suppress(OSError):  # it may have ended
+            here.send("end")
         process.join(5.0)
         process.kill()
 

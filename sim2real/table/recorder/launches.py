@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 
 import numpy as np
@@ -43,7 +42,7 @@ def record_launches(
         report(f"{table.now() - begin:6.1f} s  launch {len(coverage.launches) + 1}: {launch.words}")
         table.place_puck(_puck(coverage, launch, p, place, random))
         watcher.begin(table.now())
-        known, end = len(coverage.launches), table.now() + table.patience
+        known, seen, end = len(coverage.launches), False, table.now() + table.patience
         while table.now() < min(end, begin + seconds):
             table.send(driver.plan([*place, HOLDING_VOLTS, HOLDING_VOLTS], table.now() + AHEAD))
             table.wait(table.now() + HOLD)
@@ -53,10 +52,10 @@ def record_launches(
             for frame in reading.frames:
                 watcher.take(frame)
             progress(round(1e3 * min(table.now() - begin, seconds)), round(1e3 * seconds))
-            if len(coverage.launches) > known:
-                if not watcher.moving:
-                    break
-                known, end = math.inf, table.now() + LONGEST
+            if len(coverage.launches) > known and not watcher.moving:
+                break
+            if len(coverage.launches) > known and not seen:
+                seen, end = True, table.now() + LONGEST
     return coverage
 
 

@@ -12,10 +12,12 @@ from sim2real.recording.checks import FORMAT
 from sim2real.recording.table_parameters import FROM_META
 from sim2real.table.backend import Backend, Motion, Place, Reading, SeenFrame, SeenMallet
 from sim2real.table.mallet_driver import MalletPlan, operating_volts
+from sim2real.table.plan_fates import SAID_WITHIN
 from sim2real.table.recorder.draft import RecordingDraft
 from sim2real.table.recorder.motor_log import TICK, MotorLog
 
 STEADY = 1.5  # s after connecting in which the estimate of the board's clock still moves by 0.1 ms
+KNOWN_AFTER = SAID_WITHIN + 0.004  # s after a plan's begin at which a lost one is known to be
 WAIT = 0.02  # s between two pings, about
 GOLDEN = 0.618  # of a tick by which a wait is longer than the one before: no two are alike
 UNSEEN = (math.nan, math.nan)
@@ -50,8 +52,8 @@ class RecordedTable(Backend):
     def _keep(self, reading: Reading, zero: float) -> None:
         if reading.missed and self._plans:
             self._motors.forget(self._plans.pop())
-        now = self._table.now()  # a plan is refused, if at all, before it acts
-        plans = [one for one in self._plans if one.begin <= now]
+        known = self._table.now() - KNOWN_AFTER
+        plans = [one for one in self._plans if one.begin <= known]
         self._plans = self._plans[len(plans) :]
         self._draft.add("commands", (_command(one, zero, self._p) for one in plans))
         self._draft.add("frames", (_frame(one, zero) for one in reading.frames))
@@ -106,7 +108,10 @@ class RecordedTable(Backend):
         return self._table.mallet_motion(time)
 
     def stop(self) -> None:
-        """See `Backend.stop`."""
+        """See `Backend.stop`. Plans that have not begun by then never act."""
+        now = self._table.now() if self._zero is not None else math.inf
+        while self._plans and self._plans[-1].begin > now:
+            self._motors.forget(self._plans.pop())
         self._table.stop()
 
     def place_puck(self, puck: np.ndarray) -> None:

@@ -50,14 +50,16 @@ class Targets:
 class Tracker:
     """Tracks puck and opponent through valid frames in order of time.
 
-    settings: of the camera, which say what its pictures are; stills: whether each picture is a scene of its own.
+    settings: of the camera, which say what its pictures are; stills: whether each picture is a scene of its own; keep:
+    whether what is found is kept for `recording` and `counts`.
     locator: of the camera at present, None while its pose is unknown; pose: the last one found, None before the first.
     """
 
     def __init__(
-        self, table: TableCalibration, targets: Targets, settings: CameraSettings | None = None, stills: bool = False
-    ) -> None:
-        self._settings, self._stills = settings or CameraSettings(), stills
+        self, table: TableCalibration, targets: Targets, settings: CameraSettings | None = None, stills: bool = False,
+        keep: bool = True,
+    ) -> None:  # fmt: skip
+        self._settings, self._stills, self._keep = settings or CameraSettings(), stills, keep
         region, whole = self._settings.region, table.setup.camera
         self._whole = table.setup
         self._table = (
@@ -93,7 +95,8 @@ class Tracker:
             found = self._detector.detect_alone(frame.image, frame.time)
         else:
             found = self._detector.detect(frame.image, frame.time)
-        self._rows.append((frame.time, *_cells(found.puck), *_cells(found.opponent), found.pucks))
+        if self._keep:
+            self._rows.append((frame.time, *_cells(found.puck), *_cells(found.opponent), found.pucks))
         return found
 
     def check_camera(self, image: np.ndarray) -> Trouble | None:

@@ -47,3 +47,19 @@ def test_the_fourth_in_a_row_is_hopeless_unless_one_was_followed_between() -> No
         fates.send(number, 1.0 * number)
         fates.refuse_late()
     assert fates.hopeless
+
+
+def test_lost_plans_that_follow_each_other_quickly_are_hopeless_too() -> None:
+    """Every 16 ms, while the fate of one is known 20 ms after it was sent. The plan before the newest cannot be gone
+    back to: the newest was made to follow it."""
+    fates, time = PlanFates(), 0.0
+    for number in range(1, 6):
+        fates.send(number, time + 0.014)
+        for _ in range(8):
+            fates.see(0, time)
+            time += 0.002
+    assert fates.hopeless and fates.take_missed() == 0
+    for _ in range(8):
+        fates.see(0, time)
+        time += 0.002
+    assert fates.take_missed() == 1

@@ -166,6 +166,7 @@ def test_a_mallet_that_is_held_fast_ends_the_game_with_motors_off(seat: RobotSea
     with pytest.raises(TableFaultError, match=r"the board stopped the motors: (OFF_PATH|ENCODER_FROZEN)"):
         for _ in range(10):
             seat.step(fast)
+    assert twin.board is not None and twin.board.machine.motors.duties == (0.0, 0.0)
 
 
 @pytest.mark.parametrize("hang", [0.15, 0.25, 1.0])
@@ -293,3 +294,35 @@ def test_gymnasium_makes_the_twin_by_naming_it() -> None:
         assert env.observation_space.contains(observation) and env.observation_space.contains(after)
     finally:
         env.close()
+
+
+def test_ctrl_c_in_the_midst_of_the_emulator_ends_with_motors_off(seat: RobotSeat) -> None:
+    seat.reset(seed=1)
+    board = twin_of(seat).board
+    assert board is not None
+    encoder, interrupted = board.machine.encoders[0], []
+    angle = encoder.angle
+
+    def interrupt(now: float) -> float:
+        if not interrupted and now > begin + 60_000:
+            interrupted.append(now)
+            assert board.machine.motors.duties != (0.0, 0.0)
+            raise KeyboardInterrupt
+        return angle(now)
+
+    begin, encoder.angle = board.machine.now, interrupt
+    with pytest.raises(KeyboardInterrupt):
+        seat.step(np.array([0.9, 0.9, 8.0, 8.0], np.float32))
+    assert interrupted and board.machine.motors.duties == (0.0, 0.0)
+
+
+def test_between_episodes_a_player_may_take_its_time(seat: RobotSeat) -> None:
+    seat.reset(seed=1)
+    seat.game.rule["match_time"] = 0.05
+    _, _, terminated, truncated, _ = seat.step(STAY)
+    assert terminated or truncated
+    twin = twin_of(seat)
+    assert twin.board is not None
+    twin.board.run(twin.now() + 0.3)  # nobody serves the board
+    seat.reset()
+    assert np.isfinite(seat.step(STAY)[0]).all()

@@ -14,7 +14,8 @@ from sim2real.recording.folder import Stream
 from sim2real.table.backends import make_backend
 from sim2real.table.game.game_record import GameRecord
 from sim2real.table.latency.injection import truth, twin_options
-from sim2real.table.latency.measure import Measurement, measure, strokes_home
+from sim2real.table.game.loop import home_of
+from sim2real.table.latency.measure import Measurement, measure
 from sim2real.table.latency.part import Part
 from sim2real.table.latency.parts import parts_of_measurement, parts_of_recording
 from sim2real.table.live_table import LiveTable
@@ -28,7 +29,7 @@ def measured(injected: dict[str, float], seconds: float = SECONDS) -> Measuremen
     game = GameRecord(find_variant("match-v0"))
     with make_backend("twin", game, opponent="still", **twin_options(injected, game.p)) as table:
         assert isinstance(table, LiveTable)
-        return measure(table, game.p, strokes_home(game.p), seconds)
+        return measure(table, game.p, home_of(game.p), seconds)
 
 
 def by_name(parts: list[Part]) -> dict[str, Part]:

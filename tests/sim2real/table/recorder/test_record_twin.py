@@ -122,8 +122,8 @@ def test_the_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     printed = capsys.readouterr().out
     assert "moves of the mallet at 5, 9 V" in printed and f"next: puckpilot identify gantry {folder}" in printed
     commands = read_recording(folder).commands
-    assert commands is not None and {5.0} < set(np.abs(commands["V_x"]).round(3)) | {5.0, 9.0}
-    assert np.abs(commands["V_x"]).max() <= 9.0  # less where the board could not brake it soon
+    assert commands is not None and 5.0 in set(np.abs(commands["V_x"]).round(3))
+    assert 5.0 < np.abs(commands["V_x"]).max() <= 9.0  # less where the board could not brake it soon
     games = tmp_path / "games"
     words = [
         "play",

@@ -171,3 +171,28 @@ def test_a_folder_that_exists_is_refused_before_anything_moves(game: GameRecord,
     with pytest.raises(RecordingError, match="exists already"), recorded(RobotSeat(behind, game), tmp_path, "a test"):
         pass
     assert not behind.asked
+
+
+@pytest.mark.parametrize("stops", [False, True])
+def test_a_plan_that_was_not_followed_is_not_in_the_recording(game: GameRecord, tmp_path: Path, stops: bool) -> None:
+    """Because it was lost on the line, which is known some milliseconds after its begin, or the table had stopped."""
+    readings = [
+        Reading([], [mallet(BEGIN)]), Reading([], [mallet(BEGIN + 0.05)]), Reading([], [mallet(BEGIN + 0.2)]),
+        Reading([], [mallet(BEGIN + 0.212)], missed=0 if stops else 1),
+    ]  # fmt: skip
+    draft = RecordingDraft(tmp_path / "one", recording_meta(game.p, 120.0, "a test"))
+    table = RecordedTable(ScriptedTable(readings), draft, game.p)
+    driver = MalletDriver(game.p)
+    driver.stand(*HOME, BEGIN)
+    table.read()
+    for begin in (BEGIN + 0.014, BEGIN + 0.205):
+        table.send(driver.plan([0.6, 0.3, 8.0, 5.0], begin))
+        table.wait(begin - 0.005 if stops and begin > BEGIN + 0.1 else begin + 0.007)
+        table.read()
+    if stops:
+        table.stop()
+    table.read()
+    table.close()
+    assert draft.finish()
+    found = read_recording(tmp_path / "one")
+    assert found.commands and found.commands.t == pytest.approx([0.014])
