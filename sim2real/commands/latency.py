@@ -30,6 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
     parser.add_argument("recordings", metavar="RECORDING", nargs="*", type=Path, help="folders; without any, measure")
     parser.add_argument("--backend", default="twin", metavar="NAME", help="the table to measure (default twin)")
+    parser.add_argument("--table", type=Path, metavar="FILE", help="the table.toml of a physical table")
     parser.add_argument("--seconds", type=float, default=20.0, metavar="S", help="of strokes (default 20)")
     parser.add_argument("--seed", type=int, default=0, help="of a twin's noise (default 0)")
     parser.add_argument(
@@ -67,10 +68,10 @@ def _of_recordings(args: argparse.Namespace) -> int:
 def _of_table(args: argparse.Namespace) -> int:
     from puckpilot_env.options.inputs import seed_number
     from puckpilot_env.variants import find_variant
-    from sim2real.table.backends import make_backend
+    from sim2real.table.backends import make_backend, stated_parameters
     from sim2real.table.game.game_record import GameRecord
-    from sim2real.table.latency.injection import read_injection, truth, twin_options
     from sim2real.table.game.loop import home_of
+    from sim2real.table.latency.injection import read_injection, truth, twin_options
     from sim2real.table.latency.measure import measure
     from sim2real.table.latency.parts import parts_of_measurement
     from sim2real.table.live_table import LiveTable
@@ -80,8 +81,15 @@ def _of_table(args: argparse.Namespace) -> int:
     injected = read_injection(args.inject)
     if injected and args.backend != "twin":
         raise ValueError(f"--inject is given with backend '{args.backend}'; only a twin takes it")
-    game = GameRecord(find_variant("match-v0"))
-    options = {"opponent": "still", **twin_options(injected, game.p)} if args.backend == "twin" else {}
+    if (args.table is None) == (args.backend == "table"):
+        raise ValueError(
+            f"--table is {'missing' if args.table is None else 'given'} with --backend {args.backend}; it states a "
+            "physical table: --backend table --table FILE"
+        )
+    options = {} if args.table is None else {"table": args.table}
+    game = GameRecord(find_variant("match-v0"), stated_parameters(args.backend, options))
+    if args.backend == "twin":
+        options = {"opponent": "still", **twin_options(injected, game.p)}
     with make_backend(args.backend, game, **options) as table:
         if not isinstance(table, LiveTable):
             raise ValueError(f"backend '{args.backend}' has no board and no camera; expected a live table, e.g. twin")

@@ -68,10 +68,14 @@ def run(args: argparse.Namespace) -> int:
                 logs.append(play_game(env, args.player, seed, args.seconds, report, _may_clear(args), show))
             if not args.json:
                 print(f"game {game + 1}: {args.player} {logs[-1].score[0]}:{logs[-1].score[1]} {other}")
+            if logs[-1].interrupted:
+                break
     finally:
         env.close()
     result = _result(args, env.tables.variant.id, other, logs)
     print(json.dumps(result, indent=2) if args.json else "\n".join(_summary(result, logs)))
+    if logs[-1].interrupted:
+        print("ended by Ctrl-C" + (f"; {args.record} has what was recorded" if args.record else ""), file=sys.stderr)
     return 0
 
 
@@ -86,21 +90,16 @@ def seat(args: argparse.Namespace) -> RobotSeat:
         if given and name not in wanted:
             raise ValueError(f"--{name} is given with --backend {args.backend}; it takes {_option(wanted)}")
         if name in wanted and not given and args.backend != "twin":
-            raise ValueError(f"--backend {args.backend} needs {_option(wanted)}")
-    parameters: dict[str, float] | None = None
+            hint = "; puckpilot table check --example prints one" if name == "table" else ""
+            raise ValueError(f"--backend {args.backend} needs {_option(wanted)}{hint}")
     options: dict[str, Any] = {}
     if args.backend == "twin":
         options = {"opponent": args.opponent or INTERCEPTOR, "camera": args.camera or "places"}
     elif args.backend == "table":
-        from sim2real.table.physical.table_file import read_table_file
-
-        parameters, options = read_table_file(args.table).parameters, {"table": args.table}
+        options = {"table": args.table}
     elif args.backend == "replay":
-        from sim2real.recording.folder import read_recording
-        from sim2real.recording.table_parameters import stated_sizes
-
-        parameters, options = stated_sizes(read_recording(args.recording)), {"recording": args.recording}
-    return make_robot_seat(find_variant(args.variant), args.backend, parameters=parameters, **options)
+        options = {"recording": args.recording}
+    return make_robot_seat(find_variant(args.variant), args.backend, **options)
 
 
 def _refuse_record(args: argparse.Namespace) -> None:
@@ -155,7 +154,7 @@ def _reports(args: argparse.Namespace) -> Iterator[tuple[Callable[[str], None], 
     from rich.text import Text
 
     console = Console(stderr=True)
-    with Live(console=console, refresh_per_second=10) as live:
+    with Live(console=console, refresh_per_second=10, transient=True) as live:
         yield (
             (lambda line: None) if args.json else lambda line: console.print(line, highlight=False),
             lambda loop, action, info: live.update(Text("\n".join(picture(loop, (action[0], action[1]), info)))),

@@ -43,10 +43,13 @@ def run(args: argparse.Namespace) -> int:
     from puckpilot_env.files.toml_file import refuse_unknown
     from puckpilot_env.options.inputs import seed_number, whole_number
     from sim2real.table.drills.campaign import run_campaign
-    from sim2real.table.drills.known_faults import BY_CAMERA
+    from sim2real.table.drills.known_faults import BY_CAMERA, BY_NAME
 
     refuse_unknown([args.camera], BY_CAMERA, "camera")
     known = [fault.name for fault in BY_CAMERA[args.camera]]
+    for name in set(args.faults) - set(known):
+        if name in BY_NAME:
+            raise ValueError(f"'{name}' is a fault that only pictures show; give --camera pictures, or leave it out")
     refuse_unknown(args.faults, known, "fault")
     whole_number(args.processes, "--processes", 1, 64)
     if not 0.0 < args.minutes <= 1e5:

@@ -28,6 +28,12 @@ class GantryNumbers:
     fit_every: float = tuned(0.1, "s", "a slow fit, or windows left out", "choice: the next begins inside the last")
     judge_every: float = tuned(0.02, "s", "a slow or a coarse judgement", "choice")
     longest_step: float = tuned(0.003, "s", "steps too coarse for the fast mode", "choice: twice a late row's")
+    least_way: float = tuned(
+        0.01,
+        "m",
+        "less fits constants to the encoders' noise; more refuses logs of small moves",
+        "choice: a hundred times the encoders' steps",
+    )
     fewest_windows: int = tuned(20, "1", "a fit of as many numbers as windows", "choice: one more than the numbers")
     parts: int = tuned(5, "1", "a single log that cannot be cross-validated", "choice: as many as a usual set of logs")
     noise: float = tuned(5e-5, "m", "the belt's state from noise", "rows at rest: 20 um, vibration 100 um")

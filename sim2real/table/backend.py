@@ -83,7 +83,8 @@ class Backend(ABC):
     observes: ClassVar[dict[str, str]] = {
         "frames.time": "s", "frames.puck": "m, (x, y) or None", "frames.opponent": "m, (x, y) or None",
         "frames.robot": "m, (x, y) or None", "frames.puck_covariance": "m^2, (2, 2) or None",
-        "frames.opponent_covariance": "m^2, (2, 2) or None", "frames.pucks": "number", "frames.troubles": "names, words",
+        "frames.opponent_covariance": "m^2, (2, 2) or None", "frames.pucks": "number",
+        "frames.troubles": "names and words",
         "mallets.time": "s", "mallets.place": "m, (x, y)", "mallets.path": "m, (x, y) or None",
         "mallets.duties": "of motors left and right, -1 to 1",
     }  # fmt: skip

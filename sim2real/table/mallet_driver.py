@@ -77,8 +77,9 @@ class MalletDriver:
     def plan(self, action: ArrayLike, begin: float) -> MalletPlan:
         """Plan for an action (4,), target x, y [m] and volts x, y [V] in the robot's frame, that acts at `begin` [s].
 
-        The target is brought into the mallet's area, less the margin, and the volts to the operating limit, or to less, so that the
-        board's braking stop could end the plan soon and inside at any moment. ValueError for a number that is none.
+        The target is brought into the mallet's area, less the margin, and the volts to the operating limit, or to less,
+        so that the board's braking stop could end the plan soon and inside at any moment. ValueError for a number that
+        is none.
         """
         x, y, vx, vy = (float(one) for one in np.asarray(action, float))
         if not np.isfinite([x, y, vx, vy]).all():

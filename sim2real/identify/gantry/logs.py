@@ -95,6 +95,12 @@ def whole(log: GantryLog) -> Piece:
             f"{log.name}: {len(fit.start)} windows of {max(GANTRY.fitted):g} s without a gap can be cut; expected "
             f"{GANTRY.fewest_windows} or more: record the mallet at 500 Hz or more, with the motors' pwm, for longer"
         )
+    far = float(np.ptp(log.place, axis=0).max())
+    if far < GANTRY.least_way:
+        raise ValueError(
+            f"{log.name}: the mallet moves by {1e3 * far:.1f} mm in all; expected {1e3 * GANTRY.least_way:g} mm or "
+            "more: record it moving, as puckpilot record --program gantry does"
+        )
     return Piece(log.name, log, fit, judge)
 
 

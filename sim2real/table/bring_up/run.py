@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 from sim2real.table.bring_up.rig import Rig
 from sim2real.table.bring_up.steps import STEPS
-from sim2real.table.faults import TableFaultError
 
 
 @dataclass(frozen=True)

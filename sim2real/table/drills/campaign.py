@@ -22,8 +22,9 @@ BETWEEN = (1.0, 6.0)  # s of play between two faults
 
 @dataclass(frozen=True)
 class Part:
-    """A part of a campaign: its seed and `conditions`, faults, player and camera; seconds of play, what each fault did, the worst volts at a motor [V] and the
-    farthest outside its area [m]; why it ended early, "" if it did not."""
+    """A part of a campaign: its seed and `conditions`, which are faults, player and camera; seconds of play, what each
+    fault did, the worst volts at a motor [V] and the farthest outside its area [m]; why it ended early, "" if it did
+    not."""
 
     seed: int
     seconds: float

@@ -13,7 +13,7 @@ class GameLog:
 
     plans: sent to the board; parked [s]: with the puck lost; off_path [m]: the farthest that the encoders had the
     mallet from its path; faults: causes of stops; times: of the decisions; table_seconds, wall_seconds: that passed at
-    the table, and here, since the first decision.
+    the table, and here, since the first decision; interrupted: whether Ctrl-C ended it.
     """
 
     score: tuple[int, int] = (0, 0)
@@ -27,3 +27,4 @@ class GameLog:
     times: LoopTimes = field(default_factory=LoopTimes)
     table_seconds: float = 0.0
     wall_seconds: float = 0.0
+    interrupted: bool = False

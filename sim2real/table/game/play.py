@@ -47,8 +47,15 @@ def play_game(
             observation, _, terminated, truncated, info = env.step(action)
             over = terminated or truncated
             if env.loop is not None:
+                log.times = env.loop.times
                 show(env.loop, action, info)
             _note(log, info, report)
+        except KeyboardInterrupt as stop:
+            if stop.args:  # another signal, which ends the program
+                raise
+            env.close()
+            log.interrupted = True
+            break
         except TableFaultError as fault:
             report(f"{log.seconds:6.1f} s  stopped, {fault.cause}: {fault}")
             log.faults.append(str(fault.cause))
@@ -56,8 +63,6 @@ def play_game(
         if info["new_point"]:
             actor.reset(np.ones(1, bool))
     log.table_seconds, log.wall_seconds = info["time"] - begin, time.perf_counter() - began
-    if env.loop is not None:
-        log.times = env.loop.times
     log.outcome = int(info.get("outcome", np.sign(log.score[0] - log.score[1])))
     return log
 

@@ -18,7 +18,7 @@ from puckpilot_env.options.real_numbers import real_numbers
 from puckpilot_env.tables import ROUNDING
 from puckpilot_env.variants import Variant
 from sim2real.table.backend import Backend, Motion
-from sim2real.table.backends import make_backend
+from sim2real.table.backends import make_backend, stated_parameters
 from sim2real.table.faults import Cause, TableFaultError
 from sim2real.table.game.game_record import GameRecord
 from sim2real.table.game.loop import Loop
@@ -45,7 +45,7 @@ class RobotSeat(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         self.observation_space, self.action_space = seat_spaces(self.tables)
         self.loop: Loop | None = None  # while connected
         self._stopped = False
-        self._over = True
+        self._over = self._ended = True  # whether no step may follow; whether by the rules
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -58,6 +58,7 @@ class RobotSeat(gymnasium.Env[NDArray[Any], NDArray[Any]]):
             self.close()
         if seed is not None:
             self.backend.seed(int(seed))
+        self._ended = False
         with self._stopped_by_errors():
             loop = self.loop or Loop(self.backend, self.game)
             if self.loop is None:
@@ -74,7 +75,7 @@ class RobotSeat(gymnasium.Env[NDArray[Any], NDArray[Any]]):
     def clear(self) -> tuple[NDArray[np.float32], dict[str, Any]]:
         """Play on after a TableFaultError, with a face-off and the score as it was. Raises it again, in one line, if
         what stopped the table is still there."""
-        if self.loop is None or not self._stopped:
+        if self.loop is None or not self._stopped or self._ended:
             raise ValueError("nothing stopped the table; call reset() to begin an episode")
         with self._stopped_by_errors():
             self.loop.clear()
@@ -85,11 +86,19 @@ class RobotSeat(gymnasium.Env[NDArray[Any], NDArray[Any]]):
 
     def step(self, action: NDArray[np.float32]) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
         """Play one step. Raises ValueError for an action that is not in the space, having sent nothing, and with the
-        mallet stopped and the table closed."""
+        mallet stopped; `clear` plays on."""
         if self._over or self.loop is None:
-            raise ValueError("the episode is over (or has not begun); call reset() before step()")
+            stopped = self.loop is not None and self._stopped and not self._ended
+            what = "the table is stopped; call clear() to play on," if stopped else "the episode is over; call"
+            raise ValueError(f"{what} {'or ' if stopped else ''}reset() to begin an episode, before step()")
+        try:
+            checked = self.checked_action(action, "the action")
+        except ValueError:
+            self._over = self._stopped = True
+            self.backend.stop()
+            raise
         with self._stopped_by_errors():
-            return self._step(self.loop, self.checked_action(action, "the action"))
+            return self._step(self.loop, checked)
 
     def checked_action(self, action: ArrayLike, what: str) -> NDArray[np.float32]:
         """An action (4,) within the space, rounding allowed for. ValueError, in one line that begins with `what`, for
@@ -120,6 +129,7 @@ class RobotSeat(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         observation, info = self._observed(new_point)
         self.tables.terminated[0], self.tables.truncated[0] = terminated, truncated
         if self._over:
+            self._ended = True
             try:
                 loop.finish()
                 self.backend.stop()  # whoever plays may take their time until the next episode
@@ -175,7 +185,9 @@ def make_robot_seat(
     seed: int = 0,
     **options: Any,
 ) -> RobotSeat:
-    """The robot's seat at a backend by name, with its own `options`. ValueError, in one line, for what cannot be."""
+    """The robot's seat at a backend by name, with its own `options`; without `parameters`, those that its file or
+    recording states. ValueError, in one line, for what cannot be."""
+    parameters = stated_parameters(backend, options) if parameters is None else parameters
     game = GameRecord(variant, parameters, seed, period=period)
     made = make_backend(backend, game, **options)
     made.seed(seed)

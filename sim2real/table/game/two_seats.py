@@ -12,6 +12,7 @@ from pettingzoo import ParallelEnv
 
 from puckpilot_env.adapters.parallel_env import AGENTS, fresh_seed
 from puckpilot_env.variants import Variant
+from sim2real.table.backends import refuse_unknown_backend
 from sim2real.table.game.robot_seat import RobotSeat, make_robot_seat
 from sim2real.table.twin.twin import Twin
 
@@ -43,6 +44,7 @@ class TwoSeats(ParallelEnv):
 
     def __init__(self, variant: Variant, backend: str, **options: Any) -> None:
         self._given = GivenActions()
+        refuse_unknown_backend(backend)
         if backend != "twin":
             raise ValueError(f"backend '{backend}' has one seat, for gymnasium.make; the twin has both")
         if "opponent" in options:

@@ -28,8 +28,8 @@ def read_injection(words: Sequence[str]) -> dict[str, float]:
     """Numbers by name of words NAME=VALUE. ValueError, in one line, for an unknown name or a number out of range."""
     found: dict[str, float] = {}
     for word in words:
-        name, _, text = word.partition("=")
-        if name not in LIMITS:
+        name, given, text = word.partition("=")
+        if name not in LIMITS or not given:
             raise ValueError(f"--inject {word}: no such delay; expected NAME=VALUE with NAME of {', '.join(LIMITS)}")
         if name in found:
             raise ValueError(f"--inject {word}: {name} is given twice; leave one out")

@@ -13,6 +13,8 @@ def table_lines(parts: Sequence[Part], injected: Mapping[str, float] | None = No
     head = ["part", "value", "95 % interval", *(["injected"] if injected else []), "what", "by"]
     rows = [head] + [_row(one, injected) for one in parts if one.determined]
     widths = [max(len(row[k]) for row in rows) for k in range(len(head) - 1)]
+    if len(rows) == 1:
+        rows = []
     lines = ["  ".join([*(f"{cell:{w}}" for cell, w in zip(row, widths, strict=False)), row[-1]]) for row in rows]
     return lines + [f"{one.name}: not determined, because {one.why}" for one in parts if not one.determined]
 
@@ -27,7 +29,9 @@ def _row(one: Part, injected: Mapping[str, float] | None) -> list[str]:
 
 
 def toml_lines(parts: Sequence[Part]) -> list[str]:
-    """The section [latency] for a table's file: what is determined, in s and ppm."""
+    """The section [latency] for a table's file: what is determined, in s and ppm; none without."""
+    if not any(one.determined and one.name in LATENCY for one in parts):
+        return []
     found = {one.name: one for one in parts if one.determined}
     digits = {"s": 6, "ppm": 1}
     return ["[latency]"] + [

@@ -34,7 +34,7 @@ pixel_format = "BayerRG8"
 exposure = 1e-4                 # s
 gain = 25.0                     # dB
 rate = 120.0                    # Hz
-delay = 0.006                   # s from the middle of the exposure until a frame comes: `frame` of `puckpilot latency`
+delay = 0.006                   # s from the middle of the exposure until a frame comes: `puckpilot latency` tells
 ring_height = 0.05              # m, of the opponent's ring above the table
 film_radius = 0.0309            # m, of the puck's film; left out, it is measured
 

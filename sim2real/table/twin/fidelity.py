@@ -71,6 +71,8 @@ def _play(meeting: Meeting) -> TwinGame:
             env, meeting.player, meeting.seed, meeting.seconds, lambda line: None, lambda fault: False,
             lambda loop, action, info: None,
         )  # fmt: skip
+        if log.interrupted:
+            raise KeyboardInterrupt
         virtual = env.backend.now()
     processor, wall = time.process_time() - begin[0], time.perf_counter() - begin[1]
     return TwinGame(log.outcome, log.score, log.seconds, virtual, processor, wall)

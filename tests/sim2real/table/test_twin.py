@@ -326,3 +326,21 @@ def test_between_episodes_a_player_may_take_its_time(seat: RobotSeat) -> None:
     twin.board.run(twin.now() + 0.3)  # nobody serves the board
     seat.reset()
     assert np.isfinite(seat.step(STAY)[0]).all()
+
+
+def test_after_a_refused_action_clear_plays_on_and_after_the_end_it_does_not(seat: RobotSeat) -> None:
+    seat.reset(seed=1)
+    with pytest.raises(ValueError, match="the action is"):
+        seat.step(np.full(4, 5.0, np.float32))
+    twin = twin_of(seat)
+    assert twin.board is not None and twin.board.machine.motors.duties == (0.0, 0.0)
+    with pytest.raises(ValueError, match=r"the table is stopped; call clear\(\) to play on, or reset\(\)"):
+        seat.step(STAY)
+    seat.clear()
+    seat.game.rule["match_time"] = 0.05
+    _, _, terminated, truncated, _ = seat.step(STAY)
+    assert terminated or truncated
+    with pytest.raises(ValueError, match=r"the episode is over; call reset\(\)"):
+        seat.step(STAY)
+    with pytest.raises(ValueError, match="nothing stopped the table"):
+        seat.clear()

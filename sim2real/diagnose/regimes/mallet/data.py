@@ -49,7 +49,11 @@ def mallet_contacts(
         if motion.contact.where == "opponent"
     }
     rows = [
-        {**row, "recording": recording, "spin_unknown": motion.spin_unknown or motion.contact.t > opponent.get(motion.spin_chain, np.inf)}
+        {
+            **row,
+            "recording": recording,
+            "spin_unknown": motion.spin_unknown or motion.contact.t > opponent.get(motion.spin_chain, np.inf),
+        }
         for motion in contact_motions
         if (row := _fields(motion, path, geometry)) is not None
     ]
@@ -83,7 +87,8 @@ def _fields(motion: ContactMotion, path: MalletPath, geometry: Geometry) -> dict
     return {
         "normal": normal, "t": t, "place": place, "velocity_before": before.velocity, "velocity_after": after.velocity,
         "mallet_velocity": velocity, "mallet_step": step @ normal, "mallet_covariance": _covariance(normal, covariance),
-        "turning": float(velocity @ [normal[1], -normal[0]]) / distance, "normal_std": place_std / radii, "spin_chain": motion.spin_chain, "cluster": motion.cluster,
+        "turning": float(velocity @ [normal[1], -normal[0]]) / distance,
+        "normal_std": place_std / radii, "spin_chain": motion.spin_chain, "cluster": motion.cluster,
         **velocity_errors(normal, before, after),
     }  # fmt: skip
 

@@ -78,10 +78,13 @@ def test_parts_of_a_log_share_no_moment(recording: Recording) -> None:
 def test_what_holds_no_log_is_refused_in_one_line(recording: Recording) -> None:
     mallet = recording.mallet
     assert mallet is not None
+    still = {name: np.full(mallet.rows, 0.3) for name in ("mallet_x", "mallet_y")}
+    at_rest = replace(mallet, columns={**mallet.columns, **still})
     faults = {
         "the mallet's path was not recorded": replace(recording, mallet=None),
         "neither the motors' log": replace(recording, drive=None),
         "windows of 0.2 s without a gap": with_rows(recording, "mallet", mallet.t < 1.0),
+        "the mallet moves by 0.0 mm in all; expected 10 mm or more": replace(recording, mallet=at_rest),
         "record the mallet at 500 Hz or more": with_rows(recording, "mallet", np.arange(mallet.rows) % 8 == 0),
     }
     for words, one in faults.items():

@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+import json
+from dataclasses import asdict
+from math import nan
+from pathlib import Path
+
 import pytest
 
 pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
 
-from sim2real.table.drills.drill import Drill
+import puckpilot
+from sim2real.table.drills.campaign import Part, conditions, run_campaign
+from sim2real.table.drills.drill import Drill, Stop
 from sim2real.table.drills.faults import FAULTS, Fault
 from sim2real.table.drills.picture_faults import PICTURE_FAULTS
 from sim2real.table.game.robot_seat import make_robot_seat
@@ -30,3 +37,34 @@ def test_a_fault_stops_the_mallet_and_play_goes_on_after_clear(fault: Fault, cam
         assert drill.monitor.worst.volts <= 15.0 and drill.monitor.worst.outside <= 0.0
     finally:
         env.close()
+
+
+@pytest.mark.parametrize(
+    ("stop", "in_time"),
+    [
+        (Stop("cable", "port lost", 0.0, 0.045, 3.0), True),
+        (Stop("cable", "port lost", 0.0, 0.055, 3.0), False),
+        (Stop("cable", "", nan, 0.0, 3.0), False),  # nobody noticed
+        (Stop("no-puck", "", nan, 0.0, 3.0), True),  # it may come back by itself
+        (Stop("no-puck", "puck lost", 2.0, 2.045, 3.0), True),
+        (Stop("no-puck", "puck lost", 2.0, 2.055, 3.0), False),
+    ],
+)
+def test_a_stop_in_time_is_noticed_and_soon(stop: Stop, in_time: bool) -> None:
+    assert stop.in_time == in_time
+
+
+def test_parts_of_another_campaign_are_not_taken_for_this_ones(tmp_path: Path) -> None:
+    path = tmp_path / "drill.jsonl"
+    part = Part(0, 120.0, [], 15.0, 0.0, "", conditions(["cable"], "goalie", "places"))
+    path.write_text(json.dumps(asdict(part)) + "\n")
+    again = run_campaign(path, 60.0, 0, ["cable"], "goalie", "places", 1, lambda done, of: None)
+    assert again == [part]
+    for names, player, camera in ((["noise"], "goalie", "places"), (["cable"], "still", "places")):
+        with pytest.raises(ValueError, match=r"has parts of another campaign, goalie, places: cable; .*--out"):
+            run_campaign(path, 60.0, 0, names, player, camera, 1, lambda done, of: None)
+
+
+def test_a_fault_of_pictures_without_pictures_says_so(capsys: pytest.CaptureFixture[str]) -> None:
+    assert puckpilot.main(["table", "drill", "hand", "--minutes", "1"]) == 2
+    assert "'hand' is a fault that only pictures show; give --camera pictures" in capsys.readouterr().err

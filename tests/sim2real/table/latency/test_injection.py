@@ -21,7 +21,7 @@ PLACES = (0.3, 0.5), (1.7, 0.5)
     ("words", "message"),
     [
         (["camra=0.01"], r"--inject camra=0.01: no such delay; expected NAME=VALUE with NAME of camera, drift"),
-        (["camera"], r"--inject camera: expected a number from 0 to 0.06 s"),
+        (["camera"], r"--inject camera: no such delay; expected NAME=VALUE"),
         (["camera=nan"], r"--inject camera=nan: expected a number from 0 to 0.06 s"),
         (["drift=900"], r"--inject drift=900: expected a number from -200 to 200 ppm"),
         (["line=0.01", "line=0.02"], r"--inject line=0.02: line is given twice; leave one out"),

@@ -13,8 +13,8 @@ from puckpilot_env.variants import find_variant
 from sim2real.recording.folder import Stream
 from sim2real.table.backends import make_backend
 from sim2real.table.game.game_record import GameRecord
-from sim2real.table.latency.injection import truth, twin_options
 from sim2real.table.game.loop import home_of
+from sim2real.table.latency.injection import truth, twin_options
 from sim2real.table.latency.measure import Measurement, measure
 from sim2real.table.latency.part import Part
 from sim2real.table.latency.parts import parts_of_measurement, parts_of_recording

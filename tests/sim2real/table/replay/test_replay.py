@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import closing
 from pathlib import Path
 
 import gymnasium
@@ -11,6 +12,7 @@ import pytest
 import puckpilot_env  # noqa: F401 - registers the ids
 from sim2real.recording.folder import Recording, write_recording
 from sim2real.recording.stream_csv import Stream
+from sim2real.table.game.robot_seat import make_robot_seat
 from tests.places import UBC
 
 MATCH = "puckpilot/match-v0"
@@ -67,18 +69,24 @@ def test_the_episode_is_truncated_where_the_recording_ends(tmp_path: Path) -> No
     [
         ({"recording": "nowhere"}, "is not a folder"),
         ({}, "backend 'replay' needs recording; give recording=..."),
-        ({"recording": "{small}"}, "states width 0.9, the game 1; give parameters={'length': 2.0, 'width': 0.9}"),
         ({"recording": "{frames}"}, "has no rows in mallet.csv; a replay needs frames and mallet"),
     ],
 )
 def test_what_cannot_be_replayed_is_refused_in_one_line(tmp_path: Path, what: dict, words: str) -> None:
-    straight(tmp_path / "small", table={"length_m": 2.0, "width_m": 0.9, "goal_width_m": None})
     straight(tmp_path / "frames")
     (tmp_path / "frames" / "mallet.csv").unlink()
-    what = {name: value.format(small=tmp_path / "small", frames=tmp_path / "frames") for name, value in what.items()}
+    what = {name: value.format(frames=tmp_path / "frames") for name, value in what.items()}
     with pytest.raises(ValueError) as caught:
         gymnasium.make(MATCH, backend="replay", **what)
     assert words in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_the_recording_states_the_table_unless_other_parameters_are_given(tmp_path: Path) -> None:
+    small = straight(tmp_path / "small", table={"length_m": 2.0, "width_m": 0.9, "goal_width_m": None})
+    with closing(make_robot_seat(MATCH, "replay", recording=small)) as seat:
+        assert float(seat.game.p["width"]) == 0.9
+    with pytest.raises(ValueError, match=r"states width 0\.9, the game 1; give parameters="):
+        gymnasium.make(MATCH, backend="replay", recording=small, parameters={"width": 1.0})
 
 
 @pytest.mark.skipif(not UBC.is_dir(), reason="the shared recordings are not here")
