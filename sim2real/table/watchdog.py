@@ -53,4 +53,5 @@ def refuse_troubles(frame: SeenFrame) -> None:
     """TableFaultError for a frame with something wrong."""
     if frame.troubles:
         trouble = frame.troubles[0]
-        raise TableFaultError(Cause.CAMERA_TROUBLE, f"{trouble.name}: {trouble.text}; then clear")
+        cause = Cause.SEVERAL_PUCKS if trouble.name == Cause.SEVERAL_PUCKS else Cause.CAMERA_TROUBLE
+        raise TableFaultError(cause, f"{trouble.name}: {trouble.text}; then clear")

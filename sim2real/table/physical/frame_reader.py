@@ -21,7 +21,8 @@ class FrameReader:
     def __init__(self, table: TableCalibration, targets: Targets, settings: CameraSettings | None = None) -> None:
         self.tracker = Tracker(table, targets, settings, keep=False)
         kinds = () if settings is not None and settings.mosaic else (colour_mosaic,)
-        self._monitor = FrameMonitor(self.tracker.camera.size, (over_exposed, *kinds, self.tracker.check_camera))
+        checks = (over_exposed, *kinds, self.tracker.check_camera, self.tracker.check_pucks)
+        self._monitor = FrameMonitor(self.tracker.camera.size, checks)
         self._unchecked: Frame | None = None  # of which the pixels may be checked
         self._troubles: list[Trouble] = []  # of the pixels of frames that were read
 

@@ -80,6 +80,10 @@ class Detector:
         opponent = first_state(time, _ring_measurement(rings[0])) if rings else None
         return Detections(self._with_calibration(puck), self._with_calibration(opponent), len(discs))
 
+    def count_pucks(self, image: np.ndarray) -> int:
+        """The number of discs in a whole picture uint8 (rows, columns) that can only be pucks; no track is updated."""
+        return sum(_disc_measurement(disc).sure for disc in self._find(image, None)[1])
+
     def _find_in_regions(self, image: np.ndarray, time: float) -> tuple[list[Ring], list[Disc]] | None:
         """Rings and discs in the search regions; None if the whole picture has to be searched, because the puck's place
         is unknown, or puck or opponent is not in its region. While no opponent is tracked, one picture in EVERY is

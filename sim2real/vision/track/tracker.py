@@ -71,6 +71,7 @@ class Tracker:
         self._detector: Detector | None = None
         self._shift: CameraShift | None = None
         self._rows: list[tuple[float, ...]] = []  # COLUMNS, and the number of candidates for the puck
+        self._several = False  # whether the last check saw more than one puck
         self._trusted = 0  # rows up to the last check that found the camera in its place
         self.locator: Locator | None = None
         self.pose: Pose | None = None
@@ -121,6 +122,15 @@ class Tracker:
             self._begin(image, FEWEST + 1)
             self._trusted = len(self._rows)
         return camera_moved(shifts) if len(shifts) else markers_hidden()
+
+    def check_pucks(self, image: np.ndarray) -> Trouble | None:
+        """Check, for `FrameMonitor`, whether two pictures uint8 (rows, columns) in a row show more than one puck.
+
+        A puck that is tracked is searched where it must be; another one is seen in the whole picture alone.
+        """
+        pucks = self._detector.count_pucks(image) if self._detector else 0
+        before, self._several = self._several, pucks > 1
+        return several_pucks(pucks) if before and self._several else None
 
     @property
     def camera(self) -> CameraModel:
@@ -211,6 +221,11 @@ class Tracker:
     def _grey(self, image: np.ndarray) -> np.ndarray:
         """A picture without its mosaic."""
         return GreyOfMosaic(image.shape[::-1]).part(image, None) if self._settings.mosaic else image
+
+
+def several_pucks(number: int) -> Trouble:
+    """The trouble that more than one puck is seen."""
+    return Trouble("several pucks", f"{number} pucks are seen; leave one on the table")
 
 
 def _cells(state: TrackState | None) -> tuple[float, float]:
