@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from puckpilot_env.game import mirror, reward, rules
@@ -11,7 +13,6 @@ from sim2real.table.game.game_record import GameRecord
 from sim2real.table.game.moving_objects import SeenTable
 
 Seen = tuple[float, Motion]  # time of a frame [s], and the motion then
-SAMPLES = 5  # of the time between two frames at which contacts are looked for
 HIDDEN = 0.02  # s without a sight of the puck, in which the clock does not end a point: it may be in a goal
 GONE = 0.1  # s without a sight of the puck after which it is in the goal that it went to
 NEAR = 0.25  # m from a goal line: farther away a puck that is unseen was not sent into the goal by a mallet
@@ -68,10 +69,7 @@ class Referee:
     def _touches(self, before: Seen | None, now: Seen, mallet: Motion) -> bool:
         """Whether the puck came to the mallet since the frame before, going on as then or having come as now."""
         earlier = before or now
-        since = np.linspace(earlier[0], now[0], SAMPLES)[:, None]
-        paths = [_at(one, since) for one in (earlier, now)]
-        there = _at((now[0], mallet), since)
-        nearest = min(float(np.linalg.norm(path - there, axis=1).min()) for path in paths)
+        nearest = min(_nearest(one, (now[0], mallet), earlier[0], now[0]) for one in (earlier, now))
         return nearest < float(self._game.p["puck_radius"] + self._game.p["mallet_radius"]) + TOUCHING
 
     def end_step(self, now: float, seen: SeenTable) -> bool:
@@ -105,7 +103,16 @@ class Referee:
         return -1 if x < 0.5 * length else 1  # a mallet sent it there between two frames
 
 
-def _at(seen: Seen, times: np.ndarray) -> np.ndarray:
-    """Places (n, 2) [m] at `times` (n, 1) [s] on a straight way."""
-    time, (x, y, vx, vy) = seen
-    return np.array([x, y]) + (times - time) * np.array([vx, vy])
+def _nearest(one: Seen, other: Seen, begin: float, end: float) -> float:
+    """The least distance [m] between two that go straight on, from `begin` to `end` [s]."""
+    (x, y), (u, v) = _at(one, end), _at(other, end)
+    x, y, vx, vy = x - u, y - v, one[1][2] - other[1][2], one[1][3] - other[1][3]
+    speed = vx * vx + vy * vy
+    since = min(max(-(x * vx + y * vy) / speed, begin - end), 0.0) if speed > 0.0 else 0.0
+    return math.hypot(x + since * vx, y + since * vy)
+
+
+def _at(seen: Seen, time: float) -> tuple[float, float]:
+    """The place [m] at a time [s] on a straight way."""
+    then, (x, y, vx, vy) = seen
+    return x + (time - then) * vx, y + (time - then) * vy

@@ -7,7 +7,7 @@ import pytest
 from puckpilot_env.game import rules
 from sim2real.table.game.game_record import GameRecord, Motion
 from sim2real.table.game.moving_objects import SeenTable
-from sim2real.table.game.referee import Referee
+from sim2real.table.game.referee import Referee, _nearest
 
 ROBOT, OPPONENT = (0.25, 0.5, 0.0, 0.0), (1.75, 0.5, 0.0, 0.0)
 FRAME, PERIOD = 1 / 120, 0.1
@@ -94,3 +94,21 @@ def test_a_match_ends_by_its_clock() -> None:
     assert game.record.record["ending"] == rules.RUNNING
     assert not game.step(0.6, 0.5)
     assert game.record.record["ending"] == rules.CLOCK and game.record.record["winner"] == -1
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "least"),
+    [
+        ((1.0, 0.0, 1.0, 0.0), (0.0, 0.0, 0.0, 0.0), 0.5),  # it came from nearer, half a second ago
+        ((1.0, 0.0, -1.0, 0.0), (0.0, 0.0, 0.0, 0.0), 1.0),  # it comes
+        ((0.2, 0.3, 1.0, 0.0), (0.0, 0.0, 0.0, 0.0), 0.3),  # it went past, 0.2 s ago
+        ((0.2, 0.3, 1.0, 2.0), (0.0, 0.0, 0.0, 2.0), 0.3),  # beside one that moves along
+        ((0.3, 0.4, 1.0, 1.0), (0.0, 0.0, 1.0, 1.0), 0.5),  # together
+    ],
+)
+def test_the_least_distance_between_two_frames(one: tuple, other: tuple, least: float) -> None:
+    """By hand, from 0.5 s before both are where they are said to be; one of them was seen earlier."""
+    x, y, vx, vy = one
+    before = (9.6, (x - 0.4 * vx, y - 0.4 * vy, vx, vy))
+    for seen in ((10.0, one), before):
+        assert _nearest(seen, (10.0, other), 9.5, 10.0) == pytest.approx(least)
