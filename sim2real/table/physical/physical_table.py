@@ -23,6 +23,8 @@ from sim2real.vision.track.blobs import LEVEL
 from sim2real.vision.track.ring import HEIGHTS
 from sim2real.vision.track.tracker import Targets
 
+SIZE_ERROR = 0.01  # m by which a calibration and the stated table may differ
+
 
 class PhysicalTable(RealTimeTable):
     """See `Backend`. table: a table.toml (`table_file.py`). ValueError, in one line, for a file that cannot be used, or
@@ -32,6 +34,7 @@ class PhysicalTable(RealTimeTable):
         self._file = read_table_file(table)
         _refuse_other_parameters(self._file.parameters, game)
         camera, board = self._file.camera, self._file.board
+        _refuse_other_table(camera, game)
         frame_reader(camera)  # refuses what cannot be used, before anything is opened
         super().__init__(
             board_config(game.p, board.gains),
@@ -65,6 +68,16 @@ def frame_reader(camera: CameraPart) -> FrameReader:
             raise ValueError(f"{camera.setup} is no picture; expected the setup picture of the whole sensor")
         reader.tracker.set_up(image)
     return reader
+
+
+def _refuse_other_table(camera: CameraPart, game: GameRecord) -> None:
+    setup = read_table(camera.calibration).setup
+    for name, measured in (("length", setup.length), ("width", setup.width)):
+        if abs(measured - float(game.p[name])) > SIZE_ERROR:
+            raise ValueError(
+                f"{camera.calibration} is of a table of {name} {measured:g} m, the game's is {float(game.p[name]):g} m; "
+                f"state {name} under [parameters] of the table's file, or calibrate this table"
+            )
 
 
 def _refuse_other_parameters(parameters: dict[str, float], game: GameRecord) -> None:

@@ -1,0 +1,59 @@
+"""A physical table that is not opened: what its file, its calibration and the game must agree on."""
+
+from __future__ import annotations
+
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+from sim2real.camera.render.table import Table
+from sim2real.camera.render.view import CameraView
+from sim2real.table.game.robot_seat import make_robot_seat
+from sim2real.table.physical import physical_table
+from sim2real.table.twin.rendered_table import RenderedTable
+
+RENDERED = RenderedTable(Table.with_markers(), CameraView.like_the_real_one(2.0, 1.0))  # 2 m by 1 m
+FILE = """
+format = "puckpilot-table/1"
+[parameters]
+{parameters}
+[camera]
+source = "device:0"
+calibration = "table.json"
+[board]
+port = "/dev/ttyUSB0"
+supply = 20.0
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setattr(physical_table, "read_table", lambda path: RENDERED.calibration())
+    return tmp_path
+
+
+def written(folder: Path, parameters: str) -> Path:
+    (folder / "table.toml").write_text(FILE.format(parameters=parameters))
+    return folder / "table.toml"
+
+
+def test_the_tables_file_states_the_parameters(folder: Path) -> None:
+    with closing(make_robot_seat("match-v0", "table", table=written(folder, "friction = 0.1"))) as seat:
+        assert [float(seat.game.p[name]) for name in ("friction", "max_voltage", "length")] == [0.1, 20.0, 2.0]
+
+
+@pytest.mark.parametrize(
+    ("parameters", "given", "words"),
+    [
+        ("length = 1.9", None, r"table.json is of a table of length 2 m, the game's is 1\.9 m; state length under"),
+        ("width = 1.02", None, r"of width 1 m, the game's is 1\.02 m"),
+        ("", {"max_voltage": 24.0}, r"the table's file has max_voltage 20, the game 24; give parameters="),
+    ],
+)
+def test_what_does_not_agree_is_refused_in_one_line(
+    folder: Path, parameters: str, given: dict | None, words: str
+) -> None:
+    with pytest.raises(ValueError, match=words) as error:
+        make_robot_seat("match-v0", "table", parameters=given, table=written(folder, parameters))
+    assert "\n" not in str(error.value)
