@@ -75,8 +75,8 @@ def _refuse_other_table(camera: CameraPart, game: GameRecord) -> None:
     for name, measured in (("length", setup.length), ("width", setup.width)):
         if abs(measured - float(game.p[name])) > SIZE_ERROR:
             raise ValueError(
-                f"{camera.calibration} is of a table of {name} {measured:g} m, the game's is {float(game.p[name]):g} m; "
-                f"state {name} under [parameters] of the table's file, or calibrate this table"
+                f"{camera.calibration} is of a table of {name} {measured:g} m, the game's is {float(game.p[name]):g} m"
+                f"; state {name} under [parameters] of the table's file, or calibrate this table"
             )
 
 
