@@ -56,10 +56,11 @@ class BoardLine:
         not."""
         session, begun = self.session, self._now()
         self._refused, self._fates = "", PlanFates()
-        answers = "no board answers on this line"
-        self._await(lambda: session.connected and len(session.clock) >= EXCHANGES, answers)
-        known = lambda: session.state is not None and session.telemetry_status.arrived > begun  # noqa: E731
-        self._await(known, "the board sends no telemetry")
+        self._await(lambda: session.connected and len(session.clock) >= EXCHANGES, "no board answers on this line")
+        self._await(
+            lambda: session.state is not None and session.telemetry_status.arrived > begun,
+            "the board sends no telemetry",
+        )
         self._refused = ""  # of what was sent before
         if session.state != State.ARMED:  # one that is still armed has just been disarmed
             self._until(lambda: not self._driving, "the board does not switch the motors off")
