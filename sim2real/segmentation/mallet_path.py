@@ -36,16 +36,17 @@ class MalletPath:
         hole = self.t[right] - self.t[right - 1] > SEGMENTATION.path_hole
         return np.where((hole | (share < 0) | (share > 1))[..., None], np.nan, place)
 
-    def motion_at_contact(self, when: float) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
-        """Velocity (2,) [m/s] just before `when` [s], its step (2,) there, and their covariances (2, 2, 2) by axis.
+    def motion_at_contact(self, when: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray] | None:
+        """Velocity (2,) [m/s] just before `when` [s], its step (2,) there, their covariances (2, 2, 2) by axis, and the
+        acceleration (2,) [m/s^2].
 
         None if the stream has too few samples there.
         """
         fits = self._fits(when, step=True)
         if fits is None:
             return None
-        before, step = np.array([[fit[1], fit[3]] for fit, _ in fits]).T
-        return before, step, np.array([covariance[np.ix_([1, 3], [1, 3])] for _, covariance in fits])
+        before, acceleration, step = np.array([fit[1:] for fit, _ in fits]).T
+        return before, step, np.array([covariance[np.ix_([1, 3], [1, 3])] for _, covariance in fits]), acceleration
 
     def motion(self, when: float) -> tuple[np.ndarray, np.ndarray] | None:
         """Place, velocity and acceleration (3, 2) at `when` [s] of a mallet without a contact, and their covariances

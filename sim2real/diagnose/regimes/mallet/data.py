@@ -21,15 +21,16 @@ class MalletContacts(Contacts):
 
     `mallet_velocity` (n, 2) [m/s]: velocity of the mallet just before, in the table's frame; `mallet_step` (n,) [m/s]:
     its change at the contact, along the normal; `mallet_covariance` (n, 3, 3) [m^2/s^2]: covariance of the velocity
-    along the normal and the tangent, and of the step. `turning` (n,) [rad/s]: angle by which the normal is wrong for
-    each second by which the mallet's clock is early against the camera's; `recording` (n,): number of the recording,
-    each of which has such an error of its own.
+    along the normal and the tangent, and of the step. `turning` (n,) [rad/s], `mallet_acceleration` (n, 2) [m/s^2]: by
+    how much the normal's angle and the mallet's velocity are wrong for each second by which the mallet's clock is early
+    against the camera's; `recording` (n,): number of the recording, each of which has such an error of its own.
     """
 
     mallet_velocity: np.ndarray
     mallet_step: np.ndarray
     mallet_covariance: np.ndarray
     turning: np.ndarray
+    mallet_acceleration: np.ndarray
     recording: np.ndarray
 
     @property
@@ -57,7 +58,7 @@ def mallet_contacts(
         for motion in contact_motions
         if (row := _fields(motion, path, geometry)) is not None
     ]
-    shapes = {"mallet_velocity": (2,), "mallet_covariance": (3, 3)}
+    shapes = {"mallet_velocity": (2,), "mallet_covariance": (3, 3), "mallet_acceleration": (2,)}
     return make_contacts(MalletContacts, rows, contact_motions, shapes)
 
 
@@ -77,7 +78,7 @@ def _fields(motion: ContactMotion, path: MalletPath, geometry: Geometry) -> dict
     away = place - mallet
     distance = float(np.linalg.norm(away))
     normal = away / distance
-    velocity, step, covariance = mallet_motion
+    velocity, step, covariance, acceleration = mallet_motion
     radii = geometry.puck_radius + geometry.mallet_radius
     closing_speed = (velocity - before.velocity) @ normal
     if abs(distance - radii) > MALLET.farthest_rims or closing_speed < MALLET.least_closing_speed:
@@ -88,6 +89,7 @@ def _fields(motion: ContactMotion, path: MalletPath, geometry: Geometry) -> dict
         "normal": normal, "t": t, "place": place, "velocity_before": before.velocity, "velocity_after": after.velocity,
         "mallet_velocity": velocity, "mallet_step": step @ normal, "mallet_covariance": _covariance(normal, covariance),
         "turning": float(velocity @ [normal[1], -normal[0]]) / distance,
+        "mallet_acceleration": acceleration,
         "normal_std": place_std / radii, "spin_chain": motion.spin_chain, "cluster": motion.cluster,
         **velocity_errors(normal, before, after),
     }  # fmt: skip

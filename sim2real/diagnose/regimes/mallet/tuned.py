@@ -38,11 +38,11 @@ class MalletNumbers:
         "offset for a law of contacts, more loses friction at contacts of a mallet that always moves alike",
         "choice: the smallest delay of the camera that is named (`regimes.sensing.tuned.CLOCK.least_delay`)",
     )
-    turn_step: float = tuned(
-        1e-5,
-        "rad",
+    clock_step: float = tuned(
+        1e-6,
+        "s",
         "less loses a derivative in rounding; more sees the curvature of the law",
-        "choice: a difference step far below the noise of any normal",
+        "choice: a difference step far below what any clock is known by",
     )
     frictions: tuple[float, ...] = tuned(
         (0.05, 0.1, 0.2, 0.4),

@@ -41,10 +41,13 @@ def test_velocities_along_and_across_the_normal() -> None:
 def test_the_approach_to_a_mallet_is_relative_to_it() -> None:
     mallet = {
         "mallet_velocity": np.array([1.0, 1.0]), "mallet_step": 0.0, "mallet_covariance": np.zeros((3, 3)),
-        "turning": 0.0, "recording": 0,
+        "turning": 0.0, "mallet_acceleration": np.zeros(2), "recording": 0,
     }  # fmt: skip
     found = make_contacts(
-        MalletContacts, [{**ROWS[0], **mallet}], [], {"mallet_velocity": (2,), "mallet_covariance": (3, 3)}
+        MalletContacts,
+        [{**ROWS[0], **mallet}],
+        [],
+        {"mallet_velocity": (2,), "mallet_covariance": (3, 3), "mallet_acceleration": (2,)},
     )
     assert found.closing_speed == pytest.approx([5.0]) and found.tangential_velocity == pytest.approx([-2.0])
 

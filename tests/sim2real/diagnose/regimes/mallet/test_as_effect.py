@@ -46,7 +46,8 @@ def random_contacts(count: int) -> MalletContacts:
     return MalletContacts(
         normal=normal, t=np.sort(rng.uniform(0.0, 60.0, count)), place=rng.uniform(0.1, 0.9, (count, 2)),
         velocity_before=before, velocity_after=-before, mallet_velocity=mallet_velocity, mallet_step=np.zeros(count),
-        normal_std=np.zeros(count), turning=np.zeros(count), recording=np.zeros(count, int),
+        normal_std=np.zeros(count), turning=np.zeros(count),
+        mallet_acceleration=np.zeros((count, 2)), recording=np.zeros(count, int),
         mallet_covariance=np.tile(1e-6 * np.eye(3), (count, 1, 1)),
         velocity_covariance=np.tile(1e-6 * np.eye(2), (count, 2, 1, 1)),
         common_errors=np.zeros((count, 2, 2, 0)), spin_chain=np.arange(count),
