@@ -28,6 +28,7 @@ POLL = 0.0009  # s between polls; no whole number of the board's ticks, so that 
 SHOWN_WITHIN = 0.01  # s in which telemetry shows what a message did
 STALE = 0.03  # s without telemetry, which comes every 2 ms, after which the board counts as lost
 MICRO = 1e-6
+HARMLESS = ("disarm", "clear")  # refused where the board is not in the state that they end
 NAMES = {number: message.__name__.lower() for message, (number, _) in FORMATS.items()}
 
 
@@ -44,6 +45,7 @@ class BoardLine:
         self._now, self._serve = now, serve
         self.session = Session(connect, now)
         self._armed = False
+        self._heard = -math.inf  # when telemetry came last [s]
         self._clears_at = -math.inf  # when a board in FAULT is asked to leave it next
         self._refused = ""  # the first message that the board refused, and why
         self._fates = PlanFates()
@@ -110,6 +112,7 @@ class BoardLine:
     def arm(self) -> None:
         """Enable the motors. TableFaultError if the board does not."""
         self._armed = True  # from now on it may be
+        self._heard = self._now()
         self.session.arm()
         self._until(lambda: self.session.state in (State.ARMED, State.FAULT), "the board does not arm")
         self.check()
@@ -136,6 +139,7 @@ class BoardLine:
             self._take(event)
         session.take_notes()
         for telemetry in session.take_telemetry():
+            self._heard = self._now()
             if telemetry.state in (State.IDLE, State.ARMED) and len(session.clock):
                 self._said.append(telemetry)
                 self._fates.see(telemetry.sequence, session.clock.to_host(telemetry.time))
@@ -153,6 +157,8 @@ class BoardLine:
         if event.code != Notice.REFUSED:
             return
         name, reason = NAMES.get(event.detail >> 8, "message"), Refusal(event.detail & 0xFF)
+        if name in HARMLESS:
+            return
         if name == "traj" and reason == Refusal.TOO_LATE:
             self._fates.refuse_late()
         elif not self._refused:
@@ -169,7 +175,7 @@ class BoardLine:
             return
         if not session.port_is_open:
             raise TableFaultError(Cause.PORT_LOST, "the board's port is lost; plug it in and clear")
-        if session.age is None or session.age > STALE or session.state is None:
+        if self._now() - self._heard > STALE:
             raise TableFaultError(
                 Cause.BOARD_SILENT, f"no telemetry for {1e3 * STALE:.0f} ms; check the cable and clear"
             )
@@ -178,7 +184,7 @@ class BoardLine:
             raise TableFaultError(
                 Cause.BOARD_STOPPED, f"the board stopped the motors: {reason}; see to the table and clear"
             )
-        if session.state != State.ARMED:
+        if session.state not in (None, State.ARMED):  # None for a moment after a reset
             name = State(session.state).name
             raise TableFaultError(Cause.BOARD_NOT_ARMED, f"the board is in {name} and not ARMED; clear to arm it again")
         self._refuse_refusals()

@@ -10,6 +10,7 @@ import numpy as np
 from sim2real.link.board_clock import WINDOW, BoardClock
 from sim2real.recording.folder import Recording, Stream
 from sim2real.table.backend import Place, Reading, SeenFrame, SeenMallet
+from sim2real.table.board_line import POLL
 from sim2real.table.faults import Cause, TableFaultError
 from sim2real.table.latency.strokes import strokes
 from sim2real.table.live_table import LiveTable
@@ -18,7 +19,7 @@ from sim2real.table.recorder.motor_log import Duties, MotorLog
 
 SETTLING = 1.0  # s of pings before the first stroke
 PAUSE = 0.03  # s of rest after a stroke
-LOOK = 0.0005  # s between looks at what came
+LOOK = 0.5 * POLL  # s between looks at what came
 SURE = 0.5 * WINDOW  # s after which a time of the board's clock is taken: then pings from before and after it are used
 
 
