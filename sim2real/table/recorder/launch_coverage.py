@@ -25,7 +25,7 @@ HEADINGS = (
     "right",
     "opponent and right",
 )  # fmt: skip - counterclockwise from x
-WALLS = ("x0", "xL", "y0", "yW")
+WALLS = {"x0": "robot's end", "xL": "opponent's end", "y0": "robot's right", "yW": "robot's left"}
 ENOUGH_CONTACTS = 4  # of each wall
 
 
@@ -92,14 +92,15 @@ class LaunchCoverage:
         names = {"speed": list(SPEEDS), "heading": [f"towards {one}" for one in HEADINGS], "along": list(ALONG),
                  "across": list(ACROSS)}  # fmt: skip
         none = [words[k] for name, words in names.items() for k in np.flatnonzero(self.counts(name) == 0)]
-        return none + [f"wall {name}" for name, count in self.contacts.items() if count < ENOUGH_CONTACTS]
+        few = [WALLS[name] for name, count in self.contacts.items() if count < ENOUGH_CONTACTS]
+        return none + ([f"{ENOUGH_CONTACTS} contacts with the walls at {', '.join(few)}"] if few else [])
 
     @property
     def summary(self) -> str:
         """What was seen, in one line."""
         speeds = ", ".join(f"{count} {name}" for name, count in zip(SPEEDS, self.counts("speed"), strict=True))
         headings = int((self.counts("heading") > 0).sum())
-        walls = ", ".join(f"{name} {count}" for name, count in self.contacts.items())
+        walls = ", ".join(f"{WALLS[name]} {count}" for name, count in self.contacts.items())
         rest = f"; still missing: {', '.join(self.missing)}" if self.missing else "; nothing is missing"
         return (
             f"{len(self.launches)} launches seen: {speeds}; {headings} of {len(HEADINGS)} headings; wall contacts: "

@@ -17,7 +17,7 @@ def test_a_launch_is_counted_in_its_classes() -> None:
     assert launch == Launch(list(SPEEDS).index("fast"), HEADINGS.index("robot and left"), 2, 1)
     assert launch.words == "fast (1.8 to 3.5 m/s), from the opponent's end, robot's left, towards robot and left"
     assert "middle" in coverage.missing and "opponent's end" not in coverage.missing
-    assert "wall yW" in coverage.missing
+    assert "robot's left" in coverage.missing[-1] and "contacts with the walls" in coverage.missing[-1]
 
 
 def test_what_is_asked_for_next_covers_everything() -> None:
@@ -29,7 +29,7 @@ def test_what_is_asked_for_next_covers_everything() -> None:
         assert coverage.launches[-1] == launch
     assert coverage.counts("heading").tolist() == [1] * len(HEADINGS)
     assert coverage.counts("speed").min() >= 2 and coverage.counts("along").min() >= 8 // len(ALONG)
-    assert coverage.missing == ["wall x0", "wall xL", "wall y0", "wall yW"]
+    assert coverage.missing == ["4 contacts with the walls at robot's end, opponent's end, robot's right, robot's left"]
 
 
 def watched(places: np.ndarray) -> LaunchCoverage:
