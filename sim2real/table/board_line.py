@@ -22,7 +22,7 @@ from sim2real.table.plan_fates import PlanFates
 AT_HOME = 0.002  # m from the home that was sent, by the encoders
 PATIENCE = 2.0  # s that a step of the bring-up may take
 BRAKES_WITHIN = 0.1  # s in which a board that was asked to shows that it has stopped, before it gets an emergency stop
-ESTOP_WITHIN = 0.05  # s in which it shows that it did that, before a person is told
+ESTOP_WITHIN = 0.05  # s in which it shows that it did that, before a person is warned
 EXCHANGES = 10  # pings that are answered before the board's clock is relied on
 POLL = 0.0009  # s between polls; no whole number of the board's ticks, so that pings meet these at all phases
 SHOWN_WITHIN = 0.01  # s in which telemetry shows what a message did

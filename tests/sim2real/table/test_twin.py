@@ -10,23 +10,7 @@ pytest.importorskip("unicorn", reason="unicorn is not installed: the program can
 
 import puckpilot_env  # noqa: F401 - registers the ids
 from sim2real.table.game.robot_seat import RobotSeat, make_robot_seat
-from sim2real.table.twin.twin import Twin
-
-MATCH = "puckpilot/match-v0"
-STAY = np.array([0.25, 0.5, 5.0, 5.0], np.float32)
-
-
-@pytest.fixture
-def seat():
-    env = make_robot_seat(MATCH, "twin", opponent="still", seed=2)
-    yield env
-    env.close()
-
-
-def twin_of(env: RobotSeat) -> Twin:
-    twin = env.backend
-    assert isinstance(twin, Twin)
-    return twin
+from tests.sim2real.table.seats import MATCH, STAY, twin_of
 
 
 def test_it_has_the_spaces_of_the_simulator(seat: RobotSeat) -> None:

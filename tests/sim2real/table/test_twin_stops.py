@@ -10,24 +10,8 @@ pytest.importorskip("unicorn", reason="unicorn is not installed: the program can
 import puckpilot_env  # noqa: F401 - registers the ids
 from sim2real.table.board_config import SILENCE
 from sim2real.table.faults import TableFaultError
-from sim2real.table.game.robot_seat import RobotSeat, make_robot_seat
-from sim2real.table.twin.twin import Twin
-
-MATCH = "puckpilot/match-v0"
-STAY = np.array([0.25, 0.5, 5.0, 5.0], np.float32)
-
-
-@pytest.fixture
-def seat():
-    env = make_robot_seat(MATCH, "twin", opponent="still", seed=2)
-    yield env
-    env.close()
-
-
-def twin_of(env: RobotSeat) -> Twin:
-    twin = env.backend
-    assert isinstance(twin, Twin)
-    return twin
+from sim2real.table.game.robot_seat import RobotSeat
+from tests.sim2real.table.seats import STAY, twin_of
 
 
 def test_a_motor_never_gets_more_than_15_volts(seat: RobotSeat) -> None:
