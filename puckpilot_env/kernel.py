@@ -7,6 +7,7 @@ players have one each, so that an edit there leaves the simulator compiled.
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import hashlib
 import os
@@ -14,12 +15,15 @@ import shutil
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import numba
+from numba import types
 from numba.core import config as numba_config
+from numba.core.ccallback import CFunc
+from numba.extending import intrinsic
 
 _ROOT = Path(__file__).parent
 _KEEP_DAYS = 30
@@ -92,14 +96,21 @@ def _mend_damaged(cache: Any) -> None:
     cache.load_overload = load_overload
 
 
-def _compiled(function: Callable[..., Any], **flags: Any) -> Callable[..., Any]:
+@contextlib.contextmanager
+def _cached_for(function: Callable[..., Any]) -> Iterator[None]:
+    """Within, numba keeps what it compiles in the folder of the function's package."""
     before, _config.CACHE_DIR = _config.CACHE_DIR, str(cache_folder_of(function.__module__.partition(".")[0]))
     try:
+        yield
+    finally:
+        _config.CACHE_DIR = before
+
+
+def _compiled(function: Callable[..., Any], **flags: Any) -> Callable[..., Any]:
+    with _cached_for(function):
         made: Any = numba.njit(cache=True, **{**_FLAGS, **flags})(function)
         _mend_damaged(made._cache)
         return made
-    finally:
-        _config.CACHE_DIR = before
 
 
 def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -126,6 +137,40 @@ def inner(function: Callable[..., Any]) -> Callable[..., Any]:
     It has no cache of its own, for numba tells functions apart by where they stand; its callers' caches hold it.
     """
     return numba.njit(**_FLAGS)(function)
+
+
+def c_callback(signature: Any) -> Callable[[Callable[..., Any]], Any]:
+    """Compile a function at once for a library in C to call; `signature` is numba's, `address` is where it is."""
+
+    def compiled(function: Callable[..., Any]) -> Any:
+        with _cached_for(function):
+            flags = {"error_model": _FLAGS["error_model"]}
+            made: Any = CFunc(function, (signature.args, signature.return_type), {}, flags)
+            made.enable_caching()
+            _mend_damaged(made._cache)
+            made.compile()
+            return made
+
+    return compiled
+
+
+def _pointer_to(_typing: Any, _address: Any) -> Any:
+    """An address (int64) as a pointer."""
+
+    def generate(context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
+        return builder.inttoptr(arguments[0], context.get_value_type(types.voidptr))
+
+    return types.voidptr(types.int64), generate
+
+
+_carray: Any = numba.carray  # pyright: ignore[reportPrivateImportUsage]
+_as_pointer: Any = intrinsic(_pointer_to)
+
+
+@array_kernel
+def array_at(address, shape, dtype):
+    """The array whose data are at an address (int64), which kernels take faster from Python than an array."""
+    return _carray(_as_pointer(address), shape, dtype)
 
 
 _announced = False

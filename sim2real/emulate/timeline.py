@@ -1,47 +1,55 @@
-"""Virtual time of the microcontroller in whole ticks, with scheduled events."""
+"""Virtual time of the microcontroller in whole ticks, and the tick of the next event of each kind."""
 
 from __future__ import annotations
 
-import heapq
-from collections.abc import Callable
+import numpy as np
+
+from puckpilot_env.kernel import inlined_kernel, kernel
 
 PER_US = 576  # ticks per microsecond: a cycle at 8, 64 and 72 MHz is a whole number of ticks
+NEVER = 1 << 62  # a tick that does not come
+TICK_DUE, BYTE_COMES, PIECE_SENT, WATCHDOG_DUE = range(4)  # kinds of events
+KINDS = 4
+
+# now: only moves forward; due: tick of each kind's event; order: in which they were scheduled, for those of one tick
+TIMELINE = np.dtype(
+    [("now", np.int64), ("due", np.int64, KINDS), ("order", np.int64, KINDS), ("count", np.int64)], align=True
+)
 
 
-class Timeline:
-    """A clock that only moves forward. Events run in order of their ticks; at the same tick, in order of scheduling."""
+@kernel
+def clear_timeline(timeline):
+    """Cancel all events; time is kept."""
+    for kind in range(KINDS):
+        timeline.due[kind] = NEVER
 
-    def __init__(self) -> None:
-        self.now = 0
-        self._events: list[tuple[int, int, Callable[[], None]]] = []
-        self._count = 0
-        self._dropped: set[int] = set()
 
-    def at(self, tick: int, what: Callable[[], None]) -> int:
-        """Schedule a call of `what` at `tick`, at once if that is past. Returns a number for `drop`."""
-        self._count += 1
-        heapq.heappush(self._events, (max(tick, self.now), self._count, what))
-        return self._count
+@inlined_kernel
+def schedule(timeline, kind, tick):
+    """Let an event come at `tick`, at once if that is past, in place of the one of its kind."""
+    timeline.count += 1
+    timeline.due[kind] = max(tick, timeline.now)
+    timeline.order[kind] = timeline.count
 
-    def drop(self, number: int) -> None:
-        """Cancel an event that has not run yet; 0 is ignored."""
-        if number:
-            self._dropped.add(number)
 
-    def next(self) -> int | None:
-        """The tick of the next event; None if there is none."""
-        events = self._events
-        while events and events[0][1] in self._dropped:
-            self._dropped.discard(heapq.heappop(events)[1])
-        return events[0][0] if events else None
+@inlined_kernel
+def drop(timeline, kind):
+    """Cancel an event; nothing if there is none."""
+    timeline.due[kind] = NEVER
 
-    def step(self) -> None:
-        """Advance to the next event and run it."""
-        tick, _, what = heapq.heappop(self._events)
-        self.now = tick
-        what()
 
-    def clear(self) -> None:
-        """Cancel all events; time is kept."""
-        self._events.clear()
-        self._dropped.clear()
+@inlined_kernel
+def next_kind(timeline):
+    """The kind of the event that comes next; its tick is NEVER if there is none."""
+    first = 0
+    for kind in range(1, KINDS):
+        due, best = timeline.due[kind], timeline.due[first]
+        if due < best or (due == best and timeline.order[kind] < timeline.order[first]):
+            first = kind
+    return first
+
+
+@inlined_kernel
+def next_tick(timeline):
+    """The tick of the next event, NEVER if there is none."""
+    return timeline.due[next_kind(timeline)]

@@ -1,2 +1,2 @@
-"""The microcontroller's peripherals, each with its registers (base class in `registers.py`), and the encoders
-(`as5147.py`) and motor drivers (`motors.py`) that are wired to them."""
+"""The microcontroller's peripherals, a file each, and the parts that are wired to them: each a record of its state, and
+the kernels that answer an access to its registers or an event."""

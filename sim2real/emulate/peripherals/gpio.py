@@ -2,56 +2,68 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+import numpy as np
 
-from sim2real.emulate.peripherals.registers import Peripheral, nothing
+from puckpilot_env.kernel import kernel
 
+OFFSETS = ("CRL", "CRH", "", "ODR", "BSRR", "BRR")
+CRL, CRH, _, ODR, BSRR, BRR = range(6)
+PORT_A, PORT_B = 0, 1
+NAMES, BASES = ("GPIOA", "GPIOB"), (0x40010800, 0x40010C00)
+_FLOATING = 0x44444444
 _PULLED = 8  # of a pin's four bits in CRL or CRH; outputs have one of the lower two set, alternate functions bit 3 too
 
+# Masks with a bit for each pin: driven: outputs of ODR; alternate: outputs of a peripheral; held: driven or pulled by
+# ODR; high, low: level that ODR gives by driving or pulling.
+PORT = np.dtype(
+    [
+        ("values", np.int64, 6), ("driven", np.int64), ("alternate", np.int64), ("held", np.int64), ("high", np.int64),
+        ("low", np.int64),
+    ],
+    align=True,
+)  # fmt: skip
 
-class GpioPort(Peripheral):
-    """GPIOA or GPIOB; `changed` is called after each write that changes a pin.
 
-    Masks with a bit for each pin: driven: outputs of ODR; alternate: outputs of a peripheral; high, low: level that ODR
-    gives by driving or pulling.
-    """
+@kernel
+def reset_port(port):
+    """The state after a reset: every pin floats."""
+    for register in range(6):
+        port.values[register] = 0
+    port.values[CRL] = port.values[CRH] = _FLOATING
+    port.driven = port.alternate = port.held = port.high = port.low = 0
 
-    offsets = ("CRL", "CRH", "", "ODR", "BSRR", "BRR")
-    start: ClassVar[dict[str, int]] = {"CRL": 0x44444444, "CRH": 0x44444444}
 
-    def __init__(self, letter: str, base: int) -> None:
-        self.name, self.base, self.changed = f"GPIO{letter}", base, nothing
-        super().__init__()
+@kernel
+def read_port(port, register):
+    """Read a register; BSRR and BRR read as 0."""
+    return 0 if register >= BSRR else port.values[register]
 
-    def reset(self) -> None:
-        """As after a reset: every pin floats."""
-        super().reset()
-        self._modes()
-        self.high = self.low = 0
 
-    def set(self, register: str, value: int) -> None:
-        """See `Peripheral`."""
-        values = self.values
-        if register == "BSRR" or register == "BRR":
-            before = values["ODR"]
-            after = before & ~(value >> 16) | value & 0xFFFF if register == "BSRR" else before & ~value
-            if after == before:
-                return
-            values["ODR"] = after
-        else:
-            values[register] = value
-            self._modes()
-        held = self._held
-        self.high, self.low = held & values["ODR"], held & ~values["ODR"]
-        self.changed()
+@kernel
+def write_port(port, register, value):
+    """Write a register; whether that may have changed a pin."""
+    values = port.values
+    if register >= BSRR:
+        before = values[ODR]
+        after = (before & ~(value >> 16)) | (value & 0xFFFF) if register == BSRR else before & ~value
+        if after == before:
+            return False
+        values[ODR] = after
+    else:
+        values[register] = value
+        _modes(port)
+    port.high, port.low = port.held & values[ODR], port.held & ~values[ODR]
+    return True
 
-    def get(self, register: str) -> int:
-        """BSRR and BRR read as 0."""
-        return 0 if register in ("BSRR", "BRR") else self.values[register]
 
-    def _modes(self) -> None:
-        config = self.values["CRH"] << 32 | self.values["CRL"]
-        modes = [config >> 4 * pin & 15 for pin in range(16)]
-        self.driven = sum(1 << pin for pin, mode in enumerate(modes) if mode & 3 and not mode & 8)
-        self.alternate = sum(1 << pin for pin, mode in enumerate(modes) if mode & 3 and mode & 8)
-        self._held = self.driven | sum(1 << pin for pin, mode in enumerate(modes) if mode == _PULLED)
+@kernel
+def _modes(port):
+    port.driven = port.alternate = port.held = 0
+    for pin in range(16):
+        mode = port.values[CRH if pin >= 8 else CRL] >> 4 * (pin % 8) & 15
+        if mode & 3 and mode & 8:
+            port.alternate |= 1 << pin
+        elif mode & 3:
+            port.driven |= 1 << pin
+        if (mode & 3 and not mode & 8) or mode == _PULLED:
+            port.held |= 1 << pin

@@ -5,40 +5,63 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 
-from sim2real.emulate.peripherals.gpio import GpioPort
-from sim2real.emulate.peripherals.timers import PwmTimer
+import numpy as np
+
+from puckpilot_env.kernel import kernel
+from sim2real.emulate.peripherals.gpio import PORT_B
+from sim2real.emulate.peripherals.timers import pwm_duty
+from sim2real.emulate.timeline import PER_US
+from sim2real.emulate.unicorn_calls import DRIVE, address_of, call_drive
 
 KEPT = 1_000_000  # changes: a quarter of an hour of play
 PWM_PINS, DIRECTION_PINS = (13, 14), (12, 15)  # of port B, of motors 0 and 1
 
+# duties: of both motors, -1 to 1; changed: address of the function that is called at each change
+MOTORS = np.dtype([("duties", np.float64, 2), ("changed", np.int64)], align=True)
+
+
+@kernel
+def update_motors(board):
+    """Recompute the duties after a write to a register behind the pins."""
+    first, second = _duty(board, 0), _duty(board, 1)
+    motors = board.motors
+    if first != motors.duties[0] or second != motors.duties[1]:
+        motors.duties[0], motors.duties[1] = first, second
+        call_drive(motors.changed, board.timeline.now / PER_US, first, second)
+
+
+@kernel
+def _duty(board, motor):
+    pin, port = PWM_PINS[motor], board.ports[PORT_B]
+    high = pwm_duty(board.pwm, motor) if port.alternate >> pin & 1 else float(port.high >> pin & 1)
+    return high if port.high >> DIRECTION_PINS[motor] & 1 or high == 0.0 else -high
+
 
 class Motors:
-    """Both drivers. log: `(time [us], duty 0, duty 1)` at each of the last KEPT changes, with duties from -1 to 1;
-    listeners: called with the same at each change."""
+    """What becomes of the duties. log: `(time [us], duty 0, duty 1)` at each of the last KEPT changes, with duties from
+    -1 to 1; listeners: called with the same at each change.
 
-    def __init__(self, port: GpioPort, timer: PwmTimer, now: Callable[[], float]) -> None:
-        self._port, self._timer, self._now = port, timer, now
+    state: a record of MOTORS; failed: called with an error of a listener, which cannot be raised from here.
+    """
+
+    def __init__(self, state: np.void, failed: Callable[[BaseException], None]) -> None:
         self.listeners: list[Callable[[float, float, float], None]] = []
         self.log: deque[tuple[float, float, float]] = deque([(0.0, 0.0, 0.0)], maxlen=KEPT)
+        self._failed = failed
+        self._changed = DRIVE(self._note)  # kept as long as it is called
+        state["changed"] = address_of(self._changed)
 
     @property
     def duties(self) -> tuple[float, float]:
         """The present duties, -1 to 1."""
         return self.log[-1][1:]
 
-    def update(self) -> None:
-        """Recompute the duties after a write to a register behind the pins."""
-        duties = self._duty(0), self._duty(1)
-        if duties == self.duties:
-            return
-        now = self._now()
-        if self.log[-1][0] == now and len(self.log) > 1:
-            self.log.pop()
-        self.log.append((now, *duties))
-        for listen in self.listeners:
-            listen(now, *duties)
-
-    def _duty(self, motor: int) -> float:
-        pin = PWM_PINS[motor]
-        high = self._timer.duty(motor) if self._port.alternate >> pin & 1 else float(self._port.high >> pin & 1)
-        return high if self._port.high >> DIRECTION_PINS[motor] & 1 or not high else -high
+    def _note(self, *change: float) -> None:
+        try:
+            if self.log[-1][0] == change[0] and len(self.log) > 1:
+                self.log.pop()
+            self.log.append(change)  # pyright: ignore[reportArgumentType]
+            for listen in self.listeners:
+                listen(*change)
+        except BaseException as error:  # compiled code is between here and who handles it
+            self._failed(error)

@@ -2,95 +2,115 @@
 
 from __future__ import annotations
 
-from sim2real.emulate.peripherals.registers import NotModelledError
+import numpy as np
 
+from puckpilot_env.kernel import inlined_kernel, kernel
+from sim2real.emulate import refusals
+from sim2real.emulate.refusals import refuse
+
+BASE = 0xE000E000
 NMI, HARD_FAULT, SYSTICK = 2, 3, 15
 INTERRUPT = 16  # exception number of interrupt 0
-_HIGHEST = {NMI: -2, HARD_FAULT: -1}
 _ENABLE, _DISABLE, _PRIORITY, _SYSTEM_PRIORITY = 0x100, 0x180, 0x400, 0xD18
 _INTERRUPTS = 43
+_NUMBERS = INTERRUPT + _INTERRUPTS
+NO_EXCEPTION = 0
+
+# Sets of exceptions have a bit for each number. high: interrupts whose line is active; active: those being handled, the
+# innermost last, `depth` of them; priority: by number, only the upper 4 bits count, as on the STM32F1.
+NVIC = np.dtype(
+    [
+        ("enabled", np.int64), ("pending", np.int64), ("high", np.int64), ("depth", np.int64),
+        ("active", np.int64, 64), ("priority", np.int64, 64),
+    ],
+    align=True,
+)  # fmt: skip
 
 
-class Nvic:
-    """Pending, enabled and active exceptions; only the upper 4 bits of a priority count, as on the STM32F1."""
+@kernel
+def reset_nvic(nvic):
+    """The state after a reset: no interrupt enabled, pending or active."""
+    nvic.enabled = 1 << NMI | 1 << HARD_FAULT | 1 << SYSTICK
+    nvic.pending = nvic.high = nvic.depth = 0
+    for number in range(_NUMBERS):
+        nvic.priority[number] = 0
+    nvic.priority[NMI], nvic.priority[HARD_FAULT] = -2, -1
 
-    base = 0xE000E000
 
-    def __init__(self) -> None:
-        self.reset()
+@inlined_kernel
+def set_line(nvic, interrupt, high):
+    """Set the level of a peripheral's interrupt line."""
+    bit = 1 << (INTERRUPT + interrupt)
+    if high and not nvic.high & bit:
+        nvic.high |= bit
+        nvic.pending |= bit
+    elif not high:
+        nvic.high &= ~bit
 
-    def reset(self) -> None:
-        """Set the state after a reset: no interrupt enabled, pending or active."""
-        self.enabled = {NMI, HARD_FAULT, SYSTICK}
-        self.pending: set[int] = set()
-        self.active: list[int] = []
-        self.high: set[int] = set()  # interrupts whose line is active
-        self.priority: dict[int, int] = dict(_HIGHEST)
 
-    def line(self, interrupt: int, high: bool) -> None:
-        """Set the level of a peripheral's interrupt line."""
-        number = INTERRUPT + interrupt
-        if high and number not in self.high:
-            self.high.add(number)
-            self.pending.add(number)
-        elif not high:
-            self.high.discard(number)
+@kernel
+def next_exception(nvic):
+    """The pending exception that preempts the active ones, regardless of masks; NO_EXCEPTION if there is none."""
+    ready = nvic.pending & nvic.enabled
+    best, level = NO_EXCEPTION, 1 << 8
+    number = 0
+    while ready:
+        if ready & 1 and nvic.priority[number] < level:
+            best, level = number, nvic.priority[number]
+        ready >>= 1
+        number += 1
+    for index in range(nvic.depth):
+        if nvic.priority[nvic.active[index]] <= level:
+            return NO_EXCEPTION
+    return best
 
-    def level(self, number: int) -> int:
-        """The priority of an exception; lower is more urgent."""
-        return self.priority.get(number, 0)
 
-    def next(self) -> int | None:
-        """The pending exception that preempts the active ones, regardless of masks; None if there is none."""
-        ready = self.pending & self.enabled
-        if not ready:
-            return None
-        if len(ready) > 1:
-            level, number = min((self.level(number), number) for number in ready)
-        else:
-            (number,) = ready
-            level = self.level(number)
-        for one in self.active:
-            if self.level(one) <= level:
-                return None
-        return number
+@kernel
+def enter_exception(nvic, number):
+    """Note that an exception is entered."""
+    nvic.pending &= ~(1 << number)
+    nvic.active[nvic.depth] = number
+    nvic.depth += 1
 
-    def enter(self, number: int) -> None:
-        """Note that an exception is entered."""
-        self.pending.discard(number)
-        self.active.append(number)
 
-    def leave(self) -> None:
-        """Note the return from the innermost exception; it becomes pending again if its line is still active."""
-        number = self.active.pop()
-        if number in self.high:
-            self.pending.add(number)
+@kernel
+def leave_exception(nvic):
+    """Note the return from the innermost exception; it becomes pending again if its line is still active."""
+    nvic.depth -= 1
+    nvic.pending |= 1 << nvic.active[nvic.depth] & nvic.high
 
-    def read(self, offset: int, size: int) -> int:
-        """Read a register. Raises NotModelledError for one that is not modelled."""
-        if _ENABLE <= offset < _ENABLE + 8:
-            first = INTERRUPT + (offset - _ENABLE) * 8
-            return sum(1 << bit for bit in range(32) if first + bit in self.enabled)
-        if size == 1 and (number := self._byte(offset)) is not None:
-            return self.level(number)
-        raise NotModelledError(f"read of {size} bytes at 0x{self.base + offset:08X} (NVIC): not modelled")
 
-    def write(self, offset: int, value: int, size: int) -> None:
-        """Write a register. Raises NotModelledError for one that is not modelled."""
-        if size == 4 and (_ENABLE <= offset < _ENABLE + 8 or _DISABLE <= offset < _DISABLE + 8):
-            base = _ENABLE if offset < _DISABLE else _DISABLE
-            named = {INTERRUPT + (offset - base) * 8 + bit for bit in range(32) if value >> bit & 1}
-            self.enabled = self.enabled | named if base == _ENABLE else self.enabled - named
-        elif size == 1 and (number := self._byte(offset)) is not None:
-            self.priority[number] = value & 0xF0
-        else:
-            raise NotModelledError(f"write of {size} bytes at 0x{self.base + offset:08X} (NVIC): not modelled")
+@kernel
+def _of_byte(offset):
+    """The exception whose priority is at `offset`; NO_EXCEPTION if there is none."""
+    if _PRIORITY <= offset < _PRIORITY + _INTERRUPTS:
+        return INTERRUPT + offset - _PRIORITY
+    if _SYSTEM_PRIORITY <= offset < _SYSTEM_PRIORITY + 12:
+        return 4 + offset - _SYSTEM_PRIORITY
+    return NO_EXCEPTION
 
-    @staticmethod
-    def _byte(offset: int) -> int | None:
-        """The exception whose priority is at `offset`; None if there is none."""
-        if _PRIORITY <= offset < _PRIORITY + _INTERRUPTS:
-            return INTERRUPT + offset - _PRIORITY
-        if _SYSTEM_PRIORITY <= offset < _SYSTEM_PRIORITY + 12:
-            return 4 + offset - _SYSTEM_PRIORITY
-        return None
+
+@kernel
+def read_nvic(board, offset, size):
+    """Read a register of so many bytes."""
+    if _ENABLE <= offset < _ENABLE + 8:
+        return board.nvic.enabled >> (INTERRUPT + (offset - _ENABLE) * 8) & 0xFFFFFFFF
+    number = _of_byte(offset)
+    if size == 1 and number != NO_EXCEPTION:
+        return board.nvic.priority[number]
+    refuse(board, refusals.READ, BASE + offset)
+    return 0
+
+
+@kernel
+def write_nvic(board, offset, value, size):
+    """Write a register of so many bytes."""
+    nvic, number = board.nvic, _of_byte(offset)
+    if size == 4 and _ENABLE <= offset < _ENABLE + 8:
+        nvic.enabled |= value << (INTERRUPT + (offset - _ENABLE) * 8)
+    elif size == 4 and _DISABLE <= offset < _DISABLE + 8:
+        nvic.enabled &= ~(value << (INTERRUPT + (offset - _DISABLE) * 8))
+    elif size == 1 and number != NO_EXCEPTION:
+        nvic.priority[number] = value & 0xF0
+    else:
+        refuse(board, refusals.WRITE, BASE + offset)

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import ClassVar
+import numpy as np
 
-from sim2real.emulate.peripherals.registers import NotModelledError, Peripheral
-from sim2real.emulate.timeline import PER_US, Timeline
+from puckpilot_env.kernel import kernel
+from sim2real.emulate import refusals
+from sim2real.emulate.refusals import refuse
+from sim2real.emulate.timeline import NEVER, PER_US
 
+NAME, BASE = "RCC", 0x40021000
+OFFSETS = ("CR", "CFGR", "", "", "", "AHBENR", "APB2ENR", "APB1ENR", "", "CSR")
+CR, CFGR, AHBENR, APB2ENR, APB1ENR, CSR = 0, 1, 5, 6, 7, 9
+FLASH_NAME, FLASH_BASE, FLASH_OFFSETS = "FLASH", 0x40022000, ("ACR",)
 _HSIRDY, _HSEON, _HSERDY = 1 << 1, 1 << 16, 1 << 17
 _CSSON, _PLLON, _PLLRDY = 1 << 19, 1 << 24, 1 << 25
 _CFGR_KNOWN = 0x3D070F
@@ -17,100 +22,105 @@ _HSE_START, _PLL_START = 1000 * PER_US, 100 * PER_US
 _POLL = PER_US // 4  # ticks of one poll of a crystal that does not start
 CRYSTAL_MHZ = 8
 
+# crystal: whether the 8 MHz crystal starts; megahertz, cycle: the core's clock, and its cycle [ticks]; hse_ready,
+# pll_ready: ticks at which the flags of crystal and PLL are set, NEVER where none is to be; flash: its register ACR
+RCC = np.dtype(
+    [
+        ("values", np.int64, len(OFFSETS)), ("crystal", np.int64), ("megahertz", np.int64), ("cycle", np.int64),
+        ("hse_ready", np.int64), ("pll_ready", np.int64), ("flash", np.int64),
+    ],
+    align=True,
+)  # fmt: skip
 
-class Flash(Peripheral):
-    """The flash interface with its wait states."""
 
-    name, base, offsets, start = "FLASH", 0x40022000, ("ACR",), {"ACR": 0x30}
+@kernel
+def reset_rcc(rcc, cause):
+    """The state after a reset by `cause`, one of the values of CAUSES."""
+    for register in range(len(OFFSETS)):
+        rcc.values[register] = 0
+    rcc.values[CR], rcc.values[AHBENR], rcc.values[CSR] = 0x83, 0x14, cause
+    rcc.hse_ready = rcc.pll_ready = NEVER
+    rcc.flash = 0x30
+    _configure(rcc, 0)
 
 
-class Rcc(Peripheral):
-    """Oscillators, PLL, dividers, and the cause of the last reset. crystal: whether the 8 MHz crystal starts."""
+@kernel
+def _configure(rcc, config):
+    """Set CFGR and the core's clock that follows from it; timers on both buses have the same clock."""
+    rcc.values[CFGR] = config
+    rcc.megahertz = 8
+    if config & 8:
+        rcc.megahertz = (CRYSTAL_MHZ if config >> 16 & 1 else 4) * ((config >> 18 & 15) + 2)
+    rcc.cycle = PER_US // rcc.megahertz
 
-    name, base = "RCC", 0x40021000
-    offsets = ("CR", "CFGR", "", "", "", "AHBENR", "APB2ENR", "APB1ENR", "", "CSR")
-    start: ClassVar[dict[str, int]] = {"CR": 0x83, "AHBENR": 0x14}
 
-    def __init__(self, timeline: Timeline, wait: Callable[[int], bool], flash: Flash) -> None:
-        self._timeline, self._wait, self._flash = timeline, wait, flash
-        self.crystal = True
-        self.gates: list[tuple[str, int, Peripheral]] = []  # register, bit, and the peripheral whose clock it gates
-        self._ready: dict[int, int] = {}  # by ready flag, the tick at which it is set
-        super().__init__()
+@kernel
+def rcc_polled_until(board, register):
+    """A read of CR takes until the next ready flag is set, because the program polls it."""
+    rcc = board.rcc
+    if register != CR:
+        return 0
+    first = min(rcc.hse_ready, rcc.pll_ready)
+    if first < NEVER:
+        return first
+    return board.timeline.now + _POLL if rcc.values[CR] & _HSEON and not rcc.values[CR] & _HSERDY else 0
 
-    def reset(self, cause: str = "power") -> None:
-        """Set the state after a reset by `cause`, one of CAUSES."""
-        super().reset()
-        self.values["CSR"] = CAUSES[cause]
-        self._configure(0)
-        self._ready.clear()
-        self._switch()
 
-    def _switch(self) -> None:
-        for register, bit, peripheral in self.gates:
-            peripheral.clocked = bool(self.values[register] >> bit & 1)
+@kernel
+def read_rcc(board, register):
+    """Read a register."""
+    rcc, now = board.rcc, board.timeline.now
+    if register == CR:
+        if rcc.hse_ready <= now:
+            rcc.values[CR] |= _HSERDY
+            rcc.hse_ready = NEVER
+        if rcc.pll_ready <= now:
+            rcc.values[CR] |= _PLLRDY
+            rcc.pll_ready = NEVER
+    return rcc.values[register]
 
-    def _configure(self, config: int) -> None:
-        """Set CFGR and the core's clock that follows from it; timers on both buses have the same clock."""
-        self.values["CFGR"] = config
-        self.megahertz = 8
-        if config & 8:
-            self.megahertz = (CRYSTAL_MHZ if config >> 16 & 1 else 4) * ((config >> 18 & 15) + 2)
-        self.cycle = PER_US // self.megahertz  # ticks
 
-    def get(self, register: str) -> int:
-        """Read a register. A read of CR takes until the next ready flag is set, because the program polls it."""
-        if register == "CR":
-            if self._ready:
-                self._await()
-            elif self.values["CR"] & _HSEON and not self.values["CR"] & _HSERDY:
-                self._wait(self._timeline.now + _POLL)
-        return self.values[register]
+@kernel
+def write_rcc(board, register, value):
+    """Write a register."""
+    rcc, now = board.rcc, board.timeline.now
+    before = rcc.values[register]
+    if register == CR:
+        rcc.values[CR] = value & ~(_HSERDY | _PLLRDY) | _HSIRDY | before & (_HSERDY | _PLLRDY)
+        if value & ~before & _HSEON and rcc.crystal:
+            rcc.hse_ready = now + _HSE_START
+        if value & ~before & _PLLON:
+            if rcc.values[CFGR] >> 16 & 1 and not rcc.values[CR] & _HSERDY:
+                refuse(board, refusals.PLL_WITHOUT_CRYSTAL, 0)
+            rcc.pll_ready = now + _PLL_START
+    elif register == CFGR:
+        _set_config(board, value)
+    elif register == CSR:
+        rcc.values[CSR] = 0 if value & _CSR_RMVF else before
+    else:
+        rcc.values[register] = value
 
-    def _await(self) -> None:
-        flag = min(self._ready, key=lambda one: self._ready[one])
-        if self._wait(self._ready[flag]):
-            self.values["CR"] |= flag
-            del self._ready[flag]
 
-    def set(self, register: str, value: int) -> None:
-        """See `Peripheral`."""
-        before = self.values[register]
-        if register == "CR":
-            kept = before & (_HSERDY | _PLLRDY)
-            self.values["CR"] = value & ~(_HSERDY | _PLLRDY) | _HSIRDY | kept
-            if value & ~before & _HSEON and self.crystal:
-                self._ready[_HSERDY] = self._timeline.now + _HSE_START
-            if value & ~before & _PLLON:
-                self._check_pll()
-                self._ready[_PLLRDY] = self._timeline.now + _PLL_START
-        elif register == "CFGR":
-            self._set_config(value)
-        elif register == "CSR":
-            self.values["CSR"] = 0 if value & _CSR_RMVF else before
-        else:
-            self.values[register] = value
-            self._switch()
+@kernel
+def _set_config(board, value):
+    rcc, apb1 = board.rcc, value >> 8 & 7
+    if value & 3 == 1 or value & 3 == 3 or value & ~_CFGR_KNOWN or (apb1 != 0 and apb1 != 4):
+        refuse(board, refusals.CLOCK_CONFIG, value)
+        return
+    _configure(rcc, value & ~0xC | (value & 3) << 2)
+    if value & 2 and not rcc.values[CR] & _PLLRDY:
+        refuse(board, refusals.PLL_NOT_READY, 0)
+    if rcc.megahertz > 36 and not apb1 & 4:
+        refuse(board, refusals.BUS_TOO_FAST, rcc.megahertz)
+    if rcc.megahertz > 72 or (rcc.megahertz > 48 and rcc.flash & 7 < 2):
+        refuse(board, refusals.CORE_TOO_FAST, rcc.megahertz)
 
-    def _check_pll(self) -> None:
-        if self.values["CFGR"] >> 16 & 1 and not self.values["CR"] & _HSERDY:
-            raise NotModelledError("the PLL is switched on at a crystal that does not run")
 
-    def _set_config(self, value: int) -> None:
-        if value & 3 not in (0, 2) or value & ~_CFGR_KNOWN or value >> 8 & 7 not in (0, 4):
-            raise NotModelledError(f"RCC_CFGR = 0x{value:08X}: expected HSI or PLL, and only APB1 divided, by 2")
-        self._configure(value & ~0xC | (value & 3) << 2)
-        if value & 2 and not self.values["CR"] & _PLLRDY:
-            raise NotModelledError("the core is switched to a PLL that is not ready")
-        if self.megahertz > 36 and not value >> 8 & 4:
-            raise NotModelledError(f"{self.megahertz} MHz on APB1: it takes 36")
-        if self.megahertz > 72 or (self.megahertz > 48 and self._flash.values["ACR"] & 7 < 2):
-            raise NotModelledError(f"{self.megahertz} MHz with FLASH_ACR = 0x{self._flash.values['ACR']:X}: too fast")
-
-    def crystal_fails(self) -> bool:
-        """Let the crystal stop. Returns whether the clock security system raises an NMI."""
-        self.crystal = False
-        security = bool(self.values["CR"] & _CSSON)
-        self.values["CR"] &= ~(_HSEON | _HSERDY | _PLLON | _PLLRDY | _CSSON)
-        self._configure(self.values["CFGR"] & ~0xF)
-        return security
+@kernel
+def stop_crystal(rcc):
+    """Let the crystal stop. Returns whether the clock security system raises an NMI."""
+    rcc.crystal = 0
+    security = rcc.values[CR] & _CSSON != 0
+    rcc.values[CR] &= ~(_HSEON | _HSERDY | _PLLON | _PLLRDY | _CSSON)
+    _configure(rcc, rcc.values[CFGR] & ~0xF)
+    return security

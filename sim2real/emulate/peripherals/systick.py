@@ -2,50 +2,47 @@
 
 from __future__ import annotations
 
-from sim2real.emulate.peripherals.nvic import SYSTICK, Nvic
-from sim2real.emulate.peripherals.rcc import Rcc
-from sim2real.emulate.peripherals.registers import NotModelledError, Peripheral
-from sim2real.emulate.timeline import Timeline
+import numpy as np
+
+from puckpilot_env.kernel import kernel
+from sim2real.emulate import refusals
+from sim2real.emulate.peripherals.nvic import SYSTICK
+from sim2real.emulate.refusals import refuse
+from sim2real.emulate.timeline import TICK_DUE, drop, schedule
+
+NAME, BASE, OFFSETS = "SysTick", 0xE000E010, ("CTRL", "LOAD", "VAL")
+CTRL, LOAD, VAL = range(3)
+SYSTICK_STATE = np.dtype([("values", np.int64, 3)], align=True)
 
 
-class SysTick(Peripheral):
-    """The timer without its running count, which is not modelled."""
+@kernel
+def read_systick(board, register):
+    """Read a register; the running count is not modelled."""
+    if register == VAL:
+        refuse(board, refusals.SYSTICK_VALUE, 0)
+    return board.systick.values[register]
 
-    name, base = "SysTick", 0xE000E010
-    offsets = ("CTRL", "LOAD", "VAL")
 
-    def __init__(self, timeline: Timeline, rcc: Rcc, nvic: Nvic) -> None:
-        self._timeline, self._rcc, self._nvic = timeline, rcc, nvic
-        self._event = 0
-        super().__init__()
+@kernel
+def write_systick(board, register, value):
+    """Write a register."""
+    board.systick.values[register] = value
+    if register != CTRL:
+        return
+    if value not in (0, 7):
+        refuse(board, refusals.SYSTICK_CONTROL, value)
+    drop(board.timeline, TICK_DUE)
+    if value:
+        _again(board)
 
-    def get(self, register: str) -> int:
-        """See `Peripheral`."""
-        if register == "VAL":
-            raise NotModelledError("SysTick's VAL is read: not modelled")
-        return self.values[register]
 
-    def set(self, register: str, value: int) -> None:
-        """See `Peripheral`."""
-        self.values[register] = value
-        if register != "CTRL":
-            return
-        if value not in (0, 7):
-            raise NotModelledError(f"SysTick's CTRL = {value}: expected 0, or 7 (on, interrupt, core's clock)")
-        self._timeline.drop(self._event)
-        self._event = 0
-        if value:
-            self._again()
+@kernel
+def _again(board):
+    schedule(board.timeline, TICK_DUE, board.timeline.now + (board.systick.values[LOAD] + 1) * board.rcc.cycle)
 
-    def _again(self) -> None:
-        period = (self.values["LOAD"] + 1) * self._rcc.cycle
-        self._event = self._timeline.at(self._timeline.now + period, self._due)
 
-    def _due(self) -> None:
-        self._nvic.pending.add(SYSTICK)
-        self._again()
-
-    def reset(self) -> None:
-        """Set the state after a reset; the timeline has dropped the event."""
-        super().reset()
-        self._event = 0
+@kernel
+def tick_due(board):
+    """The event: the count is over, and begins again."""
+    board.nvic.pending |= 1 << SYSTICK
+    _again(board)

@@ -2,82 +2,79 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+import numpy as np
 
-from sim2real.emulate.peripherals.rcc import Rcc
-from sim2real.emulate.peripherals.registers import NotModelledError, Peripheral, nothing
-from sim2real.emulate.timeline import Timeline
+from puckpilot_env.kernel import kernel
+from sim2real.emulate import refusals
+from sim2real.emulate.refusals import refuse
 
-_PWM_MODE = 6  # high while the counter is below CCR
-
-
-class PwmTimer(Peripheral):
-    """TIM1, only its complementary outputs; `changed` is called after each write that changes a register."""
-
-    name, base = "TIM1", 0x40012C00
-    offsets = (
-        "CR1", "", "", "", "", "EGR", "CCMR1", "", "CCER", "", "PSC", "ARR", "", "CCR1", "CCR2", "", "", "BDTR",
-    )  # fmt: skip
-
-    def __init__(self) -> None:
-        self.changed = nothing
-        super().__init__()
-
-    def set(self, register: str, value: int) -> None:
-        """See `Peripheral`."""
-        if register == "CCMR1" and value & ~0x7070:
-            raise NotModelledError(f"TIM1_CCMR1 = 0x{value:X}: expected PWM without preload")
-        if register == "CCER" and value & ~0x44:
-            raise NotModelledError(f"TIM1_CCER = 0x{value:X}: expected CC1NE and CC2NE alone")
-        if register != "EGR" and self.values[register] != value & 0xFFFF:
-            self.values[register] = value & 0xFFFF
-            self.changed()
-
-    def duty(self, channel: int) -> float:
-        """The share of time, 0 to 1, for which output 0 (CH1N) or 1 (CH2N) is high."""
-        values = self.values
-        on = values["CR1"] & 1 and values["BDTR"] >> 15 and values["CCER"] >> (2 + 4 * channel) & 1
-        if not on or values["CCMR1"] >> (4 + 8 * channel) & 7 != _PWM_MODE:
-            return 0.0
-        return min(values["CCR2" if channel else "CCR1"] / (values["ARR"] + 1), 1.0)
-
-    def frequency(self, megahertz: int) -> float:
-        """The frequency of the PWM [Hz] at a clock [MHz]."""
-        return megahertz * 1e6 / ((self.values["PSC"] + 1) * (self.values["ARR"] + 1))
+PWM_NAME, PWM_BASE = "TIM1", 0x40012C00
+PWM_OFFSETS = (
+    "CR1", "", "", "", "", "EGR", "CCMR1", "", "CCER", "", "PSC", "ARR", "", "CCR1", "CCR2", "", "", "BDTR",
+)  # fmt: skip
+COUNTER_NAME, COUNTER_BASE = "TIM2", 0x40000000
+COUNTER_OFFSETS = ("CR1", "", "", "", "", "EGR", "", "", "", "CNT", "PSC", "ARR")
+CR1, EGR, CCMR1, CCER, CNT, PSC, ARR, CCR1, BDTR = 0, 5, 6, 8, 9, 10, 11, 13, 17
+PWM_STATE = np.dtype([("values", np.int64, len(PWM_OFFSETS))], align=True)
+# divider: of the clock, since EGR was written; began: tick at which it was switched on
+COUNTER_STATE = np.dtype(
+    [("values", np.int64, len(COUNTER_OFFSETS)), ("divider", np.int64), ("began", np.int64)], align=True
+)
+_HIGH_BELOW = 6  # the mode in which an output is high while the counter is below CCR
 
 
-class Counter(Peripheral):
-    """TIM2, counting up; a new prescaler takes effect with a write to EGR."""
+@kernel
+def write_pwm(board, register, value):
+    """Write a register of TIM1, of which only the complementary outputs are modelled; whether it changed."""
+    if register == CCMR1 and value & ~0x7070:
+        refuse(board, refusals.PWM_MODE, value)
+    if register == CCER and value & ~0x44:
+        refuse(board, refusals.PWM_OUTPUTS, value)
+    values = board.pwm.values
+    if register == EGR or values[register] == value & 0xFFFF:
+        return False
+    values[register] = value & 0xFFFF
+    return True
 
-    name, base = "TIM2", 0x40000000
-    offsets = ("CR1", "", "", "", "", "EGR", "", "", "", "CNT", "PSC", "ARR")
-    start: ClassVar[dict[str, int]] = {"ARR": 0xFFFF}
 
-    def __init__(self, timeline: Timeline, rcc: Rcc) -> None:
-        self._timeline, self._rcc = timeline, rcc
-        self._divider, self._began = 1, 0
-        super().__init__()
+@kernel
+def pwm_duty(pwm, channel):
+    """The share of time, 0 to 1, for which output 0 (CH1N) or 1 (CH2N) is high."""
+    values = pwm.values
+    on = values[CR1] & 1 and values[BDTR] >> 15 and values[CCER] >> (2 + 4 * channel) & 1
+    if not on or values[CCMR1] >> (4 + 8 * channel) & 7 != _HIGH_BELOW:
+        return 0.0
+    return min(values[CCR1 + channel] / (values[ARR] + 1), 1.0)
 
-    def reset(self) -> None:
-        """Set the state after a reset."""
-        super().reset()
-        self._divider = 1
 
-    def get(self, register: str) -> int:
-        """See `Peripheral`."""
-        if register != "CNT" or not self.values["CR1"] & 1:
-            return self.values[register]
-        counted = (self._timeline.now - self._began) // (self._divider * self._rcc.cycle)
-        return counted % (self.values["ARR"] + 1)
+@kernel
+def reset_counter(board):
+    """The state of TIM2 after a reset."""
+    counter = board.counter
+    for register in range(len(COUNTER_OFFSETS)):
+        counter.values[register] = 0
+    counter.values[ARR], counter.divider = 0xFFFF, 1
 
-    def set(self, register: str, value: int) -> None:
-        """See `Peripheral`."""
-        if register == "EGR":
-            self._divider = self.values["PSC"] + 1
-        elif register == "CR1":
-            self._began = self._timeline.now
-            self.values["CR1"] = value
-        elif register == "CNT":
-            raise NotModelledError("TIM2_CNT is written: not modelled")
-        else:
-            self.values[register] = value & 0xFFFF
+
+@kernel
+def read_counter(board, register):
+    """Read a register of TIM2, which counts up."""
+    counter = board.counter
+    if register != CNT or not counter.values[CR1] & 1:
+        return counter.values[register]
+    counted = (board.timeline.now - counter.began) // (counter.divider * board.rcc.cycle)
+    return counted % (counter.values[ARR] + 1)
+
+
+@kernel
+def write_counter(board, register, value):
+    """Write a register of TIM2; a new prescaler takes effect with a write to EGR."""
+    counter = board.counter
+    if register == EGR:
+        counter.divider = counter.values[PSC] + 1
+    elif register == CR1:
+        counter.began, counter.values[CR1] = board.timeline.now, value
+    elif register == CNT:
+        refuse(board, refusals.COUNTER_WRITTEN, 0)
+    else:
+        counter.values[register] = value & 0xFFFF

@@ -7,7 +7,7 @@ from collections import deque
 
 import numpy as np
 
-from puckpilot_env.kernel import array_kernel, kernel
+from puckpilot_env.kernel import array_at, array_kernel, kernel
 from sim2real.study.independent_table.physics.law import Law
 from sim2real.study.independent_table.physics.march import LOG_COLUMNS, march
 from sim2real.study.independent_table.physics.volts import at_the_motors, profile
@@ -19,6 +19,7 @@ SWITCHES = 4  # of a plan
 START, INPUTS = 2, 9  # of what drives it: the robot's volts x, y; when the opponent's plan began, and the plan
 OpponentPlan = tuple[float, float, float, float, float, float]  # signed volts x, y [V]; t1 x, y; t2 x, y [s]
 _volts = kernel(profile)
+_LAW = Law().numbers().dtype
 
 
 class Plant:
@@ -35,6 +36,7 @@ class Plant:
         self._motor = self._mallets.shape[1] - 6  # the motors' own state, where a belt or a gap separates them
         self._puck = np.full(6, math.nan)
         self._inputs = np.zeros(INPUTS)
+        self._addresses = tuple(one.ctypes.data for one in (self._numbers, self._puck, self._mallets, self._inputs))
         self._coming: deque[tuple[float, Place]] = deque()  # volts of the robot's axes that come late, and when [s]
         self._held: np.ndarray | None = None  # the robot's mallet at rest, while it is held fast
 
@@ -98,10 +100,20 @@ class Plant:
     def _march(self, time: float) -> None:
         if time <= self.time:
             return
-        _advance(self._numbers, self._puck, self._mallets, self._inputs, self.time, time)
+        _advance_at(*self._addresses, self._mallets.shape[1], self.time, time)
         self.time = time
         if self._held is not None:
             self._mallets[0] = self._held
+
+
+@array_kernel
+def _advance_at(law, puck, mallets, inputs, columns, now, until):
+    """`_advance` for arrays at addresses, which it takes four times as fast from Python as arrays."""
+    _advance(
+        array_at(law, 1, _LAW), array_at(puck, 6, np.float64),
+        array_at(mallets, (2, columns), np.float64), array_at(inputs, INPUTS, np.float64),
+        now, until,
+    )  # fmt: skip
 
 
 @array_kernel

@@ -9,13 +9,14 @@ from __future__ import annotations
 import argparse
 import itertools
 import random
+import struct
 from dataclasses import dataclass, field
 
 import pytest
+from unicorn.arm_const import UC_ARM_REG_SP
 
 from firmware import ELF
 from sim2real.emulate.elf import read_elf
-from sim2real.emulate.timeline import PER_US
 from sim2real.link.wire.messages import Disarm, Event, Notice, Ping, Pong, State, Telemetry
 from tests.firmware.core.bench import FULL
 from tests.firmware.core.host_core import ZEROS, Core, Step
@@ -25,10 +26,22 @@ from tests.sim2real.emulate.robot import ALIVE, Robot
 
 BYTE = 10.0  # us on the line
 COUNTER = 1 << 16  # us after which the stamps' counter begins again
+RETURN_PLACE = 24  # bytes above the stack pointer that an exception leaves
+HANDLERS = ("usart_interrupt", "sent_interrupt", "tick_interrupt")
 SHARED = ("usart_take", "usart_send", "sent_interrupt")  # functions that touch what interrupts touch
 OFTEN = 0.02  # of their instructions that last until the next event
 EACH = 3  # pieces from one ping to the next: of two in a tick one has no answer
 PLAY, TURN = 360, 120  # pieces of talk, some 1 ms each, of a play, and from one plan to the next
+
+
+def _after_each_sleep() -> set[int]:
+    """The addresses after each WFI and WFE of the program."""
+    return {
+        segment.address + at + 2
+        for segment in read_elf(ELF).segments
+        for at in range(0, len(segment.data) - 1, 2)
+        if segment.data[at : at + 2] in (b"\x30\xbf", b"\x20\xbf")
+    }
 
 
 @dataclass
@@ -51,11 +64,14 @@ class Busy:
         self.robot, self.chance = Robot(fuzz=self.fuzz), random.Random(self.seed)
         self.machine = machine = self.robot.machine
         self.recorder = Recorder(machine, after=self._obeyed)
-        self._enter, self._send = machine.cpu.enter, machine.send
+        self._after_sleep = _after_each_sleep()
+        self._interruption = 0.0, 0  # when and where the last one was
+        for name in HANDLERS:
+            machine.cpu.at(read_elf(ELF).symbols[name], self._interrupted)
+        self._send = machine.send
         if self.fuzz is not None:
             self._interrupt_anywhere(random.Random(self.fuzz))  # before that code is translated
         machine.run(5000)  # so that it hears the first byte
-        machine.cpu.enter = self._entered  # pyright: ignore[reportAttributeAccessIssue]
         machine.send = self._sent  # pyright: ignore[reportAttributeAccessIssue]
 
     def _interrupt_anywhere(self, chance: random.Random) -> None:
@@ -64,19 +80,21 @@ class Busy:
 
         def last() -> None:
             if chance.random() < OFTEN:
-                machine._pass_until(machine.timeline.now + round(BYTE * PER_US))
+                machine.pass_us(BYTE)
 
         for name in SHARED:
             begin, end = symbols[name], min(at for at in symbols.values() if at > symbols[name])
             for address in range(begin, end, 2):
                 machine.cpu.at(address, last)
 
-    def _entered(self, number: int) -> None:
-        cpu = self.machine.cpu
-        if not cpu.asleep:
+    def _interrupted(self) -> None:
+        """An interrupt's handler begins: the place to return to is on the stack, as the processor pushes it."""
+        uc = self.machine.cpu.uc
+        (place,) = struct.unpack("<I", uc.mem_read(uc.reg_read(UC_ARM_REG_SP) + RETURN_PLACE, 4))
+        before, self._interruption = self._interruption, (self.machine.now, place)
+        if place not in self._after_sleep and self._interruption != before:  # a handler can be stopped as it begins
             self.preemptions += 1
-            self.places.add(cpu.program_counter)
-        self._enter(number)
+            self.places.add(place)
 
     def _sent(self, data: bytes) -> None:
         begin = max(self.machine.now, self.arrivals[-1] if self.arrivals else 0.0)
@@ -142,7 +160,7 @@ class Busy:
 
     def _check_stamps(self) -> None:
         """Zeros have the time at which they came, those that have any."""
-        offset, taken = self.machine.now - self.machine.counter.get("CNT"), 0
+        offset, taken = self.machine.now - self.machine.load("TIM2_CNT"), 0
         for tick in self.recorder.ticks:
             at = [taken + index for index, byte in enumerate(tick.received) if byte == 0][:ZEROS]
             for index, stamp in zip(at, tick.stamps, strict=False):

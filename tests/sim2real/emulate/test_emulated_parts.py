@@ -13,20 +13,46 @@ from tests.sim2real.emulate.built import PLAIN, need_compiler
 
 pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
 
+from firmware import ELF
+from sim2real.emulate.board_state import BOARD
 from sim2real.emulate.elf import read_elf
 from sim2real.emulate.gantry import Gantry
 from sim2real.emulate.machine import Machine
-from sim2real.emulate.peripherals.as5147 import As5147
-from sim2real.emulate.peripherals.nvic import Nvic
-from sim2real.emulate.peripherals.registers import NotModelledError
-from sim2real.emulate.timeline import Timeline
+from sim2real.emulate.peripherals.as5147 import As5147, exchange
+from sim2real.emulate.peripherals.nvic import (
+    NO_EXCEPTION,
+    enter_exception,
+    leave_exception,
+    next_exception,
+    reset_nvic,
+    set_line,
+    write_nvic,
+)
+from sim2real.emulate.refusals import TEXTS, WRITE, NotModelledError
+from sim2real.emulate.timeline import (
+    BYTE_COMES,
+    NEVER,
+    PIECE_SENT,
+    TICK_DUE,
+    TIMELINE,
+    WATCHDOG_DUE,
+    clear_timeline,
+    drop,
+    next_kind,
+    next_tick,
+    schedule,
+)
 
-ANGLE, NOTHING, ERRORS, HEALTH, BAD_PARITY, WRITE = 0xFFFF, 0xC000, 0x4001, 0xFFFC, 0x7FFF, 0x3FFF
+ANGLE, NOTHING, ERRORS, HEALTH, BAD_PARITY, WRITING = 0xFFFF, 0xC000, 0x4001, 0xFFFC, 0x7FFF, 0x3FFF
+
+
+def _exchange(encoder: As5147, command: int) -> int:
+    return exchange(encoder.state, command, 0)
 
 
 def _answer(encoder: As5147, command: int) -> int:
-    encoder.exchange(command, 0)
-    return encoder.exchange(NOTHING, 0)
+    _exchange(encoder, command)
+    return _exchange(encoder, NOTHING)
 
 
 def _quarter() -> As5147:
@@ -37,14 +63,14 @@ def _quarter() -> As5147:
 
 def test_an_encoder_answers_in_the_next_frame_with_even_parity() -> None:
     encoder = _quarter()
-    assert encoder.exchange(ANGLE, 0) == 0
-    assert encoder.exchange(HEALTH, 0) == 0b1001_0000_0000_0000  # 4096 steps have one bit set: parity makes it two
-    assert encoder.exchange(NOTHING, 0) == 0b0000_0001_1000_0000  # loops finished, gain 128
+    assert _exchange(encoder, ANGLE) == 0
+    assert _exchange(encoder, HEALTH) == 0b1001_0000_0000_0000  # 4096 steps have one bit set: parity makes it two
+    assert _exchange(encoder, NOTHING) == 0b0000_0001_1000_0000  # loops finished, gain 128
     encoder.angle = lambda now: -1e-9
     assert _answer(encoder, ANGLE) == 0b0011_1111_1111_1111
 
 
-@pytest.mark.parametrize(("wrong", "says"), [(BAD_PARITY, 4), (WRITE, 2), (0x4123 | 0x8000, 2)])
+@pytest.mark.parametrize(("wrong", "says"), [(BAD_PARITY, 4), (WRITING, 2), (0x4123 | 0x8000, 2)])
 def test_a_wrong_command_raises_the_flag_until_errors_are_read(wrong: int, says: int) -> None:
     encoder = _quarter()
     assert _answer(encoder, wrong) & 0x4000
@@ -90,42 +116,99 @@ def test_what_is_no_program_is_refused(tmp_path: Path) -> None:
 
 
 def test_events_come_in_order_and_dropped_ones_do_not() -> None:
-    timeline, seen = Timeline(), []
-    timeline.at(20, lambda: seen.append("late"))
-    dropped = timeline.at(10, lambda: seen.append("dropped"))
-    timeline.at(15, lambda: seen.append("first"))
-    timeline.at(15, lambda: seen.append("second"))
-    timeline.drop(dropped)
-    while timeline.next() is not None:
-        timeline.step()
-    assert seen == ["first", "second", "late"] and timeline.now == 20
+    timeline = np.zeros(1, TIMELINE)[0]
+    clear_timeline(timeline)
+    assert next_tick(timeline) == NEVER
+    schedule(timeline, TICK_DUE, 10)
+    schedule(timeline, PIECE_SENT, 20)
+    schedule(timeline, WATCHDOG_DUE, 15)
+    schedule(timeline, BYTE_COMES, 15)
+    drop(timeline, TICK_DUE)
+    seen = []
+    while (tick := next_tick(timeline)) != NEVER:
+        seen.append((tick, next_kind(timeline)))
+        timeline["now"] = tick
+        drop(timeline, seen[-1][1])
+    assert seen == [(15, WATCHDOG_DUE), (15, BYTE_COMES), (20, PIECE_SENT)]
+    schedule(timeline, TICK_DUE, 3)
+    assert next_tick(timeline) == 20  # at once, for that is past
 
 
 def test_the_more_urgent_exception_is_served_and_interrupts_the_other() -> None:
-    nvic = Nvic()
-    nvic.write(0x100, 1 << 14, 4)
-    nvic.write(0x104, 1 << 5, 4)
-    nvic.write(0x400 + 14, 0x4F, 1)
-    nvic.line(14, True)
-    assert nvic.next() == 30
-    nvic.enter(30)
-    assert nvic.next() is None
-    nvic.line(37, True)
-    assert nvic.next() == 53
-    nvic.enter(53)
-    nvic.line(37, False)
-    nvic.leave()
-    assert nvic.next() is None
-    nvic.leave()
-    assert nvic.next() == 30  # its line is still held
-    with pytest.raises(NotModelledError, match="0xE000ED08"):
-        nvic.write(0xD08, 0, 4)
+    board = np.zeros(1, BOARD)[0]
+    nvic = board["nvic"]
+    reset_nvic(nvic)
+    write_nvic(board, 0x100, 1 << 14, 4)
+    write_nvic(board, 0x104, 1 << 5, 4)
+    write_nvic(board, 0x400 + 14, 0x4F, 1)
+    set_line(nvic, 14, True)
+    assert next_exception(nvic) == 30
+    enter_exception(nvic, 30)
+    assert next_exception(nvic) == NO_EXCEPTION
+    set_line(nvic, 37, True)
+    assert next_exception(nvic) == 53
+    enter_exception(nvic, 53)
+    set_line(nvic, 37, False)
+    leave_exception(nvic)
+    assert next_exception(nvic) == NO_EXCEPTION
+    leave_exception(nvic)
+    assert next_exception(nvic) == 30  # its line is still held
+    write_nvic(board, 0xD08, 0, 4)
+    refusal = board["refusal"]
+    assert TEXTS[refusal["number"]] == TEXTS[WRITE] and refusal["value"] == 0xE000ED08
 
 
 def test_a_peripheral_without_a_clock_is_an_error() -> None:
     machine = Machine(PLAIN)
-    machine._write(0x40000000, None, 0x12C34, 4, 1, None)
-    assert "TIM1_CCR1): its clock is off" in str(machine.cpu._error)
+    with pytest.raises(NotModelledError, match=r"TIM1_CCR1\): its clock is off"):
+        machine.store("TIM1_CCR1", 1)
+
+
+@pytest.mark.parametrize(
+    ("register", "value", "says"),
+    [
+        ("SysTick_CTRL", 1, "CTRL = 1: expected 0, or 7"),
+        ("RCC_CFGR", 3, "expected HSI or PLL"),
+        ("RCC_CFGR", 2, "a PLL that is not ready"),
+        ("IWDG_PR", 1, "while locked"),
+        ("TIM1_CCER", 1, "expected CC1NE and CC2NE alone"),
+    ],
+)
+def test_a_value_that_is_not_modelled_is_named_and_the_next_is_not_blamed_for_it(
+    register: str, value: int, says: str
+) -> None:
+    machine = Machine(PLAIN)
+    machine.store("RCC_APB2ENR", 1 << 11)
+    with pytest.raises(NotModelledError, match=says):
+        machine.store(register, value)
+    machine.store("FLASH_ACR", 2)
+    assert machine.load("FLASH_ACR") == 2
+
+
+def test_an_error_of_a_shaft_comes_out_of_the_run_and_the_board_runs_on() -> None:
+    machine = Machine(ELF)
+    machine.run(20_000)
+
+    def broken(now: float) -> float:
+        raise OSError("no shaft")
+
+    machine.encoders[1].angle = broken
+    with pytest.raises(OSError, match="no shaft"):
+        machine.run(30_000)
+    assert machine.now < 22_000
+    machine.encoders[1].angle = lambda now: 0.5
+    machine.run(30_000)
+    assert machine.now == 30_000 and machine.received()
+
+
+def test_more_bytes_than_the_line_holds_all_come() -> None:
+    """They are a second and a half on the line, and more than two come back."""
+    machine = Machine(PLAIN)
+    machine.run(3000)
+    sent = b"BCDEFGHIJK" * 15_000
+    machine.send(sent)
+    machine.run(1_600_000)
+    assert machine.received() == sent
 
 
 def test_the_gantry_obeys_its_equation() -> None:

@@ -38,7 +38,7 @@ def test_a_ping_is_stamped_when_its_last_byte_came() -> None:
     robot = Robot()
     robot.run(50_400, alive=False)
     machine = robot.machine
-    offset = machine.now - machine.counter.get("CNT")
+    offset = machine.now - machine.load("TIM2_CNT")
     sent, length = machine.now, len(frame(Ping(3)))
     (pong,) = [one for one in robot.run(5000, Ping(3), alive=False) if isinstance(one, Pong)]
     assert pong.received + offset == pytest.approx(sent + 10 * length, abs=2)
@@ -63,7 +63,7 @@ def test_the_mallet_goes_where_the_plan_says() -> None:
 def test_interrupts_in_the_middle_of_anything_change_nothing() -> None:
     """The whole: `python -m tests.sim2real.emulate.preempted`."""
     busy = play(seed=5, pieces=120)
-    assert busy.preemptions > 1500 and len(busy.places) > 200
+    assert busy.preemptions > 1200 and len(busy.places) > 200
 
 
 @pytest.mark.parametrize("fuzz", [1, 2])
@@ -188,8 +188,7 @@ def test_the_same_seed_gives_the_same_play(options: dict) -> None:
 def test_a_step_ends_well_before_the_next_on_the_real_processor() -> None:
     """By instructions counted, at 1.5 cycles each; the most are for a trajectory that comes."""
     robot = Robot(timed=True).armed().goes()
-    assert robot.machine.blocks is not None
-    counts = sorted(robot.machine.blocks.rounds)
+    counts = sorted(robot.machine.rounds)
     print(f"instructions of a step: {counts[len(counts) // 2]} as a rule, {counts[-1]} at most")
     assert len(counts) > 70 and counts[-1] * 1.5 / 72 < 700
     assert robot.telemetry.longest == pytest.approx(counts[-1] * 1.5 / 72, rel=0.1)  # as it has it by its own counter

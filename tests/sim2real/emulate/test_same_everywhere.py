@@ -61,7 +61,7 @@ def go_on(robot: Robot, chance: random.Random) -> None:
     if chance.random() < 0.3:
         robot.machine.send(damaged(chance))
     if chance.random() < 0.03:
-        robot.machine.usart.disturbed = 3
+        robot.machine.disturb(3)
 
 
 @cache
