@@ -26,7 +26,7 @@ class MalletMonitor:
     def __init__(self, twin: Twin) -> None:
         self.worst, self.moving_at = Worst(), -math.inf
         self._planned: tuple[float, Callable[[], None]] | None = None
-        self._twin, self._pass_time = twin, twin.pass_time
+        self._twin, self._pass_time, self._area = twin, twin.pass_time, mirror.area(0, twin.p)
         twin.pass_time = self.pass_time
 
     def plan(self, time: float, happening: Callable[[], None]) -> None:
@@ -45,7 +45,7 @@ class MalletMonitor:
     def _look(self) -> None:
         twin = self._twin
         x, y, vx, vy = twin.plant.mallet(0)
-        x_low, x_high, y_low, y_high = mirror.area(0, twin.p)
+        x_low, x_high, y_low, y_high = self._area
         self.worst.outside = max(self.worst.outside, x_low - x, x - x_high, y_low - y, y - y_high)
         if twin.board is not None:
             self.worst.volts = max(self.worst.volts, twin.board.most_volts)
