@@ -86,7 +86,8 @@ def segment(recording: Recording) -> Segments:
 
 
 def _glides(path: Path, noise: Noise, broken: np.ndarray) -> tuple[list[Glide], list[ContactEvent]]:
-    """The free motions between events that are long enough; motions that gain speed become unexplained pushes."""
+    """The free motions between events that are long enough; motions that gain speed, or lose more than sliding costs,
+    become unexplained pushes."""
     edges = np.concatenate([[0], np.flatnonzero(path.jumps | broken) + 1, [len(path.t)]])
     glides, pushes, ends = [], [], SEGMENTATION.end_frames
     for a, b in pairwise(edges):
@@ -98,7 +99,9 @@ def _glides(path: Path, noise: Noise, broken: np.ndarray) -> tuple[list[Glide], 
         gained = float(np.linalg.norm(last.velocity) - np.linalg.norm(entry.velocity))
         std = float(np.hypot(entry.velocity_std, last.velocity_std))
         start, stop = int(path.index[a]), int(path.index[b - 1]) + 1
-        if gained - 4 * std > SEGMENTATION.pushed * (t[-1] - t[0]):
+        speed, span = float(np.linalg.norm(entry.velocity)), float(t[-1] - t[0])
+        braked = SEGMENTATION.braked + SEGMENTATION.braked_drag * speed**2
+        if gained - 4 * std > SEGMENTATION.pushed * span or -gained - 4 * std > braked * span:
             pushes.append(_push(t[0], p[0], (entry.velocity, last.velocity), std, (start, stop - 1)))
             continue
         glides.append(Glide(start, stop, path.index[a:b], t, p[:, 0], p[:, 1], entry))

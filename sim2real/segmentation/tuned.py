@@ -49,6 +49,15 @@ class SegmentationNumbers:
         "a hand's push taken for a glide, or a tilted table for a hand",
         "choice: a table that leans by 4 %",
     )
+    braked: float = tuned(
+        1.5,
+        "m/s^2",
+        "a puck that a hand sets down taken for a glide, or a sticky table for a hand",
+        "choice: five times the friction of a table that hardly slides",
+    )
+    braked_drag: float = tuned(
+        0.2, "1/m", "the same of the drag of a fast puck", "choice: ten times that of an air table"
+    )
     # changepoints
     window_frames: tuple[int, ...] = tuned(
         (4, 6, 12, 24),

@@ -14,6 +14,7 @@ from sim2real.diagnose.result.result import Estimate, Proof, RegimeResult
 FAULTS = {  # faults of the camera, which are parameters of the simulator and not effects
     "camera_delay": "The camera's frames are stamped late: each shows the table as it was delay_s before its stamp.",
     "held_frames": "The camera repeats frames: some show the previous position instead of a new one.",
+    "stamp_jitter": "The frames' stamps are arrivals: exposures are regular, and some frames arrive late.",
 }
 LEAST_P = 1e-300  # the least p-value that is printed
 NOTHING = "–"  # in a cell of a table

@@ -32,11 +32,13 @@ class Change:
 
 @dataclass(frozen=True)
 class Mechanism:
-    """`draw(rng, share, law, scenario)` draws the change; `scenarios`: those that show it, most probable first."""
+    """`draw(rng, share, law, scenario)` draws the change; `scenarios`: those that show it, most probable first; `dealt`:
+    False if it is drawn by name alone, so that the cases of a seed stay what they were before it was known."""
 
     regime: str
     scenarios: tuple[str, ...]
     draw: Callable[[Rng, float, Law, str], Change]
+    dealt: bool = True
 
 
 PUCK, TABLE_AND_PUCK = ("launches",), ("launches", "posts")
@@ -163,6 +165,11 @@ def _held(rng: Rng, share: float, law: Law, scenario: str) -> Change:
     return Change(camera={"held": 0.15 * share}, values={"fraction": 0.15 * share})
 
 
+def _stamps(rng: Rng, share: float, law: Law, scenario: str) -> Change:
+    late = 0.0008 * share
+    return Change(camera={"jitter": 0.0, "arrival": late}, values={"std_s": late})
+
+
 MECHANISMS = {
     "table_tilt": Mechanism("glide", PUCK, _tilt),
     "table_warp": Mechanism("glide", PUCK, _warp),
@@ -188,6 +195,7 @@ MECHANISMS = {
     "clock_drift": Mechanism("sensing", ("gantry", "rally"), _clock),
     "scale_error": Mechanism("sensing", PUCK, _scale),
     "held_frames": Mechanism("sensing", ("launches", "rally"), _held),
+    "stamp_jitter": Mechanism("sensing", ("launches", "rally"), _stamps, dealt=False),
 }
 # Groups that must not occur in one law, because one mechanism cancels or hides the other
 INCOMPATIBLE = (

@@ -22,6 +22,7 @@ from sim2real.table.watchdog import refuse_troubles
 FIRST_FRAME = 5.0  # s within which it comes, and each of those after it
 WARM_UP = 90  # frames that are read before the motors are armed,
 CHECKED = 1.5 * EVERY  # and s in which they come, so that the camera's place is checked among them
+SETTLED = 0.5  # s in which frames are read that came while garbage was collected
 KEPT = 100_000  # reaction times kept: some hours of decisions
 
 
@@ -78,21 +79,26 @@ class RealTimeTable(LiveTable):
     def arm(self) -> None:
         """See `LiveTable.arm`; after some frames were read, of which the first takes long. TableFaultError if they do
         not come, or cannot be believed."""
+        self._read_frames(WARM_UP, CHECKED)
+        gc.collect()
+        gc.freeze()  # a full collection of all that was imported takes a tenth of a second, and would come in play
+        self._read_frames(1, SETTLED)  # those that came meanwhile keep the loop from its board
+        super().arm()
+
+    def _read_frames(self, fewest: int, seconds: float) -> None:
+        """Read frames, so many at least, for so many seconds from the first on."""
         eyes, patient = self._opened(self._live), self.now() + FIRST_FRAME
         read, checked = 0, math.inf
-        while read < WARM_UP or self.now() < checked:
+        while read < fewest or self.now() < checked:
             self._look()
             for frame in eyes.take(self.now()):
-                read, checked = read + 1, min(checked, self.now() + CHECKED)
+                read, checked = read + 1, min(checked, self.now() + seconds)
                 refuse_troubles(frame)
                 patient = self.now() + FIRST_FRAME  # what reads the first one may be compiled by then
             if self.now() > patient:
                 raise TableFaultError(
                     Cause.CAMERA_SILENT, f"{read} frames came in {FIRST_FRAME:g} s; check the camera and clear"
                 )
-        gc.collect()
-        gc.freeze()  # a full collection of all that was imported takes a tenth of a second, and would come in play
-        super().arm()
 
     def send(self, plan: MalletPlan) -> MalletPlan:
         """See `Backend.send`."""

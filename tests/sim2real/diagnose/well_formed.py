@@ -13,7 +13,7 @@ MECHANISMS = {
     "speed_dependent_restitution", "tangential_restitution", "wall_friction_spin", "wall_to_wall_restitution",
     "corner_restitution", "mallet_speed_restitution", "mallet_friction", "mallet_give", "voltage_sag", "motor_deadband",
     "command_delay", "belt_compliance", "backlash", "camera_delay", "clock_drift", "scale_error", "held_frames",
-    "unlisted",
+    "stamp_jitter", "unlisted",
 }  # fmt: skip
 SIZES = ("before_m", "after_m", "floor_m", "pieces")
 

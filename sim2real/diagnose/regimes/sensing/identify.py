@@ -23,6 +23,12 @@ from sim2real.diagnose.regimes.sensing.repeated_frames import (
     moving_frames,
     repeated_frames_finding,
 )
+from sim2real.diagnose.regimes.sensing.stamp_jitter import (
+    MECHANISM,
+    identify_stamps,
+    stamp_errors,
+    with_regular_stamps,
+)
 from sim2real.diagnose.result.pooled_proof import pooled
 from sim2real.diagnose.result.result import RegimeResult
 from sim2real.diagnose.sensor_noise.model import stated_map_error
@@ -52,7 +58,8 @@ def corrected(recording: Recording, scale: np.ndarray, clock: Clock = EXACT) -> 
 class IdentifiedSensing:
     """The result of the sensing regime, and the corrected recordings with their segments.
 
-    `scale` (3,): the map error, in the order of `coordinate_scale.NAMES`; `clock`: None if no clock error was found.
+    `scale` (3,): the map error, in the order of `coordinate_scale.NAMES`; `clock`: None if no clock error was found;
+    `regular`: whether exposures are taken to be regular instead of stamped.
     """
 
     regime_result: RegimeResult
@@ -60,18 +67,24 @@ class IdentifiedSensing:
     segments: tuple[Segments, ...]
     scale: np.ndarray
     clock: ClockFit | None
+    regular: bool = False
 
     def correct(self, recording: Recording) -> Recording:
         """Correct another recording of the same camera."""
-        mapped = corrected(recording, self.scale) if self.scale.any() else recording
+        timed = with_regular_stamps(recording) if self.regular else recording
+        mapped = corrected(timed, self.scale) if self.scale.any() else timed
         return mapped if self.clock is None else corrected(mapped, np.zeros(3), self.clock.clock)
 
 
 def identify_sensing(
     recordings: Sequence[Recording], segments: Sequence[Segments], launch: Launch
 ) -> IdentifiedSensing:
-    """Identify the sensor errors in recordings of one table: the map, then the clock, then the repeated frames."""
+    """Identify the sensor errors in recordings of one table: the stamps, the map, the clock, the repeated frames."""
     recordings, segments = list(recordings), list(segments)
+    stamps = identify_stamps(recordings, segments, launch)
+    if stamps.finding is not None:
+        recordings = [with_regular_stamps(one) for one in recordings]
+        segments = [segment(one) for one in recordings]
     found = _velocity_jumps(recordings, segments, launch)
     calibrated = any(stated_map_error(one) for one in recordings)
     scale = identify_scale([s for part in found for s in part], geometry(recordings[0]), calibrated)
@@ -86,11 +99,14 @@ def identify_sensing(
     if clock.fit is not None:
         recordings = [corrected(one, np.zeros(3), clock.clock) for one in recordings]
         segments = [segment(one) for one in recordings]
-    findings = sorted((*clock.findings, *scale.findings, *((held,) if held else ())), key=lambda one: one.p_value)
-    selection = pooled([one for one in (clock.selection, scale.selection, held_selection) if one is not None])
+    single = [one for one in (held, stamps.finding) if one is not None]
+    findings = sorted((*clock.findings, *scale.findings, *single), key=lambda one: one.p_value)
+    selections = clock.selection, scale.selection, held_selection, stamps.selection
+    selection = pooled([one for one in selections if one is not None])
     advice = _next_recording(recordings, clock, scale)
     regime_result = RegimeResult("sensing", tuple(findings), {}, not findings, selection, scale.undetermined, advice)
-    return IdentifiedSensing(regime_result, tuple(recordings), tuple(segments), scale.values, clock.fit)
+    regular = stamps.finding is not None
+    return IdentifiedSensing(regime_result, tuple(recordings), tuple(segments), scale.values, clock.fit, regular)
 
 
 def prove_sensing(
@@ -98,10 +114,14 @@ def prove_sensing(
 ) -> RegimeResult:
     """Add to the result the errors in holdout `recordings` and their `segments`, before and after correction."""
     g, recordings, segments = geometry(recordings[0]), list(recordings), list(segments)
+    errors = {}
+    if sensed.regular:
+        errors[MECHANISM] = stamp_errors(recordings, segments, launch)
+        recordings = [with_regular_stamps(one) for one in recordings]
+        segments = [segment(one) for one in recordings]
     found = _velocity_jumps(recordings, segments, launch)
-    errors = {
-        "scale_error": held_out_errors(*distances_of_others([s for part in found for s in part], sensed.scale, g).T)
-    }
+    jumps = [jump for part in found for jump in part]
+    errors["scale_error"] = held_out_errors(*distances_of_others(jumps, sensed.scale, g).T)
     if sensed.scale.any():
         recordings = [corrected(one, sensed.scale) for one in recordings]
         segments = [segment(one) for one in recordings]

@@ -203,6 +203,50 @@ class RepeatedFrameNumbers:
 
 
 @dataclass(frozen=True)
+class StampNumbers:
+    """Tuned numbers of stamps that are arrivals of regular exposures."""
+
+    stretch: float = tuned(
+        2.0,
+        "s",
+        "in which a clock does not wander: less follows the jitter, more misses a clock that is set",
+        "choice: a few hundred frames",
+    )
+    fewest_frames: int = tuned(
+        20, "frames", "of a stretch: fewer do not determine its phase", "choice: a sixth of a second"
+    )
+    least_concentration: float = tuned(
+        0.8, "1", "of the phases: less finds a period in irregular frames", "choice: real recordings have 0.96 and 0.99"
+    )
+    period_reach: float = tuned(
+        0.005, "1", "of the median step: less misses periods where frames were skipped", "choice: a few skipped frames"
+    )
+    period_steps: int = tuned(
+        100, "1", "fewer miss the period, more cost time", "choice: a hundredth of a turn in a stretch"
+    )
+    much_late: float = tuned(
+        0.15,
+        "1",
+        "of a period: frames that are as late may be late by more than one; more keeps wrong times, less loses frames",
+        "choice: a frame that waited for another",
+    )
+    late_deviations: float = tuned(
+        4.0, "standard deviations", "the same where stamps jitter by as much", "choice: noise alone hardly reaches it"
+    )
+    frames: int = tuned(
+        7, "frames", "of a local fit: fewer leave few degrees of freedom, more see friction change", "choice: 60 ms"
+    )
+    longest_piece: float = tuned(0.12, "s", "more fits across skipped frames", "choice: twice seven frames")
+    fewest_pieces: int = tuned(30, "1", "fewer let chance decide", "choice: two seconds of gliding")
+    worse: float = tuned(
+        1.1,
+        "1",
+        "how much worse fits with the stamps must be: less names what no prediction notices",
+        "choice: a tenth of the noise",
+    )
+
+
+@dataclass(frozen=True)
 class SensingConsistencyNumbers:
     """Tuned numbers of the check that recordings are of one table and one camera."""
 
@@ -226,4 +270,5 @@ CLOCK = ClockNumbers()
 CONTACT_LINES = ContactLineNumbers()
 SCALE = ScaleNumbers()
 REPEATED_FRAMES = RepeatedFrameNumbers()
+STAMPS = StampNumbers()
 CONSISTENCY = SensingConsistencyNumbers()

@@ -13,12 +13,13 @@ from sim2real.study.independent_table.recorder.scene import FINE, Scene
 
 @dataclass(frozen=True)
 class Camera:
-    """Noise of each coordinate, jitter of the clock, and shares of frames that are held, dropped or wild; and the
+    """Noise of each coordinate, jitter of exposures and stamps, and shares of frames that are held, dropped or wild; and the
     errors of a calibrated camera beside the table (`sim2real.study.independent_table.recorder.film`)."""
 
     rate: float = 120.0  # Hz
     noise: float = 0.0005  # m
-    jitter: float = 0.0001  # s
+    jitter: float = 0.0001  # s, of the exposures, which the stamps show
+    arrival: float = 0.0  # s, of stamps that are arrivals
     held: float = 0.0  # of the frames repeat the last position
     dropped: float = 0.0  # of the frames see no puck
     wild: float = 0.0  # of the frames are wrong by centimetres
@@ -64,6 +65,8 @@ def see(law: Law, camera: Camera, scene: Scene, rng: np.random.Generator) -> tup
     for i in np.flatnonzero((fate >= 0.0) & (fate < camera.held)):
         if i > 0:
             puck[i] = puck[i - 1]
+    if camera.arrival:
+        stamps += np.clip(camera.arrival * rng.standard_normal(len(taken)), -0.4 / camera.rate, 0.4 / camera.rate)
     return stamps, puck, opponent
 
 
