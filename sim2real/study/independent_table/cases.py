@@ -121,7 +121,8 @@ def _pair(rng: Rng) -> tuple[str, list[str]]:
     """A scenario and two compatible mechanisms that it shows."""
     scenario = _choice(rng, PAIRS)
     regimes = LIFTED.get(scenario, ())
-    able = [name for name, one in MECHANISMS.items() if one.dealt and scenario in one.scenarios or one.regime in regimes]
+    dealt = {name: one for name, one in MECHANISMS.items() if one.dealt}
+    able = [name for name, one in dealt.items() if scenario in one.scenarios or one.regime in regimes]
     while True:
         names = [str(name) for name in rng.choice(able, 2, replace=False)]
         if not any(set(names) <= group for group in INCOMPATIBLE):

@@ -32,8 +32,10 @@ class Change:
 
 @dataclass(frozen=True)
 class Mechanism:
-    """`draw(rng, share, law, scenario)` draws the change; `scenarios`: those that show it, most probable first; `dealt`:
-    False if it is drawn by name alone, so that the cases of a seed stay what they were before it was known."""
+    """`draw(rng, share, law, scenario)` draws the change; `scenarios`: those that show it, most probable first.
+
+    `dealt`: False if it is drawn by name alone, so that the cases of a seed stay what they were before it was known.
+    """
 
     regime: str
     scenarios: tuple[str, ...]

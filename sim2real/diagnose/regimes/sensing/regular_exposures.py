@@ -56,7 +56,8 @@ def _sure(late: np.ndarray, number: np.ndarray, period: float) -> np.ndarray:
 def _find_period(stamps: np.ndarray) -> float:
     """The period near the median step at which the stamps' phases are the most concentrated [s]."""
     period = float(np.median(np.diff(stamps)))
-    for reach, steps in ((STAMPS.period_reach, 2 * STAMPS.period_steps), (STAMPS.period_reach / STAMPS.period_steps, 20)):
+    coarse, fine = STAMPS.period_reach, STAMPS.period_reach / STAMPS.period_steps
+    for reach, steps in ((coarse, 2 * STAMPS.period_steps), (fine, STAMPS.fine_steps)):
         tried = period * (1.0 + np.linspace(-reach, reach, steps + 1))
         period = float(tried[np.argmax([_phases(stamps, one)[0] for one in tried])])
     return period

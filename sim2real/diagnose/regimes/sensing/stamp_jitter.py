@@ -64,8 +64,8 @@ def identify_stamps(
     if chance > SIGNIFICANCE_LEVEL or errors is None or errors.before < STAMPS.worse * errors.after:
         return StampResult()
     period, deviation = _estimates(recordings)
-    parameters = {"period_s": period, "std_s": deviation}
-    finding = Finding("sensing", MECHANISM, (), (), FORMULA, parameters, max(chance, 1e-300), where={"stream": "frames"})
+    parameters, where = {"period_s": period, "std_s": deviation}, {"stream": "frames"}
+    finding = Finding("sensing", MECHANISM, (), (), FORMULA, parameters, max(chance, 1e-300), where=where)
     return StampResult(finding, errors.proof)
 
 

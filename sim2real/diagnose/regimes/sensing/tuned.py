@@ -227,6 +227,9 @@ class StampNumbers:
     period_steps: int = tuned(
         100, "1", "fewer miss the period, more cost time", "choice: a hundredth of a turn in a stretch"
     )
+    fine_steps: int = tuned(
+        20, "1", "the same for steps between the two best of these", "choice: a thousandth of a turn in a stretch"
+    )
     much_late: float = tuned(
         0.15,
         "1",

@@ -13,8 +13,8 @@ from sim2real.study.independent_table.recorder.scene import FINE, Scene
 
 @dataclass(frozen=True)
 class Camera:
-    """Noise of each coordinate, jitter of exposures and stamps, and shares of frames that are held, dropped or wild; and the
-    errors of a calibrated camera beside the table (`sim2real.study.independent_table.recorder.film`)."""
+    """Noise of each coordinate, jitter of exposures and stamps, and shares of frames that are held, dropped or wild;
+    and the errors of a calibrated camera beside the table (`sim2real.study.independent_table.recorder.film`)."""
 
     rate: float = 120.0  # Hz
     noise: float = 0.0005  # m
