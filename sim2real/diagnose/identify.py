@@ -9,7 +9,6 @@ from sim2real.diagnose.identify_regime import identify_regime
 from sim2real.diagnose.input_checks import UndeterminedError
 from sim2real.diagnose.regimes.base import Evidence, IdentifiedRegime, UnusableError
 from sim2real.diagnose.regimes.registry import REGIMES
-from sim2real.diagnose.regimes.sensing.consistency import check_sensing
 from sim2real.diagnose.regimes.sensing.identify import IdentifiedSensing, identify_sensing
 from sim2real.diagnose.result.result import RegimeResult, SensorSummary
 from sim2real.diagnose.result.sensor_summary import sensor_summary
@@ -48,7 +47,6 @@ def identify(
     """
     progress("segments", 0.05)
     segments = [segment(one) for one in recordings]
-    check_sensing(recordings, segments)
     progress("sensing", 0.1)
     sensed = identify_sensing(recordings, segments, launches_of(recordings, segments))
     if sensed.regime_result.undetermined:

@@ -16,6 +16,7 @@ from sim2real.diagnose.regimes.sensing.clock import (
     timed_contacts,
 )
 from sim2real.diagnose.regimes.sensing.clock_findings import ClockResult, identify_clock
+from sim2real.diagnose.regimes.sensing.consistency import check_sensing
 from sim2real.diagnose.regimes.sensing.coordinate_scale import ScaleResult, distances_of_others, identify_scale
 from sim2real.diagnose.regimes.sensing.held_out import HeldOutErrors, held_out_errors
 from sim2real.diagnose.regimes.sensing.repeated_frames import (
@@ -79,12 +80,17 @@ class IdentifiedSensing:
 def identify_sensing(
     recordings: Sequence[Recording], segments: Sequence[Segments], launch: Launch
 ) -> IdentifiedSensing:
-    """Identify the sensor errors in recordings of one table: the stamps, the map, the clock, the repeated frames."""
+    """Identify the sensor errors in recordings of one table: the stamps, the map, the clock, the repeated frames.
+
+    Errors: UndeterminedError if the recordings are not of one table and one camera. Jitter of stamps moves the places
+    at which the puck bounces, so that these are compared when the stamps are known.
+    """
     recordings, segments = list(recordings), list(segments)
     stamps = identify_stamps(recordings, segments, launch)
     if stamps.finding is not None:
         recordings = [with_regular_stamps(one) for one in recordings]
         segments = [segment(one) for one in recordings]
+    check_sensing(recordings, segments)
     found = _velocity_jumps(recordings, segments, launch)
     calibrated = any(stated_map_error(one) for one in recordings)
     scale = identify_scale([s for part in found for s in part], geometry(recordings[0]), calibrated)

@@ -45,7 +45,7 @@ class SlidingNumbers:
         "choice: longer than a launch across the table",
     )  # fmt: skip
     slowest: float = tuned(
-        0.02, "m/s", "a slower puck is at rest and shows no force", "choice: friction stops it within a few millimetres"
+        0.05, "m/s", "a slower puck is at rest, or in a hand that sets it down", "choice: friction soon stops it"
     )
     contact_gap: float = tuned(
         0.05, "s", "a glide that begins later than this after a contact is not known to begin there",
