@@ -173,12 +173,11 @@ def array_at(address, shape, dtype):
     return _carray(_as_pointer(address), shape, dtype)
 
 
-_announced = False
+_announced: set[str] = set()
 
 
-def announce_compilation(marker: str) -> None:
-    """Say on stderr that the first call of the kernel named `marker` will compile: once a process, where it will."""
-    global _announced
-    if not _announced and not any(CACHE_FOLDER.rglob(f"*{marker}*.nbi")):
-        print("puckpilot: compiling the simulator (once after each change, under a minute) ...", file=sys.stderr)
-        _announced = True
+def announce_compilation(marker: str, what: str = "the simulator", package: str = _ROOT.name) -> None:
+    """Say on stderr that `what` will be compiled, once a process, if the kernel named `marker` of a package was not."""
+    if what not in _announced and not any(cache_folder_of(package).rglob(f"*{marker}*.nbi")):
+        print(f"puckpilot: compiling {what} (once after each change, under a minute) ...", file=sys.stderr)
+        _announced.add(what)

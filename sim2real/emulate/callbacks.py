@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from puckpilot_env.kernel import c_callback, kernel
+from puckpilot_env.kernel import announce_compilation, c_callback, kernel
 from sim2real.emulate import bus
 from sim2real.emulate.block_timing import block_begins, step_begins
 from sim2real.emulate.board_state import board_at
@@ -20,6 +20,7 @@ from sim2real.emulate.unicorn_calls import (
 )
 
 _EXCEPTION_RETURN = 8  # Unicorn's number for a jump to such an address
+announce_compilation("block_begins", "the emulated board", "sim2real")  # its callbacks, as they are defined below
 _PERIPHERALS, _SYSTEM, _SAVED = bus.PERIPHERALS, bus.SYSTEM, len(SAVED)
 
 

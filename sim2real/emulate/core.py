@@ -26,19 +26,20 @@ VECTORS = 59
 FAULTS = 32  # that are kept
 _RETURN_TO_THREAD, _RETURN_TO_HANDLER = 0xFFFFFFF9, 0xFFFFFFF1
 _THUMB = 1 << 24
-_PRIMASK = arm.UC_ARM_REG_PRIMASK
 
 # why the processor stopped: in WFI, in WFE, by `stop`, after as many instructions as it was given, at the return from
 # an exception, by a fault
 RUNS, SLEEP, EVENT, STOP, SLICE, RETURN, FAULT = range(7)
 
 # unicorn: its handle; ids, places: of the registers SAVED, as Unicorn's calls take them, and their addresses;
-# registers: values while the processor does not run; mask: scratch for PRIMASK; event: whether WFE passes; failed:
-# whether a function in Python raised an error; faults: address and Unicorn's number of each, negative for a status
+# registers: values while the processor does not run; mask: scratch for PRIMASK, which is `mask_id`; event: whether WFE
+# passes; failed: whether a function in Python raised an error; faults: address and Unicorn's number of each, which is
+# negative for a status
 CORE = np.dtype(
     [
         ("unicorn", np.int64), ("ids", np.int32, len(SAVED)), ("places", np.int64, len(SAVED)),
         ("ids_at", np.int64), ("places_at", np.int64), ("mask_at", np.int64), ("mask", np.uint32),
+        ("mask_id", np.int32),
         ("registers", np.uint32, len(SAVED)), ("vectors", np.int64, VECTORS), ("asleep", np.int64),
         ("locked", np.int64), ("running", np.int64), ("event", np.int64), ("why", np.int64), ("fault", np.int64),
         ("failed", np.int64), ("fault_count", np.int64), ("faults", np.int64, (FAULTS, 2)),
@@ -72,7 +73,7 @@ def _masked(board):
     core = board.core
     if not core.running:
         return core.registers[-1] & 1 != 0
-    read_register(core.unicorn, _PRIMASK, core.mask_at)
+    read_register(core.unicorn, core.mask_id, core.mask_at)
     return core.mask & 1 != 0
 
 
@@ -132,11 +133,14 @@ def enter(board, number):
 
 @kernel
 def leave(board):
-    """Return from the innermost exception: pull the frame from the stack."""
+    """Return from the innermost exception: pull the frame from the stack. Where no exception is active, or no stack is
+    there, the processor locks up."""
     core = board.core
     registers, stack = core.registers, np.int64(core.registers[SP])
-    leave_exception(board.nvic)
-    if not _is_memory(stack):
+    active = board.nvic.depth > 0
+    if active:
+        leave_exception(board.nvic)
+    if not active or not _is_memory(stack):
         _lock_up(core)
         return
     for place in range(FRAME // 4):

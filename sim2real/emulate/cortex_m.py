@@ -63,6 +63,7 @@ class CortexM:
         first = core["registers"][0].ctypes.data
         self._core["places"] = [first + 4 * index for index in range(len(SAVED))]
         self._core["ids_at"], self._core["places_at"] = core["ids"].ctypes.data, core["places"].ctypes.data
+        self._core["mask_id"] = arm.UC_ARM_REG_PRIMASK
         self._core["mask_at"] = core["mask"].ctypes.data
 
     def _watch(self, address: int, code: bytes) -> None:

@@ -9,6 +9,7 @@ random blocks until the next event.
 from __future__ import annotations
 
 import random
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -150,6 +151,7 @@ class Machine:
         self.line.flush()
         self.resets.append((self.now, cause))
         reset_board(self._address, CAUSES[cause])
+        self._raise()
 
     def crystal_fails(self) -> None:
         """Let the crystal stop now."""
@@ -163,6 +165,13 @@ class Machine:
     def run(self, until_us: float) -> None:
         """Run until a time [us]. The result does not depend on how a run is divided into calls."""
         until = round(until_us * PER_US)
+        before, sys.unraisablehook = sys.unraisablehook, self._interrupted
+        try:
+            self._run(until)
+        finally:
+            sys.unraisablehook = before
+
+    def _run(self, until: int) -> None:
         while (now := self._now.item(0)) < until:
             ended = run(self._address, min(until, now + _MOST_TICKS))
             if ended == BITTEN:
@@ -170,6 +179,14 @@ class Machine:
             elif ended == BROKEN:
                 self._raise()
             self.line.carry_on()
+
+    def _interrupted(self, ignored: sys.UnraisableHookArgs) -> None:
+        """Take an interrupt, or another end of the program, that came as a function was called from compiled code: it
+        cannot be raised there."""
+        if ignored.exc_value is not None and not isinstance(ignored.exc_value, Exception):
+            self._failed(ignored.exc_value)
+        else:
+            sys.__unraisablehook__(ignored)
 
     def instructions(self, until_us: float) -> list[int]:
         """Run until a time [us]. Returns the number of instructions of each round of the main loop, from sleep to
@@ -193,9 +210,9 @@ class Machine:
         """Raise what compiled code noted: an error of a function in Python, or a refusal."""
         error, self._error = self._error, None
         self._state["core"]["failed"] = 0
-        if error is not None:
-            raise error
         refusal = self._state["refusal"]
         number, refusal["number"] = int(refusal["number"]), refusals.NONE
+        if error is not None:
+            raise error
         if number:
             raise NotModelledError(bus.describe(number, int(refusal["value"])))

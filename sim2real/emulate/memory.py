@@ -12,6 +12,13 @@ MEMORY = np.dtype([("flash", np.uint8, FLASH_SIZE), ("ram", np.uint8, RAM_SIZE)]
 
 
 @inlined_kernel
+def is_memory(address, size):
+    """Whether there is memory of so many bytes at an address."""
+    in_ram = RAM <= address <= RAM + RAM_SIZE - size
+    return in_ram or FLASH <= address <= FLASH + FLASH_SIZE - size
+
+
+@inlined_kernel
 def byte_at(board, address):
     """The byte at an address, 0 where there is no memory."""
     if RAM <= address < RAM + RAM_SIZE:

@@ -28,6 +28,7 @@ TEXTS = (
     "DMA1_CCR4 = 0x{0:X}: expected bytes from memory, counting up: 0x93",
     "DMA1 channel 4 is switched off in the middle of a piece",
     "DMA1 channel 4 is switched on, but USART1 is not ready, or not where CPAR4 points",
+    "DMA1 channel 4 is to send from 0x{0:08X}: there is no memory",
     "an IWDG register is written while locked: without effect",
     "the PLL is switched on at a crystal that does not run",
     "RCC_CFGR = 0x{0:08X}: expected HSI or PLL, and only APB1 divided, by 2",
@@ -38,8 +39,8 @@ TEXTS = (
 (
     NONE, READ, WRITE, CLOCK_OFF, NARROW, SYSTICK_VALUE, SYSTICK_CONTROL, PWM_MODE, PWM_OUTPUTS, COUNTER_WRITTEN,
     SELECT_IN_FRAME, BOTH_SELECTED, SPI_CONTROL, SPI_BUSY, SPI_PINS, SPI_SPEED, USART_WRITE, DMA_CONTROL,
-    DMA_SWITCHED_OFF, DMA_NOT_READY, WATCHDOG_LOCKED, PLL_WITHOUT_CRYSTAL, CLOCK_CONFIG, PLL_NOT_READY, BUS_TOO_FAST,
-    CORE_TOO_FAST,
+    DMA_SWITCHED_OFF, DMA_NOT_READY, DMA_NO_MEMORY, WATCHDOG_LOCKED, PLL_WITHOUT_CRYSTAL, CLOCK_CONFIG, PLL_NOT_READY,
+    BUS_TOO_FAST, CORE_TOO_FAST,
 ) = range(len(TEXTS))  # fmt: skip
 
 REFUSAL = np.dtype([("number", np.int64), ("value", np.int64)], align=True)

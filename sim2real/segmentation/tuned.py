@@ -56,7 +56,7 @@ class SegmentationNumbers:
         "choice: five times the friction of a table that hardly slides",
     )
     braked_drag: float = tuned(
-        0.2, "1/m", "the same of the drag of a fast puck", "choice: ten times that of an air table"
+        0.2, "1/m", "the same of the drag of a fast puck", "choice: as much as any puck on a table has"
     )
     # changepoints
     window_frames: tuple[int, ...] = tuned(

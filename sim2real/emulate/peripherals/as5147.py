@@ -122,7 +122,10 @@ class As5147:
 
     def _measured(self, now: float) -> float:
         try:
-            return self.angle(now)
+            angle = float(self.angle(now))
+            if not math.isfinite(angle):
+                raise ValueError(f"a shaft's angle is {angle} at {now:.0f} us; expected a number")
+            return angle
         except BaseException as error:  # compiled code is between here and who handles it
             self._failed(error)
             return 0.0

@@ -6,7 +6,7 @@ import numpy as np
 
 from puckpilot_env.kernel import kernel
 from sim2real.emulate import refusals
-from sim2real.emulate.memory import byte_at
+from sim2real.emulate.memory import byte_at, is_memory
 from sim2real.emulate.peripherals.nvic import set_line
 from sim2real.emulate.peripherals.usart import DATA, byte_ticks, can_send, right_speed
 from sim2real.emulate.refusals import refuse
@@ -65,8 +65,10 @@ def _control(board, value):
     dma = board.dma
     if value & 1 and value != 0x93:
         refuse(board, refusals.DMA_CONTROL, value)
+        return
     if dma.length and not value & 1:
         refuse(board, refusals.DMA_SWITCHED_OFF, 0)
+        return
     dma.values[CCR4] = value
     if value & 1 and dma.values[CNDTR4]:
         _begin(board)
@@ -75,8 +77,11 @@ def _control(board, value):
 @kernel
 def _begin(board):
     dma = board.dma
-    if not can_send(board) or dma.values[CPAR4] != DATA:
+    if not can_send(board) or byte_ticks(board) == 0 or dma.values[CPAR4] != DATA:
         refuse(board, refusals.DMA_NOT_READY, 0)
+        return
+    if not is_memory(dma.values[CMAR4], dma.values[CNDTR4]):
+        refuse(board, refusals.DMA_NO_MEMORY, dma.values[CMAR4])
         return
     dma.began, dma.took, dma.length = board.timeline.now, 0, dma.values[CNDTR4]
     schedule(board.timeline, PIECE_SENT, dma.began + dma.length * byte_ticks(board))

@@ -92,6 +92,7 @@ def write_rcc(board, register, value):
         if value & ~before & _PLLON:
             if rcc.values[CFGR] >> 16 & 1 and not rcc.values[CR] & _HSERDY:
                 refuse(board, refusals.PLL_WITHOUT_CRYSTAL, 0)
+                return
             rcc.pll_ready = now + _PLL_START
     elif register == CFGR:
         _set_config(board, value)

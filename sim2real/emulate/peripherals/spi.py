@@ -49,8 +49,10 @@ def select_encoder(board):
     selected = 0 if low == _SELECTS[0] else 1 if low == _SELECTS[1] else _NONE
     if selected != spi.selected and board.timeline.now < spi.over:
         refuse(board, refusals.SELECT_IN_FRAME, 0)
+        return
     if low == _SELECTS[0] | _SELECTS[1]:
         refuse(board, refusals.BOTH_SELECTED, 0)
+        return
     spi.low, spi.selected = low, selected
 
 
@@ -90,7 +92,7 @@ def write_spi(board, register, value):
     """Write a register."""
     if register == CR1 and value & ~_DIVIDER & 0xFFFF != _CR1:
         refuse(board, refusals.SPI_CONTROL, value)
-    if register == DR:
+    elif register == DR:
         _begin(board, value)
     elif register != SR:
         board.spi.values[register] = value
@@ -99,12 +101,15 @@ def write_spi(board, register, value):
 @kernel
 def _begin(board, value):
     spi, rcc = board.spi, board.rcc
+    divider = 2 << ((spi.values[CR1] & _DIVIDER) >> 3)
     if spi.command != _NONE or spi.values[CR1] == 0:
         refuse(board, refusals.SPI_BUSY, 0)
+        return
     if board.ports[PORT_A].alternate & _PINS != _PINS:
         refuse(board, refusals.SPI_PINS, 0)
-    divider = 2 << ((spi.values[CR1] & _DIVIDER) >> 3)
+        return
     if rcc.megahertz > _FASTEST * divider:
         refuse(board, refusals.SPI_SPEED, 1000 * rcc.megahertz // divider)
+        return
     spi.command = value & 0xFFFF
     spi.over = board.timeline.now + 16 * divider * rcc.cycle

@@ -26,11 +26,12 @@ def read_systick(board, register):
 @kernel
 def write_systick(board, register, value):
     """Write a register."""
+    if register == CTRL and value not in (0, 7):
+        refuse(board, refusals.SYSTICK_CONTROL, value)
+        return
     board.systick.values[register] = value
     if register != CTRL:
         return
-    if value not in (0, 7):
-        refuse(board, refusals.SYSTICK_CONTROL, value)
     drop(board.timeline, TICK_DUE)
     if value:
         _again(board)

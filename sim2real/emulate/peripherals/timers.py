@@ -28,8 +28,10 @@ def write_pwm(board, register, value):
     """Write a register of TIM1, of which only the complementary outputs are modelled; whether it changed."""
     if register == CCMR1 and value & ~0x7070:
         refuse(board, refusals.PWM_MODE, value)
+        return False
     if register == CCER and value & ~0x44:
         refuse(board, refusals.PWM_OUTPUTS, value)
+        return False
     values = board.pwm.values
     if register == EGR or values[register] == value & 0xFFFF:
         return False

@@ -137,5 +137,6 @@ def write_usart(board, register, value):
     """Write a register."""
     if register == DR or (register == CR1 and value & ~_CR1_KNOWN) or (register == CR3 and value & ~_CR3_DMAT):
         refuse(board, refusals.USART_WRITE, value)
+        return
     board.usart.values[register] = value
     _raise(board)

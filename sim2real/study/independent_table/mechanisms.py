@@ -168,7 +168,7 @@ def _held(rng: Rng, share: float, law: Law, scenario: str) -> Change:
 
 
 def _stamps(rng: Rng, share: float, law: Law, scenario: str) -> Change:
-    late = 0.0008 * share
+    late = 0.0006 * share
     return Change(camera={"jitter": 0.0, "arrival": late}, values={"std_s": late})
 
 

@@ -40,6 +40,9 @@ class Plant:
         self._coming: deque[tuple[float, Place]] = deque()  # volts of the robot's axes that come late, and when [s]
         self._held: np.ndarray | None = None  # the robot's mallet at rest, while it is held fast
 
+    def __deepcopy__(self, memo: object) -> Plant:
+        raise TypeError("a plant cannot be copied: compiled code knows its arrays by their addresses")
+
     def hold(self, held: bool) -> None:
         """Hold the robot's mallet fast where it is, or let it go."""
         self._held = begin(self.law, [self.mallet(0)[:2]])[0] if held else None

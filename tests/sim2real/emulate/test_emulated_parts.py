@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import signal
 import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -181,6 +183,7 @@ def test_a_value_that_is_not_modelled_is_named_and_the_next_is_not_blamed_for_it
     machine.store("RCC_APB2ENR", 1 << 11)
     with pytest.raises(NotModelledError, match=says):
         machine.store(register, value)
+    assert machine.load(register) != value
     machine.store("FLASH_ACR", 2)
     assert machine.load("FLASH_ACR") == 2
 
@@ -199,6 +202,49 @@ def test_an_error_of_a_shaft_comes_out_of_the_run_and_the_board_runs_on() -> Non
     machine.encoders[1].angle = lambda now: 0.5
     machine.run(30_000)
     assert machine.now == 30_000 and machine.received()
+
+
+@pytest.mark.parametrize("angle", [float("nan"), float("inf"), None])
+def test_a_shaft_without_an_angle_is_an_error(angle: float) -> None:
+    machine = Machine(ELF)
+    machine.encoders[0].angle = lambda now: angle
+    with pytest.raises((ValueError, TypeError)):
+        machine.run(30_000)
+
+
+def test_an_interrupt_that_comes_as_a_shaft_is_asked_ends_the_run() -> None:
+    """Python raises it where it next runs, which is in the call from compiled code."""
+    machine, asked = Machine(ELF), []
+
+    def interrupt(now: float) -> float:
+        asked.append(now)
+        if len(asked) < 20:
+            signal.raise_signal(signal.SIGINT)
+        return 0.0
+
+    machine.encoders[0].angle = interrupt
+    for _ in range(10):
+        with pytest.raises(KeyboardInterrupt):
+            machine.run(machine.now + 30_000)
+    hook = sys.unraisablehook
+    assert hook is sys.__unraisablehook__ or "_interrupted" not in repr(hook)
+
+
+def test_an_error_of_who_listens_to_the_motors_comes_out_of_a_reset() -> None:
+    machine = Machine(PLAIN)
+    machine.run(3000)
+    machine.send(b"p")
+    machine.run(10_000)
+
+    def broken(*_: float) -> None:
+        raise OSError("no motor")
+
+    machine.motors.listeners.append(broken)
+    with pytest.raises(OSError, match="no motor"):
+        machine.reset()
+    machine.motors.listeners.clear()
+    machine.run(20_000)
+    assert machine.motors.duties == (0.0, 0.0)
 
 
 def test_more_bytes_than_the_line_holds_all_come() -> None:

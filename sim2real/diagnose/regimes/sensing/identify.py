@@ -60,7 +60,7 @@ class IdentifiedSensing:
     """The result of the sensing regime, and the corrected recordings with their segments.
 
     `scale` (3,): the map error, in the order of `coordinate_scale.NAMES`; `clock`: None if no clock error was found;
-    `regular`: whether exposures are taken to be regular instead of stamped.
+    `period` [s]: of exposures that are taken to be regular, None where the stamps are.
     """
 
     regime_result: RegimeResult
@@ -68,11 +68,11 @@ class IdentifiedSensing:
     segments: tuple[Segments, ...]
     scale: np.ndarray
     clock: ClockFit | None
-    regular: bool = False
+    period: float | None = None
 
     def correct(self, recording: Recording) -> Recording:
         """Correct another recording of the same camera."""
-        timed = with_regular_stamps(recording) if self.regular else recording
+        timed = recording if self.period is None else with_regular_stamps(recording, self.period)
         mapped = corrected(timed, self.scale) if self.scale.any() else timed
         return mapped if self.clock is None else corrected(mapped, np.zeros(3), self.clock.clock)
 
@@ -88,7 +88,7 @@ def identify_sensing(
     recordings, segments = list(recordings), list(segments)
     stamps = identify_stamps(recordings, segments, launch)
     if stamps.finding is not None:
-        recordings = [with_regular_stamps(one) for one in recordings]
+        recordings = [with_regular_stamps(one, stamps.period) for one in recordings]
         segments = [segment(one) for one in recordings]
     check_sensing(recordings, segments)
     found = _velocity_jumps(recordings, segments, launch)
@@ -111,8 +111,8 @@ def identify_sensing(
     selection = pooled([one for one in selections if one is not None])
     advice = _next_recording(recordings, clock, scale)
     regime_result = RegimeResult("sensing", tuple(findings), {}, not findings, selection, scale.undetermined, advice)
-    regular = stamps.finding is not None
-    return IdentifiedSensing(regime_result, tuple(recordings), tuple(segments), scale.values, clock.fit, regular)
+    every = tuple(recordings), tuple(segments)
+    return IdentifiedSensing(regime_result, *every, scale.values, clock.fit, stamps.period)
 
 
 def prove_sensing(
@@ -121,9 +121,9 @@ def prove_sensing(
     """Add to the result the errors in holdout `recordings` and their `segments`, before and after correction."""
     g, recordings, segments = geometry(recordings[0]), list(recordings), list(segments)
     errors = {}
-    if sensed.regular:
-        errors[MECHANISM] = stamp_errors(recordings, segments, launch)
-        recordings = [with_regular_stamps(one) for one in recordings]
+    if sensed.period is not None:
+        errors[MECHANISM] = stamp_errors(recordings, segments, launch, sensed.period)
+        recordings = [with_regular_stamps(one, sensed.period) for one in recordings]
         segments = [segment(one) for one in recordings]
     found = _velocity_jumps(recordings, segments, launch)
     jumps = [jump for part in found for jump in part]

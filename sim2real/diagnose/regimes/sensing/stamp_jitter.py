@@ -14,6 +14,7 @@ from sim2real.diagnose.regimes.sensing.tuned import SIGNIFICANCE_LEVEL, STAMPS
 from sim2real.diagnose.result.result import Estimate, Finding, Proof
 from sim2real.recording.folder import Recording, Stream
 from sim2real.segmentation.segments import Glide, Segments
+from sim2real.statistics.intervals import reach
 
 MECHANISM = "stamp_jitter"
 FORMULA = "stamp = arrival; exposures every period_s, skipped frames counted"
@@ -32,16 +33,17 @@ class LocalFits:
 
 @dataclass(frozen=True)
 class StampResult:
-    """The finding and its errors before and after; both None if the stamps are left alone."""
+    """The finding, its errors before and after, and the camera's period [s]; all None if the stamps are left alone."""
 
     finding: Finding | None = None
     selection: Proof | None = None
+    period: float | None = None
 
 
-def with_regular_stamps(recording: Recording) -> Recording:
+def with_regular_stamps(recording: Recording, period: float | None = None) -> Recording:
     """The recording with regular times of exposure instead of its stamps, without what frames saw whose time is not
-    sure; itself, if they show no steady period."""
-    found = None if recording.frames is None else regular_exposures(recording.frames.t)
+    sure; itself, if they show no steady period. period [s]: of the camera, if it is known."""
+    found = None if recording.frames is None else regular_exposures(recording.frames.t, period)
     if recording.frames is None or found is None:
         return recording
     columns = {name: np.where(found.sure, values, np.nan) for name, values in recording.frames.columns.items()}
@@ -52,9 +54,11 @@ def identify_stamps(
     recordings: Sequence[Recording], segments: Sequence[Segments], launch: Sequence[np.ndarray]
 ) -> StampResult:
     """Compare local fits of glides with the stamps and with regular times, of all recordings of one camera."""
+    if any(_is_long(one) and regular_exposures(one.frames.t) is None for one in recordings if one.frames is not None):
+        return StampResult()
     fits = [local_fits(*one) for one in zip(recordings, segments, launch, strict=True)]
     known = [one for one in fits if one is not None]
-    if len(known) < len(fits) or not known:
+    if not known or not any(map(_is_long, recordings)):
         return StampResult()
     worse = np.concatenate([one.stamps**2 - one.regular**2 for one in known])
     if len(worse) < STAMPS.fewest_pieces or not worse.any():
@@ -63,17 +67,32 @@ def identify_stamps(
     errors = _errors(known)
     if chance > SIGNIFICANCE_LEVEL or errors is None or errors.before < STAMPS.worse * errors.after:
         return StampResult()
-    period, deviation = _estimates(recordings)
+    period, deviation = _estimates([one for one in recordings if _is_long(one)])
     parameters, where = {"period_s": period, "std_s": deviation}, {"stream": "frames"}
     finding = Finding("sensing", MECHANISM, (), (), FORMULA, parameters, max(chance, 1e-300), where=where)
-    return StampResult(finding, errors.proof)
+    return StampResult(finding, errors.proof, period.value)
+
+
+def _is_long(recording: Recording) -> bool:
+    """Whether a recording is long enough to tell whether its exposures are regular."""
+    frames = recording.frames
+    return frames is not None and frames.rows > 1 and _stretches(frames.t) >= STAMPS.fewest_stretches
+
+
+def _stretches(stamps: np.ndarray) -> int:
+    """The number of stretches with enough frames."""
+    return int((np.unique(stamps // STAMPS.stretch, return_counts=True)[1] >= STAMPS.fewest_frames).sum())
 
 
 def stamp_errors(
-    recordings: Sequence[Recording], segments: Sequence[Segments], launch: Sequence[np.ndarray]
+    recordings: Sequence[Recording],
+    segments: Sequence[Segments],
+    launch: Sequence[np.ndarray],
+    period: float | None = None,
 ) -> HeldOutErrors | None:
-    """Rms residuals of local fits with the stamps and with regular times; None if there is no steady period."""
-    fits = [local_fits(*one) for one in zip(recordings, segments, launch, strict=True)]
+    """Rms residuals of local fits with the stamps and with regular times of a `period` [s], which is found if it is not
+    given; None if there is no steady period."""
+    fits = [local_fits(*one, period) for one in zip(recordings, segments, launch, strict=True)]
     return _errors([one for one in fits if one is not None])
 
 
@@ -84,24 +103,28 @@ def _errors(fits: Sequence[LocalFits]) -> HeldOutErrors | None:
     return held_out_errors(*of_all)
 
 
-def local_fits(recording: Recording, segments: Segments, launch: np.ndarray) -> LocalFits | None:
-    """The local fits of a recording; None if its stamps show no steady period. launch (frames,): of each row."""
+def local_fits(
+    recording: Recording, segments: Segments, launch: np.ndarray, period: float | None = None
+) -> LocalFits | None:
+    """The local fits of a recording; None if its stamps show no steady period, of `period` [s] if that is known. launch
+    (frames,): of each row."""
     frames = recording.frames
-    found = None if frames is None else regular_exposures(frames.t)
+    found = None if frames is None else regular_exposures(frames.t, period)
     if frames is None or found is None:
         return None
-    pieces = [piece for glide in segments.glides for piece in _pieces(frames.t, glide) if found.sure[piece].all()]
+    longest = STAMPS.longest_piece * (STAMPS.frames - 1) * found.period
+    pieces = [piece for glide in segments.glides for piece in _pieces(glide) if found.sure[piece].all()]
+    pieces = [rows for rows in pieces if found.t[rows[-1]] - found.t[rows[0]] < longest]
     rows = np.array(pieces, int).reshape(-1, STAMPS.frames)
     p = np.stack([frames["puck_x"], frames["puck_y"]], axis=1)[rows]
     stamps, regular = (_residuals(t[rows], p) for t in (frames.t, found.t))
     return LocalFits(stamps, regular, np.full(len(rows), segments.noise_std), launch[rows[:, 0]])
 
 
-def _pieces(t: np.ndarray, glide: Glide) -> list[np.ndarray]:
-    """Rows of consecutive pieces of a glide, without gaps."""
+def _pieces(glide: Glide) -> list[np.ndarray]:
+    """Rows of consecutive pieces of a glide."""
     size = STAMPS.frames
-    pieces = [glide.index[k : k + size] for k in range(0, len(glide.index) - size + 1, size)]
-    return [rows for rows in pieces if t[rows[-1]] - t[rows[0]] < STAMPS.longest_piece]
+    return [glide.index[k : k + size] for k in range(0, len(glide.index) - size + 1, size)]
 
 
 def _residuals(t: np.ndarray, p: np.ndarray) -> np.ndarray:
@@ -119,21 +142,21 @@ def _estimates(recordings: Sequence[Recording]) -> tuple[Estimate, Estimate]:
     of stretches of some seconds."""
     periods, variances = [], []
     for one in recordings:
-        found = None if one.frames is None else regular_exposures(one.frames.t)
-        if one.frames is not None and found is not None:
-            stretch = ((found.t - found.t[0]) // STAMPS.stretch).astype(int)
-            count = np.bincount(stretch, found.sure)
-            squares = np.bincount(stretch, (one.frames.t - found.t) ** 2 * found.sure)
-            full = count >= STAMPS.fewest_frames
-            variances.append(squares[full] / count[full])
-            periods += [
-                float(np.polyfit(found.number[stretch == k], found.t[stretch == k], 1)[0]) for k in np.flatnonzero(full)
-            ]
-    variance = np.concatenate(variances)
-    period, half = float(np.median(periods)), 1.96 * float(np.std(periods)) / np.sqrt(len(periods))
-    value, spread = float(variance.mean()), 1.96 * float(variance.std()) / np.sqrt(len(variance))
-    low, high = np.sqrt(max(value - spread, 0.0)), np.sqrt(value + spread)
-    return (
-        Estimate(period, period - half, period + half, "s"),
-        Estimate(float(np.sqrt(value)), float(low), float(high), "s"),
-    )
+        assert one.frames is not None
+        found = regular_exposures(one.frames.t)
+        assert found is not None
+        late = one.frames.t - found.t
+        for stretch in np.unique(one.frames.t // STAMPS.stretch):
+            here = found.sure & (one.frames.t // STAMPS.stretch == stretch)
+            if here.sum() >= STAMPS.fewest_frames:
+                variances.append(float(np.mean(late[here] ** 2)))
+                periods.append(float(np.polyfit(found.number[here], found.t[here], 1)[0]))
+    period, half = _mean_and_reach(periods)
+    variance, spread = _mean_and_reach(variances)
+    low, high = float(np.sqrt(max(variance - spread, 0.0))), float(np.sqrt(variance + spread))
+    return Estimate(period, period - half, period + half, "s"), Estimate(float(np.sqrt(variance)), low, high, "s")
+
+
+def _mean_and_reach(values: Sequence[float]) -> tuple[float, float]:
+    """The mean of values and half of its 95 % interval, by Student's t."""
+    return float(np.mean(values)), reach(len(values) - 1) * float(np.std(values, ddof=1)) / float(np.sqrt(len(values)))

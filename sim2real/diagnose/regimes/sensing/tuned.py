@@ -213,7 +213,22 @@ class StampNumbers:
         "choice: a few hundred frames",
     )
     fewest_frames: int = tuned(
-        20, "frames", "of a stretch: fewer do not determine its phase", "choice: a sixth of a second"
+        60,
+        "frames",
+        "of a stretch: fewer show a phase by chance, more refuse slow cameras",
+        "choice: a camera of 30 frames a second",
+    )
+    fewest_stretches: int = tuned(
+        5, "1", "fewer do not tell how uncertain a period and a jitter are", "choice: ten seconds"
+    )
+    least_sure: float = tuned(
+        0.5, "1", "share of frames whose number is sure: less takes frames that come in bursts", "choice: most of them"
+    )
+    lags: tuple[int, ...] = tuned(
+        (8, 64),
+        "frames",
+        "over which steps are counted in turn: fewer leave the jitter of single steps in the period",
+        "choice: each tells the count of the next",
     )
     least_concentration: float = tuned(
         0.35,
@@ -242,7 +257,9 @@ class StampNumbers:
     frames: int = tuned(
         7, "frames", "of a local fit: fewer leave few degrees of freedom, more see friction change", "choice: 60 ms"
     )
-    longest_piece: float = tuned(0.12, "s", "more fits across skipped frames", "choice: twice seven frames")
+    longest_piece: float = tuned(
+        2.0, "1", "times as long as without skipped frames: more fits across them", "choice: one in two skipped"
+    )
     fewest_pieces: int = tuned(30, "1", "fewer let chance decide", "choice: two seconds of gliding")
     worse: float = tuned(
         1.05,

@@ -13,7 +13,7 @@ from sim2real.study.independent_table.recorder.scene import FINE, Scene
 
 @dataclass(frozen=True)
 class Camera:
-    """Noise of each coordinate, jitter of exposures and stamps, and shares of frames that are held, dropped or wild;
+    """Noise of each coordinate, jitter of exposures and arrivals, and shares of frames that are held, dropped or wild;
     and the errors of a calibrated camera beside the table (`sim2real.study.independent_table.recorder.film`)."""
 
     rate: float = 120.0  # Hz

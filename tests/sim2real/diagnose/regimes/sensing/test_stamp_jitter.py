@@ -62,6 +62,26 @@ def test_too_few_stamps_show_no_period(stamps: np.ndarray) -> None:
     assert regular_exposures(stamps) is None
 
 
+@pytest.mark.parametrize("stamps", [np.zeros(500), np.arange(500.0)[::-1] / 120.0, np.repeat(np.arange(900) / 60.0, 2)])
+def test_stamps_that_do_not_grow_show_no_period(stamps: np.ndarray) -> None:
+    assert regular_exposures(stamps) is None
+
+
+def test_stamps_of_whole_milliseconds_show_the_period_between() -> None:
+    found = regular_exposures(np.round(np.arange(2400) / 120.0, 3))
+    assert found is not None and found.period == pytest.approx(1.0 / 120.0, rel=1e-5)
+
+
+def test_late_frames_beside_a_gap_and_at_the_ends_get_times_where_they_came() -> None:
+    stamps = np.concatenate([np.arange(1200), 4000 + np.arange(1200)]) / 120.0
+    late = [0, 1199, 1200, 2399]
+    stamps[late] += 0.3 / 120.0
+    found = regular_exposures(stamps)
+    assert found is not None and np.array_equal(np.flatnonzero(~found.sure), late)
+    assert (np.diff(found.t) > 0.0).all()
+    assert np.abs(found.t - stamps)[late].max() < 1.0 / 120.0
+
+
 def test_frames_at_any_time_show_no_period() -> None:
     rng = np.random.default_rng(1)
     assert regular_exposures(np.cumsum(rng.uniform(0.004, 0.012, 5000))) is None
@@ -82,6 +102,25 @@ def test_arrivals_are_named_and_measured_and_the_fit_improves_where_nothing_was_
     proof = prove_sensing(sensed, [other], parts, launches_of([other], parts)).proof
     assert proof is not None and proof.after_m < 1.2e-4 < 2.0e-4 < proof.before_m  # the sensor's noise is 1e-4
     assert segment(sensed.correct(other)).noise.clock == 0.0 < parts[0].noise.clock
+
+
+def test_a_recording_that_shows_no_period_by_itself_has_that_of_its_camera(launches) -> None:
+    """Nothing for the recordings beside it, and corrected with them: one without frames, and one of two seconds."""
+    assert launches.frames is not None
+    short = {name: values[:240] for name, values in launches.frames.columns.items()}
+    three = [launches, replace(launches, frames=None), replace(launches, frames=Stream(short))]
+    segments = [segment(one) for one in three]
+    found = identify_stamps(three, segments, launches_of(three, segments))
+    assert found.finding is not None and found.period == pytest.approx(1.0 / 120.0, rel=1e-4)
+    corrected = with_regular_stamps(three[2], found.period).frames
+    assert corrected is not None
+    assert np.std(np.diff(corrected.t)) < 0.1 * ARRIVAL < np.std(np.diff(short["t"]))
+
+
+def test_ten_seconds_are_too_few_to_say(launches) -> None:
+    assert launches.frames is not None
+    short = {name: values[:900] for name, values in launches.frames.columns.items()}
+    assert identified(replace(launches, frames=Stream(short))).finding is None
 
 
 def test_stamps_that_show_when_frames_were_exposed_are_left_alone(tmp_path) -> None:
