@@ -11,8 +11,8 @@ import unicorn
 from unicorn import arm_const as arm
 from unicorn.unicorn_py3.unicorn import HOOK_CODE_CFUNC, Uc, UcError, uclib
 
-from sim2real.emulate import bus, callbacks
-from sim2real.emulate.core import PC, SAVED
+from sim2real.emulate.board import bus, callbacks
+from sim2real.emulate.board.core import PC, SAVED
 from sim2real.emulate.elf import Elf
 from sim2real.emulate.memory import FLASH, FLASH_SIZE, RAM, RAM_SIZE
 from sim2real.emulate.unicorn_calls import address_of

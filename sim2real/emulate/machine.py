@@ -15,12 +15,13 @@ from pathlib import Path
 import numpy as np
 
 from puckpilot_env.game.random_stream import seed_stream
-from sim2real.emulate import bus, callbacks, refusals
-from sim2real.emulate.access import fail_crystal, load_at, next_at, pass_at, stop_at, store_at
-from sim2real.emulate.board_state import BOARD, reset_board
+from sim2real.emulate import refusals
+from sim2real.emulate.board import bus, callbacks
+from sim2real.emulate.board.access import fail_crystal, load_at, next_at, pass_at, stop_at, store_at
+from sim2real.emulate.board.board_state import BOARD, reset_board
+from sim2real.emulate.board.execution import BITTEN, BROKEN, run
 from sim2real.emulate.cortex_m import CortexM
 from sim2real.emulate.elf import read_elf
-from sim2real.emulate.execution import BITTEN, BROKEN, run
 from sim2real.emulate.memory import RAM_SIZE
 from sim2real.emulate.peripherals.as5147 import As5147
 from sim2real.emulate.peripherals.motors import Motors

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sim2real.emulate.access import flush_at, send_at
+from sim2real.emulate.board.access import flush_at, send_at
 
 
 class SerialLine:

@@ -16,7 +16,7 @@ from tests.sim2real.emulate.built import PLAIN, need_compiler
 pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
 
 from firmware import ELF
-from sim2real.emulate.board_state import BOARD
+from sim2real.emulate.board.board_state import BOARD
 from sim2real.emulate.elf import read_elf
 from sim2real.emulate.gantry import Gantry
 from sim2real.emulate.machine import Machine

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from puckpilot_env.kernel import announce_compilation, c_callback, kernel
-from sim2real.emulate import bus
-from sim2real.emulate.block_timing import block_begins, step_begins
-from sim2real.emulate.board_state import board_at
-from sim2real.emulate.core import EVENT, FAULT, NO_EXCEPTION, RETURN, RUNS, SAVED, deliverable, leave, stop
+from sim2real.emulate.board import bus
+from sim2real.emulate.board.block_timing import block_begins, step_begins
+from sim2real.emulate.board.board_state import board_at
+from sim2real.emulate.board.core import EVENT, FAULT, NO_EXCEPTION, RETURN, RUNS, SAVED, deliverable, leave, stop
 from sim2real.emulate.unicorn_calls import (
     CODE_SIGNATURE,
     INTERRUPT_SIGNATURE,

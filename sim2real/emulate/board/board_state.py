@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from puckpilot_env.kernel import array_at, array_kernel, kernel
-from sim2real.emulate.block_timing import TIMING, reset_timing
-from sim2real.emulate.core import CORE, reset_core
+from sim2real.emulate.board.block_timing import TIMING, reset_timing
+from sim2real.emulate.board.core import CORE, reset_core
 from sim2real.emulate.memory import MEMORY
 from sim2real.emulate.peripherals.as5147 import ENCODER
 from sim2real.emulate.peripherals.dma import DMA, reset_dma

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from puckpilot_env.kernel import kernel
-from sim2real.emulate.block_timing import slept, stopped
-from sim2real.emulate.board_state import board_at
-from sim2real.emulate.core import (
+from sim2real.emulate.board.block_timing import slept, stopped
+from sim2real.emulate.board.board_state import board_at
+from sim2real.emulate.board.core import (
     EVENT,
     FAULT,
     NO_EXCEPTION,
@@ -21,8 +21,8 @@ from sim2real.emulate.core import (
     meet_fault,
     woken,
 )
+from sim2real.emulate.board.passing import pass_until, sleep
 from sim2real.emulate.memory import byte_at
-from sim2real.emulate.passing import pass_until, sleep
 from sim2real.emulate.timeline import PER_US
 from sim2real.emulate.unicorn_calls import emu_start, read_registers, write_registers
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from puckpilot_env.kernel import kernel
-from sim2real.emulate.core import NO_EXCEPTION, deliverable, stop
+from sim2real.emulate.board.core import NO_EXCEPTION, deliverable, stop
 from sim2real.emulate.peripherals.dma import piece_sent
 from sim2real.emulate.peripherals.systick import tick_due
 from sim2real.emulate.peripherals.usart import byte_comes

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from puckpilot_env.kernel import kernel
-from sim2real.emulate import bus
-from sim2real.emulate.board_state import board_at
-from sim2real.emulate.core import stop
-from sim2real.emulate.passing import pass_until
+from sim2real.emulate.board import bus
+from sim2real.emulate.board.board_state import board_at
+from sim2real.emulate.board.core import stop
+from sim2real.emulate.board.passing import pass_until
 from sim2real.emulate.peripherals.dma import flush_dma
 from sim2real.emulate.peripherals.nvic import NMI
 from sim2real.emulate.peripherals.rcc import stop_crystal

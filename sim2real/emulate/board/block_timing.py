@@ -8,8 +8,8 @@ import numpy as np
 
 from puckpilot_env.game.random_stream import STREAM, uniform
 from puckpilot_env.kernel import kernel
+from sim2real.emulate.board.passing import pass_until
 from sim2real.emulate.memory import byte_at
-from sim2real.emulate.passing import pass_until
 from sim2real.emulate.timeline import PER_US, next_tick
 
 CYCLES = 1.5  # average cycles of an instruction, with two wait states of the flash

@@ -6,7 +6,7 @@ import numpy as np
 
 from puckpilot_env.kernel import kernel
 from sim2real.emulate import refusals
-from sim2real.emulate.passing import pass_until
+from sim2real.emulate.board.passing import pass_until
 from sim2real.emulate.peripherals import dma, gpio, nvic, rcc, spi, systick, timers, usart, watchdog
 from sim2real.emulate.peripherals.dma import read_dma, write_dma
 from sim2real.emulate.peripherals.gpio import PORT_A, PORT_B, read_port, write_port
