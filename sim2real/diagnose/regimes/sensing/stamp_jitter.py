@@ -63,7 +63,7 @@ def identify_stamps(
     worse = np.concatenate([one.stamps**2 - one.regular**2 for one in known])
     if len(worse) < STAMPS.fewest_pieces or not worse.any():
         return StampResult()
-    chance = float(stats.wilcoxon(worse, alternative="greater").pvalue)
+    chance = float(np.asarray(stats.wilcoxon(worse, alternative="greater"))[1])
     errors = _errors(known)
     if chance > SIGNIFICANCE_LEVEL or errors is None or errors.before < STAMPS.worse * errors.after:
         return StampResult()
