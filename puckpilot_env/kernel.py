@@ -131,6 +131,11 @@ def array_kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     return _compiled(function, _nrt=True)
 
 
+def calling_kernel(function: Callable[..., Any]) -> Callable[..., Any]:
+    """`kernel` for a function that calls Python often: it keeps the GIL, which it would wait for at every call."""
+    return _compiled(function, nogil=False)
+
+
 def inner(function: Callable[..., Any]) -> Callable[..., Any]:
     """Compile a function that was made inside another one: it becomes part of each `kernel` that calls it.
 

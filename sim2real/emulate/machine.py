@@ -73,6 +73,7 @@ class Machine:
             self.cpu.call_at(program.symbols["robot_step"], callbacks.steps)
         self.cpu.ram[:] = np.frombuffer(random.Random(seed).randbytes(RAM_SIZE), np.uint8)
         reset_board(self._address, CAUSES["power"])
+        run(self._address, 0)  # compiled before a board of real time is waited for
 
     def _time_blocks(self, timed: bool, fuzz: int | None) -> None:
         timing = self._state["timing"]

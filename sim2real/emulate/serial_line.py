@@ -14,6 +14,8 @@ class SerialLine:
         self._address, dma = boards.ctypes.data, boards["dma"]
         self._count, self._sent = dma["count"], dma["sent"][0]
         self._to_send, self._received = b"", b""
+        send_at(self._address, np.frombuffer(b"", np.uint8))  # compiled before a board of real time is waited for
+        self.flush()
 
     def send(self, data: bytes) -> None:
         """Send bytes, now or after those that are still being sent."""

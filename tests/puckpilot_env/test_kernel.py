@@ -27,7 +27,7 @@ def compiled_in(*folders: str) -> list[Path]:
         path.relative_to(REPOSITORY)
         for folder in folders
         for path in (REPOSITORY / folder).rglob("*.py")
-        if re.search(r"^@(array_|inlined_)?kernel", path.read_text(), re.MULTILINE)
+        if re.search(r"^@(array_|inlined_|calling_)?kernel", path.read_text(), re.MULTILINE)
     )
 
 

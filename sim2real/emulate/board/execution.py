@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from puckpilot_env.kernel import kernel
+from puckpilot_env.kernel import calling_kernel, kernel
 from sim2real.emulate.board.block_timing import slept, stopped
 from sim2real.emulate.board.board_state import board_at
 from sim2real.emulate.board.core import (
@@ -32,7 +32,7 @@ _NOWHERE = 0xFFFFFFFE  # an address that is never reached
 _SAVED = len(SAVED)
 
 
-@kernel
+@calling_kernel
 def run(address, until):
     """Run the board at an address until a tick, and return why it ended. The result does not depend on how a run is
     divided into calls."""
