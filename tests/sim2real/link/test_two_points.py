@@ -18,6 +18,7 @@ from sim2real.link.two_points import ShaftAngles, solve
 
 if TYPE_CHECKING:
     from sim2real.emulate.gantry import Gantry
+    from sim2real.emulate.machine import Machine
 
 WIDTH, CORNER = 1.0, (0.06, 0.055)
 
@@ -66,17 +67,18 @@ class Hand:
     press by our clock would come while the mallet is still on its way.
     """
 
-    def __init__(self, gantry: Gantry) -> None:
+    def __init__(self, machine: Machine, gantry: Gantry) -> None:
         self.ended = threading.Event()
         self.presses: list[float] = []
         self.stdin = -1  # descriptor that Enter is written to, once the command runs
-        self._gantry = gantry
+        self._machine, self._gantry = machine, gantry
         self._began: float | None = None
 
-    def move(self, seconds: float) -> bool:
-        """Take the robot's clock [s]. Returns whether the robot goes on."""
+    def move(self, _: float) -> bool:
+        """Move the mallet to where it is by now. Returns whether the robot goes on."""
         if self.stdin < 0:
             return not self.ended.is_set()
+        seconds = self._machine.now * 1e-6
         self._began = seconds if self._began is None else self._began
         passed = seconds - self._began
         while self.presses and passed >= self.presses[0]:
@@ -96,7 +98,7 @@ def robot(tmp_path: Path):
     from sim2real.emulate.pseudo_terminal import serve, terminal
 
     machine = Machine(ELF)
-    hand = Hand(Gantry(machine, place=CORNER, zero=(0.3, -4.0)))
+    hand = Hand(machine, Gantry(machine, place=CORNER, zero=(0.3, -4.0)))
     with terminal(tmp_path / "board") as (descriptor, name):
         thread = threading.Thread(target=serve, args=(machine, descriptor, hand.move))
         thread.start()
