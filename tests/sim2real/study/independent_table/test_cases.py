@@ -74,6 +74,12 @@ def test_each_can_be_asked_for_and_changes_the_recording(name: str, tmp_path: Pa
     if name in ("held_frames", "stamp_jitter"):  # faults of the camera, which stays the same below
         assert (case.camera.held > 0.05) == (name == "held_frames")
         assert (case.camera.arrival > 2e-4) == (name == "stamp_jitter")
+        if name == "stamp_jitter":
+            exact = replace(case.camera, arrival=0.0)
+            make_recording(tmp_path / "c", case.law, case.scenario, 3, 6.0, exact, hand=case.hand, dt=1e-4)
+            seen, known = (np.genfromtxt(tmp_path / part / "frames.csv", delimiter=",", names=True) for part in "ac")
+            assert np.array_equal(seen["puck_x"], known["puck_x"], equal_nan=True)
+            assert np.std(seen["t"] - known["t"]) == pytest.approx(case.camera.arrival, rel=0.1)
         return
     known = {key: getattr(case.law, key) for key in BASELINE}
     still = make_recording(tmp_path / "b", Law(**known), case.scenario, 3, 6.0, case.camera, hand=case.hand, dt=1e-4)
