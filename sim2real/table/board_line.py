@@ -49,7 +49,7 @@ class BoardLine:
         self._clears_at = -math.inf  # when a board in FAULT is asked to leave it next
         self._refused = ""  # the first message that the board refused, and why
         self._fates = PlanFates()
-        self._said: list[Telemetry] = []  # since it was taken
+        self._said: list[SeenMallet] = []  # since they were taken, by the clock of the board that said so
 
     # Bring-up, step by step
 
@@ -141,13 +141,14 @@ class BoardLine:
         for telemetry in session.take_telemetry():
             self._heard = self._now()
             if telemetry.state in (State.IDLE, State.ARMED) and len(session.clock):
-                self._said.append(telemetry)
-                self._fates.see(telemetry.sequence, session.clock.to_host(telemetry.time))
+                time = session.clock.to_host(telemetry.time)
+                self._said.append(_seen(telemetry, time))
+                self._fates.see(telemetry.sequence, time)
 
     def take_mallets(self) -> list[SeenMallet]:
         """What telemetry said of the mallet since the last call."""
         said, self._said = self._said, []
-        return [_seen(telemetry, self.session.clock.to_host(telemetry.time)) for telemetry in said]
+        return said
 
     def take_missed(self) -> int:
         """The number of plans since the last call that came too late to the board, or not at all."""

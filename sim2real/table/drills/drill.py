@@ -73,8 +73,10 @@ class Drill:
         before = self._twin.now()
         try:
             self._observation, _, terminated, truncated, info = self._env.step(action)
-        finally:
+        except TableFaultError:
             self.seconds += self._twin.now() - before
+            raise
+        self.seconds += self._twin.now() - before
         if terminated or truncated:
             self._observation, info = self._env.reset()
         if info.get("new_point", True):
