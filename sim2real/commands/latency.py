@@ -1,8 +1,9 @@
 """Measure the delay of the loop, from a frame's exposure to the mallet's motion, in parts with 95 % intervals.
 
 On a table (`--backend`) the robot's mallet makes strokes of 15 cm about its home, while camera and encoders watch and
-pings go to the board and back. Leave the mallet's half of the table free. The mallet needs a reflective ring of its
-own; a measurement by a light would take a board that can switch one, and is not made.
+pings go to the board and back. Leave the mallet's half of the table free. At a physical table, take the opponent's
+mallet off and put its reflective ring on the robot's, or on what carries it, where the camera sees it: height and place
+are fitted along. A measurement by a light would take a board that can switch one, and is not made.
 
 Of ordinary recordings it tells what they determine: the camera's delay and drift by contacts of the puck with the
 moving mallet (or by the ring, where frames.csv has robot_x and robot_y), the delay from plans or volts to motion, and

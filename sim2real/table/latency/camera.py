@@ -17,7 +17,9 @@ from sim2real.table.latency.path_shift import NotDeterminedError, PathShift, pat
 DELAY = ("camera", "exposure to the frame's stamp")
 DRIFT = ("camera_drift", "gain of the camera's clock")
 RING, CONTACTS = "the mallet's ring against its encoders", "contacts with the puck against the encoders"
-NO_RING = "no frame shows the robot's mallet: put a reflective ring on it"
+NO_RING = (
+    "no frame shows a ring at the robot's mallet; put the opponent's reflective ring there, where the camera sees it"
+)
 PPM = 1e6
 
 

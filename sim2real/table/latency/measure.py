@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from sim2real.table.recorder.motor_log import Duties, MotorLog
 SETTLING = 1.0  # s of pings before the first stroke
 PAUSE = 0.03  # s of rest after a stroke
 LOOK = 0.5 * POLL  # s between looks at what came
+NEAR = 0.15  # m from the mallet's place by its encoders: as far as a late frame and a ring of another height put it
 SURE = 0.5 * WINDOW  # s after which a time of the board's clock is taken: then pings from before and after it are used
 
 
@@ -112,17 +114,30 @@ class _Watched:
         if not self.frames or not self.mallets:
             what = "frame" if self.mallets else "telemetry"
             raise TableFaultError(Cause.NOT_READY, f"no {what} came while the mallet moved; see puckpilot link test")
-        frames = {"t": np.array([one.time for one in self.frames])}
-        for name in ("puck", "opponent", "robot"):
-            frames |= _columns(name, [getattr(one, name) for one in self.frames])
         t = np.array(self.times)
         path = _columns("expected", [one.path for one in self.mallets])
         mallet = {"t": t, **_columns("mallet", [one.place for one in self.mallets]), **path}
+        seen = robots_rings(self.frames, t, np.array([one.place for one in self.mallets]))
+        frames = {"t": np.array([one.time for one in seen])}
+        for name in ("puck", "opponent", "robot"):
+            frames |= _columns(name, [getattr(one, name) for one in seen])
         meta = {
             "table": {"length_m": float(p["length"]), "width_m": float(p["width"])},
             "gantry": {"supply_V": float(p["max_voltage"]), "pulley_radius_m": float(p["pulley_radius"])},
         }
         return Recording("measurement", meta, Stream(frames), Stream(mallet), drive=_drive(t, self.duties))
+
+
+def robots_rings(frames: list[SeenFrame], t: np.ndarray, path: np.ndarray) -> list[SeenFrame]:
+    """The frames, each with the ring that the vision took for the opponent's as the robot's, if it is seen near the
+    robot's mallet, which was at `path` (n, 2) [m] at the times `t` (n,) [s]: the vision knows one ring, wherever it
+    is."""
+    found = []
+    for frame in frames:
+        ring, at = frame.opponent, [float(np.interp(frame.time, t, column)) for column in path.T]
+        own = frame.robot is None and ring is not None and math.dist(ring, at) < NEAR
+        found.append(replace(frame, robot=ring, opponent=None) if own else frame)
+    return found
 
 
 def _columns(name: str, places: list[Place | None]) -> dict[str, np.ndarray]:

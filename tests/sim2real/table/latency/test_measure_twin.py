@@ -10,6 +10,8 @@ import pytest
 pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
 
 from puckpilot_env.variants import find_variant
+from sim2real.camera.render.renderer import Renderer
+from sim2real.camera.render.scene_state import SceneState
 from sim2real.recording.folder import Stream
 from sim2real.table.backends import make_backend
 from sim2real.table.game.game_record import GameRecord
@@ -20,6 +22,8 @@ from sim2real.table.latency.part import Part
 from sim2real.table.latency.parts import parts_of_measurement, parts_of_recording
 from sim2real.table.live_table import LiveTable
 from sim2real.table.mallet_driver import AHEAD
+from sim2real.table.twin.picture_camera import PictureCamera
+from sim2real.table.twin.twin import Twin
 
 SECONDS = 7.0
 INJECTED = {"camera": 0.033, "drift": -50.0, "line": 0.003, "crystal": 40.0, "gantry": 0.003}
@@ -30,6 +34,13 @@ def measured(injected: dict[str, float], seconds: float = SECONDS) -> Measuremen
     with make_backend("twin", game, opponent="still", **twin_options(injected, game.p)) as table:
         assert isinstance(table, LiveTable)
         return measure(table, game.p, home_of(game.p), seconds)
+
+
+class RingOnRobot(Renderer):
+    """Draws the opponent's mallet, with its ring, where the robot's is, and none else."""
+
+    def picture(self, state: SceneState, number: int) -> np.ndarray:
+        return super().picture(replace(state, opponent=state.mallet, mallet=None), number)
 
 
 def by_name(parts: list[Part]) -> dict[str, Part]:
@@ -62,6 +73,25 @@ def test_the_least_and_the_greatest_delay_of_the_camera_come_back(late: float) -
     assert found["camera_drift"].value == pytest.approx(0.0, abs=20.0)
     assert found["frame"].value == pytest.approx(late + 0.006, abs=5e-4)
     assert abs(found["camera"].high - found["camera"].low) < 1e-3  # type: ignore[operator]
+
+
+@pytest.mark.slow
+def test_the_opponents_ring_on_the_robots_mallet_is_seen_in_pictures() -> None:
+    game = GameRecord(find_variant("match-v0"))
+    options = twin_options({"camera": 0.02}, game.p)
+    with make_backend("twin", game, opponent="still", camera="pictures", **options) as table:
+        assert isinstance(table, Twin)
+        make_camera = table._make_camera
+
+        def with_the_ring(seed: int) -> PictureCamera:
+            camera = make_camera(seed)
+            assert isinstance(camera, PictureCamera)
+            camera.renderer = RingOnRobot(camera.rendered.table, camera.rendered.view)
+            return camera
+
+        table._make_camera = with_the_ring
+        found = by_name(parts_of_measurement(measure(table, game.p, home_of(game.p), 4.0)))
+    assert found["camera"].value == pytest.approx(0.02, abs=5e-4)
 
 
 @pytest.mark.slow
