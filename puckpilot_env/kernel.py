@@ -79,7 +79,7 @@ def cache_folder_of(package: str) -> Path:
 
 
 # Counting references to arrays costs a tenth of a step, and more where two threads count in the same place.
-_FLAGS: Any = {"nogil": True, "error_model": "numpy", "_nrt": False}
+_FLAGS: Any = {"nogil": True, "error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True}
 
 
 def _mend_damaged(cache: Any) -> None:
@@ -122,8 +122,12 @@ def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def inlined_kernel(function: Callable[..., Any]) -> Callable[..., Any]:
-    """`kernel` for a small function that is called so often that each call costs as much as what it does."""
-    return _compiled(function, forceinline=True)
+    """`kernel` for a function that becomes a part of every kernel that calls it, and is not compiled by itself there.
+
+    For small functions that are called often, and for large ones that are called at one place: each kernel is compiled
+    together with all that it calls, so that every large one on the way up is compiled once more.
+    """
+    return _compiled(function, inline="always")
 
 
 def array_kernel(function: Callable[..., Any]) -> Callable[..., Any]:

@@ -33,8 +33,10 @@ from puckpilot_env import Tables, all_variants, find_variant, parameters
 from puckpilot_env.kernel import kernel
 from puckpilot_env.documentation.page import write_page
 
+WIND = {"wind": {"wind": 2.0, "pull": 0.1}}  # of all tables, so that one kernel is compiled
+
 def speeds(**values):
-    tables = Tables(VARIANT, 50, seed=1, parameters=values)
+    tables = Tables(VARIANT, 50, seed=1, parameters=values, effects=WIND)
     return np.hypot(tables.states["puck"]["vx"], tables.states["puck"]["vy"]).tolist()
 
 def refusal(**values):
@@ -48,13 +50,13 @@ def read(p):
     return 2.0 * p.face_off_speed
 
 VARIANT = "puckpilot/match-small-goals-v0"
-env = pettingzoo.make("parallel", VARIANT, parameters={"face_off_speed": 0.5})
-tables = Tables(VARIANT, 3, seed=1)
+env = pettingzoo.make("parallel", VARIANT, parameters={"face_off_speed": 0.5}, effects=WIND)
+tables = Tables(VARIANT, 3, seed=1, effects=WIND)
 shadow = make_player("shadow", Seat.from_tables(tables))
 seen, before = tables.observations.copy(), tables.observations[:, 0, 1].copy()
 for _ in range(5):
     tables.step(np.stack([shadow.act(tables.observations[:, 0]), shadow.act(tables.observations[:, 1])], axis=1))
-windy = Tables("match-v0", 1, effects={"wind": {"wind": 2.0, "pull": 0.1}}, parameters={"friction": 0.0, "drag": 0.0})
+windy = Tables("match-v0", 1, effects=WIND, parameters={"friction": 0.0, "drag": 0.0})
 windy.states["puck"][0] = (1.2, 0.3, 0.0, 0.0, 0.0, 0, (0, 0))
 stay = np.concatenate([windy.observations[:, :, :2], np.full((1, 2, 2), 0.3, np.float32)], axis=2)
 windy.step(stay)

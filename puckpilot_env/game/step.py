@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from puckpilot_env.game import mirror, observation, random_stream, reward, rules, sensing
 from puckpilot_env.game.start import begin_episode
-from puckpilot_env.kernel import kernel
+from puckpilot_env.kernel import inlined_kernel, kernel
 from puckpilot_env.physics import compose
 from puckpilot_env.physics.advance import advance
 from puckpilot_env.physics.contacts import bounce
@@ -67,7 +67,7 @@ def play(table, p, rule, now, until, rewards, log, film):
     return False
 
 
-@kernel
+@inlined_kernel
 def _play_late(table, p, rule, until, delay, rewards, log, film):
     """`play_step` where the plans of this step begin `delay` [s] late, and the mallets are on those before till then.
 
@@ -148,7 +148,7 @@ def _random_impulse(table, p, period):
         table.puck.vy += y
 
 
-@kernel
+@inlined_kernel
 def step_table(table, p, nominal, rule, frames, actions, rewards, log, film):
     """Play one step. Afterwards `table.ending` says whether and how the episode ended.
 

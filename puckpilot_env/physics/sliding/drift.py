@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from puckpilot_env.kernel import kernel
+from puckpilot_env.kernel import inlined_kernel, kernel
 from puckpilot_env.physics import compose
 from puckpilot_env.physics.contacts import bounce
 from puckpilot_env.physics.contacts.contact import stays_clear
@@ -65,7 +65,7 @@ def _may_meet(puck, p, mallets, orders, end):
     return not _stays_clear(puck, p, mallets, orders, ux, uy, travel, end)
 
 
-@kernel
+@inlined_kernel
 def _ride(puck, p, mallets, orders, clock, least, end, film):
     leans = 0.0 < puck.vx * puck.vx + puck.vy * puck.vy < SLOW * SLOW
     if leans or _may_meet(puck, p, mallets, orders, end):
