@@ -95,9 +95,10 @@ class ForwardSelection:
         return self._computed[key]
 
     def _fitted_loss(self, model: Model) -> float:
-        columns, ridge = model.columns(self.equations)
-        theta = normal_equations.solve_robustly(self.equations, columns, self.use, self._freedom, ridge)
-        squares = normal_equations.losses(self.equations, columns, theta, self.use)
+        equations, columns, ridge = self._restricted(model)
+        units = np.arange(len(self.use))
+        theta = normal_equations.solve_robustly(equations, columns, units, self._freedom, ridge)
+        squares = normal_equations.losses(equations, columns, theta, units)
         return float(group_loss(squares, self._freedom).sum()) / self.dispersion
 
     def _cv_loss(self, model: Model) -> np.ndarray:
@@ -109,12 +110,19 @@ class ForwardSelection:
 
     def _held_out(self, model: Model, folds: Sequence[np.ndarray]) -> np.ndarray:
         """Return the loss (launches,) with the units of each of the `folds` (units,) bool predicted from the others."""
-        columns, ridge = model.columns(self.equations)
+        equations, columns, ridge = self._restricted(model)
         squares = np.zeros(len(self.use))
         for out in folds:
-            theta = normal_equations.solve_robustly(self.equations, columns, self.use[~out], self._freedom[~out], ridge)
-            squares[out] = normal_equations.losses(self.equations, columns, theta, self.use[out])
+            inside, outside = np.flatnonzero(~out), np.flatnonzero(out)
+            theta = normal_equations.solve_robustly(equations, columns, inside, self._freedom[inside], ridge)
+            squares[outside] = normal_equations.losses(equations, columns, theta, outside)
         return np.bincount(self._launch, group_loss(squares, self._freedom)) / self.dispersion
+
+    def _restricted(self, model: Model) -> tuple[NormalEquations, np.ndarray, np.ndarray]:
+        """The equations of a model's columns and all units, with these columns and their ridge."""
+        columns, ridge = model.columns(self.equations)
+        part = normal_equations.restricted(self.equations, columns, self.use)
+        return part, np.arange(len(columns)), ridge
 
     def gain(self, model: Model, law: Law) -> Gain:
         """Return the gain of adding `law` to `model`; a smooth term gets the spread that predicts best."""

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import eigh
 
+from puckpilot_env.kernel import array_kernel, kernel
 from sim2real.diagnose.engine.tuned import ENGINE
 from sim2real.statistics.robust import group_weights
 
@@ -65,6 +66,23 @@ def gathered(equations: NormalEquations, into: np.ndarray, count: int) -> Normal
     return NormalEquations(equations.names, **sums)
 
 
+def restricted(equations: NormalEquations, columns: np.ndarray, clusters: np.ndarray) -> NormalEquations:
+    """The equations of these columns and clusters alone, as they come: quick to sum again and again."""
+    k, n = len(columns), len(clusters)
+    g, b = np.empty((n, k, k)), np.empty((n, k))
+    _gather(equations.g, equations.b, columns, clusters, g, b)
+    return NormalEquations(tuple(equations.names[column] for column in columns), g, b, equations.s[clusters])
+
+
+@kernel
+def _gather(g, b, columns, clusters, part_g, part_b):
+    for n in range(len(clusters)):
+        for i in range(len(columns)):
+            part_b[n, i] = b[clusters[n], columns[i]]
+            for j in range(len(columns)):
+                part_g[n, i, j] = g[clusters[n], columns[i], columns[j]]
+
+
 def moved(equations: NormalEquations, columns: np.ndarray, theta: np.ndarray) -> NormalEquations:
     """Return the equations of the residuals `r + J theta` with the same derivatives: b + G theta, s + 2 b'theta +
     theta'G theta."""
@@ -96,13 +114,13 @@ def solve_robustly(
 
     `freedom` (clusters,): degrees of freedom. The method is iteratively reweighted least squares; otherwise as `solve`.
     """
-    g, b = equations.g[np.ix_(clusters, columns, columns)], equations.b[np.ix_(clusters, columns)]
     penalty = np.diag(np.broadcast_to(ridge, len(columns)).astype(float))
     weight, theta = np.ones(len(clusters)), np.zeros(len(columns))
+    g, b = np.empty((len(columns), len(columns))), np.empty(len(columns))
     for _ in range(ENGINE.reweighting_rounds):
-        theta = solve_normal(np.tensordot(weight, g, 1) + penalty, -(weight @ b))
-        squares = equations.s[clusters] + 2.0 * b @ theta + np.einsum("i,cij,j->c", theta, g, theta)
-        updated = group_weights(squares, freedom)
+        _sum_weighted(equations.g, equations.b, columns, clusters, weight, g, b)
+        theta = solve_normal(g + penalty, -b)
+        updated = group_weights(losses(equations, columns, theta, clusters), freedom)
         if np.all(np.abs(updated - weight) < ENGINE.reweighting_change * weight):
             break
         weight = updated
@@ -114,34 +132,77 @@ def solve_normal(g: np.ndarray, b: np.ndarray) -> np.ndarray:
 
     The solution is that of the pseudo-inverse of `g` scaled to unit diagonal.
     """
-    scale = np.sqrt(np.maximum(np.diag(g), 0.0))
-    good = scale > 0.0
+    g, b = np.ascontiguousarray(g), np.ascontiguousarray(b)
     theta = np.zeros(len(b))
-    if not good.any():
-        return theta
-    unit = scale[good]
-    value, vector = _eigen(g[np.ix_(good, good)] / unit[:, None] / unit)
-    keep = value > ENGINE.rank_tolerance * value[-1]
-    theta[good] = (vector[:, keep] @ ((vector[:, keep].T @ (b[good] / unit)) / value[keep])) / unit
+    try:
+        _solve_by_eigenvalues(g, b, ENGINE.rank_tolerance, theta)
+    except ValueError:  # the divide-and-conquer method failed on a finite matrix (OpenBLAS 0.3.31)
+        _solve_slowly(g, b, theta)
     return theta
 
 
-def _eigen(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the eigenvalues, ascending, and eigenvectors of a symmetric matrix.
+@array_kernel
+def _solve_by_eigenvalues(g, b, tolerance, theta):
+    size = np.sqrt(np.maximum(np.diag(g), 0.0))
+    good = np.flatnonzero(size > 0.0)
+    k = len(good)
+    if k == 0:
+        return
+    unit = np.empty((k, k))
+    for i in range(k):
+        for j in range(k):
+            unit[i, j] = g[good[i], good[j]] / size[good[i]] / size[good[j]]
+    values, vectors = np.linalg.eigh(unit)
+    for m in range(k):
+        if values[m] > tolerance * values[k - 1]:
+            along = 0.0
+            for i in range(k):
+                along += vectors[i, m] * b[good[i]] / size[good[i]]
+            for i in range(k):
+                theta[good[i]] += vectors[i, m] * along / values[m] / size[good[i]]
 
-    numpy's divide-and-conquer method is fast, but failed on a finite matrix (OpenBLAS 0.3.31); QR is the fallback.
-    """
-    try:
-        return np.linalg.eigh(matrix)
-    except np.linalg.LinAlgError:
-        return eigh(matrix, driver="ev")
+
+def _solve_slowly(g: np.ndarray, b: np.ndarray, theta: np.ndarray) -> None:
+    """The same by QR iterations."""
+    size = np.sqrt(np.maximum(np.diag(g), 0.0))
+    good = size > 0.0
+    unit = size[good]
+    value, vector = eigh(g[np.ix_(good, good)] / unit[:, None] / unit, driver="ev")
+    keep = value > ENGINE.rank_tolerance * value[-1]
+    theta[good] = (vector[:, keep] @ ((vector[:, keep].T @ (b[good] / unit)) / value[keep])) / unit
 
 
 def losses(equations: NormalEquations, columns: np.ndarray, theta: np.ndarray, clusters: np.ndarray) -> np.ndarray:
     """Return the sums of squares (clusters,) under `theta`: s + 2 b'theta + theta'G theta."""
-    g = equations.g[np.ix_(clusters, columns, columns)]
-    b = equations.b[np.ix_(clusters, columns)]
-    return equations.s[clusters] + 2.0 * b @ theta + np.einsum("i,cij,j->c", theta, g, theta)
+    squares = np.empty(len(clusters))
+    _squares_under(equations.g, equations.b, equations.s, columns, clusters, theta, squares)
+    return squares
+
+
+@kernel
+def _sum_weighted(g, b, columns, clusters, weight, sum_g, sum_b):
+    """Write to `sum_g` (k, k) and `sum_b` (k,) the sums over `clusters` (n,), each times its `weight` (n,), of the
+    entries of `g` (c, m, m) and `b` (c, m) at `columns` (k,)."""
+    sum_g[:] = 0.0
+    sum_b[:] = 0.0
+    for n in range(len(clusters)):
+        for i in range(len(columns)):
+            sum_b[i] += weight[n] * b[clusters[n], columns[i]]
+            for j in range(len(columns)):
+                sum_g[i, j] += weight[n] * g[clusters[n], columns[i], columns[j]]
+
+
+@kernel
+def _squares_under(g, b, s, columns, clusters, theta, squares):
+    """Write to `squares` (n,) the sums of squares of `clusters` (n,) under `theta` (k,); the others as above."""
+    for n in range(len(clusters)):
+        total = s[clusters[n]]
+        for i in range(len(columns)):
+            row = 2.0 * b[clusters[n], columns[i]]
+            for j in range(len(columns)):
+                row += g[clusters[n], columns[i], columns[j]] * theta[j]
+            total += row * theta[i]
+        squares[n] = total
 
 
 def covariance(

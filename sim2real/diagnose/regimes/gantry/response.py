@@ -14,11 +14,11 @@ from puckpilot_env.kernel import array_kernel, kernel
 from puckpilot_env.physics.effects import backlash, belt_compliance
 from puckpilot_env.physics.gantry.decay import fade
 from puckpilot_env.physics.gantry.mallet import axis_coefficients, axis_constants
+from sim2real.statistics.projection import project_out
 
 MOST_UNCERTAIN = 24  # most uncertain switches of one window that get a column
 STARTS = 5  # columns of a start: rest, slow and fast mode, and two of the ringing
 PLAY_ROUNDS = 3  # iterations, because path and play depend on each other
-NOTHING_LEFT = 1e-7  # share of a column's norm that remains after projection, below which it is linearly dependent
 
 
 @kernel
@@ -94,35 +94,6 @@ def uncertain_switch_column(c, moment, t, column):
         column[i] = 0.0
         if age > 0.0:
             column[i] = c[2] - c[3] * c[0] * math.exp(-c[0] * age) + c[4] * c[1] * fade(c[1], age)
-
-
-@kernel
-def project_out(columns, count, targets):
-    """Project the first `count` of `columns` (n, k) out of `targets` (n, m) in place, by Gram-Schmidt applied twice."""
-    n = columns.shape[0]
-    for k in range(count):
-        before = 0.0
-        for i in range(n):
-            before += columns[i, k] ** 2
-        for _ in range(2):
-            for j in range(k):
-                dot = 0.0
-                for i in range(n):
-                    dot += columns[i, j] * columns[i, k]
-                for i in range(n):
-                    columns[i, k] -= dot * columns[i, j]
-        after = 0.0
-        for i in range(n):
-            after += columns[i, k] ** 2
-        scale = 1.0 / math.sqrt(after) if after > NOTHING_LEFT**2 * before else 0.0
-        for i in range(n):
-            columns[i, k] *= scale
-        for m in range(targets.shape[1]):
-            dot = 0.0
-            for i in range(n):
-                dot += columns[i, k] * targets[i, m]
-            for i in range(n):
-                targets[i, m] -= dot * columns[i, k]
 
 
 @kernel

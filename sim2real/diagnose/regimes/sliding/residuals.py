@@ -16,6 +16,7 @@ from sim2real.diagnose.regimes.sliding.trajectory import linear_response, trace
 from sim2real.diagnose.regimes.sliding.tuned import SLIDING
 from sim2real.diagnose.sensor_noise.covariance import PositionCovariance
 from sim2real.statistics.piecewise import spread_knots
+from sim2real.statistics.projection import project_out_of_parts
 
 STEP = np.array(SLIDING.start_step)
 
@@ -90,9 +91,7 @@ class GlideResiduals:
         changes = [(data.place - path[:, :2])[:, :, None], -columns, self.errors.modes(path[:, :2])]
         rows = white(np.concatenate(changes, axis=2)).reshape(2 * len(data.t), -1)
         starts = white(by_start).reshape(len(rows), 4)
-        for a, b in zip(2 * data.first[:-1], 2 * data.first[1:], strict=True):
-            q = np.linalg.qr(starts[a:b])[0]
-            rows[a:b] -= q @ (q.T @ rows[a:b])
+        project_out_of_parts(starts, 2 * data.first, rows)
         known = 1 + columns.shape[2]
         rows = self.errors.allowing(rows[:, known:], rows[:, :known])
         return rows[:, 0], rows[:, 1:]
