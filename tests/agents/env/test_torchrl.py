@@ -71,6 +71,7 @@ def _evaluate(env: Any, actor: Any) -> float:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.filterwarnings("ignore")  # TorchRL's own, of versions and defaults to come
 def test_ppo_learns_in_both_seats():
     torch.set_num_threads(1)

@@ -66,7 +66,12 @@ def test_policies_of_different_networks_have_no_mean() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("variant", "script"), [("match-v0", "interceptor"), ("match-v0", "veteran"), ("match-randomized-v0", "bank_shot")]
+    ("variant", "script"),
+    [
+        ("match-v0", "interceptor"),
+        pytest.param("match-v0", "veteran", marks=pytest.mark.long),
+        ("match-randomized-v0", "bank_shot"),
+    ],
 )
 def test_it_wins_against_scripts(variant: str, script: str) -> None:
     """It wins 90 % and more; one that wins half of its games would win 16 of 20 once in 150 tries."""

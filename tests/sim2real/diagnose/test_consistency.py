@@ -68,12 +68,12 @@ def _diagnosis(recordings, heldout=()):
     "one, other",
     [
         ("plain", "tilted"),
-        ("tilted", "tilted back"),
-        ("plain", "slick"),
-        ("plain", "lively"),
-        ("patched", "plain"),
+        pytest.param("tilted", "tilted back", marks=pytest.mark.long),
+        pytest.param("plain", "slick", marks=pytest.mark.long),
+        pytest.param("plain", "lively", marks=pytest.mark.long),
+        pytest.param("patched", "plain", marks=pytest.mark.long),
         ("plain", "whirling"),
-        ("tilted", "whirling"),
+        pytest.param("tilted", "whirling", marks=pytest.mark.long),
         ("plain", "large"),
     ],
 )
@@ -91,7 +91,9 @@ def test_a_holdout_of_another_table_contradicts_the_findings(recorded):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name, mechanism", [("tilted", "table_tilt"), ("whirling", "unlisted")])
+@pytest.mark.parametrize(
+    "name, mechanism", [("tilted", "table_tilt"), pytest.param("whirling", "unlisted", marks=pytest.mark.long)]
+)
 def test_two_recordings_of_one_table_agree(recorded, name, mechanism):
     found = _diagnosis([recorded(name), recorded(f"{name} again")])
     assert [one.mechanism for one in found.findings] == [mechanism]
@@ -99,7 +101,13 @@ def test_two_recordings_of_one_table_agree(recorded, name, mechanism):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "number, missing", [(0, "side_force"), (1, "mallet_give"), (35, "wall_to_wall_restitution"), (38, "scale_error")]
+    "number, missing",
+    [
+        pytest.param(0, "side_force", marks=pytest.mark.long),
+        pytest.param(1, "mallet_give", marks=pytest.mark.long),
+        pytest.param(35, "wall_to_wall_restitution", marks=pytest.mark.long),
+        (38, "scale_error"),
+    ],
 )
 def test_what_is_missing_in_both_is_no_other_table(tmp_path, number, missing):
     """Two recordings of one table, of 30 s and 15 s; the effect may be larger in one of them, or differ by launch."""

@@ -96,7 +96,7 @@ def test_there_are_findings_to_prove(found: Diagnosis) -> None:
     assert all(one.before is not None and one.after is not None and one.after < one.before for one in found.findings)
 
 
-@pytest.mark.parametrize("make", [noise, nothing])
+@pytest.mark.parametrize("make", [pytest.param(noise, marks=pytest.mark.long), nothing])
 def test_other_holdout_launches_change_only_the_proof(split, found, make: Callable) -> None:
     swapped = split._replace(
         holdout=[make(one) for one in split.holdout], gantry_holdout=[make(one) for one in split.gantry_holdout]
@@ -143,6 +143,7 @@ def test_a_held_out_recording_changes_only_the_proof(recording, another) -> None
         assert any("the holdout does not test the findings" in remark for remark in unusable.proof_remarks)
 
 
+@pytest.mark.long
 def test_what_a_held_out_recording_states_changes_only_the_proof(recording, another) -> None:
     """The training data do not state the goal's width; the holdout does, or does not."""
     unstated = [replace(one, meta={**one.meta, "table": {**one.meta["table"]}}) for one in (recording, another)]

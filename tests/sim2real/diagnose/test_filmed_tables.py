@@ -30,7 +30,7 @@ def diagnosed(folder: Path, law: Law, scenario: str, seed: int, stated: bool = T
     return diagnose([recording], [], DEFAULTS, lambda *_: None)
 
 
-@pytest.mark.parametrize(("scenario", "seed"), [("launches", 1), ("rally", 2)])
+@pytest.mark.parametrize(("scenario", "seed"), [("launches", 1), pytest.param("rally", 2, marks=pytest.mark.long)])
 def test_nothing_is_missing(tmp_path: Path, scenario: str, seed: int) -> None:
     found = diagnosed(tmp_path, Law(), scenario, seed)
     assert found.verdict == "agrees" and not found.findings and not any(one.misfit for one in found.regime_results)
@@ -38,6 +38,7 @@ def test_nothing_is_missing(tmp_path: Path, scenario: str, seed: int) -> None:
     assert 0.005 < sensor_summary.correlation_time_s < 0.03 and sensor_summary.place_std_m == 1.8e-4
 
 
+@pytest.mark.long
 def test_an_unstated_calibration_error_is_taken_for_physics(tmp_path: Path) -> None:
     """The control: the same recording without the stated error."""
     found = diagnosed(tmp_path, Law(), "launches", 1, stated=False)

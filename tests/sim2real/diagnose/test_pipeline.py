@@ -22,6 +22,7 @@ from tests.sim2real.diagnose.well_formed import faults
 
 NOISE = Camera(noise=0.0006, rate=150.0)
 SECONDS = 60.0
+LONG_PRACTICE = ("other_parameters", "restitution_speed", "unlisted_vortex")
 
 
 def _diagnosis(folder: Path, law: Law, seconds: float = SECONDS, seed: int = 5, scenario: str = "launches"):
@@ -48,8 +49,14 @@ def test_other_parameters_are_no_missing_physics(tmp_path):
     "law, name, parameter, value",
     [
         (Law(tilt_x=0.015, tilt_y=-0.01), "table_tilt", "tilt_x", 0.015),
-        (Law(linear_drag=0.06), "linear_drag", "k", 0.06),
-        (Law(restitution_slope=0.05, wall_restitution=0.85), "speed_dependent_restitution", "slope", 0.05),
+        pytest.param(Law(linear_drag=0.06), "linear_drag", "k", 0.06, marks=pytest.mark.long),
+        pytest.param(
+            Law(restitution_slope=0.05, wall_restitution=0.85),
+            "speed_dependent_restitution",
+            "slope",
+            0.05,
+            marks=pytest.mark.long,
+        ),
         (Law(wall_spin=True, wall_mu=0.15), "wall_friction_spin", "mu", 0.15),
     ],
 )
@@ -136,7 +143,9 @@ def test_the_clock_s_zero_does_not_matter(tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.skipif(not PRACTICE.exists(), reason="the shared practice recordings are not here")
-@pytest.mark.parametrize("name", ["null", "other_parameters", "tilt", "restitution_speed", "unlisted_vortex"])
+@pytest.mark.parametrize(
+    "name", ["null", "tilt", *(pytest.param(name, marks=pytest.mark.long) for name in LONG_PRACTICE)]
+)
 def test_labelled_practice(name):
     truth = json.loads((PRACTICE / "key.json").read_text())[name]
     found = diagnose([read_recording(PRACTICE / name)], [], {}, lambda stage, share: None)

@@ -89,6 +89,7 @@ def test_the_glides_of_the_first_half_predict_the_second() -> None:
     assert after < 0.3 * before
 
 
+@pytest.mark.long
 def test_the_wall_contacts_of_one_recording_predict_another() -> None:
     values = dict(glides_of_first_half().all_values)
     data, launches = bounces_of("play_a")

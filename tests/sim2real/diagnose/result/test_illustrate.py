@@ -30,6 +30,7 @@ def _curve(found: Diagnosis):
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_tilt_is_the_same_for_every_heading(tmp_path):
     curve = _curve(_diagnosis(tmp_path / "table", Law(tilt_x=0.01, tilt_y=-0.015)))
     assert curve.x_label.startswith("heading") and "along y" in curve.y_label
@@ -40,6 +41,7 @@ def test_a_tilt_is_the_same_for_every_heading(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_force_that_turns_is_drawn_where_its_law_is(tmp_path):
     """The force varies and rotates within a segment, so that its mean is smaller than its value in the middle."""
     curve = _curve(_diagnosis(tmp_path / "table", Law(vortex=0.1, vortex_size=0.35)))
@@ -51,6 +53,7 @@ def test_a_force_that_turns_is_drawn_where_its_law_is(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_restitution_is_a_line_over_the_speed(tmp_path):
     curve = _curve(_diagnosis(tmp_path / "table", Law(restitution_slope=0.05, wall_restitution=0.85)))
     assert curve.y == pytest.approx(0.85 - 0.05 * curve.x, abs=0.003)
@@ -58,6 +61,7 @@ def test_restitution_is_a_line_over_the_speed(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_decaying_deceleration_gets_its_formula_and_its_mismatch(tmp_path):
     found = _diagnosis(tmp_path / "table", Law(fading=0.25, fading_time=0.3))
     one = found.findings[0]
@@ -85,6 +89,7 @@ def test_a_falling_wall_restitution_gets_a_slope(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_falling_mallet_restitution_gets_a_slope(tmp_path):
     law = Law(mallet_warming=-0.004, mallet_restitution=0.85)
     make_recording(tmp_path / "table", law, "rally", 7, 80.0, camera=Camera(noise=0.0006, rate=150.0), dt=5e-5)
@@ -123,6 +128,7 @@ def test_a_gantry_rough_by_place_gets_a_wave_in_volts(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_gantry_that_loses_more_at_speed_gets_a_square(tmp_path):
     make_recording(tmp_path / "table", Law(cubic_loss=0.1), "gantry", 7, 60.0, dt=5e-5)
     found = diagnose([read_recording(tmp_path / "table")], [], {}, lambda stage, share: None)

@@ -48,7 +48,7 @@ def test_an_ideal_wall_has_no_scatter() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("wrong", [0, 15])
+@pytest.mark.parametrize("wrong", [pytest.param(0, marks=pytest.mark.long), 15])
 def test_scatter_alone_is_no_law(wrong: int) -> None:
     rough = rough_wall(lambda closing: 0.8 + 0.0 * closing, (0.02, 0.05), wrong)
     problem, found = search_wall_model(rough, ASSUMED, np.arange(LAUNCHES), True)
