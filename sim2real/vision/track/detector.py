@@ -8,7 +8,7 @@ import numpy as np
 
 from sim2real.vision.locate import Locator, PlaceGrid
 from sim2real.vision.mosaic import GreyOfMosaic
-from sim2real.vision.track.blobs import LEVEL, BlobDetector
+from sim2real.vision.track.blobs import LEVEL, Blob, BlobDetector
 from sim2real.vision.track.disc import Disc
 from sim2real.vision.track.film import Film, FilmGauge
 from sim2real.vision.track.kalman_tracker import KalmanTracker, Measurement, TrackState, first_state
@@ -20,6 +20,7 @@ SURE_WITHIN = 0.25e-3  # m, greatest standard deviation of a disc that can only 
 PUCK_POWER, OPPONENT_POWER = 0.02, 5.0  # m^2/s^3, spectral density of the white acceleration between contacts
 AROUND = 2.0  # puck radii of a search region round the predicted place,
 ROOM = 4.0  # and standard deviations of the prediction beyond that
+Region = tuple[int, int, int, int]  # of a picture: left, top, and the column and row after the last
 EVERY = 4  # while no opponent is tracked, one in so many pictures is searched as a whole
 
 
@@ -97,10 +98,10 @@ class Detector:
         region = self._region(1, time)
         if region is None:
             return None if self._opponent.in_sight or self._partly >= EVERY - 1 else ([], discs)
-        rings, _ = self._find(image, region)
+        rings, _ = self._rings.find(*self._blobs_in(image, region))
         return (rings, discs) if rings else None
 
-    def _region(self, which: int, time: float) -> tuple[int, int, int, int] | None:
+    def _region(self, which: int, time: float) -> Region | None:
         """The search region of the puck (0) or the opponent (1): left, top, and the column and row after the last; None
         if its place is unknown."""
         state, reach = (self._puck, self._opponent)[which].predict(time), AROUND * self._pucks.film.radius
@@ -110,10 +111,15 @@ class Detector:
         """The state with the calibration's error added to its covariance, which no number of pictures reduces."""
         return state and replace(state, covariance=state.covariance + self._calibration)
 
-    def _find(self, image: np.ndarray, region: tuple[int, int, int, int] | None) -> tuple[list[Ring], list[Disc]]:
-        image = self._grey.part(image, region) if self._grey else image
-        rings, rest = self._rings.find(image, self._blobs.blobs(image, region))
+    def _find(self, image: np.ndarray, region: Region | None) -> tuple[list[Ring], list[Disc]]:
+        image, blobs = self._blobs_in(image, region)
+        rings, rest = self._rings.find(image, blobs)
         return rings, self._pucks.find(image, rest)
+
+    def _blobs_in(self, image: np.ndarray, region: Region | None) -> tuple[np.ndarray, list[Blob]]:
+        """The picture without its mosaic, and the blobs in a region of it, None for the whole."""
+        image = self._grey.part(image, region) if self._grey else image
+        return image, self._blobs.blobs(image, region)
 
 
 def _disc_measurement(disc: Disc) -> Measurement:
