@@ -83,6 +83,10 @@ class CortexM:
         where = ctypes.c_uint64(begin), ctypes.c_uint64(end)
         _check(uclib.uc_hook_add(self.uc._uch, handle, kind, ctypes.c_void_p(function), state, *where))
 
+    def close(self) -> None:
+        """Free what Unicorn holds, a gigabyte of addresses: the processor cannot run any more."""
+        del self.uc
+
     def call_at(self, address: int, callback: Any) -> None:
         """Have a compiled callback called whenever the program reaches `address`."""
         self._hook(unicorn.UC_HOOK_CODE, callback.address, address, address)

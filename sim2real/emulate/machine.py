@@ -58,7 +58,7 @@ class Machine:
         self._boards = np.zeros(1, BOARD)
         self._address, self._state = self._boards.ctypes.data, self._boards[0]
         self._now = self._boards["timeline"]["now"]  # read much faster than the record
-        program, self._error = read_elf(elf), None
+        program, self._error, self._closed = read_elf(elf), None, False
         self.cpu = CortexM(program, self._boards, self._failed)
         self.encoders = tuple(As5147(self._boards["encoders"][0, index : index + 1], self._failed) for index in (0, 1))
         self.motors = Motors(self._state["motors"], self._failed)
@@ -164,8 +164,17 @@ class Machine:
         passed: if an interrupt or a reset comes first, the processor stops, and the function is called again."""
         return pass_at(self._address, self._now.item(0) + round(duration * PER_US))
 
+    def close(self) -> None:
+        """Free what the emulation holds; the machine cannot run any more. May be called again."""
+        if not self._closed:
+            self._closed = True
+            self.cpu.close()
+
     def run(self, until_us: float) -> None:
-        """Run until a time [us]. The result does not depend on how a run is divided into calls."""
+        """Run until a time [us]. The result does not depend on how a run is divided into calls. Raises ValueError for a
+        machine that is closed."""
+        if self._closed:
+            raise ValueError("the machine is closed; make another one")
         until = round(until_us * PER_US)
         before, sys.unraisablehook = sys.unraisablehook, self._interrupted
         try:

@@ -90,6 +90,8 @@ class Twin(LiveTable):
         board.run(until)
 
     def _shut(self) -> None:
+        if self.board is not None:
+            self.board.machine.close()
         self.board = None
 
     # The person at the table: the hand

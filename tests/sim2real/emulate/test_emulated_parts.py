@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import gc
 import signal
 import subprocess
 import sys
+import weakref
 from pathlib import Path
 
 import numpy as np
@@ -278,3 +280,18 @@ def test_the_gantry_obeys_its_equation() -> None:
     assert gantry.velocity(130_000.0) == pytest.approx((state[1], state[4]), abs=1e-6)
     first, second = gantry.angles(130_000.0)
     assert (radius * (first - second) / 2, radius * (-first - second) / 2) == pytest.approx((state[0], state[3]))
+
+
+def test_a_closed_machine_is_freed_at_once_and_does_not_run() -> None:
+    machine = Machine(PLAIN)
+    machine.run(1000)
+    freed = weakref.ref(machine.cpu.uc)
+    gc.disable()
+    try:
+        machine.close()
+        machine.close()
+        assert freed() is None
+    finally:
+        gc.enable()
+    with pytest.raises(ValueError, match="closed"):
+        machine.run(2000)
