@@ -24,16 +24,38 @@ def test_a_solution_is_that_of_least_squares_on_the_same_rows():
     assert np.allclose(normal_equations.solve(equations, np.arange(3), some), expected, rtol=1e-9)
 
 
-def test_a_matrix_on_which_numpy_does_not_converge_is_solved(monkeypatch: pytest.MonkeyPatch):
+def test_a_matrix_on_which_the_quick_method_does_not_converge_is_solved(monkeypatch: pytest.MonkeyPatch):
     r, jacobian, cluster, _ = _problem()
     equations = normal_equations.make_equations("abc", r, jacobian, cluster, 8)
 
-    def failing(matrix):
-        raise np.linalg.LinAlgError("Eigenvalues did not converge")
+    def failing(*_):
+        raise ValueError("Internal algorithm failed to converge.")
 
-    monkeypatch.setattr(np.linalg, "eigh", failing)
+    monkeypatch.setattr(normal_equations, "_solve_by_eigenvalues", failing)
     expected = np.linalg.lstsq(jacobian, -r, rcond=None)[0]
     assert np.allclose(normal_equations.solve(equations, np.arange(3), np.arange(8)), expected, rtol=1e-9)
+
+
+def test_directions_without_data_get_nothing():
+    """As by the pseudo-inverse of the matrix scaled to unit diagonal."""
+    rng = np.random.default_rng(5)
+    jacobian = rng.normal(size=(40, 5)) * [1.0, 1e3, 1e-3, 1.0, 1.0]
+    jacobian[:, 3] = 2.0 * jacobian[:, 0] - jacobian[:, 4]
+    g, b = jacobian.T @ jacobian, jacobian.T @ rng.normal(size=40)
+    size = np.sqrt(np.diag(g))
+    expected = np.linalg.pinv(g / size[:, None] / size, rcond=1e-10, hermitian=True) @ (b / size) / size
+    np.testing.assert_allclose(normal_equations.solve_normal(g, b), expected, rtol=1e-6)
+
+
+def test_restricted_equations_give_the_same_fit():
+    r, jacobian, cluster, _ = _problem(2)
+    equations = normal_equations.make_equations("abc", r, jacobian, cluster, 8)
+    columns, some = np.array([2, 0]), np.array([1, 4, 5, 7])
+    part = normal_equations.restricted(equations, columns, some)
+    rows = np.isin(cluster, some)
+    expected = np.linalg.lstsq(jacobian[rows][:, columns], -r[rows], rcond=None)[0]
+    assert part.names == ("c", "a")
+    assert np.allclose(normal_equations.solve(part, np.arange(2), np.arange(4)), expected, rtol=1e-9)
 
 
 def test_losses_are_the_sums_of_squares_of_each_cluster():
