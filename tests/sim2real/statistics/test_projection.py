@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -20,7 +22,7 @@ def test_what_is_left_of_each_part_is_what_least_squares_leaves(dependent: bool)
     expected = np.concatenate(
         [
             targets[a:b] - columns[a:b] @ np.linalg.lstsq(columns[a:b], targets[a:b], rcond=1e-9)[0]
-            for a, b in zip(first[:-1], first[1:], strict=True)
+            for a, b in pairwise(first.tolist())
         ]
     )
     project_out_of_parts(columns, first, targets)
