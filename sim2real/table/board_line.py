@@ -219,7 +219,8 @@ class BoardLine:
         if not session.port_is_open:
             return
         if session.state is None:
-            session.estop()
+            if not session.resets:  # a board that was reset brakes by itself, which an emergency stop would end
+                session.estop()
             return
         if not armed and session.state != State.ARMED:
             return
