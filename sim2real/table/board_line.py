@@ -45,6 +45,7 @@ class BoardLine:
         self._now, self._serve = now, serve
         self.session = Session(connect, now)
         self._armed = False
+        self._resets = 0  # of the board, when it was armed last
         self._heard = -math.inf  # when telemetry came last [s]
         self._clears_at = -math.inf  # when a board in FAULT is asked to leave it next
         self._refused = ""  # the first message that the board refused, and why
@@ -111,7 +112,7 @@ class BoardLine:
 
     def arm(self) -> None:
         """Enable the motors. TableFaultError if the board does not."""
-        self._armed = True  # from now on it may be
+        self._armed, self._resets = True, self.session.resets  # from now on it may be
         self._heard = self._now()
         self.session.arm()
         self._until(lambda: self.session.state in (State.ARMED, State.FAULT), "the board does not arm")
@@ -219,7 +220,7 @@ class BoardLine:
         if not session.port_is_open:
             return
         if session.state is None:
-            if not session.resets:  # a board that was reset brakes by itself, which an emergency stop would end
+            if session.resets == self._resets:  # else it brakes by itself, which an emergency stop would end
                 session.estop()
             return
         if not armed and session.state != State.ARMED:

@@ -117,7 +117,7 @@ class _Watched:
         t = np.array(self.times)
         path = _columns("expected", [one.path for one in self.mallets])
         mallet = {"t": t, **_columns("mallet", [one.place for one in self.mallets]), **path}
-        seen = robots_rings(self.frames, t, np.array([one.place for one in self.mallets]))
+        seen = _with_robot_ring(self.frames, t, np.array([one.place for one in self.mallets]))
         frames = {"t": np.array([one.time for one in seen])}
         for name in ("puck", "opponent", "robot"):
             frames |= _columns(name, [getattr(one, name) for one in seen])
@@ -128,10 +128,11 @@ class _Watched:
         return Recording("measurement", meta, Stream(frames), Stream(mallet), drive=_drive(t, self.duties))
 
 
-def robots_rings(frames: list[SeenFrame], t: np.ndarray, path: np.ndarray) -> list[SeenFrame]:
-    """The frames, each with the ring that the vision took for the opponent's as the robot's, if it is seen near the
-    robot's mallet, which was at `path` (n, 2) [m] at the times `t` (n,) [s]: the vision knows one ring, wherever it
-    is."""
+def _with_robot_ring(frames: list[SeenFrame], t: np.ndarray, path: np.ndarray) -> list[SeenFrame]:
+    """The frames; a ring that was detected near the robot's mallet is the robot's, and not the opponent's.
+
+    The mallet was at `path` (n, 2) [m] at the times `t` (n,) [s]. The detector knows one ring, wherever it is.
+    """
     found = []
     for frame in frames:
         ring, at = frame.opponent, [float(np.interp(frame.time, t, column)) for column in path.T]
