@@ -199,7 +199,12 @@ class Session:
         if data:
             for message in self._receiver.feed(data):
                 self._take(message, now)
-            now = self._now()
+        self.keep_alive()
+
+    def keep_alive(self) -> None:
+        """Greet and ping as far as due, and read nothing: a part of `poll`, for a moment in which all of it would take
+        too long."""
+        now = self._now()
         if not self._connection.open:
             return
         if self._estop_repeater.due(now):

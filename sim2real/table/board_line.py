@@ -146,6 +146,10 @@ class BoardLine:
                 self._said.append(_seen(telemetry, time))
                 self._fates.see(telemetry.sequence, time)
 
+    def keep_alive(self) -> None:
+        """Let the board know that the host is there, and read nothing: instead of `poll`, where time presses."""
+        self.session.keep_alive()
+
     def take_mallets(self) -> list[SeenMallet]:
         """What telemetry said of the mallet since the last call."""
         said, self._said = self._said, []

@@ -70,6 +70,11 @@ class LiveTable(Backend):
     def _shut(self) -> None:
         """Free all that `open` opened but the line; may be called again."""
 
+    @property
+    def frame_waits(self) -> bool:
+        """Whether a frame has come that is to be read at once; the line is served a moment later then."""
+        return False
+
     def connect(self, home: Place) -> None:
         """See `Backend.connect`."""
         self.open(home)
@@ -122,8 +127,11 @@ class LiveTable(Backend):
         line, eyes, watchdog = self._opened(self.line), self._opened(self.eyes), self._opened(self._watchdog)
         try:
             self.pass_time(min(self.now() + POLL, until))
-            line.poll()
-            line.check()
+            if self.frame_waits:
+                line.keep_alive()
+            else:
+                line.poll()
+                line.check()
             now = self.now()
             new = eyes.take(now)
             self._frames += new

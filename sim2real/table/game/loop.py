@@ -88,11 +88,11 @@ class Loop:
         begin, period = self.backend.now(), float(self.game.rule["period"])
         due = self._decided + period
         self.times.add(max(begin - due, 0.0) if np.isfinite(due) else 0.0, self._frame_age)
-        self._decided = begin
+        self._decided, starts_from = begin, self.motion(begin + AHEAD)
+        self._send(action, begin + AHEAD)  # what can wait comes after it
         self.referee.begin_step()
-        self.referee.order(0, self.motion(begin + AHEAD), action)
+        self.referee.order(0, starts_from, action)
         self.backend.show(self.game.record)
-        self._send(action, begin + AHEAD)
         half_frame = 0.48 / self.backend.frame_rate  # a decision waits for the frame that is due
         self._watch(begin + period - half_frame)
         self.backend.wait_for_frame(begin + period + half_frame)

@@ -12,6 +12,9 @@ from sim2real.table.backend import SeenFrame
 from sim2real.table.faults import Cause, TableFaultError
 from sim2real.table.physical.frame_reader import FrameReader
 
+WARM = (0.0012, 0.0026)  # s before a frame is due, between which its search is rehearsed, which takes a millisecond
+EXPECTED = 0.005  # s, farthest from when it was due that a frame comes whose place on the clock is not in doubt
+
 
 class LiveEyes:
     """Frames of a source, read as they come. Opened by `open`, closed by `close`.
@@ -22,11 +25,12 @@ class LiveEyes:
 
     def __init__(self, source: Source, reader: FrameReader, delay: float) -> None:
         self._source, self._reader = source, reader
-        self._clock = CameraClock(delay)
+        self._clock, self._delay = CameraClock(delay), delay
         self._open = ExitStack()
         self._coming: Frame | None = None
+        self._untold: Frame | None = None  # of which the clock does not know yet
         self._failed: CameraError | None = None
-        self.arrived = 0.0
+        self.arrived = self._due = 0.0  # _due: when the next one comes, if the camera is regular
 
     def open(self) -> None:
         """Start the camera. TableFaultError, in one line, if it cannot be."""
@@ -41,10 +45,21 @@ class LiveEyes:
         """Whether the camera has failed, so that no frame will come."""
         return self._failed is not None
 
+    @property
+    def frame_waits(self) -> bool:
+        """Whether a frame has come that was not taken yet."""
+        return self._coming is not None
+
     def rest(self, seconds: float) -> None:
         """Rest for so many seconds [s], or until a frame comes. What the last frame was needed for is done by now, so
         that its pixels can be checked."""
-        self._reader.check()
+        if self._untold is not None:
+            self._clock.add(self._untold.time, self._untold.host_time)
+            self._untold = None
+        if WARM[0] < self._due - time.perf_counter() < WARM[1]:
+            self._reader.keep_warm()
+        else:
+            self._reader.check()
         try:
             self._coming = self._source.newest(seconds) or self._coming
         except CameraError as error:
@@ -63,9 +78,17 @@ class LiveEyes:
             seen = self._reader.read(frame)
         except ValueError as error:
             raise TableFaultError(Cause.CAMERA_TROUBLE, f"{error}; then clear") from None
-        self._clock.add(frame.time, frame.host_time)
+        if self._is_expected(frame):
+            self._untold = frame
+        else:
+            self._clock.add(frame.time, frame.host_time)
+        self._due = frame.host_time + (frame.host_time - self.arrived)
         self.arrived = frame.host_time
         return [replace(seen, time=self._clock.to_host(frame.time))]
+
+    def _is_expected(self, frame: Frame) -> bool:
+        """Whether a frame came about when the clock says, so that the clock can learn of it a moment later."""
+        return len(self._clock) > 0 and abs(frame.host_time - self._clock.to_host(frame.time) - self._delay) < EXPECTED
 
     def close(self) -> None:
         """Stop the camera; may be called again."""

@@ -23,6 +23,7 @@ class FrameReader:
         kinds = () if settings is not None and settings.mosaic else (colour_mosaic,)
         checks = (over_exposed, *kinds, self.tracker.check_camera, self.tracker.check_pucks)
         self._monitor = FrameMonitor(self.tracker.camera.size, checks)
+        self._last: Frame | None = None  # that was searched
         self._unchecked: Frame | None = None  # of which the pixels may be checked
         self._troubles: list[Trouble] = []  # of the pixels of frames that were read
 
@@ -33,12 +34,17 @@ class FrameReader:
         troubles, self._troubles = (*arrival, *self._troubles), []
         if any(trouble.name in INVALIDATING for trouble in troubles):
             return SeenFrame(frame.time, None, None, troubles=troubles)
-        self._unchecked = frame
+        self._last = self._unchecked = frame
         found = self.tracker.add(frame)
         puck, opponent = found.measured_puck, found.measured_opponent
         return SeenFrame(
             frame.time, _place(puck), _place(opponent), found.pucks, troubles, _covariance(puck), _covariance(opponent)
         )  # fmt: skip
+
+    def keep_warm(self) -> None:
+        """Search the last frame once more, to no effect, just before the next: see `Detector.keep_warm`."""
+        if self._last is not None:
+            self.tracker.keep_warm(self._last)
 
     def check(self) -> None:
         """Check the pixels of the last frame, as far as due. It takes a millisecond or two; call it after each frame,

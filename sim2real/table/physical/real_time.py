@@ -123,6 +123,11 @@ class RealTimeTable(LiveTable):
         """The host's clock [s]."""
         return time.perf_counter()
 
+    @property
+    def frame_waits(self) -> bool:
+        """See `LiveTable.frame_waits`."""
+        return self._opened(self._live).frame_waits
+
     def pass_time(self, until: float) -> None:
         """Rest until `until` [s], or until a frame comes."""
         self._opened(self._live).rest(max(until - self.now(), 0.0))

@@ -94,6 +94,12 @@ class KalmanTracker:
             self._last.predicted(time, self._power) if self._last and self.in_sight and self._last.confirmed else None
         )
 
+    def reachable(self, time: float) -> tuple[np.ndarray, float] | None:
+        """Where a confirmed track can go on at a time [s]: its last place (2,) [m] and how far from there [m]; None if
+        it can be anywhere."""
+        before = self._last
+        return (before.place, FASTEST * (time - before.time)) if before and before.confirmed else None
+
     def update(self, time: float, measurements: Sequence[Measurement]) -> TrackState | None:
         """Update the track with the measurements of a picture at `time` [s].
 

@@ -32,15 +32,16 @@ class PuckFinder:
         """The film as it is known at present."""
         return self._given.film if isinstance(self._given, FilmGauge) else self._given
 
-    def find(self, image: np.ndarray, blobs: list[Blob]) -> list[Disc]:
+    def find(self, image: np.ndarray, blobs: list[Blob], measure: bool = True) -> list[Disc]:
         """Find all candidates for the puck in a picture, the best first. A disc is fitted to each blob alone and to
-        blobs that lie within a puck's size of each other, as the parts of a puck that a beam divides do."""
+        blobs that lie within a puck's size of each other, as the parts of a puck that a beam divides do. measure:
+        whether the film may be measured by them."""
         edges = [
             edge
             for edge in (find_edge_points(image, blob.outline, self.places) for blob in blobs)
             if len(edge) >= LEAST_ON
         ]
-        if isinstance(self._given, FilmGauge):
+        if measure and isinstance(self._given, FilmGauge):
             for edge in edges:
                 self._given.add(edge)
         film = self.film

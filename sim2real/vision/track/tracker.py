@@ -100,6 +100,11 @@ class Tracker:
             self._rows.append((frame.time, *_cells(found.puck), *_cells(found.opponent), found.pucks))
         return found
 
+    def keep_warm(self, frame: Frame) -> None:
+        """See `Detector.keep_warm`; for the last frame."""
+        if self._detector is not None:
+            self._detector.keep_warm(frame.image, frame.time)
+
     def check_camera(self, image: np.ndarray) -> Trouble | None:
         """Check, for `FrameMonitor`, whether the camera is still in its place in a picture uint8 (rows, columns).
 

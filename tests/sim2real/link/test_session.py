@@ -77,6 +77,18 @@ def test_pings_are_more_frequent_than_the_board_is_patient():
     assert board.count(PING) - first >= 90
 
 
+def test_a_host_that_only_keeps_alive_is_heard_and_hears_nothing():
+    bench, session, board = met()
+    session.take_telemetry()
+    first = board.count(PING)
+    for _ in range(1000):
+        session.keep_alive()
+        bench.time += 0.001
+    assert session.take_telemetry() == []
+    session.poll()  # a bench's board hears when it is read from
+    assert board.count(PING) - first == pytest.approx(20, abs=1)
+
+
 def test_the_clock_of_the_board_within_its_bound():
     bench, session, _ = met()
     run(bench, session, 10.0)

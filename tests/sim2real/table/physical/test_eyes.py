@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import Self
 
 import numpy as np
@@ -45,8 +46,13 @@ class Reader:
     def read(self, frame: Frame) -> SeenFrame:
         return SeenFrame(frame.time, (1.0, 0.5), None)
 
+    warmed = 0
+
     def check(self) -> None:
         """Its frames are always good."""
+
+    def keep_warm(self) -> None:
+        self.warmed += 1
 
 
 def test_frames_are_read_at_the_time_of_their_exposure_on_the_hosts_clock() -> None:
@@ -74,3 +80,36 @@ def test_a_camera_that_fails_is_a_fault_of_the_table() -> None:
     with pytest.raises(TableFaultError, match="plug it in again") as caught:
         eyes.take(0.0)
     assert caught.value.cause == Cause.CAMERA_SILENT
+
+
+def test_a_camera_whose_clock_is_set_anew_is_placed_by_the_frame_that_says_so() -> None:
+    """The clock learns of a frame a moment after it was read, unless that came when none was expected."""
+    source = Scripted()
+    eyes = LiveEyes(source, Reader(), DELAY)  # pyright: ignore[reportArgumentType]
+    eyes.open()
+    for number in range(100):
+        host = 10.0 + number / 120.0
+        offset = OFFSET if number < 60 else -200.0
+        source.frame = Frame(np.zeros((2, 2), np.uint8), host + offset, host + DELAY, number)
+        eyes.rest(0.0)
+        (seen,) = eyes.take(host + DELAY)
+        assert seen.time == pytest.approx(host, abs=2e-4)
+
+
+def test_a_search_is_rehearsed_before_a_frame_is_due_and_at_no_other_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    source, reader = Scripted(), Reader()
+    eyes = LiveEyes(source, reader, DELAY)  # pyright: ignore[reportArgumentType]
+    eyes.open()
+    monkeypatch.setattr(time, "perf_counter", lambda: now)
+    warmed = []
+    for step in range(400):  # of 0.1 ms; a frame every 10 ms
+        now = 10.0 + 1e-4 * step
+        if step % 100 == 0:
+            source.frame = Frame(np.zeros((2, 2), np.uint8), now - DELAY, now, step)
+        before = reader.warmed
+        eyes.rest(0.0)
+        eyes.take(now)
+        warmed += [step] * (reader.warmed - before)
+    assert {step // 100 for step in warmed} == {1, 2, 3}  # the first period is not known yet
+    within = {step % 100 for step in warmed}  # 2.6 to 1.2 ms before the next
+    assert set(range(75, 88)) <= within <= set(range(74, 89))

@@ -68,6 +68,9 @@ class Reader:
     def check(self) -> None:
         """Its frames are always good."""
 
+    def keep_warm(self) -> None:
+        """It needs no caches."""
+
 
 class Helper:
     """Puts the mallet home and the puck nowhere."""
@@ -124,6 +127,20 @@ def test_the_mallet_goes_where_plans_send_it_and_reactions_are_counted(table: Vi
     reading = table.read()
     assert 0.0 <= reading.late_s < 0.01 and reading.frames[-1].puck == (1.0, 0.5)
     assert len(table.reactions) == 1 and 0.0 <= table.reactions[0] < 0.002
+
+
+def test_a_frame_that_comes_is_read_before_the_line_while_the_board_still_hears_of_the_host(
+    table: VirtualTable, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    table.wait(table.now() + 0.1)
+    said: list[str] = []
+    assert table.line is not None and table.eyes is not None
+    take = table.eyes.take
+    monkeypatch.setattr(table.line, "poll", lambda: said.append("line"))
+    monkeypatch.setattr(table.line, "keep_alive", lambda: said.append("alive"))
+    monkeypatch.setattr(table.eyes, "take", lambda now: said.append("frame") or frames if (frames := take(now)) else [])
+    table.wait_for_frame(table.now() + 0.02)
+    assert said[-2:] == ["alive", "frame"] and set(said[:-2]) == {"line"}
 
 
 def test_frames_that_come_later_from_some_moment_on_stop_it_and_go_on_doing_so(table: VirtualTable) -> None:

@@ -13,6 +13,7 @@ from sim2real.camera.render.scene_state import BodyState, SceneState
 from sim2real.camera.render.table import LOW_RING, STANDARD_RING, Glint, Table
 from sim2real.camera.render.view import CameraView
 from sim2real.vision.track.detector import Detections
+from sim2real.vision.track.film import FilmGauge
 from sim2real.vision.trial.rendered_calibration import detector_for, exact_locator
 from tests.sim2real.vision.track.games import judge, share_within
 from tests.sim2real.vision.track.glints import pucks_seen
@@ -64,7 +65,7 @@ def test_puck_and_ring_all_over_the_table():
 def test_where_to_look_is_known_and_what_is_found_there_is_the_same():
     states = flight(BodyState(0.5, 0.4, 3.0, 1.0), BodyState(1.6, 0.5, -1.0, 0.5), AWAY, 12)
     regional, whole = copy.deepcopy(DETECTOR), copy.deepcopy(DETECTOR)
-    whole._find_in_regions = lambda image, time: None  # searches the whole picture
+    whole._discs_near = lambda image, time: None  # searches the whole picture
     for k, state in enumerate(states):
         image = RENDERER.picture(state, k)
         near, everywhere = regional.detect(image, state.time), whole.detect(image, state.time)
@@ -100,6 +101,29 @@ def test_without_an_opponent_one_picture_in_four_is_looked_at_as_a_whole_and_one
     known = [k for k, one in enumerate(seen) if one.opponent]
     assert known == list(range(known[0], 22)) and 12 <= known[0] <= 15
     assert all(one.puck for one in seen[1:])
+
+
+def test_a_struck_puck_is_looked_for_as_far_as_it_can_have_come_and_no_farther():
+    """Struck to 14 m/s between two frames, and put down elsewhere, where no puck can have come so soon."""
+    before = flight(BodyState(0.5, 0.4, 1.0, 0.5), BodyState(1.6, 0.5), AWAY, 6)
+    struck, put = BodyState(0.55 + 0.11, 0.425 - 0.03, 13.0, -4.0), BodyState(1.4, 0.8)  # m, 0.114 m away and 0.83 m
+    for there, taken in ((struck, True), (put, False)):
+        seen: list[Detections] = []
+        assert wholes([*before, replace(before[-1], time=6 / RATE, puck=there)], seen) == 2
+        assert (seen[-1].measured_puck is not None) == taken
+
+
+def test_keeping_a_search_warm_changes_nothing():
+    states = flight(BodyState(0.5, 0.4, 3.0, 1.0), BodyState(1.6, 0.5, -1.0, 0.5), AWAY, 8)
+    plain, warm = copy.deepcopy(DETECTOR), copy.deepcopy(DETECTOR)
+    for detector in (plain, warm):
+        detector._pucks._given = FilmGauge(0.03)  # which counts what it is shown
+    for k, state in enumerate(states):
+        image = RENDERER.picture(state, k)
+        warm.keep_warm(image, state.time)
+        assert repr(plain.detect(image, state.time)) == repr(warm.detect(image, state.time))
+        warm.keep_warm(image, state.time)
+    assert repr(plain._pucks.film) == repr(warm._pucks.film)
 
 
 def test_without_a_puck_every_picture_is_looked_at_as_a_whole():
