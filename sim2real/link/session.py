@@ -194,12 +194,17 @@ class Session:
         the port, for a board of another protocol."""
         if self._connection.reopen():
             self._begin()
+        self.listen()
+        self.keep_alive()
+
+    def listen(self) -> None:
+        """Read and handle messages, and send no pings: a part of `poll`, with which an armed board stops by itself when
+        its patience ends."""
         data = self._connection.read()
         now = self._now()
         if data:
             for message in self._receiver.feed(data):
                 self._take(message, now)
-        self.keep_alive()
 
     def keep_alive(self) -> None:
         """Greet and ping as far as due, and read nothing: a part of `poll`, for a moment in which all of it would take

@@ -134,8 +134,11 @@ class BoardLine:
 
     def poll(self) -> None:
         """Read and answer what is due, and keep what telemetry says of the mallet; call it every few milliseconds."""
+        self.session.poll()
+        self._take_news()
+
+    def _take_news(self) -> None:
         session = self.session
-        session.poll()
         for event in session.take_events():
             self._take(event)
         session.take_notes()
@@ -231,20 +234,22 @@ class BoardLine:
             return
         with suppress(ValueError):  # not connected
             session.disarm()
-        self._await_stop(BRAKES_WITHIN)
+        self._await_stop(BRAKES_WITHIN, session.listen)  # a board that heard no disarm hears nothing, and brakes too
         if session.state == State.ARMED and session.port_is_open:
             session.estop()
-            self._await_stop(ESTOP_WITHIN)
+            self._await_stop(ESTOP_WITHIN, session.poll)
             if session.state == State.ARMED:
                 warnings.warn("the board shows no sign of a stop: cut the motors' supply", stacklevel=2)
 
-    def _await_stop(self, seconds: float) -> None:
-        """Serve the line for so many seconds [s], or until the board has stopped; what goes wrong meanwhile ends it."""
+    def _await_stop(self, seconds: float, attend: Callable[[], None]) -> None:
+        """Attend to the line for so many seconds [s], or until the board has stopped; what goes wrong meanwhile ends
+        it."""
         session, end = self.session, self._now() + seconds
         with suppress(Exception):
             while (session.state == State.ARMED or self._driving) and session.port_is_open and self._now() < end:
                 self._serve(self._now() + POLL)
-                self.poll()
+                attend()
+                self._take_news()
 
     def close(self) -> None:
         """Stop and close the line, whatever happens meanwhile."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from sim2real.table.board_line import BoardLine
-from tests.sim2real.link.fake_board import ESTOP, Bench, FakeBoard
+from tests.sim2real.link.fake_board import DISARM, ESTOP, Bench, FakeBoard
 from tests.sim2real.link.reference_wire import frame
 from tests.sim2real.link.simulated_session import CONFIG_SENT
 
@@ -56,3 +56,20 @@ def test_a_board_that_was_reset_gets_no_emergency_stop(was_reset: bool) -> None:
     for _ in range(5):
         line.poll()
     assert (bench.board.count(ESTOP) > 0) != was_reset
+
+
+def test_a_board_that_heard_no_disarm_hears_nothing_else_until_its_patience_ends() -> None:
+    """So that it brakes by itself; an emergency stop would have it coast, and comes last."""
+    bench = Bench(FakeBoard())
+    line = BoardLine(bench.connect, bench.now, lambda until: None)
+    while not len(line.session.clock):
+        line.poll()
+    line.configure(CONFIG_SENT)
+    line.home((0.5, -0.25))
+    line.arm()
+    bench.board.mute.add(DISARM)  # as if it was damaged on its way
+    bench.board.heard.clear()
+    stopped = bench.time
+    line.stop()
+    heard = [number for number, _ in bench.board.heard]
+    assert heard[:2] == [DISARM, ESTOP] and bench.time - stopped > 0.1
