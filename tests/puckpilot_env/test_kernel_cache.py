@@ -22,8 +22,7 @@ print(twice(3.0))
 """
 
 
-@pytest.mark.parametrize("keeps", [0, 20])
-@pytest.mark.parametrize("ending", ["nbi", "nbc"])
+@pytest.mark.parametrize(("ending", "keeps"), [("nbi", 20), ("nbc", 0)])
 def test_a_damaged_file_is_compiled_anew(tmp_path: Path, ending: str, keeps: int) -> None:
     (tmp_path / "some_kernels.py").write_text(MODULE)
     words = [sys.executable, "-c", "import some_kernels"]

@@ -68,6 +68,7 @@ def test_two_processes_keep_the_same_network_and_league(tmp_path: Path) -> None:
     assert (tmp_path / "run" / "checkpoint.pt").exists()
 
 
+@pytest.mark.long
 def test_two_resumed_processes_equal_an_unbroken_run(tmp_path: Path) -> None:
     trained(tmp_path / "broken", 1)
     assert trained(tmp_path / "broken", 2) == trained(tmp_path / "unbroken", 2)

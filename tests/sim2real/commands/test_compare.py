@@ -159,7 +159,16 @@ def test_the_simulator_s_own_ratios_stand_beside_those_seen(capsys):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["practice/null", "practice/tilt", "practice/sag", "ubc/play_a", "ubc/noise_a"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "practice/null",
+        pytest.param("practice/tilt", marks=pytest.mark.long),
+        pytest.param("practice/sag", marks=pytest.mark.long),
+        "ubc/play_a",
+        "ubc/noise_a",
+    ],
+)
 def test_shared_recordings_are_compared(tmp_path, capsys, name):
     if not SHARED.is_dir():
         pytest.skip(f"the shared recordings are not beside this checkout ({SHARED})")

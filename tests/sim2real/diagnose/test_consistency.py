@@ -72,7 +72,7 @@ def _diagnosis(recordings, heldout=()):
         pytest.param("plain", "slick", marks=pytest.mark.long),
         pytest.param("plain", "lively", marks=pytest.mark.long),
         pytest.param("patched", "plain", marks=pytest.mark.long),
-        ("plain", "whirling"),
+        pytest.param("plain", "whirling", marks=pytest.mark.long),
         pytest.param("tilted", "whirling", marks=pytest.mark.long),
         ("plain", "large"),
     ],
@@ -106,7 +106,7 @@ def test_two_recordings_of_one_table_agree(recorded, name, mechanism):
         pytest.param(0, "side_force", marks=pytest.mark.long),
         pytest.param(1, "mallet_give", marks=pytest.mark.long),
         pytest.param(35, "wall_to_wall_restitution", marks=pytest.mark.long),
-        (38, "scale_error"),
+        pytest.param(38, "scale_error", marks=pytest.mark.long),
     ],
 )
 def test_what_is_missing_in_both_is_no_other_table(tmp_path, number, missing):

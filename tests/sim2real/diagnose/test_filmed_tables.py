@@ -49,7 +49,7 @@ def test_an_unstated_calibration_error_is_taken_for_physics(tmp_path: Path) -> N
     ("law", "mechanism", "name"),
     [
         (Law(tilt_x=0.015, tilt_y=-0.008), "table_tilt", "tilt_x"),
-        (Law(warp_xx=0.03, warp_yy=-0.02, warp_xy=0.01), "table_warp", "warp_xx"),
+        pytest.param(Law(warp_xx=0.03, warp_yy=-0.02, warp_xy=0.01), "table_warp", "warp_xx", marks=pytest.mark.long),
     ],
 )
 def test_what_is_missing_is_named(tmp_path: Path, law: Law, mechanism: str, name: str) -> None:

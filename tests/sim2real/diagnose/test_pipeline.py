@@ -48,7 +48,7 @@ def test_other_parameters_are_no_missing_physics(tmp_path):
 @pytest.mark.parametrize(
     "law, name, parameter, value",
     [
-        (Law(tilt_x=0.015, tilt_y=-0.01), "table_tilt", "tilt_x", 0.015),
+        pytest.param(Law(tilt_x=0.015, tilt_y=-0.01), "table_tilt", "tilt_x", 0.015, marks=pytest.mark.long),
         pytest.param(Law(linear_drag=0.06), "linear_drag", "k", 0.06, marks=pytest.mark.long),
         pytest.param(
             Law(restitution_slope=0.05, wall_restitution=0.85),

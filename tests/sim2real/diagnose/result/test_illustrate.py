@@ -107,6 +107,7 @@ SPEED_LOSS = 2.0 * Law().a3 / Law().pulley_radius  # V s/m, of either axis
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_gantry_rough_by_place_gets_a_wave_in_volts(tmp_path):
     make_recording(tmp_path / "table", Law(rough=0.3, rough_length=0.4), "gantry", 7, 60.0, dt=5e-5)
     found = diagnose([read_recording(tmp_path / "table")], [], {}, lambda stage, share: None)

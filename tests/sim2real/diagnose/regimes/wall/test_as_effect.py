@@ -101,7 +101,7 @@ def test_a_law_of_the_time_since_a_contact_is_refused_by_name(tmp_path):
     ]
 
 
-@pytest.fixture(scope="module", params=["time", "position"])
+@pytest.fixture(scope="module", params=["time", pytest.param("position", marks=pytest.mark.long)])
 def found(request, tmp_path_factory):
     """The law, what it depends on, and the effects.toml of a diagnosis of a minute on a table that has it."""
     law, seed = {"time": (WARMING, 5), "position": (WAVE, 1)}[request.param]
