@@ -60,7 +60,7 @@ class MalletDriver:
     """
 
     def __init__(self, p: np.void) -> None:
-        self._p = p
+        self._params = np.array([p])
         self._limit = operating_volts(p) - FEEDBACK_VOLTS
         self._mallets = np.zeros(1, MALLET)
         self._mallet = self._mallets[0]  # a view
@@ -85,7 +85,7 @@ class MalletDriver:
         if not np.isfinite([x, y, vx, vy]).all():
             raise ValueError(f"the action is {np.asarray(action).tolist()}; expected four finite numbers")
         self._before, self._before_begin = self._mallet.copy(), self._begin
-        _plan(self._mallet, self._p, begin - self._begin, x, y, vx, vy, self._limit, self._limit + FEEDBACK_VOLTS)
+        _plan(self._mallets, self._params, begin - self._begin, x, y, vx, vy, self._limit, self._limit + FEEDBACK_VOLTS)
         self._begin = begin
         axes = (self._mallet["x"], self._mallet["y"])
         volts, t1, t2 = ((float(axes[0][name]), float(axes[1][name])) for name in ("volts", "t1", "t2"))
@@ -124,7 +124,8 @@ def _stand(mallet, x, y):
 
 
 @kernel
-def _plan(mallet, p, since, x, y, vx, vy, limit, most):
+def _plan(mallets, params, since, x, y, vx, vy, limit, most):
+    mallet, p = mallets[0], params[0]
     settle(mallet, since)
     x_low, x_high, y_low, y_high = mirror.area(0, p)
     area = x_low + MARGIN, x_high - MARGIN, y_low + MARGIN, y_high - MARGIN

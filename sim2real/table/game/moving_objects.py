@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from puckpilot_env.game.predict import expected_place
+from puckpilot_env.kernel import kernel
 from sim2real.table.backend import Motion, Place
 from sim2real.vision.track.detector import OPPONENT_POWER, PUCK_POWER
 from sim2real.vision.track.kalman_tracker import ANY_SPEED, KalmanTracker, Measurement, TrackState
@@ -83,8 +84,8 @@ class SeenTable:
     """
 
     def __init__(self, p: np.void) -> None:
-        self._p = p
-        self.puck = SeenObject(PUCK_POWER, lambda motion, ahead: expected_place(*motion, p, ahead))
+        self._p, self._params = p, np.array([p])
+        self.puck = SeenObject(PUCK_POWER, lambda motion, ahead: _expected(*motion, self._params, ahead))
         self.opponent = SeenObject(OPPONENT_POWER, _straight_on)
 
     def forget(self) -> None:
@@ -95,7 +96,7 @@ class SeenTable:
     def puck_at(self, time: float) -> Motion | None:
         """The puck's motion at `time` [s] if no mallet touches it; None before it was seen twice."""
         found = self.puck.motion()
-        return found and expected_place(*found, self._p, max(self.puck.unseen_for(time), 0.0))
+        return found and _expected(*found, self._params, max(self.puck.unseen_for(time), 0.0))
 
     def opponent_at(self, time: float) -> Motion | None:
         """The opponent's motion at `time` [s] if it goes straight on for a moment; None before it was seen twice."""
@@ -107,3 +108,8 @@ class SeenTable:
         low_x, high_x = 0.5 * self._p["length"], float(self._p["length"])
         ahead_x, ahead_y = x + ahead * vx, y + ahead * vy
         return min(max(ahead_x, low_x), high_x), min(max(ahead_y, 0.0), float(self._p["width"])), vx, vy
+
+
+@kernel
+def _expected(x, y, vx, vy, params, ahead):
+    return expected_place(x, y, vx, vy, params[0], ahead)

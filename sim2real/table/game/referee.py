@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from puckpilot_env.game import mirror, reward, rules
+from puckpilot_env.kernel import kernel
 from puckpilot_env.physics.contacts import bounce
 from sim2real.table.backend import Motion
 from sim2real.table.game.game_record import GameRecord
@@ -83,9 +84,9 @@ class Referee:
             rules.goal(record, p, rule, self.rewards, bounce.GOAL_X0 if side < 0 else bounce.GOAL_X1)
             again = record["ending"] == rules.RUNNING
         else:
-            rules.look_for_clear(record, p, rule, self.rewards)
+            _look_for_clear(*self._game.rows, self.rewards)
         if record["ending"] == rules.RUNNING and (again or seen.puck.unseen_for(now) < HIDDEN):
-            again = bool(rules.keep_time(record, p, rule, self.rewards)) or again
+            again = bool(_keep_time(*self._game.rows, self.rewards)) or again
         return again
 
     def _goal(self, now: float, seen: SeenTable) -> int:
@@ -101,6 +102,16 @@ class Referee:
         if not mouth or NEAR < x < length - NEAR:  # hidden, by an arm perhaps
             return 0
         return -1 if x < 0.5 * length else 1  # a mallet sent it there between two frames
+
+
+@kernel
+def _look_for_clear(states, params, variant_rules, rewards):
+    rules.look_for_clear(states[0], params[0], variant_rules[0], rewards)
+
+
+@kernel
+def _keep_time(states, params, variant_rules, rewards):
+    return rules.keep_time(states[0], params[0], variant_rules[0], rewards)
 
 
 def _nearest(one: Seen, other: Seen, begin: float, end: float) -> float:
