@@ -2,9 +2,10 @@
 same. A plan acts on the twin 14 ms after its decision, so the simulator's table has this `command_delay` too; beside it
 stands the simulator without one, which a timing-sensitive player may like better.
 
-The twin runs with measured places instead of pictures, in lock-step. Its speed is virtual time by processor time of one
-core. The simulator plays as many games, half of them with the seats exchanged, to which it is indifferent. With
---folder, each of the twin's games is kept when it is over, and a run that was stopped goes on where it was."""
+The twin runs in lock-step, with measured places unless --camera pictures has them found in rendered ones. Its speed is
+virtual time by processor time of one core. The simulator plays as many games, half of them with the seats exchanged,
+to which it is indifferent. With --folder, each of the twin's games is kept when it is over, and a run that was stopped
+goes on where it was."""
 
 from __future__ import annotations
 
@@ -30,6 +31,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--variant", default="match-v0", metavar="ID", help="the game (match-v0)")
     parser.add_argument("--games", type=int, default=20, metavar="N", help="games of each, twin and simulator (20)")
     parser.add_argument("--seconds", type=float, metavar="S", help="end the twin's games after so much play")
+    parser.add_argument(
+        "--camera", default="places", metavar="KIND", help="the twin's: places (default) or pictures, ten times as slow"
+    )
     parser.add_argument("--processes", type=int, default=1, metavar="N", help="games of the twin at once (1)")
     parser.add_argument("--folder", type=Path, metavar="DIR", help="keep the twin's games here, and go on from them")
     parser.add_argument("--seed", type=int, default=0, help="of the first game (0)")
@@ -43,20 +47,24 @@ def run(args: argparse.Namespace) -> int:
     from baselines import find_player
     from baselines.commands.options import progress_bar
     from baselines.matches.match import play
+    from puckpilot_env.files.toml_file import refuse_unknown
     from puckpilot_env.options.inputs import seed_number, whole_number
     from puckpilot_env.variants import find_variant
     from sim2real.table.mallet_driver import AHEAD
+    from sim2real.table.twin.cameras import CAMERAS
     from sim2real.table.twin.fidelity import Meeting, play_all
 
     whole_number(args.games, "--games", 1, MOST)
     whole_number(args.processes, "--processes", 1, 64)
     if args.seconds is not None and not args.seconds > 0.0:
         raise ValueError(f"--seconds is {args.seconds:g}; expected more than 0")
+    refuse_unknown([args.camera], CAMERAS, "camera")
     variant, seed = find_variant(args.variant), seed_number(args.seed)
     for name in (args.player, args.opponent):
         find_player(name)
     meetings = [
-        Meeting(args.player, args.opponent, variant.id, seed + game, args.seconds) for game in range(args.games)
+        Meeting(args.player, args.opponent, variant.id, seed + game, args.seconds, args.camera)
+        for game in range(args.games)
     ]
     with TemporaryDirectory() as passing, progress_bar("games on the twin") as progress:
         folder = args.folder or Path(passing)

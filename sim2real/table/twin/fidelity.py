@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from contextlib import closing
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -28,7 +28,7 @@ RESAMPLES = 2000  # of the bootstrap
 class Meeting:
     """Who meets on the twin: `player` at the robot's seat, its `opponent`, the `variant`'s id, and the game's `seed`.
 
-    seconds: of play at most; None for a whole game.
+    seconds: of play at most; None for a whole game. camera: the kind of the twin's, see `cameras.CAMERAS`.
     """
 
     player: str
@@ -36,6 +36,7 @@ class Meeting:
     variant: str
     seed: int
     seconds: float | None = None
+    camera: str = "places"
 
 
 @dataclass(frozen=True)
@@ -55,18 +56,19 @@ class TwinGame:
 
 def play_on_twin(meeting: Meeting) -> TwinGame:
     """Play a game. ValueError, in one line, for an unknown name, and where the table stopped."""
-    _warm_up(meeting.player, meeting.opponent, meeting.variant)
+    _warm_up(replace(meeting, seed=0, seconds=WARM))
     return _play(meeting)
 
 
 @functools.cache
-def _warm_up(player: str, opponent: str, variant: str) -> None:
-    _play(Meeting(player, opponent, variant, 0, WARM))
+def _warm_up(meeting: Meeting) -> None:
+    _play(meeting)
 
 
 def _play(meeting: Meeting) -> TwinGame:
     begin = time.process_time(), time.perf_counter()
-    with closing(make_robot_seat(find_variant(meeting.variant), "twin", opponent=meeting.opponent)) as env:
+    variant = find_variant(meeting.variant)
+    with closing(make_robot_seat(variant, "twin", opponent=meeting.opponent, camera=meeting.camera)) as env:
         log = play_game(
             env, meeting.player, meeting.seed, meeting.seconds, lambda line: None, lambda fault: False,
             lambda loop, action, info: None,
@@ -118,7 +120,7 @@ def _read(folder: Path, meeting: Meeting) -> TwinGame | None:
         return None
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
-        if content["format"] != FORMAT or content["meeting"] != asdict(meeting):
+        if content["format"] != FORMAT or Meeting(**content["meeting"]) != meeting:
             raise ValueError
         return TwinGame(**content["game"] | {"goals": tuple(content["game"]["goals"])})
     except (ValueError, KeyError, TypeError):

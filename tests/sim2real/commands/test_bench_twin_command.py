@@ -34,6 +34,7 @@ def test_speed_and_both_games_are_reported(tmp_path: Path, capsys: pytest.Captur
         (["goaly"], "unknown player 'goaly'; did you mean 'goalie'?"),
         (["goalie", "--games", "0"], "--games is 0; expected a whole number from 1 to 10,000"),
         (["goalie", "--seconds", "0"], "--seconds is 0; expected more than 0"),
+        (["goalie", "--camera", "picture"], "unknown camera 'picture'; did you mean 'pictures'?"),
     ],
 )
 def test_mistakes_get_one_line(words: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
