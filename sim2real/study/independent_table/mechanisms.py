@@ -150,6 +150,14 @@ def _belt(rng: Rng, share: float, law: Law, scenario: str) -> Change:
     return Change(law={"belt_hz": hz, "belt_zeta": zeta}, values={"hz": hz, "zeta": zeta})
 
 
+def _friction(rng: Rng, share: float, law: Law, scenario: str) -> Change:
+    """As on a real gantry: both motors and the y axis rub, the x axis hardly."""
+    sizes = share * np.array([0.5, 0.5, 0.05, 0.7]) * rng.uniform(0.7, 1.3, 4)
+    left, right, x, y = (float(one) for one in sizes)
+    changes = {"motor_friction_left": left, "motor_friction_right": right, "axis_friction_x": x, "axis_friction_y": y}
+    return Change(law=changes, values={"V_left": left, "V_right": right, "V_x": x, "V_y": y})
+
+
 def _clock(rng: Rng, share: float, law: Law, scenario: str) -> Change:
     drift = 4e-4 * share * _sign(rng)
     clock, stream = ("encoder_clock", "mallet") if scenario == "gantry" else ("camera_clock", "frames")
@@ -190,6 +198,7 @@ MECHANISMS = {
     "mallet_give": Mechanism("mallet", ROBOT, _plain("mallet_give", 0.2, "mass_ratio", "ratio")),
     "voltage_sag": Mechanism("gantry", GANTRY, _plain("voltage_sag", 0.02, "sag")),
     "motor_deadband": Mechanism("gantry", GANTRY, _plain("deadband", 0.4, "V")),
+    "motor_friction": Mechanism("gantry", GANTRY, _friction, dealt=False),
     "command_delay": Mechanism("gantry", ("gantry",), _plain("command_delay", 0.015, "delay_s")),
     "belt_compliance": Mechanism("gantry", GANTRY, _belt),
     "backlash": Mechanism("gantry", GANTRY, _plain("backlash", 0.001, "gap")),

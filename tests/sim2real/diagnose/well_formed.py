@@ -12,8 +12,8 @@ MECHANISMS = {
     "table_tilt", "table_warp", "linear_drag", "friction_patch", "air_drift", "friction_anisotropy", "side_force",
     "speed_dependent_restitution", "tangential_restitution", "wall_friction_spin", "wall_to_wall_restitution",
     "corner_restitution", "mallet_speed_restitution", "mallet_friction", "mallet_give", "voltage_sag", "motor_deadband",
-    "command_delay", "belt_compliance", "backlash", "camera_delay", "clock_drift", "scale_error", "held_frames",
-    "stamp_jitter", "unlisted",
+    "motor_friction", "command_delay", "belt_compliance", "backlash", "camera_delay", "clock_drift", "scale_error",
+    "held_frames", "stamp_jitter", "unlisted",
 }  # fmt: skip
 SIZES = ("before_m", "after_m", "floor_m", "pieces")
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from sim2real.diagnose.regimes.base import UnusableError
 from sim2real.diagnose.regimes.gantry.drive_inputs import DriveInputs, from_commands, from_drive
+from sim2real.diagnose.regimes.gantry.friction import path_of_friction
 from sim2real.diagnose.regimes.gantry.response import axis_residuals
 from sim2real.diagnose.regimes.gantry.tuned import GANTRY_DATA
 from sim2real.diagnose.regimes.gantry.windows import StreamWindows, cut_windows
@@ -57,19 +58,28 @@ class GantryRecording:
         sizes = 2 * (self.windows.end - self.windows.begin - START_COLUMNS)
         return np.bincount(self.windows.cluster, sizes, self.windows.clusters)
 
-    def residuals(self, p: np.void, delay: float = 0.0, extra: np.ndarray | None = None) -> np.ndarray:
+    def friction(self, p: np.void, delay: float = 0.0) -> np.ndarray:
+        """The part (n, 2) [m] of the path that dry friction causes; `delay` [s]: of all changes."""
+        changes, volts = self.drive_inputs.at_motors(p)
+        unknown = np.ascontiguousarray(self.drive_inputs.unknown[:, 0])
+        return path_of_friction(p, changes + delay, volts, unknown, self.t, self.velocity, self.windows)
+
+    def residuals(
+        self, p: np.void, delay: float = 0.0, extra: np.ndarray | None = None, friction: np.ndarray | None = None
+    ) -> np.ndarray:
         """Whitened residuals (2 rows, 1 + k) of all windows, x before y, with the starts projected out.
 
         `delay` [s]: delay of all changes. `extra` (n, 2, k) [m]: further columns of the path, transformed in the same
-        way.
+        way. `friction` (n, 2) [m]: the path's part by friction, if it is known.
         """
         extra = np.zeros((len(self.t), 2, 0)) if extra is None else extra
         changes, volts = self.drive_inputs.at_motors(p)
         uncertain = self.drive_inputs.uncertain_switches(p)
+        observed = self.observed - (self.friction(p, delay) if friction is None else friction)
         rows, found = self.windows.rows, []
         for axis in range(2):
             out = np.empty((len(self.t), 1 + extra.shape[2]))
-            columns = (self.observed[:, axis], 1.0 / self.noise[:, axis])
+            columns = (observed[:, axis], 1.0 / self.noise[:, axis])
             axis_residuals(
                 p, axis, changes + delay, volts[:, axis].copy(), uncertain, self.t, *(c.copy() for c in columns),
                 self.windows.begin, self.windows.end, np.ascontiguousarray(extra[:, axis]), out,

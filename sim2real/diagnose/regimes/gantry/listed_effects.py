@@ -24,6 +24,7 @@ from sim2real.diagnose.regimes.gantry.tuned import GANTRY_FIT
 STARTS: dict[str, tuple[dict[str, float], ...]] = {
     "voltage_sag": ({},),
     "motor_deadband": ({},),
+    "motor_friction": ({},),
     "command_delay": tuple({"command_delay": late} for late in (0.002, 0.01, 0.03)),
     "belt_compliance": tuple({"belt_hz": hz, "belt_zeta": 0.15} for hz in (5.0, 8.0, 12.0, 18.0, 28.0, 42.0)),
     "backlash": tuple({"backlash_gap": gap} for gap in (2e-4, 7e-4, 2e-3)),
@@ -61,7 +62,8 @@ class Candidate:
 
 
 def candidates(problem: GantryResiduals, values: Mapping[str, float]) -> list[Candidate]:
-    """The effects that fits from `values` support; empty if the best of them leave much of the baseline's excess.
+    """The effects that fits from `values` support; if the best of them leave much of the baseline's excess, only one
+    that explains far more than any other, or none.
 
     An effect is not supported if its fit ends at a bound of its range or its size is not significant.
     """
@@ -69,7 +71,8 @@ def candidates(problem: GantryResiduals, values: Mapping[str, float]) -> list[Ca
     freedom = float(thin.freedom.sum())
     now = base = _fit_in_stages(thin, [values], ())
     chosen: tuple[str, ...] = ()
-    found = []
+    found: list[Candidate] = []
+    dominant = ""
     while len(chosen) < GANTRY_FIT.most_effects and now.law.loss > GANTRY_FIT.little_left * freedom:
         names = [name for name in STARTS if name not in chosen and ALTERNATIVES.get(name) not in chosen]
         fits = {name: best_fit(thin, now, name) for name in names}
@@ -80,12 +83,21 @@ def candidates(problem: GantryResiduals, values: Mapping[str, float]) -> list[Ca
         share = GANTRY_FIT.later_share if chosen else GANTRY_FIT.first_share
         if now.law.loss - fits[best].law.loss < share * (now.law.loss - freedom):
             break
+        if not chosen and _stands_out(fits, best, now.law.loss - freedom, freedom):
+            dominant = best
         before = _residuals(problem, now.law)
         found += [Candidate(name, chosen, one.law, _residuals(problem, one.law) - before) for name, one in fits.items()]
         chosen, now = (*chosen, best), fits[best]
     before, after = (_mean_square(problem, one.law) for one in (base, now))  # all samples: backlash shows in reversals
     much = after > GANTRY_FIT.much_left and after - 1.0 > (1.0 - GANTRY_FIT.later_share) * (before - 1.0)
-    return [] if much else found
+    return [one for one in found if one.name == dominant and not one.beside] if much else found
+
+
+def _stands_out(fits: Mapping[str, StagedFit], best: str, excess: float, freedom: float) -> bool:
+    """Whether the best effect explains most of the `excess`, and leaves far less of it than each of the others."""
+    left = fits[best].law.loss - freedom
+    others = [one.law.loss - freedom for name, one in fits.items() if name != best]
+    return left < (1.0 - GANTRY_FIT.most_share) * excess and left < GANTRY_FIT.far_less * min([excess, *others])
 
 
 def is_supported(problem: GantryResiduals, without: LeastSquaresFit, law: LeastSquaresFit, name: str) -> bool:

@@ -8,12 +8,14 @@ from itertools import pairwise
 import numpy as np
 
 from puckpilot_env.parameters import BY_NAME
+from puckpilot_env.physics.effects import motor_friction
 from sim2real.diagnose.engine.problem import Residuals, Units, record_of
 from sim2real.diagnose.regimes.gantry.data import GantryRecording
 from sim2real.diagnose.regimes.gantry.tuned import GANTRY_FIT
 
 PRIOR_PARAMETERS = ("a1", "b1")  # coefficients of the jerk: almost equivalent to a delay, so they have a prior
 LOW_ORDER = ("a2", "a3", "b2", "b3")  # the baseline's other parameters
+CHANGE_FRICTION = (*motor_friction.EFFECT.row_names, "command_delay")  # parameters that change friction's part much
 MIRRORED = {"b1": "a1", "b2": "a2", "b3": "a3"}  # x depends on the difference a - b, y on the sum a + b
 
 
@@ -70,11 +72,14 @@ class GantryResiduals:
         the plans are delayed.
         """
         p = self.record(values)
-        r = self._path(p)
+        friction = [run.friction(p) for run in self.runs]
+        r = self._path(p, friction)
         jacobian = np.empty((len(r), len(free)))
         for k, name in enumerate(free):
             mirror = MIRRORED.get(name)
-            jacobian[:, k] = self._sign * jacobian[:, free.index(mirror)] if mirror in free else self._slope(p, name, r)
+            jacobian[:, k] = (
+                self._sign * jacobian[:, free.index(mirror)] if mirror in free else self._slope(p, name, r, friction)
+            )
         centre = np.array([self.defaults(name) for name in PRIOR_PARAMETERS])
         weight = 1.0 / (GANTRY_FIT.prior_share * np.abs(centre)) / np.sqrt(self.clusters)
         off = np.array([p[name] for name in PRIOR_PARAMETERS]) - centre
@@ -85,15 +90,18 @@ class GantryResiduals:
         here = np.isin(self.cluster, clusters)
         return Residuals(r[here], jacobian[here], self.cluster[here])
 
-    def _slope(self, p: np.void, name: str, r: np.ndarray) -> np.ndarray:
-        """Derivative (rows,) of the path's residuals by a parameter; `r` (rows,): the residuals at `p`."""
+    def _slope(self, p: np.void, name: str, r: np.ndarray, friction: list[np.ndarray]) -> np.ndarray:
+        """Derivative (rows,) of the path's residuals by a parameter; `r` (rows,): the residuals at `p`, and `friction`
+        the parts of the paths, which most parameters hardly change: their slopes leave that out."""
         step = _step(name, float(p[name]))
         moved, delay = p.copy(), 0.0
         if name == "command_delay":
             delay = step  # shifts the changes themselves: with ticks, the effect of the parameter is discontinuous
         else:
             moved[name] += step
-        return (self._path(moved, delay) - r) / step
+        if name in CHANGE_FRICTION:
+            friction = [run.friction(moved, delay) for run in self.runs]
+        return (self._path(moved, friction, delay) - r) / step
 
     def defaults(self, name: str) -> float:
         """The default value of a parameter."""
@@ -113,9 +121,10 @@ class GantryResiduals:
         """The simulator's parameter record for `values`."""
         return record_of({**self.common, **values})
 
-    def _path(self, p: np.void, delay: float = 0.0) -> np.ndarray:
+    def _path(self, p: np.void, friction: list[np.ndarray], delay: float = 0.0) -> np.ndarray:
         """Whitened residuals (rows,) of the path, run by run."""
-        r = np.concatenate([run.residuals(p, delay)[:, 0] for run in self.runs])
+        paths = zip(self.runs, friction, strict=True)
+        r = np.concatenate([run.residuals(p, delay, friction=part)[:, 0] for run, part in paths])
         return np.where(np.isfinite(r), r, GANTRY_FIT.impossible)
 
 

@@ -65,6 +65,27 @@ class GantryDataNumbers:
     smoothing: float = tuned(
         0.009, "s", "less leaves noise in the speed, more rounds off reversals", "choice: a few samples of the encoders"
     )
+    dry_speed: float = tuned(
+        0.0005,
+        "m/s",
+        "above which dry friction is whole: less takes shorter steps, with more an axis at rest creeps",
+        "choice: a tenth of a millimetre in a pause of 0.2 s",
+    )
+    dry_step: float = tuned(
+        1e-4, "s", "for which friction is held: more lets the speed of an axis at rest swing", "choice: stable at 1 V"
+    )
+    run_in: float = tuned(
+        1.0,
+        "s",
+        "before a window, from rest: less leaves the start's speed, more costs time",
+        "choice: ten times C6 / C7",
+    )
+    fastest: float = tuned(
+        120.0,
+        "m/s^2",
+        "less holds friction past a reversal, more takes short steps",
+        "choice: several times that of 15 V",
+    )
     same_step: float = tuned(
         1e-7,
         "m",
@@ -151,6 +172,15 @@ class GantryFitNumbers:
     )
     later_share: float = tuned(
         0.9, "1", "share of the excess that a further effect must explain", "choice: nearly all of it"
+    )
+    most_share: float = tuned(
+        0.7,
+        "1",
+        "share of the excess that one effect must explain to be named where much remains: less names imitators",
+        "choice: friction explains three quarters on a real gantry",
+    )
+    far_less: float = tuned(
+        0.5, "1", "what it may leave, as a share of what any other leaves, likewise", "choice: half"
     )
     significance: float = tuned(
         3.0, "standard deviations", "less names effects whose size may be zero", "choice: once in 400 by chance"

@@ -6,10 +6,11 @@ state in the next six columns, and the first six are the mallet's.
 
 from __future__ import annotations
 
-from math import pi, sin
+from math import pi, sin, tanh
 
 from numba import njit
 
+CREEP = 0.0005  # m/s, below which dry friction is less: so a motor under few volts creeps instead of standing
 MOTOR = 6  # the first column of the motors' state, if that is separate from the mallet's
 
 
@@ -74,16 +75,28 @@ def follow(law, mallet, first, h, out):
 
 
 @njit(error_model="numpy")
+def rubbing(law, v_x, v_y):
+    """Volts that dry friction takes from both axes at the speeds (v_x, v_y) of the motors."""
+    left = law.motor_friction_left * tanh((v_x - v_y) / CREEP)
+    right = law.motor_friction_right * tanh((-v_x - v_y) / CREEP)
+    return (
+        left - right + law.axis_friction_x * tanh(v_x / CREEP),
+        -left - right + law.axis_friction_y * tanh(v_y / CREEP),
+    )
+
+
+@njit(error_model="numpy")
 def advance_mallets(law, mallets, volts, h, out):
     """Advance all mallets by h seconds; `mallets` (k, 6 or 12), `volts` (k, 2) at the motors."""
     half_radius = 0.5 * law.pulley_radius
     separate = mallets.shape[1] > MOTOR
     driven = MOTOR if separate else 0
     for k in range(mallets.shape[0]):
+        lost_x, lost_y = rubbing(law, mallets[k, driven + 1], mallets[k, driven + 4])
         c5, c6, c7 = law.a1 - law.b1, law.a2 - law.b2, law.a3 - law.b3
-        advance_axis(law, c5, c6, c7, half_radius * volts[k, 0], mallets[k], driven, h, out[k])
+        advance_axis(law, c5, c6, c7, half_radius * (volts[k, 0] - lost_x), mallets[k], driven, h, out[k])
         c5, c6, c7 = law.a1 + law.b1, law.a2 + law.b2, law.a3 + law.b3
-        advance_axis(law, c5, c6, c7, half_radius * volts[k, 1], mallets[k], driven + 3, h, out[k])
+        advance_axis(law, c5, c6, c7, half_radius * (volts[k, 1] - lost_y), mallets[k], driven + 3, h, out[k])
         if separate:
             follow(law, mallets[k], 0, h, out[k])
             follow(law, mallets[k], 3, h, out[k])

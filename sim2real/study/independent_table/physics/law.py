@@ -117,6 +117,11 @@ class Law:
     wall_warming: float = 0.0  # 1/s, e + rate t
     mallet_warming: float = 0.0  # 1/s, the same at the mallets
 
+    motor_friction_left: float = 0.0  # V, against the motion of the left motor's belt, x - y
+    motor_friction_right: float = 0.0  # V, against that of the right one's, -x - y
+    axis_friction_x: float = 0.0  # V, against the motion of an axis
+    axis_friction_y: float = 0.0
+
     # Gantry: `gantry.loss`.
     rough: float = 0.0  # 1, speed loss C7 (1 + a sin(2 pi position / length)) on both axes
     rough_length: float = 0.3  # m

@@ -52,6 +52,7 @@ def diagnosed(recording: Recording) -> RegimeResult:
     [
         (Law(voltage_sag=0.01), "voltage_sag", "sag", 0.01),
         (replace(OTHER, deadband=0.2), "motor_deadband", "V", 0.2),
+        (Law(motor_friction_left=0.5, motor_friction_right=0.4, axis_friction_y=0.6), "motor_friction", "V_left", 0.5),
         (Law(command_delay=0.012), "command_delay", "delay_s", 0.012),
         (replace(OTHER, belt_hz=16.0, belt_zeta=0.1), "belt_compliance", "hz", 16.0),
         (Law(backlash=0.001), "backlash", "gap", 0.001),

@@ -1,0 +1,118 @@
+"""The path's change by dry friction of motors and axes, whose direction is that of the simulated motion.
+
+Under constant volts an axis has a closed form; friction is held for a small step at a time.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from puckpilot_env.kernel import array_kernel, kernel
+from puckpilot_env.physics.effects.motor_friction import EFFECT
+from sim2real.diagnose.regimes.gantry.response import axis_of, drive_on
+from sim2real.diagnose.regimes.gantry.tuned import GANTRY_DATA
+from sim2real.diagnose.regimes.gantry.windows import StreamWindows
+
+ROWS = EFFECT.row_names
+STEP, FASTEST, CREEP, RUN_IN = range(4)  # of the tuned numbers that the kernels take
+
+
+def path_of_friction(
+    p: np.void, changes: np.ndarray, volts: np.ndarray, unknown: np.ndarray, t: np.ndarray, velocity: np.ndarray,
+    windows: StreamWindows,
+) -> np.ndarray:  # fmt: skip
+    """The part (n, 2) [m] of the path at the times `t` (n,) [s] that the friction of the parameters `p` causes, from
+    the same start in each window; `velocity` (n, 2) [m/s]: of the measured path; `volts` (k, 2) [V]: of the axes from
+    `changes` (k,) [s] on, without friction; `unknown` (m,) [s]: where gaps in their record begin."""
+    path = np.zeros(velocity.shape)
+    sizes = np.array([float(p[row]) for row in ROWS])
+    if sizes.any():
+        numbers = np.array([GANTRY_DATA.dry_step, GANTRY_DATA.fastest, GANTRY_DATA.dry_speed, GANTRY_DATA.run_in])
+        _change(p, sizes, changes, volts, unknown, t, velocity, windows.begin, windows.end, numbers, path)
+    return path
+
+
+@array_kernel
+def _change(p, sizes, changes, volts, unknown, t, velocity, begin, end, numbers, path):
+    """Write to `path` (n, 2) [m] what friction changes. The simulated motion goes on from one window to the next, and
+    runs in before the first: the direction of a slow motion is lost in the noise of a measured speed. With that it
+    begins where the volts before were not recorded."""
+    x, y, none = axis_of(p, 0), axis_of(p, 1), np.zeros(4)
+    now, lost, moment = 0, 0, -math.inf
+    at_x = at_y = (0.0, 0.0, 0.0, 0.0, 0.0)
+    for w in range(len(begin)):
+        a, b = begin[w], end[w]
+        if t[a] - moment > numbers[RUN_IN]:  # what came before that is forgotten
+            moment, at_x, at_y = t[a] - numbers[RUN_IN], (0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0)
+        while lost < len(unknown) and unknown[lost] <= moment:
+            lost += 1
+        known = changes[0] <= moment and (lost == len(unknown) or unknown[lost] > t[a])
+        while now + 1 < len(changes) and changes[now + 1] <= (moment if known else t[a]):
+            now += 1
+        if known:
+            now, at_x, at_y = _drive(x, y, sizes, changes, volts, now, moment, t[a], at_x, at_y, numbers)
+        else:
+            at_x, at_y = _start(x, velocity[a, 0], volts[now, 0]), _start(y, velocity[a, 1], volts[now, 1])
+        without, to_x, to_y = now, at_x, at_y
+        moment = t[a]
+        for i in range(a, b):
+            without, to_x, to_y = _drive(x, y, none, changes, volts, without, moment, t[i], to_x, to_y, numbers)
+            now, at_x, at_y = _drive(x, y, sizes, changes, volts, now, moment, t[i], at_x, at_y, numbers)
+            moment = t[i]
+            path[i, 0], path[i, 1] = _place(at_x) - _place(to_x), _place(at_y) - _place(to_y)
+
+
+@kernel
+def _drive(x, y, sizes, changes, volts, now, moment, until, at_x, at_y, numbers):
+    """The number of the volts in use and the states of both axes at `until` [s], from those at `moment` [s]; x, y: the
+    axes' constants."""
+    frictionless = sizes[0] == sizes[1] == sizes[2] == sizes[3] == 0.0
+    while moment < until - 1e-9:
+        vx, vy = _speed(x, at_x, volts[now, 0]), _speed(y, at_y, volts[now, 1])
+        held = until if frictionless else min(moment + _held(vx, vy, numbers), until)
+        if now + 1 < len(changes):
+            held = min(held, max(changes[now + 1], moment))
+        lost_x, lost_y = _lost(sizes, vx, vy, numbers[CREEP])
+        at_x = drive_on(x, at_x, volts[now, 0] - lost_x, held - moment)
+        at_y = drive_on(y, at_y, volts[now, 1] - lost_y, held - moment)
+        moment = held
+        while now + 1 < len(changes) and changes[now + 1] <= moment:
+            now += 1
+    return now, at_x, at_y
+
+
+@kernel
+def _place(state):
+    return state[0] + state[1] + state[2]
+
+
+@kernel
+def _held(vx, vy, numbers):
+    """How long [s] friction is held, whose direction may turn where a speed is small: a short step there, and less than
+    a speed takes to vanish elsewhere."""
+    least = min(abs(vx), abs(vy), abs(vx - vy), abs(vx + vy))
+    return max(numbers[STEP], 0.5 * least / numbers[FASTEST])
+
+
+@kernel
+def _start(c, velocity, volts):
+    """The state at 0 with a velocity [m/s], whose fast mode is as long constant `volts` [V] leave it."""
+    slow_rate, _, rest_gain, slow_gain, fast_gain = c[:5]
+    slow = (rest_gain * volts - velocity) / slow_rate - slow_gain * volts
+    return -slow - fast_gain * volts, slow, fast_gain * volts, 0.0, 0.0
+
+
+@kernel
+def _speed(c, state, volts):
+    """The speed [m/s] of an axis under `volts` [V]: that of its modes, of which the fast one follows the volts."""
+    return c[2] * volts - c[0] * (state[1] + c[3] * volts) - c[1] * (state[2] - c[4] * volts)
+
+
+@kernel
+def _lost(sizes, vx, vy, creep):
+    """The volts that friction of the left and right motor and of the x and y axis takes from both axes."""
+    left, right = sizes[0] * math.tanh((vx - vy) / creep), sizes[1] * math.tanh((-vx - vy) / creep)
+    along_x, along_y = sizes[2] * math.tanh(vx / creep), sizes[3] * math.tanh(vy / creep)
+    return left - right + along_x, -left - right + along_y  # V_x = left - right, V_y = -(left + right)

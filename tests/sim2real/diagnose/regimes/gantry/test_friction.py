@@ -1,0 +1,54 @@
+"""Dry friction of motors and axes: its part of a path against the independent table's, in small Runge-Kutta steps."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from puckpilot_env.parameters import make_records
+from sim2real.diagnose.regimes.gantry.data import GantryRecording, read_gantry
+from sim2real.recording.folder import Recording, Stream, read_recording
+from sim2real.study.independent_table.physics.law import Law
+from sim2real.study.independent_table.recorder.record import make_recording
+
+pytestmark = pytest.mark.slow
+
+SIZES = {"motor_friction_left": 0.5, "motor_friction_right": 0.3, "axis_friction_x": 0.1, "axis_friction_y": 0.6}
+SUPPLY, SECONDS = 24.0, 16.0
+
+
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory: pytest.TempPathFactory) -> Recording:
+    folder = tmp_path_factory.mktemp("rubbing")
+    make_recording(folder, Law(**SIZES), "gantry", 3, SECONDS, dt=1e-4)
+    return read_recording(folder)
+
+
+def left_over(run: GantryRecording, **sizes: float) -> float:
+    """The rms of the residuals under the table's own constants and this friction, in units of the noise."""
+    return float(np.sqrt(np.mean(run.residuals(make_records(1, sizes)[0])[:, 0] ** 2)))
+
+
+def second_part(recording: Recording, begin: float) -> Recording:
+    """The same with the mallet's path from `begin` [s] on, in the midst of a move."""
+    assert recording.mallet is not None
+    later = recording.mallet.t >= begin
+    columns = {name: column[later] for name, column in recording.mallet.columns.items()}
+    return replace(recording, mallet=Stream(columns))
+
+
+def test_with_the_friction_that_there_was_nothing_is_left_but_noise(recording: Recording) -> None:
+    run = read_gantry(recording, SUPPLY, np.zeros(0))
+    assert left_over(run, **SIZES) == pytest.approx(1.0, abs=0.05)
+    assert left_over(run) > 10.0
+    for name, size in SIZES.items():
+        assert left_over(run, **{**SIZES, name: size + 0.05}) > 1.3, name
+
+
+def test_a_path_that_begins_in_a_move_is_run_in_by_the_volts_before_it(recording: Recording) -> None:
+    speed = read_gantry(recording, SUPPLY, np.zeros(0))
+    fast = speed.t[(speed.t > 4.0) & (np.abs(speed.velocity[:, 0]) > 0.8)][0]
+    run = read_gantry(second_part(recording, float(fast)), SUPPLY, np.zeros(0))
+    assert left_over(run, **SIZES) == pytest.approx(1.0, abs=0.05)
