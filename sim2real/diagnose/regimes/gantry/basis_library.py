@@ -15,8 +15,8 @@ import numpy as np
 from puckpilot_env.kernel import array_kernel
 from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.regimes.gantry.data import GantryRecording
+from sim2real.diagnose.regimes.gantry.path.response import sampled_response
 from sim2real.diagnose.regimes.gantry.residuals import GantryResiduals
-from sim2real.diagnose.regimes.gantry.response import sampled_response
 from sim2real.diagnose.regimes.gantry.tuned import GANTRY_LAW
 from sim2real.statistics.piecewise import hats, spread_knots
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from sim2real.diagnose.regimes.base import UnusableError
 from sim2real.diagnose.regimes.gantry.drive_inputs import DriveInputs, from_commands, from_drive
-from sim2real.diagnose.regimes.gantry.friction import path_of_friction
-from sim2real.diagnose.regimes.gantry.response import axis_residuals
+from sim2real.diagnose.regimes.gantry.path.friction import path_of_friction
+from sim2real.diagnose.regimes.gantry.path.response import axis_residuals
 from sim2real.diagnose.regimes.gantry.tuned import GANTRY_DATA
 from sim2real.diagnose.regimes.gantry.windows import StreamWindows, cut_windows
 from sim2real.recording.folder import Recording

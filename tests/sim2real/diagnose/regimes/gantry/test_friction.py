@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from puckpilot_env.parameters import make_records
+from puckpilot_env.physics.effects.motor_friction import EFFECT
 from sim2real.diagnose.regimes.gantry.data import GantryRecording, read_gantry
 from sim2real.recording.folder import Recording, Stream, read_recording
 from sim2real.study.independent_table.physics.law import Law
@@ -15,14 +16,15 @@ from sim2real.study.independent_table.recorder.record import make_recording
 
 pytestmark = pytest.mark.slow
 
-SIZES = {"motor_friction_left": 0.5, "motor_friction_right": 0.3, "axis_friction_x": 0.1, "axis_friction_y": 0.6}
+LAW = Law(motor_friction_left=0.5, motor_friction_right=0.3, axis_friction_x=0.1, axis_friction_y=0.6)
+SIZES = {name: float(getattr(LAW, name)) for name in EFFECT.row_names}
 SUPPLY, SECONDS = 24.0, 16.0
 
 
 @pytest.fixture(scope="module")
 def recording(tmp_path_factory: pytest.TempPathFactory) -> Recording:
     folder = tmp_path_factory.mktemp("rubbing")
-    make_recording(folder, Law(**SIZES), "gantry", 3, SECONDS, dt=1e-4)
+    make_recording(folder, LAW, "gantry", 3, SECONDS, dt=1e-4)
     return read_recording(folder)
 
 

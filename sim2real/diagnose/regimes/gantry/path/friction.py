@@ -11,7 +11,7 @@ import numpy as np
 
 from puckpilot_env.kernel import array_kernel, kernel
 from puckpilot_env.physics.effects.motor_friction import EFFECT
-from sim2real.diagnose.regimes.gantry.response import axis_of, drive_on
+from sim2real.diagnose.regimes.gantry.path.response import axis_of, drive_on
 from sim2real.diagnose.regimes.gantry.tuned import GANTRY_DATA
 from sim2real.diagnose.regimes.gantry.windows import StreamWindows
 
