@@ -40,7 +40,8 @@ class GameRecord:
     ) -> None:
         self.given = dict(parameters or {})
         self.tables = Tables(variant, 1, seed=seed, autoreset=False, parameters=parameters, period=period)
-        self.rule = self.tables.variant.rules()[0]
+        rules = self.tables.variant.rules()[:1]
+        self.rule = rules[0]
         if self.rule["sensing"] != sensing.EXACT or self.rule["game"] != MATCH or self.tables.variant.draws:
             raise ValueError(
                 f"a table backend plays puckpilot/match-v0; {self.tables.variant.id} is not played there yet"
@@ -48,7 +49,7 @@ class GameRecord:
         if float(self.rule["period"]) < SHORTEST:
             raise ValueError(f"period is {float(self.rule['period']):g} s; the board takes a plan every {SHORTEST:g} s")
         self.record, self.p = self.tables.states[0], self.tables.params[0]
-        self.rows = self.tables.states[:1], self.tables.params[:1], self.tables.variant.rules()[:1]
+        self.rows = self.tables.states[:1], self.tables.params[:1], rules
         self._no_frames = np.zeros(1, FRAME)
 
     def put_puck(self, puck: Motion) -> None:
