@@ -11,8 +11,8 @@ from sim2real.camera.frame import Frame
 
 STALL = 0.1  # s without a frame that count as a stall: a dozen periods of the real camera,
 SLOW = 5.0  # and so many last periods: a webcam in a dim room delivers eight frames a second
-SPARSE = 8  # one in so many rows is compared with the previous picture, and at first
-SPARSEST = 16 * SPARSE  # one in so many: a picture of noise differs in any row
+SPARSE = 8  # one in so many rows is compared with the previous picture
+SPARSEST = 16 * SPARSE  # the same in the first comparison, which noise nearly always decides
 EVERY = 0.5  # s between checks of the pixels, which take time
 GLARE = (
     0.03  # share of white pixels; the real table's photographs have up to 1.3 %, of which puck, ring and markers 1 %

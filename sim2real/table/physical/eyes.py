@@ -28,7 +28,7 @@ class LiveEyes:
         self._clock, self._delay = CameraClock(delay), delay
         self._open = ExitStack()
         self._coming: Frame | None = None
-        self._untold: Frame | None = None  # of which the clock does not know yet
+        self._not_added: Frame | None = None  # to the clock yet
         self._failed: CameraError | None = None
         self.arrived = self._due = 0.0  # _due: when the next one comes, if the camera is regular
 
@@ -53,9 +53,9 @@ class LiveEyes:
     def rest(self, seconds: float) -> None:
         """Rest for so many seconds [s], or until a frame comes. What the last frame was needed for is done by now, so
         that its pixels can be checked."""
-        if self._untold is not None:
-            self._clock.add(self._untold.time, self._untold.host_time)
-            self._untold = None
+        if self._not_added is not None:
+            self._clock.add(self._not_added.time, self._not_added.host_time)
+            self._not_added = None
         if WARM[0] < self._due - time.perf_counter() < WARM[1]:
             self._reader.keep_warm()
         else:
@@ -79,7 +79,7 @@ class LiveEyes:
         except ValueError as error:
             raise TableFaultError(Cause.CAMERA_TROUBLE, f"{error}; then clear") from None
         if self._is_expected(frame):
-            self._untold = frame
+            self._not_added = frame
         else:
             self._clock.add(frame.time, frame.host_time)
         self._due = frame.host_time + (frame.host_time - self.arrived)

@@ -15,7 +15,10 @@ from sim2real.diagnose.regimes.gantry.tuned import GANTRY_FIT
 
 PRIOR_PARAMETERS = ("a1", "b1")  # coefficients of the jerk: almost equivalent to a delay, so they have a prior
 LOW_ORDER = ("a2", "a3", "b2", "b3")  # the baseline's other parameters
-CHANGE_FRICTION = (*motor_friction.EFFECT.row_names, "command_delay")  # parameters that change friction's part much
+CHANGE_FRICTION = (
+    *motor_friction.EFFECT.row_names,
+    "command_delay",
+)  # of which friction's displacement depends strongly
 MIRRORED = {"b1": "a1", "b2": "a2", "b3": "a3"}  # x depends on the difference a - b, y on the sum a + b
 
 
@@ -91,8 +94,8 @@ class GantryResiduals:
         return Residuals(r[here], jacobian[here], self.cluster[here])
 
     def _slope(self, p: np.void, name: str, r: np.ndarray, friction: list[np.ndarray]) -> np.ndarray:
-        """Derivative (rows,) of the path's residuals by a parameter; `r` (rows,): the residuals at `p`, and `friction`
-        the parts of the paths, which most parameters hardly change: their slopes leave that out."""
+        """Derivative (rows,) of the path's residuals by a parameter; `r` (rows,): the residuals at `p`; `friction`: the
+        displacements at `p`, which are held constant for all parameters but CHANGE_FRICTION."""
         step = _step(name, float(p[name]))
         moved, delay = p.copy(), 0.0
         if name == "command_delay":

@@ -68,7 +68,7 @@ class GantryDataNumbers:
     dry_speed: float = tuned(
         0.0005,
         "m/s",
-        "above which dry friction is whole: less takes shorter steps, with more an axis at rest creeps",
+        "speed scale of dry friction, tanh(v / scale): less takes shorter steps, with more an axis at rest creeps",
         "choice: a tenth of a millimetre in a pause of 0.2 s",
     )
     dry_step: float = tuned(

@@ -36,19 +36,19 @@ def path_of_friction(
 
 @array_kernel
 def _change(p, sizes, changes, volts, unknown, t, velocity, begin, end, numbers, path):
-    """Write to `path` (n, 2) [m] what friction changes. The simulated motion goes on from one window to the next, and
-    runs in before the first: the direction of a slow motion is lost in the noise of a measured speed. With that it
-    begins where the volts before were not recorded."""
+    """Write the displacement by friction to `path` (n, 2) [m]. The simulation continues from one window to the next,
+    and starts RUN_IN before the first, because a slow measured speed has the wrong sign as often as not. It starts with
+    the measured speed only where the volts before were not recorded."""
     x, y, none = axis_of(p, 0), axis_of(p, 1), np.zeros(4)
-    now, lost, moment = 0, 0, -math.inf
+    now, gap, moment = 0, 0, -math.inf
     at_x = at_y = (0.0, 0.0, 0.0, 0.0, 0.0)
     for w in range(len(begin)):
         a, b = begin[w], end[w]
         if t[a] - moment > numbers[RUN_IN]:  # what came before that is forgotten
             moment, at_x, at_y = t[a] - numbers[RUN_IN], (0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0)
-        while lost < len(unknown) and unknown[lost] <= moment:
-            lost += 1
-        known = changes[0] <= moment and (lost == len(unknown) or unknown[lost] > t[a])
+        while gap < len(unknown) and unknown[gap] <= moment:
+            gap += 1
+        known = changes[0] <= moment and (gap == len(unknown) or unknown[gap] > t[a])
         while now + 1 < len(changes) and changes[now + 1] <= (moment if known else t[a]):
             now += 1
         if known:

@@ -9,7 +9,9 @@ import pytest
 
 from puckpilot_env.parameters import make_records
 from puckpilot_env.physics.effects.motor_friction import EFFECT
+from sim2real.diagnose.engine.least_squares import LeastSquaresFit
 from sim2real.diagnose.regimes.gantry.data import GantryRecording, read_gantry
+from sim2real.diagnose.regimes.gantry.listed_effects import StagedFit, _stands_out
 from sim2real.recording.folder import Recording, Stream, read_recording
 from sim2real.study.independent_table.physics.law import Law
 from sim2real.study.independent_table.recorder.record import make_recording
@@ -54,3 +56,21 @@ def test_a_path_that_begins_in_a_move_is_run_in_by_the_volts_before_it(recording
     fast = speed.t[(speed.t > 4.0) & (np.abs(speed.velocity[:, 0]) > 0.8)][0]
     run = read_gantry(second_part(recording, float(fast)), SUPPLY, np.zeros(0))
     assert left_over(run, **SIZES) == pytest.approx(1.0, abs=0.05)
+
+
+def staged(loss: float) -> StagedFit:
+    fitted = LeastSquaresFit({}, (), np.zeros((0, 0)), loss, 1, ())
+    return StagedFit(fitted, fitted)
+
+
+@pytest.mark.parametrize(
+    ("friction", "sag", "expected"),
+    [(25.0, 80.0, True), (25.0, 45.0, False), (40.0, 95.0, False)],
+    ids=["most, and far more than another", "most, as another nearly does", "not most"],
+)
+def test_an_effect_is_named_beside_much_misfit_only_if_it_explains_far_more_than_others(
+    friction: float, sag: float, expected: bool
+) -> None:
+    """Of an excess of 100, beside 10 degrees of freedom."""
+    fits = {"motor_friction": staged(10.0 + friction), "voltage_sag": staged(10.0 + sag)}
+    assert _stands_out(fits, "motor_friction", 100.0, 10.0) == expected
