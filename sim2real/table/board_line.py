@@ -26,6 +26,7 @@ ESTOP_WITHIN = 0.05  # s in which it shows that it did that, before a person is 
 EXCHANGES = 10  # pings that are answered before the board's clock is relied on
 POLL = 0.0009  # s between polls; no whole number of the board's ticks, so that pings meet these at all phases
 SHOWN_WITHIN = 0.01  # s in which telemetry shows what a message did
+LAPSED = 0.8  # s without an answer, after which what is known of a session is not believed: it ends 0.2 s later
 STALE = 0.03  # s without telemetry, which comes every 2 ms, after which the board counts as lost
 MICRO = 1e-6
 HARMLESS = ("disarm", "clear")  # refused where the board is not in the state that they end
@@ -58,8 +59,12 @@ class BoardLine:
         """Greet the board, until it answers and its clock is known, and have it leave FAULT. TableFaultError if it does
         not."""
         session, begun = self.session, self._now()
+        since = begun if begun - session.pings.answered_at > LAPSED else -math.inf
         self._refused, self._fates = "", PlanFates()
-        self._await(lambda: session.connected and len(session.clock) >= EXCHANGES, "no board answers on this line")
+        self._await(
+            lambda: session.connected and len(session.clock) >= EXCHANGES and session.pings.answered_at > since,
+            "no board answers on this line",
+        )
         self._await(
             lambda: session.state is not None and session.telemetry_status.arrived > begun,
             "the board sends no telemetry",
@@ -87,7 +92,7 @@ class BoardLine:
 
     def configure(self, config: Config) -> None:
         """Send the configuration. TableFaultError if the board refuses it, or is armed."""
-        self.session.config(config)
+        self._order(self.session.config, config)
         self._until(lambda: self.session.state in (State.UNHOMED, State.IDLE), "the board does not get ready")
 
     @property
@@ -105,7 +110,7 @@ class BoardLine:
 
     def home(self, home: Place) -> None:
         """Tell the board that the mallet is at rest at `home` [m]. TableFaultError if it does not take it."""
-        self.session.home(*home)
+        self._order(self.session.home, *home)
         self._until(
             lambda: self.homed and math.dist(self.place, home) < AT_HOME, "the board does not take the home"
         )  # fmt: skip
@@ -114,9 +119,16 @@ class BoardLine:
         """Enable the motors. TableFaultError if the board does not."""
         self._armed, self._resets = True, self.session.resets  # from now on it may be
         self._heard = self._now()
-        self.session.arm()
+        self._order(self.session.arm)
         self._until(lambda: self.session.state in (State.ARMED, State.FAULT), "the board does not arm")
         self.check()
+
+    def _order(self, order: Callable[..., object], *numbers: object) -> None:
+        """Give the session an order. TableFaultError where it cannot be sent."""
+        try:
+            order(*numbers)
+        except ValueError as error:
+            raise TableFaultError(Cause.NOT_READY, f"{error}; then clear") from None
 
     def _until(self, done: Callable[[], bool], otherwise: str) -> None:
         """Wait for what follows from a message. TableFaultError if the board refuses it, or PATIENCE ends."""
@@ -196,12 +208,19 @@ class BoardLine:
         if session.state not in (None, State.ARMED):  # None for a moment after a reset
             name = State(session.state).name
             raise TableFaultError(Cause.BOARD_NOT_ARMED, f"the board is in {name} and not ARMED; clear to arm it again")
+        if self._refused and self._was_reset:
+            raise _reset_error()
         self._refuse_refusals()
         if self._fates.hopeless:
             raise TableFaultError(
                 Cause.PLAN_REFUSED, "one plan after the other comes to the board too late, or not at all; check cable "
                 "and load, then clear"
             )  # fmt: skip
+
+    @property
+    def _was_reset(self) -> bool:
+        """Whether the board was reset since it was armed: it is greeted again then."""
+        return not self.session.connected or self.session.resets != self._resets
 
     def send(self, plan: MalletPlan) -> MalletPlan:
         """Send a plan; return it with the numbers that the protocol carries. TableFaultError if there is no board that
@@ -215,7 +234,7 @@ class BoardLine:
             begin = session.clock.to_board(plan.begin)
             number = session.traj(Traj(0, begin, round(plan.life / MICRO), volts, t1, t2, rest, slow, fast))
         except ValueError as error:
-            raise TableFaultError(Cause.NOT_READY, str(error)) from None
+            raise _reset_error() if self._was_reset else TableFaultError(Cause.NOT_READY, str(error)) from None
         self._fates.send(number, plan.begin)
         seconds = ((MICRO * first, MICRO * second) for first, second in (t1, t2))
         return replace(plan, volts=volts, t1=next(seconds), t2=next(seconds), modes=np.array([rest, slow, fast]))
@@ -257,6 +276,10 @@ class BoardLine:
             self.stop()
         finally:
             self.session.close()
+
+
+def _reset_error() -> TableFaultError:
+    return TableFaultError(Cause.BOARD_NOT_ARMED, "the board was reset; clear to arm it again")
 
 
 def _seen(telemetry: Telemetry, time: float) -> SeenMallet:

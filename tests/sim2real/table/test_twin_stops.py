@@ -11,7 +11,7 @@ pytest.importorskip("unicorn", reason="unicorn is not installed: the program can
 
 import puckpilot_env  # noqa: F401 - registers the ids
 from sim2real.table.board_config import SILENCE
-from sim2real.table.faults import TableFaultError
+from sim2real.table.faults import Cause, TableFaultError
 from sim2real.table.game.robot_seat import RobotSeat
 from tests.sim2real.table.seats import STAY, twin_of
 
@@ -70,6 +70,23 @@ def test_a_board_that_is_reset_ends_the_game_with_motors_off(seat: RobotSeat) ->
     with pytest.raises(TableFaultError, match=r"BOOT and not ARMED; clear to arm it again"):
         seat.step(np.array([0.9, 0.9, 3.0, 3.0], np.float32))
     assert board.machine.motors.duties == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("ms", [0.5, 1.5, 2.5, 3.0, 3.5, 4.5, 6.0])
+def test_a_board_that_was_reset_just_before_a_plan_is_said_to_have_been(seat: RobotSeat, ms: float) -> None:
+    """Whatever is noticed first: its refusal, that it is greeted again, that its clock is unknown, its state."""
+    seat.reset(seed=1)
+    for _ in range(2):
+        seat.step(np.array([0.9, 0.9, 6.0, 6.0], np.float32))
+    twin = twin_of(seat)
+    assert twin.board is not None
+    twin.board.machine.reset("watchdog")
+    with pytest.raises(TableFaultError) as raised:
+        twin.wait(twin.now() + 1e-3 * ms)
+        seat.step(np.array([0.3, 0.3, 6.0, 6.0], np.float32))
+    assert raised.value.cause in (Cause.BOARD_NOT_ARMED, Cause.BOARD_SILENT), raised.value
+    twin.board.run(twin.now() + 0.05)  # it brakes by itself meanwhile
+    assert twin.board.machine.motors.duties == (0.0, 0.0)
 
 
 def test_a_mallet_that_is_held_fast_ends_the_game_with_motors_off(seat: RobotSeat) -> None:
@@ -188,15 +205,32 @@ def test_ctrl_c_in_the_midst_of_the_emulator_ends_with_motors_off(seat: RobotSea
     assert interrupted and board.machine.motors.duties == (0.0, 0.0)
 
 
-def test_between_episodes_a_player_may_take_its_time(seat: RobotSeat) -> None:
+@pytest.mark.parametrize("pause", [0.3, 0.95, 1.0, 3.0])
+def test_between_episodes_a_player_may_take_its_time(seat: RobotSeat, pause: float) -> None:
+    """Longer than a session that nobody serves is believed, and about as long."""
     seat.reset(seed=1)
     seat.game.rule["match_time"] = 0.05
     _, _, terminated, truncated, _ = seat.step(STAY)
     assert terminated or truncated
     twin = twin_of(seat)
     assert twin.board is not None
-    twin.board.run(twin.now() + 0.3)  # nobody serves the board
+    twin.board.run(twin.now() + pause)  # nobody serves the board
     seat.reset()
+    assert np.isfinite(seat.step(STAY)[0]).all()
+
+
+@pytest.mark.parametrize("pause", [0.95, 1.0, 3.0])
+def test_a_person_may_take_their_time_to_mend_and_clear(seat: RobotSeat, pause: float) -> None:
+    seat.reset(seed=1)
+    seat.step(STAY)
+    twin = twin_of(seat)
+    twin.camera.unplugged = True
+    with pytest.raises(TableFaultError, match="no frame for"):
+        seat.step(STAY)
+    twin.camera.unplugged = False
+    assert twin.board is not None
+    twin.board.run(twin.now() + pause)  # nobody serves the board
+    seat.clear()
     assert np.isfinite(seat.step(STAY)[0]).all()
 
 
