@@ -124,10 +124,12 @@ class RecordedTable(Backend):
 
     def close(self) -> None:
         """See `Backend.close`; the draft stays open."""
-        if self._zero is not None:
-            self._draft.add("commands", (_command(one, self._zero, self._p) for one in self._plans))
-            self._plans = []
-        self._table.close()
+        plans, self._plans = self._plans, []
+        try:
+            if self._zero is not None:
+                self._draft.add("commands", (_command(one, self._zero, self._p) for one in plans))
+        finally:  # the disk may be full
+            self._table.close()
 
 
 def recording_meta(p: np.void, frame_rate: float, note: str) -> dict[str, Any]:

@@ -196,3 +196,21 @@ def test_a_plan_that_was_not_followed_is_not_in_the_recording(game: GameRecord, 
     assert draft.finish()
     found = read_recording(tmp_path / "one")
     assert found.commands and found.commands.t == pytest.approx([0.014])
+
+
+def test_a_disk_that_is_full_does_not_keep_the_table_from_being_closed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    game = GameRecord("puckpilot/match-v0")
+    behind = ScriptedTable([Reading([SeenFrame(BEGIN, (1.0, 0.5), (1.7, 0.5))], [])])
+    draft = RecordingDraft(tmp_path / "one", recording_meta(game.p, 120.0, ""))
+    table = RecordedTable(behind, draft, game.p)
+    table.read()
+
+    def full(*_: object) -> None:
+        raise OSError("No space left on device")
+
+    monkeypatch.setattr(draft, "add", full)
+    with pytest.raises(OSError, match="No space left"):
+        table.close()
+    assert behind.asked == ["close"]
