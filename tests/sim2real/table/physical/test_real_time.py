@@ -60,9 +60,13 @@ class PacedCamera:
 
 
 class Reader:
-    """Reads every frame as a puck in the middle."""
+    """Reads every frame as a puck in the middle, which takes `takes` [s]."""
+
+    def __init__(self, board: EmulatedBoard) -> None:
+        self.board, self.takes = board, 0.0
 
     def read(self, frame: Frame) -> SeenFrame:
+        self.board.run(self.board.now() + self.takes)
         return SeenFrame(frame.time, (1.0, 0.5), (1.7, 0.5))
 
     def check(self) -> None:
@@ -91,10 +95,10 @@ class VirtualTable(RealTimeTable):
     def __init__(self) -> None:
         self.plant = Plant(Law(), HOME, (1.7, 0.5))
         self.board = EmulatedBoard(self.plant, float(P["max_voltage"]), seed=0)
-        self.camera = PacedCamera(self.board)
+        self.camera, self.reader = PacedCamera(self.board), Reader(self.board)
         super().__init__(
             board_config(P), RATE, lambda: self.board,
-            lambda: LiveEyes(self.camera, Reader(), 0.0),  # pyright: ignore[reportArgumentType]
+            lambda: LiveEyes(self.camera, self.reader, 0.0),  # pyright: ignore[reportArgumentType]
             lambda serve: Helper(),
         )  # fmt: skip
 
@@ -127,6 +131,20 @@ def test_the_mallet_goes_where_plans_send_it_and_reactions_are_counted(table: Vi
     reading = table.read()
     assert 0.0 <= reading.late_s < 0.01 and reading.frames[-1].puck == (1.0, 0.5)
     assert len(table.reactions) == 1 and 0.0 <= table.reactions[0] < 0.002
+
+
+@pytest.mark.parametrize("takes", [0.001, 0.003, 0.005, 0.007])
+def test_a_reaction_counts_however_late_it_is(table: VirtualTable, takes: float) -> None:
+    """Also where the frame was read after the moment until which it was waited for."""
+    driver, half_frame = MalletDriver(P), 0.48 / RATE
+    driver.stand(*HOME, table.now())
+    table.wait_for_frame(table.now() + 0.02)
+    due = table.now() + 1.0 / RATE
+    table.wait(due - half_frame)
+    table.reader.takes = takes
+    table.wait_for_frame(due + half_frame)
+    table.send(driver.plan([0.3, 0.5, 5.0, 5.0], table.now() + AHEAD))
+    assert len(table.reactions) == 1 and table.reactions[0] == pytest.approx(takes, abs=0.0011)
 
 
 def test_a_frame_that_comes_is_read_before_the_line_while_the_board_still_hears_of_the_host(
