@@ -4,6 +4,7 @@ process of its own, answers at a pseudo-terminal."""
 from __future__ import annotations
 
 import gc
+import math
 import multiprocessing
 import time
 from collections.abc import Iterator
@@ -16,6 +17,7 @@ import numpy as np
 from sim2real.camera.frame import Frame
 from sim2real.camera.live.live_source import Live
 from sim2real.camera.render.renderer import Renderer
+from sim2real.camera.render.scene_state import SceneState
 from sim2real.camera.scene_states import simulated_states
 from sim2real.link.serial_port import SerialPort
 from sim2real.table.backend import Place
@@ -25,6 +27,7 @@ from sim2real.table.physical.eyes import LiveEyes
 from sim2real.table.physical.frame_reader import FrameReader
 from sim2real.table.physical.real_time import RealTimeTable
 from sim2real.table.twin.rendered_table import RenderedTable
+from sim2real.vision.track.kalman_tracker import FASTEST
 
 RATE, DELAY = 120.0, 0.0  # Hz; s from exposure to arrival
 PATIENCE = 2.0  # s: nobody looks for a puck that is not seen
@@ -32,11 +35,12 @@ PLAYERS = ("interceptor", "follower")
 
 
 class PacedPictures(Live):
-    """Pictures that were rendered beforehand, one after the other and again from the first, at RATE by the clock."""
+    """Pictures that were rendered beforehand, forward and back and so on, at RATE by the clock: nothing is ever
+    suddenly elsewhere, as at a table."""
 
     def __init__(self, pictures: list[np.ndarray]) -> None:
         super().__init__()
-        self._pictures, self._count, self._begin = pictures, 0, 0.0
+        self._pictures, self._count, self._begin = [*pictures, *pictures[-2:0:-1]], 0, 0.0
 
     def _open(self) -> None:
         self._begin = time.perf_counter()
@@ -67,12 +71,12 @@ class Nobody:
 
 @contextmanager
 def rehearsal_table(game: GameRecord, home: Place, frames: int) -> Iterator[RealTimeTable]:
-    """A table in real time, whose camera shows so many frames of a game again and again. ValueError, in one line, where
-    the emulator is not installed."""
+    """A table in real time, whose camera shows one rally again and again, at most so many frames. ValueError, in one
+    line, where the emulator is not installed."""
     rendered = RenderedTable.of(game.p)
     renderer = Renderer(rendered.table, rendered.view)
     states = simulated_states(game.tables.variant.id, PLAYERS, 0, RATE)
-    pictures = [renderer.picture(state, number) for number, state in enumerate(islice(states, frames))]
+    pictures = [renderer.picture(state, number) for number, state in enumerate(islice(_rally(states), frames))]
     reader = FrameReader(rendered.calibration(), rendered.targets())
     with emulated_board(home) as port:
         table = RealTimeTable(
@@ -84,6 +88,17 @@ def rehearsal_table(game: GameRecord, home: Place, frames: int) -> Iterator[Real
         )
         table.patience = PATIENCE
         yield table
+
+
+def _rally(states: Iterator[SceneState]) -> Iterator[SceneState]:
+    """The states until the puck is in a goal, or put elsewhere after one."""
+    last = None
+    for state in states:
+        puck = state.puck
+        if puck is None or (last is not None and math.hypot(puck.x - last.x, puck.y - last.y) > FASTEST / RATE):
+            return
+        yield state
+        last = puck
 
 
 @contextmanager
