@@ -57,7 +57,12 @@ class Seat:
 
 
 class Player:
-    """A player at `seat.tables` tables. Players override `decide`, and `reset` where they keep state."""
+    """A player at `seat.tables` tables. Players override `decide`, and `reset` where they keep state.
+
+    made_for: id of the variant that it was trained for; empty for one that plays them all.
+    """
+
+    made_for = ""
 
     def __init__(self, seat: Seat) -> None:
         self.seat = seat

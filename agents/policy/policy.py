@@ -121,6 +121,7 @@ class PolicyPlayer(Player):
     def __init__(self, policy: Policy, seat: Seat) -> None:
         self.seat = seat
         self.policy = policy
+        self.made_for = str(policy.about.get("variant", ""))
         scaling = policy.scaling
         self._decoder = FrameDecoder(seat) if FrameDecoder.is_needed(policy.columns, seat) else None
         observed = self._decoder.columns if self._decoder else list(seat.columns)

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from baselines import find_player
 from baselines.player import Seat
 from sim2real.table.drills.faults import Fault
 from sim2real.table.drills.known_faults import BY_NAME
 from sim2real.table.drills.monitor import MalletMonitor
 from sim2real.table.faults import TableFaultError
 from sim2real.table.game.robot_seat import RobotSeat
+from sim2real.table.game.seated_player import seated_player
 from sim2real.table.twin.twin import Twin
 
 NOTICED_WITHIN = 5.0  # s of play after which a fault that stopped nothing is mended
@@ -56,7 +56,7 @@ class Drill:
     def __init__(self, env: RobotSeat, player: str, seed: int) -> None:
         assert isinstance(env.backend, Twin)
         self._env, self._twin = env, env.backend
-        self._player = find_player(player)(Seat.from_tables(env.tables, 2 * seed))
+        self._player = seated_player(player, Seat.from_tables(env.tables, 2 * seed))
         self._observation, _ = env.reset(seed=seed)
         self._seed = seed
         self.monitor = MalletMonitor(self._twin)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from baselines import find_player
 from baselines.player import Player, Seat
 from puckpilot_env.game import mirror
 from puckpilot_env.game.start import HOME
@@ -13,6 +12,7 @@ from puckpilot_env.kernel import kernel
 from puckpilot_env.physics.gantry.plan import plan_mallet
 from sim2real.table.backend import Place
 from sim2real.table.game.game_record import GameRecord
+from sim2real.table.game.seated_player import seated_player
 from sim2real.table.twin.plant import OpponentPlan, Plant
 
 GAME = ("score", "time", "held", "steps", "defending", "fouls")  # what the opponent may know
@@ -24,7 +24,7 @@ class ScriptedHand:
     def __init__(self, game: GameRecord, player: str | Player, seed: int) -> None:
         self._game = GameRecord(game.tables.variant, game.given, seed, period=float(game.rule["period"]))
         seat = Seat.from_tables(self._game.tables, seed)
-        self._player = find_player(player)(seat) if isinstance(player, str) else player
+        self._player = seated_player(player, seat) if isinstance(player, str) else player
 
     @property
     def home(self) -> Place:
