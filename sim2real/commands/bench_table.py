@@ -34,20 +34,22 @@ def run(args: argparse.Namespace) -> int:
         env = RobotSeat(table, game)
         try:
             log = play_game(env, args.player, 0, args.seconds, lambda line: None, lambda fault: True,
-                            lambda loop, action, info: None)  # fmt: skip
+                            lambda loop, action, info: None).complete  # fmt: skip
         finally:
             env.close()
         reactions = list(table.reactions)
     result = {
         "seconds": log.seconds, "decisions": len(log.times.lateness), "overruns": log.times.overruns,
+        "reactions": len(reactions),
         "stops": log.faults,
         **summary("reaction_s", reactions), **summary("late_s", log.times.lateness),
     }  # fmt: skip
     if args.json:
         print(json.dumps(result, indent=1))
         return 0
-    print(f"frame arrived -> plan on the line: median {1e3 * result['reaction_s_median']:.2f} ms, 99 % within "
-          f"{1e3 * result['reaction_s_p99']:.2f} ms, at most {1e3 * result['reaction_s_max']:.2f} ms")  # fmt: skip
+    median, most, worst = (1e3 * result[f"reaction_s_{name}"] for name in ("median", "p99", "max"))
+    print(f"frame arrived -> plan on the line, {len(reactions)} times: median {median:.2f} ms, 99 % within {most:.2f} ms, "
+          f"at most {worst:.2f} ms")  # fmt: skip
     print(
         f"{result['decisions']} decisions, {result['overruns']} more than 5 ms late; {len(log.faults)} stops"
         f"{': ' + ', '.join(log.faults) if log.faults else ''}"

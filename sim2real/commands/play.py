@@ -68,13 +68,13 @@ def run(args: argparse.Namespace) -> int:
                 logs.append(play_game(env, args.player, seed, args.seconds, report, _may_clear(args), show))
             if not args.json:
                 print(f"game {game + 1}: {args.player} {logs[-1].score[0]}:{logs[-1].score[1]} {other}")
-            if logs[-1].interrupted:
+            if logs[-1].interrupted or logs[-1].fault:
                 break
     finally:
         env.close()
     result = _result(args, env.tables.variant.id, other, logs)
     print(json.dumps(result, indent=2) if args.json else "\n".join(_summary(result, logs)))
-    if logs[-1].interrupted:
+    if logs[-1].complete.interrupted:
         print("ended by Ctrl-C" + (f"; {args.record} has what was recorded" if args.record else ""), file=sys.stderr)
     return 0
 

@@ -122,7 +122,7 @@ def _play(args: argparse.Namespace, env: RobotSeat, seed: int, report: Callable[
 
     player = args.player or INTERCEPTOR
     log = play_game(env, player, seed, args.seconds, report, lambda fault: False, lambda loop, action, info: None)
-    if log.interrupted:
+    if log.complete.interrupted:
         report("ended by Ctrl-C")
     return f"{player} {log.score[0]}:{log.score[1]} in {log.seconds:.0f} s of play"
 

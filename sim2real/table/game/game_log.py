@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from sim2real.table.faults import TableFaultError
 from sim2real.table.game.loop_times import LoopTimes
 
 
@@ -13,7 +14,8 @@ class GameLog:
 
     plans: sent to the board; parked [s]: with the puck lost; off_path [m]: the farthest that the encoders had the
     mallet from its path; faults: causes of stops; times: of the decisions; table_seconds, wall_seconds: that passed at
-    the table, and here, since the first decision; interrupted: whether Ctrl-C ended it.
+    the table, and here, since the first decision; interrupted: whether Ctrl-C ended it; fault: that ended it, if
+    one did.
     """
 
     score: tuple[int, int] = (0, 0)
@@ -28,3 +30,11 @@ class GameLog:
     table_seconds: float = 0.0
     wall_seconds: float = 0.0
     interrupted: bool = False
+    fault: TableFaultError | None = None
+
+    @property
+    def complete(self) -> GameLog:
+        """The log itself; raises the fault, if one ended the game."""
+        if self.fault is not None:
+            raise self.fault
+        return self

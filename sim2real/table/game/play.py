@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from baselines import find_player
 from baselines.player import Seat
 from sim2real.table.faults import TableFaultError
 from sim2real.table.game.game_log import GameLog
 from sim2real.table.game.loop import Loop
 from sim2real.table.game.robot_seat import RobotSeat
+from sim2real.table.game.seated_player import seated_player
 
 Show = Callable[[Loop, NDArray[np.float32], dict[str, Any]], None]
 
@@ -33,35 +33,37 @@ def play_game(
 
     report: takes a line for each goal, foul and fault; may_clear: whether to go on after a fault, when it is mended;
     show: takes loop, action and info of each step.
-    ValueError, in one line, for an unknown name, and where the table stopped for good.
+    ValueError, in one line, for an unknown name, and for a policy of another game or rate.
     """
-    actor = find_player(player)(Seat.from_tables(env.tables, 2 * seed))
+    actor = seated_player(player, Seat.from_tables(env.tables, 2 * seed))
     actor.act(np.zeros((1, *(env.observation_space.shape or ())), np.float32))  # compiled before the motors are armed
     actor.reset(np.ones(1, bool))
     log, over = GameLog(), False
     observation, info = env.reset(seed=seed)
     begin, began = info["time"], time.perf_counter()
-    while not over and (seconds is None or log.seconds < seconds):
-        try:
-            action = actor.act(observation[None])[0]
-            observation, _, terminated, truncated, info = env.step(action)
-            over = terminated or truncated
-            if env.loop is not None:
-                log.times = env.loop.times
-                show(env.loop, action, info)
-            _note(log, info, report)
-        except KeyboardInterrupt as stop:
-            if stop.args:  # another signal, which ends the program
-                raise
-            env.close()
-            log.interrupted = True
-            break
-        except TableFaultError as fault:
-            report(f"{log.seconds:6.1f} s  stopped, {fault.cause}: {fault}")
-            log.faults.append(str(fault.cause))
-            observation, info = _cleared(env, fault, may_clear)
-        if info["new_point"]:
-            actor.reset(np.ones(1, bool))
+    try:
+        while not over and (seconds is None or log.seconds < seconds):
+            try:
+                action = actor.act(observation[None])[0]
+                observation, _, terminated, truncated, info = env.step(action)
+                over = terminated or truncated
+                if env.loop is not None:
+                    log.times = env.loop.times
+                    show(env.loop, action, info)
+                _note(log, info, report)
+            except TableFaultError as fault:
+                report(f"{log.seconds:6.1f} s  stopped, {fault.cause}: {fault}")
+                log.faults.append(str(fault.cause))
+                observation, info = _cleared(env, fault, may_clear)
+            if info["new_point"]:
+                actor.reset(np.ones(1, bool))
+    except KeyboardInterrupt as stop:
+        if stop.args:  # another signal, which ends the program
+            raise
+        env.close()
+        log.interrupted = True
+    except TableFaultError as fault:
+        log.fault = fault
     log.table_seconds, log.wall_seconds = info["time"] - begin, time.perf_counter() - began
     log.outcome = int(info.get("outcome", np.sign(log.score[0] - log.score[1])))
     return log

@@ -72,7 +72,7 @@ def _play(meeting: Meeting) -> TwinGame:
         log = play_game(
             env, meeting.player, meeting.seed, meeting.seconds, lambda line: None, lambda fault: False,
             lambda loop, action, info: None,
-        )  # fmt: skip
+        ).complete  # fmt: skip
         if log.interrupted:
             raise KeyboardInterrupt
         virtual = env.backend.now()
