@@ -48,8 +48,8 @@ def run(args: argparse.Namespace) -> int:
         print(json.dumps(result, indent=1))
         return 0
     median, most, worst = (1e3 * result[f"reaction_s_{name}"] for name in ("median", "p99", "max"))
-    print(f"frame arrived -> plan on the line, {len(reactions)} times: median {median:.2f} ms, 99 % within {most:.2f} ms, "
-          f"at most {worst:.2f} ms")  # fmt: skip
+    print(f"frame arrived -> plan on the line, {len(reactions)} times: median {median:.2f} ms, "
+          f"99 % within {most:.2f} ms, at most {worst:.2f} ms")  # fmt: skip
     print(
         f"{result['decisions']} decisions, {result['overruns']} more than 5 ms late; {len(log.faults)} stops"
         f"{': ' + ', '.join(log.faults) if log.faults else ''}"

@@ -56,6 +56,14 @@ def _lay_puck(twin: Twin) -> None:
     twin.plant.put_puck(np.array([0.5 * float(twin.p["length"]), 0.5 * float(twin.p["width"]), 0.0, 0.0]))
 
 
+def _jam(twin: Twin) -> None:
+    twin.plant.jam(True)
+
+
+def _free(twin: Twin) -> None:
+    twin.plant.jam(False)
+
+
 def _cut(twin: Twin) -> None:
     if twin.board is not None:
         twin.board.cut = True
@@ -102,6 +110,7 @@ FAULTS = (
     Fault("late-frames", f"frames come {1e3 * LATE:.0f} ms later", _delay, _hurry,
           frozenset({Cause.CAMERA_SILENT, Cause.CAMERA_LATE}), UNSEEN),
     Fault("no-puck", "the puck is taken away", _take_puck, _lay_puck, frozenset({Cause.PUCK_LOST})),
+    Fault("jammed", "the puck is jammed where it is", _jam, _free, frozenset()),
     Fault("cable", "the serial cable is cut", _cut, _join,
           frozenset({Cause.PORT_LOST, Cause.BOARD_STOPPED}), UNPLUGGED),
     Fault("noise", f"{100 * DAMAGED:.0f} % of the bytes are damaged", _damage, _heal,

@@ -39,6 +39,7 @@ class Plant:
         self._addresses = tuple(one.ctypes.data for one in (self._numbers, self._puck, self._mallets, self._inputs))
         self._coming: deque[tuple[float, Place]] = deque()  # volts of the robot's axes that come late, and when [s]
         self._held: np.ndarray | None = None  # the robot's mallet at rest, while it is held fast
+        self._jammed: np.ndarray | None = None  # the puck at rest, while it is jammed
 
     def __deepcopy__(self, memo: object) -> Plant:
         raise TypeError("a plant cannot be copied: compiled code knows its arrays by their addresses")
@@ -46,6 +47,10 @@ class Plant:
     def hold(self, held: bool) -> None:
         """Hold the robot's mallet fast where it is, or let it go."""
         self._held = begin(self.law, [self.mallet(0)[:2]])[0] if held else None
+
+    def jam(self, jammed: bool) -> None:
+        """Jam the puck where it is, so that no hit moves it, or free it; `put_puck` frees it too."""
+        self._jammed = np.array([*self._puck[:2], 0.0, 0.0, *self._puck[4:]]) if jammed else None
 
     @property
     def puck(self) -> np.ndarray:
@@ -69,6 +74,7 @@ class Plant:
 
     def put_puck(self, puck: np.ndarray) -> None:
         """Put the puck at (x, y, vx, vy) [m, m/s], without spin."""
+        self._jammed = None
         self._puck[:] = (*puck, 0.0, LONG_AGO)
 
     def put_robot(self, place: Place) -> None:
@@ -107,6 +113,8 @@ class Plant:
         self.time = time
         if self._held is not None:
             self._mallets[0] = self._held
+        if self._jammed is not None:
+            self._puck[:] = self._jammed
 
 
 @array_kernel

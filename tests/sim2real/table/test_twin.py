@@ -124,3 +124,21 @@ def test_gymnasium_makes_the_twin_by_naming_it() -> None:
         assert env.observation_space.contains(observation) and env.observation_space.contains(after)
     finally:
         env.close()
+
+
+@pytest.mark.slow
+def test_a_jammed_puck_is_a_foul_in_the_end_and_freed_by_the_hand_that_puts_it_down(seat: RobotSeat) -> None:
+    seat.reset(seed=1)
+    plant = twin_of(seat).plant
+    plant.put_puck(np.array([0.4, 0.9, 0.0, 0.0]))
+    plant.jam(True)
+    places = []
+    for _ in range(90):
+        *_, info = seat.step(STAY)
+        places.append(plant.puck[:2])
+        if info["new_point"]:
+            break
+    assert info["fouls"][0] == 1 and 6.9 < info["play_time"] < 7.6
+    np.testing.assert_array_equal(places[:-1], np.tile([0.4, 0.9], (len(places) - 1, 1)))
+    seat.step(STAY)
+    assert np.linalg.norm(plant.puck[:2] - [0.4, 0.9]) > 0.1

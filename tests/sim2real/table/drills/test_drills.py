@@ -31,7 +31,7 @@ def test_a_fault_stops_the_mallet_and_play_goes_on_after_clear(fault: Fault, cam
         drill = Drill(env, "interceptor", seed=5)
         drill.play(1.0)
         stop = drill.let_happen(fault, within=0.03)
-        assert stop.cause in fault.causes
+        assert stop.cause in (fault.causes or {""})  # of some play goes on
         assert stop.in_time
         drill.play(1.0)
         assert drill.monitor.worst.volts <= 15.0 and drill.monitor.worst.outside <= 0.0
