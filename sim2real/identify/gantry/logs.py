@@ -41,14 +41,17 @@ class GantryLog:
     broken: np.ndarray
 
     def windows(self, every: float, times: Sequence[float]) -> Windows:
-        """Windows `every` so often [s], for predictions `times` (h,) [s] ahead, none over a break."""
+        """Windows `every` so often [s], for predictions `times` (h,) [s] ahead, none over a break, and none beyond the
+        last place that was measured."""
         first, last = self.t[0] + GANTRY.warm_up + GANTRY.past, self.t[-1] - max(times)
         rows = np.flatnonzero(self.measured)
         t = self.t[rows]
-        start = rows[np.unique(np.searchsorted(t, np.arange(first, last, every)))]
-        start = start[self.t[start] <= last]
+        start = np.unique(np.searchsorted(t, np.arange(first, last, every)))
+        start = rows[start[start < len(rows)]]
+        ahead = np.searchsorted(t, self.t[start][:, None] + np.asarray(times)[None])
+        measured = (ahead < len(rows)).all(axis=1)
+        start, ahead = start[measured], rows[ahead[measured]]
         begin = rows[np.searchsorted(t, self.t[start] - GANTRY.past)]
-        ahead = rows[np.searchsorted(t, self.t[start][:, None] + np.asarray(times)[None])]
         breaks = np.concatenate([[0], np.cumsum(self.broken)])
         since = np.searchsorted(self.t, self.t[begin] - GANTRY.warm_up)
         return Windows(begin, start, ahead).where(breaks[ahead[:, -1]] == breaks[since])
@@ -75,10 +78,19 @@ def read_log(recording: Recording, supply: float) -> GantryLog:
         raise ValueError(f"{recording.name}: {error}; record one of them") from None
     path = np.column_stack([recording.mallet["mallet_x"], recording.mallet["mallet_y"]])
     seen = np.isfinite(path).all(axis=1)
+    if not seen.any():
+        raise ValueError(f"{recording.name}: mallet.csv holds no place; expected the mallet's path: record it too")
     rows, path = recording.mallet.t[seen], path[seen]
     begin, end = max(inputs.t[0], rows[0]), min(inputs.end, rows[-1])
+    common = rows[(rows >= begin) & (rows <= end)]
+    if not len(common):
+        raise ValueError(
+            f"{recording.name}: the streams do not overlap in time: the mallet's places are from {rows[0]:g} to "
+            f"{rows[-1]:g} s, and none is between {inputs.t[0]:g} and {inputs.end:g} s, where the motors' volts are; "
+            "record both at once, on one clock"
+        )
     t = np.union1d(rows, inputs.t)
-    t = t[(t >= begin) & (t <= end)]
+    t = t[(t >= begin) & (t <= common[-1])]
     place = np.column_stack([np.interp(t, rows, path[:, k]) for k in range(2)])
     axes = inputs.volts[np.searchsorted(inputs.t, t, side="right") - 1]
     volts = np.column_stack([0.5 * (axes[:, 0] - axes[:, 1]), -0.5 * (axes[:, 0] + axes[:, 1])])

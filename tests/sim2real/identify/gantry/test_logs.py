@@ -68,6 +68,30 @@ def test_windows_look_as_far_ahead_as_they_say(recording: Recording) -> None:
     assert ahead == pytest.approx(np.broadcast_to(GANTRY.judged, ahead.shape), abs=1e-3)
 
 
+@pytest.mark.parametrize("gap", [0.1, 0.3, 0.6])
+def test_windows_end_where_the_mallet_was_measured_last_before_the_motors_log_ends(
+    recording: Recording, gap: float
+) -> None:
+    mallet, drive = recording.mallet, recording.drive
+    assert mallet is not None and drive is not None
+    ended = with_rows(recording, "drive", drive.t < 3.0)
+    piece = whole(read_log(with_rows(ended, "mallet", (mallet.t < 3.0 - gap) | (mallet.t > 3.05)), SUPPLY))
+    for windows, times in ((piece.fit, GANTRY.fitted), (piece.judge, GANTRY.judged)):
+        ahead = piece.log.t[windows.ahead]
+        assert 3.0 - gap - 0.2 < ahead.max() < 3.0 - gap
+        assert ahead - piece.log.t[windows.start][:, None] == pytest.approx(np.tile(times, (len(ahead), 1)), abs=1e-3)
+    assert all(len(part.fit.start) for part in parts(piece))
+
+
+def test_no_window_looks_beyond_the_last_place_that_was_measured(recording: Recording) -> None:
+    found = read_log(recording, SUPPLY)
+    blind = replace(found, measured=found.t < 2.0)
+    ahead = found.t[blind.windows(GANTRY.judge_every, GANTRY.judged).ahead]
+    assert 1.95 < ahead.max() < 2.0
+    nowhere = replace(found, measured=np.zeros_like(found.measured))
+    assert not len(nowhere.windows(GANTRY.judge_every, GANTRY.judged).start)
+
+
 def test_parts_of_a_log_share_no_moment(recording: Recording) -> None:
     found = parts(whole(read_log(recording, SUPPLY)))
     assert len(found) == GANTRY.parts
@@ -76,12 +100,23 @@ def test_parts_of_a_log_share_no_moment(recording: Recording) -> None:
 
 
 def test_what_holds_no_log_is_refused_in_one_line(recording: Recording) -> None:
-    mallet = recording.mallet
-    assert mallet is not None
+    mallet, drive = recording.mallet, recording.drive
+    assert mallet is not None and drive is not None
+    blank = replace(mallet, columns={**mallet.columns, "mallet_x": np.full(mallet.rows, np.nan)})
+    late = replace(drive, columns={**drive.columns, "t": drive.t + 10.0})
     still = {name: np.full(mallet.rows, 0.3) for name in ("mallet_x", "mallet_y")}
     at_rest = replace(mallet, columns={**mallet.columns, **still})
     faults = {
         "the mallet's path was not recorded": replace(recording, mallet=None),
+        "mallet.csv holds no place; expected the mallet's path": replace(recording, mallet=blank),
+        "the streams do not overlap in time: .* from 0 to 3.9.* s, and none is between 10 and 13.9": replace(
+            recording, drive=late
+        ),
+        "the streams do not overlap in time: .* and none is between 1.5.* and 2.4": with_rows(
+            with_rows(recording, "drive", (drive.t > 1.5) & (drive.t < 2.5)),
+            "mallet",
+            (mallet.t < 1.0) | (mallet.t > 3.0),
+        ),
         "neither the motors' log": replace(recording, drive=None),
         "windows of 0.2 s without a gap": with_rows(recording, "mallet", mallet.t < 1.0),
         "the mallet moves by 0.0 mm in all; expected 10 mm or more": replace(recording, mallet=at_rest),
