@@ -12,6 +12,7 @@ from sim2real.table.bring_up.rig import Rig, StepError, at_rest
 from sim2real.table.mallet_driver import AHEAD, operating_volts
 
 PINGS, ROUND_TRIP, CLOCK = 100, 10e-3, 2e-3  # pings; s of their median; s of the clock's error bound
+STOPPED = 0.05 + ROUND_TRIP  # s until a stop is confirmed: by the board's clock it takes 50 ms at most; the line adds
 SHORT_MOVE, GENTLE = 0.03, 3.0  # m and V of the first motions
 FOLLOWS = 0.005  # m from its path
 LOOK = 2.0  # s of frames
@@ -107,6 +108,11 @@ def stop(rig: Rig) -> str:
     took = rig.table.now() - asked
     if rig.line.session.state == State.ARMED:
         raise StepError("the board is still armed after a stop; switch the motors' supply off, and check the line")
+    if took > STOPPED:
+        raise StepError(
+            f"a stop was confirmed {1e3 * took:.0f} ms after it was asked for, expected {1e3 * STOPPED:.0f} ms or less"
+            "; check the cable (puckpilot link test), the motors' supply, and that nothing pushes the mallet"
+        )
     rig.table.arm()
     seen = rig.watch(0.2).mallets
     if not at_rest(seen):

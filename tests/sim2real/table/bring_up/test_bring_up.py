@@ -51,6 +51,16 @@ def no_answers(twin: Twin) -> None:
     twin.board.cut = True
 
 
+def late_word_of_a_stop(twin: Twin) -> None:
+    stop = twin.stop
+
+    def stop_and_hear_late() -> None:
+        stop()
+        twin.pass_time(twin.now() + 0.05)
+
+    twin.stop = stop_and_hear_late
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("spoil", "options", "step", "words"),
@@ -58,6 +68,7 @@ def no_answers(twin: Twin) -> None:
         (no_answers, {}, "link", "no board answers"),
         (motors_off, {}, "power", "the board stopped the motors|is the motors' supply on"),
         (no_frames, {}, "power", "no frame for"),
+        (late_word_of_a_stop, {}, "stop", "confirmed .. ms after it was asked for, expected 60 ms or less; check"),
         (lambda twin: None, {"errors": CameraErrors(noise=0.002)}, "film", "a scatter of . mm|a scatter of ...."),
     ],
 )
