@@ -10,6 +10,7 @@ import json
 import math
 import shutil
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import IO, Any
 
@@ -28,6 +29,7 @@ class RecordingDraft:
         self.folder, self._draft = folder, draft_of(folder)
         refuse_existing(folder)
         check_folder(folder.absolute().parent)
+        self._made = [place for place in folder.absolute().parents if not place.exists()]  # the innermost first
         folder.absolute().parent.mkdir(parents=True, exist_ok=True)
         if self._draft.exists() and _finish_left(self._draft, folder):
             raise RecordingError(folder, "is what a killed run had recorded, complete now; choose another name")
@@ -58,14 +60,20 @@ class RecordingDraft:
         file.flush()
 
     def finish(self) -> bool:
-        """Put the recording in its place; False, and nothing is left, if no row came. RecordingError, in one line, if
-        it cannot be read back or its place was taken meanwhile; the draft stays then."""
+        """Put the recording in its place; False, and nothing is left, no folder that was made for it either, if no row
+        came. RecordingError, in one line, if it cannot be read back or its place was taken meanwhile; the draft stays
+        then."""
         for file in self._files.values():
             file.close()
         try:
-            return _put(self._draft, self.folder)
+            recorded = _put(self._draft, self.folder)
         finally:
             self._meta.close()  # and with it the lock
+        if not recorded:
+            with suppress(OSError):  # one has something in it by now, and so have those around it
+                for place in self._made:
+                    place.rmdir()
+        return recorded
 
 
 def refuse_existing(folder: Path) -> None:

@@ -57,6 +57,21 @@ def test_without_rows_nothing_is_left(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
+def test_without_rows_no_folder_is_left_that_was_made_for_it(tmp_path: Path) -> None:
+    (tmp_path / "mine").mkdir()
+    assert not RecordingDraft(tmp_path / "mine" / "games" / "all" / "game_1", META).finish()
+    assert not list((tmp_path / "mine").iterdir())
+    assert not RecordingDraft(tmp_path / "mine" / "game_1", META).finish()
+    assert not list((tmp_path / "mine").iterdir())
+
+
+def test_a_folder_that_was_made_for_a_draft_stays_for_another_one_s_rows(tmp_path: Path) -> None:
+    empty, other = (RecordingDraft(tmp_path / "all" / f"game_{number}", META) for number in (1, 2))
+    other.add("drive", [(0.0, 0.1, 0.1)])
+    assert not empty.finish() and other.finish()
+    assert [path.name for path in (tmp_path / "all").iterdir()] == ["game_2"]
+
+
 def test_what_exists_is_refused(tmp_path: Path) -> None:
     (tmp_path / "one").mkdir()
     with pytest.raises(RecordingError, match="one: exists already; choose another name or remove it"):
