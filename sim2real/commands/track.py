@@ -99,6 +99,7 @@ def _table(args: argparse.Namespace) -> TableCalibration:
 
 def _targets(args: argparse.Namespace) -> Targets:
     """The tracked objects by the arguments. ValueError, in one line, for a number out of range."""
+    from sim2real.vision.target_ranges import target_number
     from sim2real.vision.track.blobs import LEVEL
     from sim2real.vision.track.ring import HEIGHTS
     from sim2real.vision.track.tracker import Targets
@@ -109,12 +110,10 @@ def _targets(args: argparse.Namespace) -> Targets:
         height = HEIGHTS[args.ring_height] if args.ring_height in HEIGHTS else float(args.ring_height)
     except ValueError:
         height = -1.0
-    if not 0.0 <= height <= 0.3:
-        raise ValueError(f"--ring-height is '{args.ring_height}'; expected standard, low, or metres from 0 to 0.3")
-    if radius is not None and not 0.005 <= radius <= 0.1:
-        raise ValueError(f"--puck-radius is {radius:g}; expected metres from 0.005 to 0.1")
-    if not 1.0 <= level <= 250.0:
-        raise ValueError(f"--level is {level:g}; expected a grey level from 1 to 250")
+    target_number("ring_height", height, "--ring-height", f"'{args.ring_height}'", "standard, low, or ")
+    if radius is not None:
+        target_number("puck_radius", radius, "--puck-radius", f"{radius:g}")
+    target_number("level", level, "--level", f"{level:g}")
     return Targets(radius, height, level)
 
 

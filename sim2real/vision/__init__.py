@@ -5,5 +5,6 @@ corners; `camera.py` (the pinhole model with distortion), `motion.py` (the camer
 curved surface) and `coordinate_warp.py` (hand-measured against rigid coordinates) are the measurement model;
 `table_geometry.py` joins the last two with the markers; `locate.py` inverts the model, from pixels to the table.
 `calibrate/` estimates the model from photographs, `track/` uses it on every frame, `trial/` measures both on rendered
-pictures. `camera_file.py` and `json_file.py` read and write the calibration's files.
+pictures. `camera_file.py` and `json_file.py` read and write the calibration's files; `target_ranges.py` checks what a
+user says of puck and ring.
 """

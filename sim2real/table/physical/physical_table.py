@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from os import PathLike
 
-import cv2
-
+from sim2real.camera.grey_image import read_grey
 from sim2real.camera.sources import RATE, open_source
 from sim2real.link.serial_port import SerialPort
 from sim2real.table.backend import Place
@@ -63,10 +62,7 @@ def frame_reader(camera: CameraPart) -> FrameReader:
     targets = Targets(camera.film_radius, height, LEVEL if camera.level is None else camera.level)
     reader = FrameReader(calibration, targets, camera.settings)
     if camera.setup is not None:
-        image = cv2.imread(str(camera.setup), cv2.IMREAD_GRAYSCALE)
-        if image is None:
-            raise ValueError(f"{camera.setup} is no picture; expected the setup picture of the whole sensor")
-        reader.tracker.set_up(image)
+        reader.tracker.set_up(read_grey(camera.setup))
     return reader
 
 

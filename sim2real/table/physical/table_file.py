@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from os import PathLike
@@ -15,7 +16,9 @@ from puckpilot_env.parameters import checked
 from sim2real.camera.region import RegionOfInterest
 from sim2real.camera.settings import CameraSettings
 from sim2real.link import BAUD
+from sim2real.link.wire.messages import LIMITS, Config
 from sim2real.table.board_config import Gains
+from sim2real.vision.target_ranges import target_number
 
 FORMAT = "puckpilot-table/1"
 EXAMPLE = """\
@@ -52,10 +55,13 @@ profile = "gantry.toml"         # of `puckpilot identify gantry`
 """
 NUMBERS = ("exposure", "setup_exposure", "gain", "rate")  # of the camera's settings
 SETTINGS = (*NUMBERS, "trigger_line", "pixel_format")
-CAMERA = ("source", "calibration", "setup", "region", "delay", "level", "ring_height", "film_radius", *SETTINGS)
-BOARD = ("port", "baud", "supply", "pulley_radius", "offsets", "proportional", "integral", "derivative")
+TARGETS = {"level": "level", "ring_height": "ring_height", "film_radius": "puck_radius"}  # keys by fields of `Targets`
+GAINS = ("proportional", "integral", "derivative")
+CAMERA = ("source", "calibration", "setup", "region", "delay", *TARGETS, *SETTINGS)
+BOARD = ("port", "baud", "supply", "pulley_radius", "offsets", *GAINS)
 LATENCY = ("camera", "camera_drift", "frame", "line", "command", "follow", "total")  # what `puckpilot latency` prints
 Pair = tuple[float, float]
+MOST = sys.float_info.max
 
 
 @dataclass(frozen=True)
@@ -123,8 +129,9 @@ def _camera(camera: Mapping[str, Any], folder: Path) -> CameraPart:
     given |= {name: _number(camera, name, "camera") for name in NUMBERS if name in camera}
     if "region" in camera:
         given["region"] = RegionOfInterest.parse(_text(camera, "region", "camera"))
-    numbers = {name: _number(camera, name, "camera") for name in ("delay", "level", "ring_height", "film_radius")
-               if name in camera}  # fmt: skip
+    numbers = {"delay": _number(camera, "delay", "camera")} if "delay" in camera else {}
+    numbers |= {name: target_number(target, real_number(camera[name]), f"camera.{name}", in_short(camera[name]))
+                for name, target in TARGETS.items() if name in camera}  # fmt: skip
     return CameraPart(
         _text(camera, "source", "camera"),
         folder / _text(camera, "calibration", "camera"),
@@ -135,13 +142,12 @@ def _camera(camera: Mapping[str, Any], folder: Path) -> CameraPart:
 
 
 def _board(board: Mapping[str, Any]) -> BoardPart:
-    pairs = {name: _pair(board, name) for name in ("offsets", "proportional", "integral", "derivative")
-             if name in board}  # fmt: skip
-    offsets = pairs.pop("offsets", None)
+    offsets = _pair(board, "offsets") if "offsets" in board else None
+    gains = {name: _pair(board, name, *LIMITS[Config][name]) for name in GAINS if name in board}
     baud = board.get("baud", BAUD)
     if not isinstance(baud, int) or baud < 1:
         raise ValueError(f"board.baud is {in_short(baud)}; expected a whole number above 0")
-    return BoardPart(_text(board, "port", "board"), baud, offsets, Gains(**pairs))
+    return BoardPart(_text(board, "port", "board"), baud, offsets, Gains(**gains))
 
 
 def _text(row: Mapping[str, Any], key: str, where: str) -> str:
@@ -158,10 +164,10 @@ def _number(row: Mapping[str, Any], key: str, where: str) -> float:
     return number
 
 
-def _pair(row: Mapping[str, Any], key: str) -> Pair:
-    if not isinstance(row[key], list) or len(row[key]) != 2:
-        raise ValueError(f"board.{key} is {in_short(row[key])}; expected two numbers")
-    first, second = (real_number(one) for one in row[key])
-    if not abs(first) + abs(second) < float("inf"):
-        raise ValueError(f"board.{key} is {in_short(row[key])}; expected two numbers")
-    return first, second
+def _pair(row: Mapping[str, Any], key: str, low: float = -MOST, high: float = MOST) -> Pair:
+    given = row[key] if isinstance(row[key], list) else []
+    numbers = [real_number(one) for one in given]
+    if len(numbers) != 2 or not all(low <= one <= high for one in numbers):
+        span = "" if high == MOST else f" from {low:g} to {high:g}"
+        raise ValueError(f"board.{key} is {in_short(row[key])}; expected two numbers{span}")
+    return numbers[0], numbers[1]

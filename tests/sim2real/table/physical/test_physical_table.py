@@ -21,6 +21,7 @@ format = "puckpilot-table/1"
 [camera]
 source = "device:0"
 calibration = "table.json"
+{setup}
 [board]
 port = "/dev/ttyUSB0"
 supply = 20.0
@@ -33,8 +34,8 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def written(folder: Path, parameters: str) -> Path:
-    (folder / "table.toml").write_text(FILE.format(parameters=parameters))
+def written(folder: Path, parameters: str, setup: str = "") -> Path:
+    (folder / "table.toml").write_text(FILE.format(parameters=parameters, setup=setup))
     return folder / "table.toml"
 
 
@@ -57,3 +58,22 @@ def test_what_does_not_agree_is_refused_in_one_line(
     with pytest.raises(ValueError, match=words) as error:
         make_robot_seat("match-v0", "table", parameters=given, table=written(folder, parameters))
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (None, "cannot read {file}: No such file or directory; expected a picture there"),
+        (b"no picture", "{file} cannot be read as a picture; expected one"),
+    ],
+)
+def test_a_setup_picture_that_cannot_be_read_is_refused_in_one_line(
+    folder: Path, content: bytes | None, words: str, capfd: pytest.CaptureFixture[str]
+) -> None:
+    file = folder / "setup.png"
+    if content is not None:
+        file.write_bytes(content)
+    with pytest.raises(ValueError) as error:
+        make_robot_seat("match-v0", "table", table=written(folder, "", 'setup = "setup.png"'))
+    assert str(error.value).startswith(words.format(file=file)) and "\n" not in str(error.value)
+    assert not capfd.readouterr().err
