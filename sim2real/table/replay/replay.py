@@ -19,7 +19,8 @@ SPAN = 0.02  # s of the encoders' places from which the mallet's velocity is tak
 class Replay(Backend):
     """A recording in lock-step with the player; see `Backend`. Its time is the recording's, and it ends with it.
 
-    ValueError, in one line, for a recording without frames or mallet, and for one of a table of another size.
+    Where the mallet's place is blank, it goes straight from the place before to the one after. ValueError, in one line,
+    for a recording without frames or mallet, and for one of a table of another size.
     """
 
     obeys = False
@@ -101,13 +102,18 @@ class Replay(Backend):
 
 
 def _streams(recording: Recording) -> tuple[Stream, Stream]:
-    """Frames and mallet, neither empty. ValueError, in one line, where one is missing."""
-    found = []
-    for name, stream in (("frames", recording.frames), ("mallet", recording.mallet)):
+    """Frames, and the mallet where its place is known; neither empty. ValueError, in one line, where one is missing."""
+    frames, mallet = recording.frames, recording.mallet
+    if mallet is not None:
+        known = np.isfinite(mallet["mallet_x"]) & np.isfinite(mallet["mallet_y"])
+        mallet = Stream({name: mallet[name][known] for name in ("t", "mallet_x", "mallet_y")})
+    for name, stream, what in (("frames", frames, "rows"), ("mallet", mallet, "places")):
         if stream is None or not stream.rows:
-            raise ValueError(f"recording {recording.name} has no rows in {name}.csv; a replay needs frames and mallet")
-        found.append(stream)
-    return found[0], found[1]
+            raise ValueError(
+                f"recording {recording.name} has no {what} in {name}.csv; a replay needs frames and mallet"
+            )
+    assert frames is not None and mallet is not None
+    return frames, mallet
 
 
 def _refuse_other_sizes(recording: Recording, game: GameRecord) -> None:

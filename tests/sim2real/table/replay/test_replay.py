@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
 
@@ -22,8 +23,9 @@ META = {
 }  # fmt: skip
 
 
-def straight(path: Path, **meta: object) -> Path:
-    """Two seconds: the puck goes along x at 0.4 m/s, the opponent stands, the mallet goes along y at 0.1 m/s."""
+def straight(path: Path, blank: Callable[[np.ndarray], np.ndarray] = np.zeros_like, **meta: object) -> Path:
+    """Two seconds: the puck goes along x at 0.4 m/s, the opponent stands, the mallet goes along y at 0.1 m/s and is
+    not seen at the times that are `blank`."""
     t = np.arange(240) / 120.0
     frames = {
         "t": t,
@@ -32,7 +34,7 @@ def straight(path: Path, **meta: object) -> Path:
         "opponent_x": 1.8 + 0 * t,
         "opponent_y": 0.5 + 0 * t,
     }
-    mallet = {"t": t, "mallet_x": 0.25 + 0 * t, "mallet_y": 0.4 + 0.1 * t}
+    mallet = {"t": t, "mallet_x": 0.25 + 0 * t, "mallet_y": np.where(blank(t), np.nan, 0.4 + 0.1 * t)}
     write_recording(path, Recording("straight", META | meta, frames=Stream(frames), mallet=Stream(mallet)))
     return path
 
@@ -49,6 +51,18 @@ def test_a_policy_sees_what_was_recorded_at_the_moment_at_which_it_would_act(tmp
         for name, value in expected.items():
             assert observation[names.index(name)] == pytest.approx(value, abs=0.004), name
         assert not (terminated or truncated)
+    env.close()
+
+
+def test_blanks_of_the_mallet_lie_on_a_line_between_the_rows_around_them(tmp_path: Path) -> None:
+    recording = straight(tmp_path / "straight", lambda t: (t < 0.05) | ((t > 0.3) & (t < 0.7)))
+    env = gymnasium.make(MATCH, backend="replay", recording=recording)
+    observation, info = env.reset()
+    names = [column.name for column in env.unwrapped.tables.observation_columns]  # pyright: ignore[reportAttributeAccessIssue]
+    for _ in range(10):
+        observation, reward, *_, info = env.step(env.action_space.sample())
+        assert np.isfinite(observation).all() and np.isfinite(float(reward))
+        assert observation[names.index("mallet_y")] == pytest.approx(0.4 + 0.1 * info["acts_at"], abs=0.004)
     env.close()
 
 
@@ -69,13 +83,15 @@ def test_the_episode_is_truncated_where_the_recording_ends(tmp_path: Path) -> No
     [
         ({"recording": "nowhere"}, "is not a folder"),
         ({}, "backend 'replay' needs recording; give recording=..."),
-        ({"recording": "{frames}"}, "has no rows in mallet.csv; a replay needs frames and mallet"),
+        ({"recording": "{frames}"}, "has no places in mallet.csv; a replay needs frames and mallet"),
+        ({"recording": "{blank}"}, "has no places in mallet.csv; a replay needs frames and mallet"),
     ],
 )
 def test_what_cannot_be_replayed_is_refused_in_one_line(tmp_path: Path, what: dict, words: str) -> None:
     straight(tmp_path / "frames")
     (tmp_path / "frames" / "mallet.csv").unlink()
-    what = {name: value.format(frames=tmp_path / "frames") for name, value in what.items()}
+    straight(tmp_path / "blank", lambda t: t >= 0.0)
+    what = {name: value.format(frames=tmp_path / "frames", blank=tmp_path / "blank") for name, value in what.items()}
     with pytest.raises(ValueError) as caught:
         gymnasium.make(MATCH, backend="replay", **what)
     assert words in str(caught.value) and "\n" not in str(caught.value)
