@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import asdict, dataclass
@@ -18,6 +19,7 @@ from sim2real.table.game.robot_seat import make_robot_seat
 
 PART = 120.0  # s of play of a part
 BETWEEN = (1.0, 6.0)  # s of play between two faults
+BEGINS = b'{"seed": '  # a line of a part
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,7 @@ def run_campaign(
 ) -> list[Part]:  # fmt: skip
     """Play parts until they have `seconds` of play; each is kept as a line of `path`, and those that are there already
     are not played again. `report` takes how many are done, of how many. ValueError for a file of something else."""
+    _drop_cut_off_line(path)
     same = conditions(names, player, camera)
     done = {part.seed: part for part in read_parts(path)}
     if other := next((part.conditions for part in done.values() if part.conditions != same), None):
@@ -85,6 +88,15 @@ def run_campaign(
             pool.shutdown(wait=False, cancel_futures=True)
             raise
     return [done[one] for one in seeds]
+
+
+def _drop_cut_off_line(path: Path) -> None:
+    """Take from a file of parts a last line that has no end: a campaign was killed while it wrote it. A file of
+    something else stays as it is."""
+    whole = path.read_bytes() if path.exists() else b""
+    last = whole[whole.rfind(b"\n") + 1 :]
+    if last and (last.startswith(BEGINS) or BEGINS.startswith(last)):
+        os.truncate(path, len(whole) - len(last))
 
 
 def read_parts(path: Path) -> Iterator[Part]:

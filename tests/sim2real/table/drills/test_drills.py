@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict
 from math import nan
 from pathlib import Path
@@ -12,6 +13,7 @@ import pytest
 pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
 
 import puckpilot
+from sim2real.table.drills import campaign
 from sim2real.table.drills.campaign import Part, conditions, run_campaign
 from sim2real.table.drills.drill import Drill, Stop
 from sim2real.table.drills.faults import FAULTS, Fault
@@ -63,6 +65,27 @@ def test_parts_of_another_campaign_are_not_taken_for_this_ones(tmp_path: Path) -
     for names, player, camera in ((["noise"], "goalie", "places"), (["cable"], "still", "places")):
         with pytest.raises(ValueError, match=r"has parts of another campaign, goalie, places: cable; .*--out"):
             run_campaign(path, 60.0, 0, names, player, camera, 1, lambda done, of: None)
+
+
+@pytest.mark.parametrize("left", [1, 5, 60, -1])  # characters of the line that was being written
+def test_a_line_that_was_cut_off_is_played_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, left: int) -> None:
+    path = tmp_path / "drill.jsonl"
+    first, second = (Part(seed, 120.0, [], 15.0, 0.0, "", conditions(["cable"], "goalie", "places")) for seed in (0, 1))
+    lines = [json.dumps(asdict(part)) + "\n" for part in (first, second)]
+    path.write_text(lines[0] + lines[1][:left])
+    monkeypatch.setattr(campaign, "ProcessPoolExecutor", ThreadPoolExecutor)
+    monkeypatch.setattr(campaign, "play_part", lambda seed, names, player, camera: second)
+    found = run_campaign(path, 240.0, 0, ["cable"], "goalie", "places", 1, lambda done, of: None)
+    assert found == [first, second] and path.read_text() == "".join(lines)
+
+
+@pytest.mark.parametrize("text", ["notes without an end", '[{"seed": 1}]', '{"seed": 1}\nnotes'])
+def test_a_file_of_something_else_is_refused_and_stays(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "notes.txt"
+    path.write_text(text)
+    with pytest.raises(ValueError, match="is no part of a campaign; choose another file"):
+        run_campaign(path, 60.0, 0, ["cable"], "goalie", "places", 1, lambda done, of: None)
+    assert path.read_text() == text
 
 
 def test_a_fault_of_pictures_without_pictures_says_so(capsys: pytest.CaptureFixture[str]) -> None:
