@@ -25,19 +25,19 @@ if TYPE_CHECKING:
     from sim2real.table.latency.part import Part
 
 SECONDS = (8.0, 600.0)  # s that a measurement may take
+OF_A_TABLE = {"backend": "twin", "table": None, "seconds": 20.0, "seed": 0, "inject": []}  # options, by their defaults
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
     parser.add_argument("recordings", metavar="RECORDING", nargs="*", type=Path, help="folders; without any, measure")
-    parser.add_argument("--backend", default="twin", metavar="NAME", help="the table to measure (default twin)")
+    parser.add_argument("--backend", metavar="NAME", help="the table to measure (default twin)")
     parser.add_argument("--table", type=Path, metavar="FILE", help="the table.toml of a physical table")
-    parser.add_argument("--seconds", type=float, default=20.0, metavar="S", help="of strokes (default 20)")
-    parser.add_argument("--seed", type=int, default=0, help="of a twin's noise (default 0)")
+    parser.add_argument("--seconds", type=float, metavar="S", help="of strokes (default 20)")
+    parser.add_argument("--seed", type=int, help="of a twin's noise (default 0)")
     parser.add_argument(
         "--inject",
         nargs="+",
-        default=[],
         metavar="NAME=VALUE",
         help="put delays [s] and clock errors [ppm] into a twin: camera, drift, frame, line, crystal, gantry",
     )
@@ -47,15 +47,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Measure and print. 0: measured; 1: a recording determines nothing. ValueError, in one line, for what cannot be
     measured."""
-    return _of_recordings(args) if args.recordings else _of_table(args)
+    if args.recordings:
+        return _of_recordings(args)
+    for name, default in OF_A_TABLE.items():
+        if getattr(args, name) is None:
+            setattr(args, name, default)
+    return _of_table(args)
 
 
 def _of_recordings(args: argparse.Namespace) -> int:
     from sim2real.recording.folder import read_recording
     from sim2real.table.latency.parts import parts_of_recording
 
-    if args.inject:
-        raise ValueError("--inject is given with recordings; it takes a twin: leave the recordings out")
+    if given := next((name for name in OF_A_TABLE if getattr(args, name) is not None), None):
+        measured = "twin" if given == "inject" else "table"
+        raise ValueError(f"--{given} is given with recordings; it takes a {measured}: leave the recordings out")
     every = {str(path): parts_of_recording(read_recording(path)) for path in args.recordings}
     if args.json:
         shown = {path: {one.name: one.as_dict() for one in parts} for path, parts in every.items()}
@@ -69,7 +75,7 @@ def _of_recordings(args: argparse.Namespace) -> int:
 def _of_table(args: argparse.Namespace) -> int:
     from puckpilot_env.options.inputs import seed_number
     from puckpilot_env.variants import find_variant
-    from sim2real.table.backends import make_backend, stated_parameters
+    from sim2real.table.backends import make_backend, refuse_unknown_backend, stated_parameters
     from sim2real.table.game.game_record import GameRecord
     from sim2real.table.game.loop import home_of
     from sim2real.table.latency.injection import read_injection, truth, twin_options
@@ -77,6 +83,7 @@ def _of_table(args: argparse.Namespace) -> int:
     from sim2real.table.latency.parts import parts_of_measurement
     from sim2real.table.live_table import LiveTable
 
+    refuse_unknown_backend(args.backend)
     if not SECONDS[0] <= args.seconds <= SECONDS[1]:
         raise ValueError(f"--seconds is {args.seconds:g}; expected {SECONDS[0]:g} to {SECONDS[1]:g}")
     injected = read_injection(args.inject)

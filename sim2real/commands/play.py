@@ -82,11 +82,13 @@ def run(args: argparse.Namespace) -> int:
 def seat(args: argparse.Namespace) -> RobotSeat:
     """The robot's seat at the backend that is asked for. ValueError, in one line, for options that do not fit it."""
     from puckpilot_env.variants import find_variant
+    from sim2real.table.backends import refuse_unknown_backend
     from sim2real.table.game.robot_seat import make_robot_seat
 
+    refuse_unknown_backend(args.backend)
     needs = {"twin": {"opponent", "camera"}, "table": {"table"}, "replay": {"recording"}}
     for name in ("opponent", "camera", "table", "recording"):
-        wanted, given = needs.get(args.backend, set()), getattr(args, name) is not None
+        wanted, given = needs[args.backend], getattr(args, name) is not None
         if given and name not in wanted:
             raise ValueError(f"--{name} is given with --backend {args.backend}; it takes {_option(wanted)}")
         if name in wanted and not given and args.backend != "twin":

@@ -35,6 +35,8 @@ def test_a_game_is_reported_as_json(capsys: pytest.CaptureFixture[str]) -> None:
     [
         (["goaly"], "unknown player 'goaly'; did you mean 'goalie'?"),
         (["goalie", "--backend", "tabel"], "unknown backend 'tabel'; did you mean 'table'?"),
+        (["goalie", "--backend", "tabel", "--table", "x.toml"], "unknown backend 'tabel'; did you mean 'table'?"),
+        (["goalie", "--table", "x.toml"], "--table is given with --backend twin; it takes --camera and --opponent"),
         (["goalie", "--games", "0"], "--games is 0; expected a whole number from 1 to 1,000"),
         (["goalie", "--seconds", "0"], "--seconds is 0; expected more than 0"),
         (["agents/policies/champion.attack-v0.npz"], "attack-v0.npz was trained for puckpilot/attack-v0 and decides"),
