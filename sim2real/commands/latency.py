@@ -82,6 +82,7 @@ def _of_table(args: argparse.Namespace) -> int:
     from sim2real.table.latency.measure import measure
     from sim2real.table.latency.parts import parts_of_measurement
     from sim2real.table.live_table import LiveTable
+    from sim2real.table.physical.table_file import read_table_file
 
     refuse_unknown_backend(args.backend)
     if not SECONDS[0] <= args.seconds <= SECONDS[1]:
@@ -109,7 +110,8 @@ def _of_table(args: argparse.Namespace) -> int:
     if args.json:
         print(json.dumps(_result(args, injected, true, parts), indent=2))
     else:
-        print("\n".join(_text(parts, true if injected else None)))
+        stated = read_table_file(args.table).camera.delay if args.table else 0.0
+        print("\n".join(_text(parts, true if injected else None, stated)))
     return 0
 
 
@@ -124,7 +126,7 @@ def _result(args: argparse.Namespace, injected: dict, true: dict, parts: Sequenc
     return {"backend": args.backend, "seconds": args.seconds, "seed": args.seed, "inject": injected, "parts": found}
 
 
-def _text(parts: Sequence[Part], true: Mapping[str, float] | None = None) -> list[str]:
+def _text(parts: Sequence[Part], true: Mapping[str, float] | None = None, stated: float | None = None) -> list[str]:
     from sim2real.table.latency.table_text import table_lines, toml_lines
 
-    return [*table_lines(parts, true), "", *toml_lines(parts)]
+    return [*table_lines(parts, true), "", *toml_lines(parts, stated)]

@@ -28,13 +28,19 @@ def _row(one: Part, injected: Mapping[str, float] | None) -> list[str]:
     return [one.name, f"{shown[0]} {unit}", f"{shown[1]} to {shown[2]}", *true, one.what, one.by]
 
 
-def toml_lines(parts: Sequence[Part]) -> list[str]:
-    """The section [latency] for a table's file: what is determined, in s and ppm; none without."""
+def toml_lines(parts: Sequence[Part], stated: float | None = None) -> list[str]:
+    """The section [latency] for a table's file: what is determined, in s and ppm; none without.
+
+    stated: the delay that stamps of frames were already corrected by [s], to which the camera's is added; None if that
+    is not known.
+    """
     if not any(one.determined and one.name in LATENCY for one in parts):
         return []
     found = {one.name: one for one in parts if one.determined}
     digits = {"s": 6, "ppm": 1}
-    return ["[latency]"] + [
+    camera = found["camera"].value if "camera" in found else None
+    delay = [] if stated is None or camera is None else [f"delay = {max(stated + camera, 0.0):.6f}  # s"]
+    return ["[latency]", *delay] + [
         f"{name} = {found[name].value:.{digits[found[name].unit]}f}  # {found[name].unit}"
         for name in LATENCY
         if name in found

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from os import PathLike
 
 from sim2real.camera.grey_image import read_grey
+from sim2real.camera.live.setup_picture import take_setup_picture
 from sim2real.camera.sources import RATE, open_source
 from sim2real.link.serial_port import SerialPort
 from sim2real.table.backend import Place
@@ -39,7 +41,7 @@ class PhysicalTable(RealTimeTable):
             board_config(game.p, board.gains),
             camera.settings.rate or RATE,
             lambda: SerialPort(board.port, board.baud, wait=0.0),
-            lambda: LiveEyes(open_source(camera.source, camera.settings), frame_reader(camera), camera.delay),
+            lambda: live_eyes(camera),
             PersonAtTerminal,
         )
         self._pulley_radius = float(game.p["pulley_radius"])
@@ -53,6 +55,18 @@ class PhysicalTable(RealTimeTable):
             return exact_place(telemetry.angle, offsets, self._pulley_radius, home)
         except ValueError as error:
             raise TableFaultError(Cause.NOT_READY, str(error)) from None
+
+
+def live_eyes(camera: CameraPart) -> LiveEyes:
+    """The camera's eyes, not yet opened; its setup picture is taken now, if it is to be taken. TableFaultError, in one
+    line, where that fails."""
+    reader, settings = frame_reader(camera), replace(camera.settings, setup_exposure=None)
+    try:
+        if camera.settings.setup_exposure is not None:
+            reader.tracker.set_up(take_setup_picture(camera.source, camera.settings, reader.tracker.sensor))
+        return LiveEyes(open_source(camera.source, settings), reader, camera.delay)
+    except ValueError as error:
+        raise TableFaultError(Cause.NOT_READY, f"{error}; then clear") from None
 
 
 def frame_reader(camera: CameraPart) -> FrameReader:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -37,7 +38,7 @@ pixel_format = "BayerRG8"
 exposure = 1e-4                 # s
 gain = 25.0                     # dB
 rate = 120.0                    # Hz
-delay = 0.006                   # s from the middle of the exposure until a frame comes: `puckpilot latency` tells
+delay = 0.006                   # s from the middle of the exposure until a frame comes; or [latency] has it
 ring_height = 0.05              # m, of the opponent's ring above the table
 film_radius = 0.0309            # m, of the puck's film; left out, it is measured
 
@@ -51,7 +52,7 @@ proportional = [400.0, 400.0]   # V/m, of axes x and y; and so integral [V/m/s],
 [gantry]                        # leave it out, and the simulator's constants hold
 profile = "gantry.toml"         # of `puckpilot identify gantry`
 
-[latency]                       # the last lines of `puckpilot latency`, as they are; `frame` is the camera's delay
+[latency]                       # the last lines of `puckpilot latency`, as they are; `delay` is the camera's
 """
 NUMBERS = ("exposure", "setup_exposure", "gain", "rate")  # of the camera's settings
 SETTINGS = (*NUMBERS, "trigger_line", "pixel_format")
@@ -59,7 +60,16 @@ TARGETS = {"level": "level", "ring_height": "ring_height", "film_radius": "puck_
 GAINS = ("proportional", "integral", "derivative")
 CAMERA = ("source", "calibration", "setup", "region", "delay", *TARGETS, *SETTINGS)
 BOARD = ("port", "baud", "supply", "pulley_radius", "offsets", *GAINS)
-LATENCY = ("camera", "camera_drift", "frame", "line", "command", "follow", "total")  # what `puckpilot latency` prints
+LATENCY = (
+    "delay",
+    "camera",
+    "camera_drift",
+    "frame",
+    "line",
+    "command",
+    "follow",
+    "total",
+)  # what `puckpilot latency` prints
 Pair = tuple[float, float]
 MOST = sys.float_info.max
 
@@ -118,8 +128,15 @@ def _table(content: Mapping[str, Any], folder: Path) -> TableFile:
     parameters = {name: checked(name, value) for name, value in given.items()}
     camera, latency = dict(section(content, "camera")), section(content, "latency")
     refuse_unknown(latency, LATENCY, "key of latency")
-    if "frame" in latency:
-        camera.setdefault("delay", latency["frame"])
+    for name in latency:
+        if not math.isfinite(real_number(latency[name])):
+            raise ValueError(f"latency.{name} is {in_short(latency[name])}; expected a number")
+    if "delay" in latency:
+        if "delay" in camera:
+            raise ValueError("delay is given under [camera] and under [latency]; keep the one that was measured last")
+        camera["delay"] = latency["delay"]
+    elif latency and "delay" not in camera:
+        raise ValueError("[latency] has no delay of the camera; measure it again, or state delay under [camera]")
     return TableFile(parameters, _camera(camera, folder), _board(board))
 
 
@@ -129,6 +146,10 @@ def _camera(camera: Mapping[str, Any], folder: Path) -> CameraPart:
     given |= {name: _number(camera, name, "camera") for name in NUMBERS if name in camera}
     if "region" in camera:
         given["region"] = RegionOfInterest.parse(_text(camera, "region", "camera"))
+    if "setup" in camera and "setup_exposure" in camera:
+        raise ValueError(
+            "camera.setup and camera.setup_exposure are given; keep one: a picture that is there, or is taken"
+        )
     numbers = {"delay": _number(camera, "delay", "camera")} if "delay" in camera else {}
     numbers |= {name: target_number(target, real_number(camera[name]), f"camera.{name}", in_short(camera[name]))
                 for name, target in TARGETS.items() if name in camera}  # fmt: skip

@@ -48,7 +48,8 @@ def test_of_a_twin(capsys: pytest.CaptureFixture[str]) -> None:
     name, value, unit, *_, injected = next(line for line in lines if line.startswith("camera ")).split()[:7]
     assert (name, unit, injected) == ("camera", "ms", "17.00") and float(value) == pytest.approx(17.0, abs=0.5)
     section = lines[lines.index("[latency]") :]
-    assert f"{1e3 * float(section[1].split()[2]):.2f}" == value and section[1].startswith("camera = 0.01")
+    assert f"{1e3 * float(section[2].split()[2]):.2f}" == value and section[2].startswith("camera = 0.01")
+    assert section[1] == section[2].replace("camera", "delay")  # a twin's stamps are not corrected
 
 
 def test_lines_say_what_is_known_and_why_not() -> None:
@@ -60,6 +61,8 @@ def test_lines_say_what_is_known_and_why_not() -> None:
     ]
     assert table_lines(parts, {"camera": 0.0171})[1] == "camera  17.00 ms  16.50 to 17.50  17.10     a to b  pings"
     assert toml_lines(parts) == ["[latency]", "camera = 0.017000  # s"]
+    assert toml_lines(parts, 0.006) == ["[latency]", "delay = 0.023000  # s", "camera = 0.017000  # s"]
+    assert toml_lines([KIND.found(-0.0071, 0.0005)], 0.006)[1] == "delay = 0.000000  # s"
 
 
 @pytest.mark.parametrize(

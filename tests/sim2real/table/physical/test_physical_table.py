@@ -5,12 +5,19 @@ from __future__ import annotations
 from contextlib import closing
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from sim2real.camera.render.renderer import Renderer
+from sim2real.camera.render.scene_state import SceneState
 from sim2real.camera.render.table import Table
 from sim2real.camera.render.view import CameraView
+from sim2real.camera.settings import CameraSettings
+from sim2real.table.faults import TableFaultError
 from sim2real.table.game.robot_seat import make_robot_seat
 from sim2real.table.physical import physical_table
+from sim2real.table.physical.physical_table import live_eyes
+from sim2real.table.physical.table_file import read_table_file
 from sim2real.table.twin.rendered_table import RenderedTable
 
 RENDERED = RenderedTable(Table.with_markers(), CameraView.like_the_real_one(2.0, 1.0))  # 2 m by 1 m
@@ -77,3 +84,22 @@ def test_a_setup_picture_that_cannot_be_read_is_refused_in_one_line(
         make_robot_seat("match-v0", "table", table=written(folder, "", 'setup = "setup.png"'))
     assert str(error.value).startswith(words.format(file=file)) and "\n" not in str(error.value)
     assert not capfd.readouterr().err
+
+
+def test_a_setup_picture_is_taken_when_the_camera_is_opened(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    taken: list[tuple] = []
+    empty_table = Renderer(RENDERED.table, RENDERED.view).picture(SceneState(0.0, None, None, None), 0)
+
+    def take(word: str, settings: CameraSettings, sensor: tuple[int, int]) -> np.ndarray:
+        taken.append((word, settings.setup_exposure, sensor))
+        return empty_table if len(taken) > 1 else np.zeros_like(empty_table)
+
+    monkeypatch.setattr(physical_table, "take_setup_picture", take)
+    opened: list[CameraSettings] = []
+    monkeypatch.setattr(physical_table, "open_source", lambda word, settings: opened.append(settings))
+    camera = read_table_file(written(folder, "", "setup_exposure = 8e-3")).camera
+    with pytest.raises(TableFaultError, match="the camera cannot be located in the setup picture: .*; then clear"):
+        live_eyes(camera)
+    live_eyes(camera)
+    assert taken == [("device:0", 8e-3, RENDERED.calibration().setup.camera.size)] * 2
+    assert [settings.setup_exposure for settings in opened] == [None]

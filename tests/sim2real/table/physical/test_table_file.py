@@ -36,8 +36,8 @@ def test_the_example_is_read_with_all_that_it_says(tmp_path: Path) -> None:
 
 
 def test_the_section_that_latency_prints_gives_the_cameras_delay(tmp_path: Path) -> None:
-    text = LEAST + "[latency]\ncamera = 0.0324\nframe = 0.0389\ntotal = 0.0529\n"
-    assert read_table_file(written(tmp_path, text)).camera.delay == 0.0389
+    text = LEAST + "[latency]\ndelay = 0.0354\ncamera = 0.0324\nframe = 0.0389\ntotal = 0.0529\n"
+    assert read_table_file(written(tmp_path, text)).camera.delay == 0.0354
 
 
 def test_what_is_left_out_has_the_default(tmp_path: Path) -> None:
@@ -72,6 +72,16 @@ def test_what_is_left_out_has_the_default(tmp_path: Path) -> None:
         (("[camera]", "[camera]\nrate = 0.0"), "rate is 0.0; expected frames a second"),
         (("[camera]", '[camera]\nexposure = "x"'), "camera.exposure is 'x'; expected a number, 0 or more"),
         (("[board]", "[latency]\nfram = 0.01\n[board]"), "unknown key of latency 'fram'; did you mean 'frame'?"),
+        (("[board]", '[latency]\nframe = "nonsense"\n[board]'), "latency.frame is 'nonsense'; expected a number"),
+        (("[board]", "[latency]\nframe = 0.01\n[board]"), "[latency] has no delay of the camera; measure it again"),
+        (
+            ("[board]", "delay = 0.006\n[latency]\ndelay = 0.01\n[board]"),
+            "under [camera] and under [latency]; keep the",
+        ),
+        (
+            ("[board]", 'setup = "a.png"\nsetup_exposure = 8e-3\n[board]'),
+            "are given; keep one: a picture that is there",
+        ),
         (("[board]", '[gantry]\nprofile = "none.toml"\n[board]'), "none.toml"),
     ],
 )
