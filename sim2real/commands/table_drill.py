@@ -1,11 +1,12 @@
 """Play at the twin and let faults happen at random moments: does the mallet stop, and does play go on?
 
 Faults: the camera unplugged, late frames, the puck taken away, the puck jammed (play goes on then), the serial cable
-cut, damaged bytes, the board reset, a policy that hangs, the mallet held fast; with --camera pictures also a lamp that fades or glares, a hand over the puck,
-a second puck, the camera knocked, a marker knocked. After each the table is cleared, and play goes on. Where the mallet
-is and how fast, and what its motors get, is looked at every millisecond in the plant's own truth. Ends with 0 if the
-mallet never left its area, never got more than 15 V, and always stood 50 ms after a fault was noticed, or after it
-began, if the board can notice it by itself (70 ms, if only the camera's frames tell), with 1 if not.
+cut, damaged bytes, the board reset, a policy that hangs, the mallet held fast; with --camera pictures also a lamp that
+fades or glares, a hand over the puck, a second puck, the camera knocked, a marker knocked. After each the table is
+cleared, and play goes on. Where the mallet is and how fast, and what its motors get, is looked at every millisecond in
+the plant's own truth. Ends with 0 if the mallet never left its area, never got more than 15 V, and always stood 50 ms
+after a fault was noticed, or after it began, if the board can notice it by itself (70 ms, if only the camera's frames
+tell), with 1 if not.
 """
 
 from __future__ import annotations
