@@ -60,16 +60,7 @@ TARGETS = {"level": "level", "ring_height": "ring_height", "film_radius": "puck_
 GAINS = ("proportional", "integral", "derivative")
 CAMERA = ("source", "calibration", "setup", "region", "delay", *TARGETS, *SETTINGS)
 BOARD = ("port", "baud", "supply", "pulley_radius", "offsets", *GAINS)
-LATENCY = (
-    "delay",
-    "camera",
-    "camera_drift",
-    "frame",
-    "line",
-    "command",
-    "follow",
-    "total",
-)  # what `puckpilot latency` prints
+LATENCY = ("delay", "camera", "camera_drift", "frame", "line", "command", "follow", "total")  # see `puckpilot latency`
 Pair = tuple[float, float]
 MOST = sys.float_info.max
 
