@@ -75,7 +75,7 @@ def test_a_practice_recording_without_effects_is_explained() -> None:
     assert summary["wall"]["times_noise"]["median"] < 1.5 and summary["wall"]["times_noise"]["high"] < LARGEST + 0.5
 
 
-@pytest.mark.parametrize("name", ["wall_spin", "restitution_speed"])
+@pytest.mark.parametrize("name", [pytest.param("wall_spin", marks=pytest.mark.long), "restitution_speed"])
 def test_an_effect_at_the_walls_of_a_practice_recording_stands_out(name: str) -> None:
     summary = compared(practice(name), **PRACTICE_RESTITUTION)
     assert summary["wall"]["times_noise"]["median"] > 3.0 and summary["glide"]["times_noise"]["median"] < 1.2
@@ -87,9 +87,9 @@ def test_an_effect_at_the_walls_of_a_practice_recording_stands_out(name: str) ->
     ("law", "kind"),
     [
         (Law(wall_spin=True), "wall"),
-        (Law(restitution_slope=0.08), "wall"),
+        pytest.param(Law(restitution_slope=0.08), "wall", marks=pytest.mark.long),
         (Law(mallet_restitution=0.5), "mallet"),
-        (Law(mallet_mu=0.3), "mallet"),
+        pytest.param(Law(mallet_mu=0.3), "mallet", marks=pytest.mark.long),
     ],
 )
 def test_an_effect_stands_out_where_it_is(tmp_path: Path, law: Law, kind: str) -> None:

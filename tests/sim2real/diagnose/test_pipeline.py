@@ -22,7 +22,7 @@ from tests.sim2real.diagnose.well_formed import faults
 
 NOISE = Camera(noise=0.0006, rate=150.0)
 SECONDS = 60.0
-LONG_PRACTICE = ("other_parameters", "restitution_speed", "unlisted_vortex")
+LONG_PRACTICE = ("tilt", "other_parameters", "restitution_speed", "unlisted_vortex")
 
 
 def _diagnosis(folder: Path, law: Law, seconds: float = SECONDS, seed: int = 5, scenario: str = "launches"):
@@ -143,9 +143,7 @@ def test_the_clock_s_zero_does_not_matter(tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.skipif(not PRACTICE.exists(), reason="the shared practice recordings are not here")
-@pytest.mark.parametrize(
-    "name", ["null", "tilt", *(pytest.param(name, marks=pytest.mark.long) for name in LONG_PRACTICE)]
-)
+@pytest.mark.parametrize("name", ["null", *(pytest.param(name, marks=pytest.mark.long) for name in LONG_PRACTICE)])
 def test_labelled_practice(name):
     truth = json.loads((PRACTICE / "key.json").read_text())[name]
     found = diagnose([read_recording(PRACTICE / name)], [], {}, lambda stage, share: None)

@@ -74,7 +74,7 @@ def test_a_study_asks_blindly_scores_and_goes_on_where_it_stopped(tmp_path: Path
         call(*words)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_study_of_one_kind_counts_silence_as_right(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     tool, _ = script(tmp_path)
     words = ["--cases", "2", "--only", "nothing", "--out", str(tmp_path / "out"), "--tool", tool]

@@ -30,7 +30,7 @@ def coverage(logs: int, seconds: float, repeats: int) -> float:
     return float(np.mean(held))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_intervals_of_one_log_hold_the_constants() -> None:
     assert 0.88 <= coverage(1, 8.0, 12) <= 1.0  # 96 intervals, of which some 30 are independent
 

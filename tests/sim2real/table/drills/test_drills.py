@@ -20,11 +20,19 @@ from sim2real.table.drills.faults import FAULTS, Fault
 from sim2real.table.drills.picture_faults import PICTURE_FAULTS
 from sim2real.table.game.robot_seat import make_robot_seat
 
+LONG = ("dark", "glare", "hand", "camera-knocked")  # of those that pictures show
+
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("fault", "camera"),
-    [*((fault, "places") for fault in FAULTS), *((fault, "pictures") for fault in PICTURE_FAULTS)],
+    [
+        *((fault, "places") for fault in FAULTS),
+        *(
+            pytest.param(fault, "pictures", marks=[pytest.mark.long] if fault.name in LONG else [])
+            for fault in PICTURE_FAULTS
+        ),
+    ],
     ids=lambda one: getattr(one, "name", ""),
 )
 def test_a_fault_stops_the_mallet_and_play_goes_on_after_clear(fault: Fault, camera: str) -> None:

@@ -47,7 +47,7 @@ def test_a_clock_that_began_at_another_time_is_found_about_its_offset() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("correlation", "outliers"), [(0.8, 0.0), (0.5, 0.03)])
+@pytest.mark.parametrize(("correlation", "outliers"), [(0.8, 0.0), pytest.param(0.5, 0.03, marks=pytest.mark.long)])
 def test_intervals_hold_the_truth_as_often_as_they_say(correlation: float, outliers: float) -> None:
     t, path = encoders(12.0)
     held, random = [], np.random.default_rng(7)

@@ -98,7 +98,7 @@ def rms_error(recording: Recording, given: np.ndarray) -> float:
     return SUPPLY * float(min(errors))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_supply_that_sags_is_named(tmp_path: Path) -> None:
     found = diagnosed(made(seat(voltage_sag=0.005), tmp_path / "one", gantry))
     assert [one.mechanism for one in found.findings] == ["voltage_sag"]

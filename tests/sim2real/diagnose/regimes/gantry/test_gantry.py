@@ -50,7 +50,7 @@ def diagnosed(recording: Recording) -> RegimeResult:
 @pytest.mark.parametrize(
     "law, name, parameter, value",
     [
-        (Law(voltage_sag=0.01), "voltage_sag", "sag", 0.01),
+        pytest.param(Law(voltage_sag=0.01), "voltage_sag", "sag", 0.01, marks=pytest.mark.long),
         (replace(OTHER, deadband=0.2), "motor_deadband", "V", 0.2),
         (Law(motor_friction_left=0.5, motor_friction_right=0.4, axis_friction_y=0.6), "motor_friction", "V_left", 0.5),
         (Law(command_delay=0.012), "command_delay", "delay_s", 0.012),
@@ -103,7 +103,10 @@ def test_a_log_of_the_motors_does_as_well_as_plans(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("law, names", [(Law(), []), (Law(belt_hz=14.0, belt_zeta=0.2), ["belt_compliance"])])
+@pytest.mark.parametrize(
+    "law, names",
+    [(Law(), []), pytest.param(Law(belt_hz=14.0, belt_zeta=0.2), ["belt_compliance"], marks=pytest.mark.long)],
+)
 def test_motors_that_obey_a_plan_at_the_next_tick_lack_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, law: Law, names: list[str]
 ) -> None:
