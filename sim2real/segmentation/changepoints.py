@@ -6,30 +6,11 @@ marks the gaps at which the path is already cut. No window spans a cut.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from sim2real.segmentation.local_motion import best_gap, local_motion
 from sim2real.segmentation.sensor_noise import Noise
 from sim2real.segmentation.tuned import SEGMENTATION
-
-TRIED = 3  # number of gaps on either side of a changepoint that are tried as its position
-
-
-@dataclass(frozen=True)
-class LocalMotion:
-    """The motion on one side of a time, from a parabola through `frames` frames on that side.
-
-    `place` (2,) [m], `velocity` (2,) [m/s]; `place_std`, `velocity_std`: standard deviation of each component; `rest`
-    [m^2]: residual sum of squares.
-    """
-
-    place: np.ndarray
-    velocity: np.ndarray
-    place_std: float
-    velocity_std: float
-    frames: int
-    rest: float
 
 
 def find_jumps(t: np.ndarray, p: np.ndarray, noise: Noise) -> np.ndarray:
@@ -173,41 +154,3 @@ def _windows(
     u = (t[index] - middle[:, None]) / unit[:, None] * weight
     q = (p[index] - p[rows][:, None, :]) * weight[..., None]
     return u, q, weight, unit
-
-
-def best_gap(t: np.ndarray, p: np.ndarray, noise: Noise, cuts: np.ndarray, k: int) -> int:
-    """The gap near the changepoint `k` that gives the least residuals of one motion before and one after."""
-    others = np.flatnonzero(cuts)
-    before, after = others[others < k], others[others > k]
-    first = max(int(before[-1]) + 1 if len(before) else 0, k - SEGMENTATION.placing_frames)
-    last = min(int(after[0]) + 1 if len(after) else len(t), k + 2 + SEGMENTATION.placing_frames)
-    gaps = [c for c in range(k - TRIED, k + TRIED + 1) if c - first >= 1 and last - c >= 3]
-    if k not in gaps:
-        return k
-    rest = [_rest(t, p, slice(first, c + 1), noise) + _rest(t, p, slice(c + 1, last), noise) for c in gaps]
-    best = int(np.argmin(rest))
-    speed = np.abs(np.diff(p[first:last], axis=0)).sum() / max(float(np.ptp(t[first:last])), 1e-6)
-    worth = 30 * float(noise.std(speed)) ** 2
-    return gaps[best] if rest[best] < rest[gaps.index(k)] - worth else k
-
-
-def _rest(t: np.ndarray, p: np.ndarray, frames: slice, noise: Noise) -> float:
-    """Residual sum of squares [m^2] of `local_motion` through `frames`."""
-    return local_motion(t, p, float(t[frames].mean()), frames, noise).rest
-
-
-def local_motion(t: np.ndarray, p: np.ndarray, at: float, frames: slice, noise: Noise) -> LocalMotion:
-    """Motion at the time `at` [s]: a parabola through `frames`, of acceleration 0 +- SEGMENTATION.free_acceleration."""
-    u, q = t[frames] - at, p[frames]
-    if len(u) == 1:
-        return LocalMotion(q[0], np.zeros(2), float(noise.std(0.0)), np.inf, 1, 0.0)
-    span = max(float(np.ptp(u)), 1e-6)
-    speed = float(np.linalg.norm(q[-1] - q[0])) / span
-    sigma = float(noise.std(speed))
-    basis = np.stack([np.ones_like(u), u, u * u / 2], axis=1)
-    normal = basis.T @ basis + np.diag([0.0, 0.0, (sigma / SEGMENTATION.free_acceleration) ** 2])
-    inverse = np.linalg.inv(normal)
-    c = inverse @ basis.T @ q
-    spread = np.sqrt(np.maximum(np.diag(inverse), 0.0)) * sigma
-    rest = float(((q - basis @ c) ** 2).sum())
-    return LocalMotion(c[0], c[1], float(spread[0]), float(spread[1]), len(u), rest)

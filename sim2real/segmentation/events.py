@@ -7,9 +7,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from sim2real.segmentation import causes, changepoints
+from sim2real.segmentation import causes
 from sim2real.segmentation.causes import Geometry, Track
-from sim2real.segmentation.changepoints import LocalMotion
+from sim2real.segmentation.local_motion import LocalMotion, local_motion
 from sim2real.segmentation.sensor_noise import Noise
 from sim2real.segmentation.tuned import SEGMENTATION
 from sim2real.segmentation.valid_path import Path
@@ -72,8 +72,8 @@ def _meet(path: Path, noise: Noise, k: int, left: slice, right: slice, strength:
     slack = 0.5 * (path.t[k + 1] - path.t[k])
     when = (path.t[k] + path.t[k + 1]) / 2
     for _ in range(3):
-        a = changepoints.local_motion(path.t, path.p, when, left, noise)
-        b = changepoints.local_motion(path.t, path.p, when, right, noise)
+        a = local_motion(path.t, path.p, when, left, noise)
+        b = local_motion(path.t, path.p, when, right, noise)
         dv, miss = b.velocity - a.velocity, b.place - a.place
         step = -float(miss @ dv) / max(float(dv @ dv), 1e-12)
         moved = float(np.clip(when + step, path.t[k] - slack, path.t[k + 1] + slack))

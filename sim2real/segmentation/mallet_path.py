@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,7 +12,8 @@ from sim2real.segmentation.sensor_noise import estimate_noise
 from sim2real.segmentation.tuned import SEGMENTATION
 
 DIFFUSE = (0.1, 10.0, 100.0)  # m, m/s, m/s^2: diffuse prior of place, velocity and acceleration
-NO_SWITCHES = (np.zeros(0), np.zeros(0))
+Switches = tuple[np.ndarray, np.ndarray]  # times [s] at which each axis' voltage changes
+NO_SWITCHES: Switches = (np.zeros(0), np.zeros(0))
 
 
 @dataclass(frozen=True)
@@ -26,7 +28,7 @@ class MalletPath:
     p: np.ndarray
     noise: float
     jerk: tuple[float, float]
-    switches: tuple[np.ndarray, np.ndarray]
+    switches: Switches
 
     def at(self, when: np.ndarray) -> np.ndarray:
         """Places (..., 2) [m] at the times `when` (...) [s]; nan beyond the ends and in holes of the stream."""
@@ -56,16 +58,22 @@ class MalletPath:
             return None
         return np.array([fit for fit, _ in fits]).T, np.array([covariance for _, covariance in fits])
 
-    def likelihoods(self, axis: int, windows: np.ndarray) -> np.ndarray:
-        """Log likelihood (n,) of the samples around each of the times `windows` (n,) [s], with the path's place,
-        velocity and acceleration there unknown."""
-        found = np.zeros(len(windows))
-        for k, when in enumerate(windows):
-            here = self._around(float(when))
-            u, q = self.t[here] - when, self.p[here, axis] - self.p[here, axis].mean()
-            basis = np.stack([np.ones_like(u), u, u * u / 2], axis=1) * DIFFUSE
-            root = np.linalg.cholesky(self._covariance(u, axis, float(when)) + basis @ basis.T)
-            found[k] = -np.log(np.diag(root)).sum() - 0.5 * float((np.linalg.solve(root, q) ** 2).sum())
+    def likelihoods(self, when: float, jerks: np.ndarray, candidates: Sequence[Switches]) -> np.ndarray:
+        """Log likelihood (2, candidates, jerks) of the samples around a time [s], along each axis, with these switches
+        and jerks instead of the path's own, and place, velocity and acceleration there unknown."""
+        here = self._around(when)
+        u, q = self.t[here] - when, self.p[here] - self.p[here].mean(axis=0)
+        basis = np.stack([np.ones_like(u), u, u * u / 2], axis=1) * DIFFUSE
+        common = self.noise**2 * np.eye(len(u)) + basis @ basis.T
+        smooth = common + jerks[:, None, None] * wiener_covariance(u)
+        found = np.empty((2, len(candidates), len(jerks)))
+        for k, switches in enumerate(candidates):
+            for axis in range(2):
+                bends = _bends(u, switches[axis] - when)
+                root = np.linalg.cholesky(smooth + bends @ bends.T)
+                white = np.linalg.solve(root, np.broadcast_to(q[:, axis, None], (len(jerks), len(u), 1)))
+                spread = np.log(np.diagonal(root, axis1=1, axis2=2)).sum(axis=1)
+                found[axis, k] = -spread - 0.5 * (white**2).sum(axis=(1, 2))
         return found
 
     def _fits(self, when: float, step: bool) -> list[tuple[np.ndarray, np.ndarray]] | None:
@@ -95,10 +103,7 @@ class MalletPath:
 
     def _covariance(self, u: np.ndarray, axis: int, when: float) -> np.ndarray:
         """Covariance (n, n) [m^2] of places at `when + u` about a parabola: noise, random jerk, and switches."""
-        near = self.switches[axis] - when
-        near = near[(near > u[0]) & (near < u[-1])]
-        beyond = np.where(near < 0, near - u[:, None], u[:, None] - near)  # no switch acts at 0 itself
-        bends = SEGMENTATION.switch_step * np.maximum(beyond, 0.0) ** 2 / 2
+        bends = _bends(u, self.switches[axis] - when)
         return self.noise**2 * np.eye(len(u)) + self.jerk[axis] * wiener_covariance(u) + bends @ bends.T
 
 
@@ -112,7 +117,7 @@ def opponent_path(recording: Recording) -> MalletPath | None:
     return _path(recording.frames, "opponent", NO_SWITCHES)
 
 
-def _path(stream: Stream | None, column: str, switches: tuple[np.ndarray, np.ndarray]) -> MalletPath | None:
+def _path(stream: Stream | None, column: str, switches: Switches) -> MalletPath | None:
     if stream is None:
         return None
     p = np.stack([stream[f"{column}_x"], stream[f"{column}_y"]], axis=1)
@@ -125,7 +130,7 @@ def _path(stream: Stream | None, column: str, switches: tuple[np.ndarray, np.nda
     return _tune(MalletPath(t, p, noise, (largest, largest), switches))
 
 
-def _switches(recording: Recording) -> tuple[np.ndarray, np.ndarray]:
+def _switches(recording: Recording) -> Switches:
     """The switching times of each axis' voltage from the commands: start and both times of each plan, unless cut."""
     if recording.commands is None or not recording.commands.rows:
         return NO_SWITCHES
@@ -145,8 +150,7 @@ def _tune(path: MalletPath) -> MalletPath:
     if len(path.switches[0]):
         candidates += [(path.switches[0] + lag, path.switches[1] + lag) for lag in SEGMENTATION.switch_lags]
     jerks = SEGMENTATION.jerks
-    paths = [[replace(path, jerk=(jerk, jerk), switches=switches) for jerk in jerks] for switches in candidates]
-    heights = np.array([[[each.likelihoods(axis, windows) for each in row] for row in paths] for axis in (0, 1)])
+    heights = np.stack([path.likelihoods(float(when), np.array(jerks), candidates) for when in windows], axis=3)
     least = heights.max(axis=(1, 2), keepdims=True) - SEGMENTATION.contact_cost
     heights = np.maximum(heights, least).sum(axis=3)
     best = int(heights.max(axis=2).sum(axis=0).argmax())
@@ -161,6 +165,13 @@ def _busy_times(path: MalletPath) -> np.ndarray:
     speed = np.linalg.norm(path.at(grid + window) - path.at(grid - window), axis=1)
     fast = grid[speed >= np.nanmedian(speed)] if np.isfinite(speed).any() else grid
     return fast[np.linspace(0, len(fast) - 1, count).astype(int)]
+
+
+def _bends(u: np.ndarray, switches: np.ndarray) -> np.ndarray:
+    """What the jump of the acceleration at each of the switches within a window moves its places (n, k) by [m]."""
+    near = switches[(switches > u[0]) & (switches < u[-1])]
+    beyond = np.where(near < 0, near - u[:, None], u[:, None] - near)  # no switch acts at 0 itself
+    return SEGMENTATION.switch_step * np.maximum(beyond, 0.0) ** 2 / 2
 
 
 def wiener_covariance(u: np.ndarray) -> np.ndarray:

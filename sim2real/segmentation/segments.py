@@ -9,8 +9,8 @@ import numpy as np
 
 from sim2real.recording.folder import Recording
 from sim2real.segmentation import causes, changepoints
-from sim2real.segmentation.changepoints import LocalMotion
 from sim2real.segmentation.events import ContactEvent, attribute, find_events
+from sim2real.segmentation.local_motion import LocalMotion, local_motion
 from sim2real.segmentation.sensor_noise import Noise, held_frames
 from sim2real.segmentation.tuned import SEGMENTATION
 from sim2real.segmentation.valid_path import Path, valid_path
@@ -94,8 +94,8 @@ def _glides(path: Path, noise: Noise, broken: np.ndarray) -> tuple[list[Glide], 
         if b - a < SEGMENTATION.glide_frames:
             continue
         t, p = path.t[a:b], path.p[a:b]
-        entry = changepoints.local_motion(path.t, path.p, t[0], slice(a, min(b, a + ends)), noise)
-        last = changepoints.local_motion(path.t, path.p, t[-1], slice(max(a, b - ends), b), noise)
+        entry = local_motion(path.t, path.p, t[0], slice(a, min(b, a + ends)), noise)
+        last = local_motion(path.t, path.p, t[-1], slice(max(a, b - ends), b), noise)
         gained = float(np.linalg.norm(last.velocity) - np.linalg.norm(entry.velocity))
         std = float(np.hypot(entry.velocity_std, last.velocity_std))
         start, stop = int(path.index[a]), int(path.index[b - 1]) + 1

@@ -265,7 +265,7 @@ def estimated_dispersion(
     columns, ridge = richest.columns(equations)
     parts = units.of(use)
     theta = normal_equations.solve(equations, columns, parts, ridge + ENGINE.dispersion_ridge)
-    fitted = _fitted_freedom(equations.g[np.ix_(parts, columns, columns)], ridge + ENGINE.dispersion_ridge)
+    fitted = _fitted_freedom(equations, columns, parts, ridge + ENGINE.dispersion_ridge)
     launch = units.cluster[parts]
     launches = int(units.cluster.max(initial=0)) + 1
     squares = np.bincount(launch, normal_equations.losses(equations, columns, theta, parts), launches)
@@ -274,13 +274,14 @@ def estimated_dispersion(
     return float(max(np.median(squares[known] / free[known]), 1.0)) if known.any() else 1.0
 
 
-def _fitted_freedom(g: np.ndarray, ridge: np.ndarray) -> np.ndarray:
-    """Return the degrees of freedom (units,) of each unit that a ridge fit of all columns to all units uses.
+def _fitted_freedom(
+    equations: NormalEquations, columns: np.ndarray, units: np.ndarray, ridge: np.ndarray
+) -> np.ndarray:
+    """Return the degrees of freedom (units,) of each unit that a ridge fit of these columns to all units uses.
 
-    `g` (units, k, k): normal matrices. Each unit has its share of the trace of the hat matrix, tr(G_u (sum G +
-    ridge)^-1).
+    Each unit has its share of the trace of the hat matrix, tr(G_u (sum G + ridge)^-1).
     """
-    normal = g.sum(axis=0) + np.diag(ridge)
+    normal = normal_equations.summed(equations, columns, units)[0] + np.diag(ridge)
     size = np.sqrt(np.maximum(np.diag(normal), 0.0))
     inverse = np.linalg.pinv(normal / size[:, None] / size, hermitian=True) / size[:, None] / size
-    return np.einsum("cij,ji->c", g, inverse)
+    return np.array([np.sum(equations.g[unit][np.ix_(columns, columns)] * inverse) for unit in units])

@@ -91,6 +91,13 @@ def moved(equations: NormalEquations, columns: np.ndarray, theta: np.ndarray) ->
     return NormalEquations(equations.names, equations.g, equations.b + g, equations.s + more)
 
 
+def summed(equations: NormalEquations, columns: np.ndarray, clusters: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the sums (k, k) of J'J and (k,) of J'r over `clusters` at these columns, without a copy of gigabytes."""
+    g, b = np.empty((len(columns), len(columns))), np.empty(len(columns))
+    _sum_weighted(equations.g, equations.b, columns, clusters, np.ones(len(clusters)), g, b)
+    return g, b
+
+
 def solve(
     equations: NormalEquations, columns: np.ndarray, clusters: np.ndarray, ridge: np.ndarray | float = 0.0
 ) -> np.ndarray:
@@ -98,8 +105,7 @@ def solve(
 
     It minimizes the sum of squares of `clusters` plus sum(ridge theta²).
     """
-    g = equations.g[np.ix_(clusters, columns, columns)].sum(axis=0)
-    b = equations.b[np.ix_(clusters, columns)].sum(axis=0)
+    g, b = summed(equations, columns, clusters)
     return solve_normal(g + np.diag(np.broadcast_to(ridge, len(columns)).astype(float)), -b)
 
 

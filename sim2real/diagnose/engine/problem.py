@@ -92,11 +92,14 @@ class Problem(Fittable, Protocol):
     noise_m: float
     place_error_m: float
 
-    def columns(self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None) -> DesignMatrix:
+    def columns(
+        self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None, only: str = ""
+    ) -> DesignMatrix:
         """Return the design matrix of all clusters at the parameters `values`.
 
         It has the columns of the base, of other parameters `free`, of the listed laws and of the smooth terms. The
         start of a nonlinear law, such as a place, is searched for in the clusters `use` alone, or not at all if None.
+        `only`: the name of the smooth term whose columns are wanted, instead of all.
         """
         ...
 

@@ -47,17 +47,18 @@ def contact_design_matrix(
     friction: tuple[str, str, Sequence[float]],
     basis_library: BasisLibrary,
     prefix: str = "",
+    only: str = "",
 ) -> DesignMatrix:
     """All columns of a problem at the parameters `values`; parameter columns are those of the base and `free`.
 
     derivatives: listed effects whose columns are derivatives; friction: its mechanism, its parameter, and the sizes at
-    which it is linearised if it is 0; prefix: comes before the name of each smooth law.
+    which it is linearised if it is 0; prefix: comes before the name of each smooth law; only: see `Problem.columns`.
     """
     free = tuple(dict.fromkeys((*problem.base, *(name for law in derivatives for name in law.columns), *free)))
     exact = problem.residuals(values, free, np.arange(problem.clusters))
     columns, predicted = _ColumnBlocks(list(free), [exact.jacobian]), problem.predicted(values)
     frictions = _add_frictions(problem, values, predicted, friction, columns)
-    families = _add_families(problem, values, predicted, basis_library, prefix, columns)
+    families = _add_families(problem, values, predicted, basis_library, prefix, only, columns)
     jacobian = np.concatenate(columns.blocks, axis=1)
     equations = normal_equations.make_equations(
         columns.names, exact.r, jacobian, problem.unit_of_rows, len(problem.data)
@@ -89,16 +90,19 @@ def _add_families(
     predicted: np.ndarray,
     basis_library: BasisLibrary,
     prefix: str,
+    only: str,
     columns: _ColumnBlocks,
 ) -> list[Law]:
-    """One smooth law for each basis of the library and each entry of COMPONENTS."""
+    """One smooth law for each basis of the library and each entry of COMPONENTS, or `only` the one of this name."""
     laws = []
     for name, (depends, basis) in basis_library.items():
         for component, axes in COMPONENTS.items():
+            label = f"{prefix}{component} by {name}"
+            if only not in ("", label):
+                continue
             changes = _velocity_changes(problem.data, basis(problem.data), axes, problem.each)
             block = -problem.whitened(problem.with_recoil(values, changes))
             block = problem.with_common_noise(values, predicted, block)
-            label = f"{prefix}{component} by {name}"
             law = Law(label, tuple(f"{label} {k}" for k in range(block.shape[1])), depends)
             laws.append(columns.add(law, block))
     return laws

@@ -17,14 +17,19 @@ from sim2real.diagnose.regimes.gantry.residuals import GantryResiduals
 
 
 def gantry_design_matrix(
-    problem: GantryResiduals, effects: Sequence[Candidate], values: Mapping[str, float], free: Sequence[str]
+    problem: GantryResiduals,
+    effects: Sequence[Candidate],
+    values: Mapping[str, float],
+    free: Sequence[str],
+    only: str = "",
 ) -> DesignMatrix:
-    """All columns of the gantry at the parameters `values`: derivatives, the supported `effects`, and smooth laws."""
+    """All columns of the gantry at the parameters `values`: derivatives, the supported `effects`, and smooth laws, of
+    which `only` one may be wanted."""
     rows = [row for name in STARTS for row in EFFECTS[name].row_names]
     on = [row for row in rows if row in free or values.get(row, BY_NAME[row].default) != BY_NAME[row].default]
     off = [row for row in rows if row not in on]  # parameters that a fit left at zero stay at zero
     exact = problem.residuals(values, (*problem.base, *on), np.arange(problem.clusters))
-    laws, smooth = families(problem, problem.record(values))
+    laws, smooth = families(problem, problem.record(values), only)
     smooth = np.vstack([smooth, np.zeros((len(exact.r) - len(smooth), smooth.shape[1]))])  # a prior does not change
     names = [*problem.base, *on, *off, *(one.label for one in effects), *(name for law in laws for name in law.columns)]
     columns = [exact.jacobian, np.zeros((len(exact.r), len(off))), *(one.column[:, None] for one in effects), smooth]

@@ -48,9 +48,11 @@ class GantryRecording:
         return replace(self, windows=StreamWindows(begin, end, np.arange(len(begin))), **kept)
 
     def thinned(self, samples: int) -> GantryRecording:
-        """A copy with every k-th sample, about `samples` in total."""
-        k = max(1, len(self.t) // samples)
-        windows = StreamWindows(-(-self.windows.begin // k), -(-self.windows.end // k), self.windows.cluster)
+        """A copy with every k-th sample, about `samples` in total; of a long record, with every m-th cluster alone."""
+        most = max(samples // GANTRY_DATA.thin_window, 1)
+        kept = self.windows.every(-(-len(self.windows.begin) // most))
+        k = max(1, len(self.t) * len(kept.begin) // (len(self.windows.begin) * samples))
+        windows = StreamWindows(-(-kept.begin // k), -(-kept.end // k), kept.cluster)
         return replace(self, windows=windows, **{name: getattr(self, name)[::k].copy() for name in ARRAYS})
 
     def freedom(self) -> np.ndarray:

@@ -40,11 +40,13 @@ class GantryProblem(GantryResiduals):
         tick = find_tick(self)
         return GantryProblem([run.with_tick(tick) for run in self.runs], self.common)
 
-    def columns(self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None) -> DesignMatrix:
+    def columns(
+        self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None, only: str = ""
+    ) -> DesignMatrix:
         """See `Problem.columns`."""
         if self._effects is None:
             self._effects = candidates(self, {name: self.defaults(name) for name in self.base})
-        return gantry_design_matrix(self, self._effects, values, free)
+        return gantry_design_matrix(self, self._effects, values, free, only)
 
 
 def gantry_problem(

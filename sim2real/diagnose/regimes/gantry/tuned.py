@@ -50,6 +50,9 @@ class GantryDataNumbers:
         "more cost time without more information: neighbours are redundant",
         "choice: a fit of some seconds",
     )
+    thin_window: int = tuned(
+        10, "samples", "fewer in a window of a thinned record tell little beside its start", "choice: twice its columns"
+    )
     spare_samples: float = tuned(
         1.5,
         "1",

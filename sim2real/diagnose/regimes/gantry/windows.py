@@ -25,6 +25,11 @@ class StreamWindows:
         """The samples of all windows, in order."""
         return np.concatenate([np.arange(a, b) for a, b in zip(self.begin, self.end, strict=True)])
 
+    def every(self, m: int) -> StreamWindows:
+        """The windows of every `m`-th cluster, numbered anew."""
+        kept = self.cluster % m == 0
+        return StreamWindows(self.begin[kept], self.end[kept], self.cluster[kept] // m)
+
     @property
     def clusters(self) -> int:
         """Number of clusters."""

@@ -20,11 +20,14 @@ FRICTION = "mallet_friction"
 
 
 def mallet_design_matrix(
-    problem: ContactProblem[MalletContacts], values: Mapping[str, float], free: Sequence[str]
+    problem: ContactProblem[MalletContacts], values: Mapping[str, float], free: Sequence[str], only: str = ""
 ) -> DesignMatrix:
-    """All columns of a mallet problem at the parameters `values`; parameter columns: those of the base and `free`."""
+    """All columns of a mallet problem at the parameters `values`; parameter columns: those of the base and `free`;
+    `only`: see `Problem.columns`."""
     friction = (FRICTION, "mallet_mu", MALLET.frictions)
-    columns = contact_design_matrix(problem, values, free, _derivative_laws(), friction, BASIS_LIBRARY, PREFIX)
+    columns = contact_design_matrix(
+        problem, values, free, _derivative_laws(), friction, BASIS_LIBRARY, only=only, prefix=PREFIX
+    )
     return replace(columns, families=[_with_effect(law, problem) for law in columns.families])
 
 

@@ -89,9 +89,11 @@ class MalletProblem(ContactProblem[MalletContacts]):
         recoiling[:, 2] = -values.get("mallet_give", 0.0) * changes[:, 0]
         return recoiling
 
-    def columns(self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None) -> DesignMatrix:
+    def columns(
+        self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None, only: str = ""
+    ) -> DesignMatrix:
         """See `Problem.columns`."""
-        return mallet_design_matrix(self, values, free)
+        return mallet_design_matrix(self, values, free, only)
 
     def _predicted(
         self, record: np.void, before: np.ndarray, mallet_velocity: np.ndarray, normal: np.ndarray

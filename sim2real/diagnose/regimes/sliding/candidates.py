@@ -35,11 +35,11 @@ def listed_laws() -> list[Law]:
 
 
 def glide_columns(
-    problem: GlideResiduals, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None
+    problem: GlideResiduals, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None, only: str = ""
 ) -> DesignMatrix:
     """All columns of a glide problem at the parameters `values`, including those of the parameters `free`.
 
-    Friction patches are searched in the clusters `use`; not at all if `use` is None.
+    Friction patches are searched in the clusters `use`; not at all if `use` is None. `only`: see `Problem.columns`.
     """
     path, by_start = problem.linearized(values)
     motion = problem.motion(path)
@@ -55,6 +55,8 @@ def glide_columns(
         patches, patch_columns = _patches(motion, columns, exact, len(problem.base), np.isin(exact.cluster, use))
     blocks, names, families = [exact.jacobian, patch_columns], [*free, *(law.columns[0] for law in patches)], []
     for name, (depends, shape) in FAMILIES.items():
+        if only not in ("", name):
+            continue
         block = columns(shape(motion))
         own = tuple(f"{name} {k}" for k in range(block.shape[1]))
         mechanism = "side_force" if name == SPIN else "unlisted"

@@ -37,9 +37,11 @@ class States:
 class GlideProblem(GlideResiduals):
     """`GlideResiduals` with candidate laws and the states at the ends of glides."""
 
-    def columns(self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None) -> DesignMatrix:
+    def columns(
+        self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None, only: str = ""
+    ) -> DesignMatrix:
         """See `Problem.columns`."""
-        return glide_columns(self, values, free, use)
+        return glide_columns(self, values, free, use, only)
 
     def distance_of_ends(self, values: Mapping[str, float], others: Mapping[str, float]) -> float:
         """Rms distance [m] between the glides' ends under two laws, from starts fitted under the first."""

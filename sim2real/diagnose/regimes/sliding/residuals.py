@@ -19,6 +19,7 @@ from sim2real.statistics.piecewise import spread_knots
 from sim2real.statistics.projection import project_out_of_parts
 
 STEP = np.array(SLIDING.start_step)
+KEPT = 6  # laws of which the fitted starts are kept
 
 
 class FittedStarts(NamedTuple):
@@ -45,6 +46,7 @@ class GlideResiduals:
         self.data = data
         self.clusters = data.clusters
         self._common = dict(values)
+        self._fitted: dict[bytes, FittedStarts] = {}
         self.errors = PositionCovariance(data.t, data.std, data.first, data.noise_of_glide, self._size)
         guess, speed = _first_guess(data)
         self._speeds = spread_knots(speed, SLIDING.speed_knots)
@@ -121,8 +123,14 @@ class GlideResiduals:
         return path
 
     def _fit_starts(self, record: np.void) -> FittedStarts:
-        """Fit each glide's start under a law, beginning at the common law's starts, so that fits are independent."""
-        return self._refined(record, self._common_starts)
+        """Fit each glide's start under a law, beginning at the common law's starts, so that fits are independent. The
+        last few laws are kept: more than half of all calls ask for one of them again."""
+        law = record.tobytes()
+        if law not in self._fitted:
+            if len(self._fitted) == KEPT:
+                del self._fitted[next(iter(self._fitted))]
+            self._fitted[law] = self._refined(record, self._common_starts)
+        return self._fitted[law]
 
     def _refined(self, record: np.void, near: FittedStarts) -> FittedStarts:
         """Fit each glide's start by Gauss-Newton: first steps use the derivatives of `near`, later ones the law's own,

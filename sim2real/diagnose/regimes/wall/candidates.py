@@ -21,11 +21,12 @@ ONE_LAW_PER_PARAMETER = ("wall_to_wall_restitution", "speed_dependent_restitutio
 
 
 def wall_design_matrix(
-    problem: ContactProblem[WallContacts], values: Mapping[str, float], free: Sequence[str]
+    problem: ContactProblem[WallContacts], values: Mapping[str, float], free: Sequence[str], only: str = ""
 ) -> DesignMatrix:
-    """All columns of a wall problem at the parameters `values`; parameter columns: those of the base and `free`."""
+    """All columns of a wall problem at the parameters `values`; parameter columns: those of the base and `free`;
+    `only`: see `Problem.columns`."""
     friction = (FRICTION, "wall_mu", WALL.frictions)
-    columns = contact_design_matrix(problem, values, free, _derivative_laws(), friction, BASIS_LIBRARY)
+    columns = contact_design_matrix(problem, values, free, _derivative_laws(), friction, BASIS_LIBRARY, only=only)
     return replace(columns, families=[_with_effect(law, problem) for law in columns.families])
 
 

@@ -113,9 +113,11 @@ class WallProblem(ContactProblem[WallContacts]):
             unknown |= d.spin_unknown
         return np.where(unknown, np.hypot(1.0, reach * self._whitening[:, 1, 1]), 1.0)
 
-    def columns(self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None) -> DesignMatrix:
+    def columns(
+        self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None, only: str = ""
+    ) -> DesignMatrix:
         """See `Problem.columns`."""
-        return wall_design_matrix(self, values, free)
+        return wall_design_matrix(self, values, free, only)
 
     def _velocity_after(self, record: np.void, before: np.ndarray, spin: float = 0.0) -> np.ndarray:
         """Velocities after (n, 2) [m/s] in the table's frame, given those before (n, 2) and the chains' first spin."""

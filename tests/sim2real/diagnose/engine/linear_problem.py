@@ -69,8 +69,10 @@ class LinearProblem:
         jacobian = -self.sensitivity[:, [NAMES.index(name) for name in free]]
         return Residuals(residuals[here], jacobian[here], self.launch[here])
 
-    def columns(self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None) -> DesignMatrix:
-        """See `Problem.columns`."""
+    def columns(
+        self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None, only: str = ""
+    ) -> DesignMatrix:
+        """See `Problem.columns`; there is one smooth term at most."""
         exact = self.residuals(values, NAMES, np.arange(LAUNCHES))
         segment = np.repeat(np.arange(LAUNCHES * SEGMENTS), EACH)
         equations = normal_equations.make_equations(NAMES, exact.r, exact.jacobian, segment, LAUNCHES * SEGMENTS)
