@@ -102,7 +102,7 @@ class Tables:
         self.truncated = np.zeros(tables, np.bool_)
         self.inside = Inside()
         self._make_ready(self.threads > 1)
-        announce_compilation("step_range-" if self._team is None else "step_ranges-")
+        self._stepped = False
         self.reset(seed)
 
     def _frames_kept(self) -> int:
@@ -158,6 +158,9 @@ class Tables:
         bad = kernels.first_outside(actions, self._taken)
         if bad >= 0:
             raise ValueError(self._describe_bad_action(actions, bad))
+        if not self._stepped:
+            announce_compilation("step_range-" if self._team is None else "step_ranges-")
+            self._stepped = True
         if self._team is None:
             log, films = self._scratch
             kernels.step_range(*self._arrays(actions), log, films[0], 0, len(self.states))

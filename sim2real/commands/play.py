@@ -67,7 +67,7 @@ def run(args: argparse.Namespace) -> int:
                 seed = seed_number(args.seed) + game
                 logs.append(play_game(env, args.player, seed, args.seconds, report, _may_clear(args), show))
             if not args.json:
-                print(f"game {game + 1}: {args.player} {logs[-1].score[0]}:{logs[-1].score[1]} {other}")
+                print("\n".join(_of_game(args, game, logs[-1], other)))
             if logs[-1].interrupted or logs[-1].fault:
                 break
     finally:
@@ -77,6 +77,18 @@ def run(args: argparse.Namespace) -> int:
     if logs[-1].complete.interrupted:
         print("ended by Ctrl-C" + (f"; {args.record} has what was recorded" if args.record else ""), file=sys.stderr)
     return 0
+
+
+def _of_game(args: argparse.Namespace, game: int, log: GameLog, other: str) -> Iterator[str]:
+    """The score of a game, and where it was recorded."""
+    scored, conceded = log.score
+    if args.backend == "replay":
+        yield f"the recording: robot {scored}:{conceded} opponent"
+    else:
+        yield f"game {game + 1}: {args.player} {scored}:{conceded} {other}"
+    if args.record is not None:
+        folder = _folder(args, game)
+        yield f"recorded {folder}; next: puckpilot diagnose {folder}"
 
 
 def seat(args: argparse.Namespace) -> RobotSeat:
@@ -120,8 +132,13 @@ def _recorded(args: argparse.Namespace, env: RobotSeat, game: int) -> AbstractCo
 
     if args.record is None:
         return nullcontext()
-    folder = args.record if args.games == 1 else args.record / f"game_{game + 1}"
-    return recorded(env, folder, f"puckpilot play {args.player} --backend {args.backend} --seed {args.seed + game}")
+    note = f"puckpilot play {args.player} --backend {args.backend} --seed {args.seed + game}"
+    return recorded(env, _folder(args, game), note)
+
+
+def _folder(args: argparse.Namespace, game: int) -> Path:
+    """Where a game is recorded."""
+    return args.record if args.games == 1 else args.record / f"game_{game + 1}"
 
 
 def _option(names: set[str]) -> str:

@@ -121,14 +121,14 @@ def _summary(result: dict[str, Any]) -> list[str]:
             f"{1e3 * row[key][which]:.0f} ms" if row[key] else ""
             for key, which in (("noticed_s", "max"), ("at_rest_s", "max"), ("at_rest_s", "p99"))
         )
-        lines.append(
-            f"{name:14} {row['times']:6} {row['stopped']:8} {noticed:>17} {rest:>17} {most:>7}  {', '.join(row['by'])}"
-        )
+        by = ", ".join(row["by"]) or "play went on"
+        lines.append(f"{name:14} {row['times']:6} {row['stopped']:8} {noticed:>17} {rest:>17} {most:>7}  {by}")
     return [
         *lines,
-        f"{result['hours']:.2f} h of play: at most {result['most_volts']:.2f} V at a motor; mallet at most "
+        f"{60.0 * result['hours']:.0f} min of play: at most {result['most_volts']:.2f} V at a motor; mallet at most "
         f"{1e3 * max(result['farthest_outside_m'], 0.0):.1f} mm outside its area; too late at rest: "
         f"{len(result['too_late'])} times",
         *(f"too late: {line}" for line in result["too_late"]),
         *(f"not cleared: {line}" for line in result["not_cleared"]),
+        "passed" if result["safe"] else "FAILED",
     ]

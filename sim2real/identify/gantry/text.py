@@ -53,7 +53,8 @@ def _mm(rms: np.ndarray) -> list[str]:
 def _verdict(one: Tried) -> str:
     if one.step in ("shipped", "third_order"):
         return ""
-    gain = f"{100.0 * one.gain:.1f} % better (standard error {100.0 * one.error:.1f} %)"
+    way = "better" if one.gain >= 0.0 else "worse"
+    gain = f"{100.0 * abs(one.gain):.1f} % {way} (standard error {100.0 * one.error:.1f} %)"
     return f"kept: {gain}" if one.kept else f"dropped, not claimed: {gain}"
 
 

@@ -14,8 +14,10 @@ def seated_player(name: str, seat: Seat) -> Player:
         return player
     trained, here = find_variant(player.made_for), find_variant(seat.variant)
     if trained.game != here.game or trained.period != seat.period:
+        periods = (trained.period, seat.period)
+        rates = [f", a decision every {one:g} s" if trained.game == here.game else "" for one in periods]
         raise ValueError(
-            f"{name} was trained for {trained.id} and decides every {trained.period:g} s; here {here.id} is played, "
-            f"and decided every {seat.period:g} s; choose a player of that game, or a script"
+            f"{name} was trained for {trained.id}{rates[0]}; here {here.id} is played{rates[1]}; choose a player of "
+            "that game, or a script"
         )
     return player

@@ -66,7 +66,7 @@ def live_eyes(camera: CameraPart) -> LiveEyes:
             reader.tracker.set_up(take_setup_picture(camera.source, camera.settings, reader.tracker.sensor))
         return LiveEyes(open_source(camera.source, settings), reader, camera.delay)
     except ValueError as error:
-        raise TableFaultError(Cause.NOT_READY, f"{error}; then clear") from None
+        raise TableFaultError(Cause.NOT_READY, str(error)) from None
 
 
 def frame_reader(camera: CameraPart) -> FrameReader:

@@ -49,8 +49,8 @@ pulley_radius = 0.0353          # m, of `puckpilot calibrate gantry`
 offsets = [0.51, -1.22]         # rad, of the shafts' encoders, of the same; left out, the home is where the jig is
 proportional = [400.0, 400.0]   # V/m, of axes x and y; and so integral [V/m/s], derivative [V s/m]
 
-[gantry]                        # leave it out, and the simulator's constants hold
-profile = "gantry.toml"         # of `puckpilot identify gantry`
+# [gantry]                      # once `puckpilot identify gantry` has made one; until then the simulator's hold
+# profile = "gantry.toml"
 
 [latency]                       # the last lines of `puckpilot latency`, as they are; `delay` is the camera's
 """
@@ -112,7 +112,10 @@ def _table(content: Mapping[str, Any], folder: Path) -> TableFile:
     refuse_unknown(gantry, ("profile",), "key of gantry")
     given = dict(section(content, "parameters"))
     if "profile" in gantry:
-        given = dict(read_profile(folder / _text(gantry, "profile", "gantry")).parameters) | given
+        profile = read_profile(folder / _text(gantry, "profile", "gantry"))
+        if profile.of != "gantry":
+            raise ValueError(f"gantry.profile is of a {profile.of}; expected one of puckpilot identify gantry")
+        given = dict(profile.parameters) | given
     for name, key in (("max_voltage", "supply"), ("pulley_radius", "pulley_radius")):
         if key in board:
             given[name] = board[key]

@@ -9,6 +9,7 @@ from dataclasses import fields, replace
 import numpy as np
 
 from baselines.player import Player
+from puckpilot_env.options.inputs import in_short
 from puckpilot_env.parameters import TABLE
 from sim2real.study.independent_table.physics.law import Law
 from sim2real.table.backend import Place
@@ -44,6 +45,10 @@ class Twin(LiveTable):
         camera: str = "places",
         board_errors: BoardErrors | None = None,
     ) -> None:
+        for name, given, kind in (("law", law, Law), ("errors", errors, CameraErrors),
+                                  ("board_errors", board_errors, BoardErrors)):  # fmt: skip
+            if given is not None and not isinstance(given, kind):
+                raise ValueError(f"{name} is {in_short(given)}; expected a {kind.__name__} of {kind.__module__}")
         errors, self._seed = errors or CameraErrors(), 0
         super().__init__(board_config(game.p), errors.rate)
         self._make_camera = camera_maker(camera, game.p, errors)

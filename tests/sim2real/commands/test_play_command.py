@@ -39,7 +39,7 @@ def test_a_game_is_reported_as_json(capsys: pytest.CaptureFixture[str]) -> None:
         (["goalie", "--table", "x.toml"], "--table is given with --backend twin; it takes --camera and --opponent"),
         (["goalie", "--games", "0"], "--games is 0; expected a whole number from 1 to 1,000"),
         (["goalie", "--seconds", "0"], "--seconds is 0; expected more than 0"),
-        (["agents/policies/champion.attack-v0.npz"], "attack-v0.npz was trained for puckpilot/attack-v0 and decides"),
+        (["agents/policies/champion.attack-v0.npz"], "attack-v0.npz was trained for puckpilot/attack-v0; here"),
         (["goalie", "--variant", "defence-v0"], "a table backend plays puckpilot/match-v0"),
     ],
 )

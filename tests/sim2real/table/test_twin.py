@@ -92,6 +92,8 @@ def test_the_same_seed_gives_the_same_pictures_and_the_same_game() -> None:
         ({"backend": "twin", "seat": 1}, "seat is given with backend 'twin'"),
         ({"backend": "twin", "period": 0.0125}, "period is 0.0125 s; the board takes a plan every 0.016 s"),
         ({"backend": "twin", "camara": "pictures"}, "camara is given with backend 'twin'; it takes opponent"),
+        ({"backend": "twin", "errors": {"x": 1}}, "errors is {'x': 1}; expected a CameraErrors of sim2real.table.twin"),
+        ({"backend": "twin", "law": 3}, "law is 3; expected a Law of sim2real.study.independent_table.physics.law"),
         ({"backend": "twin", "opponent": "goaly"}, "unknown player 'goaly'; did you mean 'goalie'?"),
     ],
 )

@@ -30,11 +30,11 @@ def test_a_policy_of_this_game_is_seated(variant: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("variant", ["defence-v0", "attack-v0"])
 def test_a_policy_of_another_game_is_refused(variant: str, tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match=rf"trained for puckpilot/{variant} and .* here puckpilot/match-v0 is"):
+    with pytest.raises(ValueError, match=rf"trained for puckpilot/{variant}; here puckpilot/match-v0 is played; "):
         seated_player(trained(variant, tmp_path), seat())
 
 
 def test_a_policy_of_another_rate_is_refused_and_a_script_is_not() -> None:
-    with pytest.raises(ValueError, match=r"decides every 0.1 s; here .* decided every 0.05 s; choose"):
+    with pytest.raises(ValueError, match=r"a decision every 0.1 s; here .* is played, a decision every 0.05 s; choose"):
         seated_player("policy:champion", seat(0.05))
     assert seated_player("interceptor", seat(0.05)).seat.period == 0.05

@@ -98,7 +98,7 @@ def test_a_setup_picture_is_taken_when_the_camera_is_opened(folder: Path, monkey
     opened: list[CameraSettings] = []
     monkeypatch.setattr(physical_table, "open_source", lambda word, settings: opened.append(settings))
     camera = read_table_file(written(folder, "", "setup_exposure = 8e-3")).camera
-    with pytest.raises(TableFaultError, match=r"the camera cannot be located in the setup picture: .*; then clear"):
+    with pytest.raises(TableFaultError, match=r"the camera cannot be located in the setup picture: "):
         live_eyes(camera)
     live_eyes(camera)
     assert taken == [("device:0", 8e-3, RENDERED.calibration().setup.camera.size)] * 2

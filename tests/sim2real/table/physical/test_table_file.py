@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 import puckpilot
+from puckpilot_env.options.profile_file import write_profile
 from sim2real.camera.region import RegionOfInterest
 from sim2real.table.physical.table_file import EXAMPLE, read_table_file
+from tests.puckpilot_env.options.test_profile_file import PROFILE
 
 LEAST = """
 format = "puckpilot-table/1"
@@ -27,7 +30,7 @@ def written(folder: Path, text: str) -> Path:
 
 
 def test_the_example_is_read_with_all_that_it_says(tmp_path: Path) -> None:
-    found = read_table_file(written(tmp_path, EXAMPLE[: EXAMPLE.index("[gantry]")]))  # there is no such profile
+    found = read_table_file(written(tmp_path, EXAMPLE))
     assert found.parameters["length"] == 2.362 and found.parameters["max_voltage"] == 24.0
     assert found.parameters["pulley_radius"] == 0.0353 and found.board.offsets == (0.51, -1.22)
     assert found.camera.settings.region == RegionOfInterest(396, 20, 1300, 1450) and found.camera.settings.mosaic
@@ -38,6 +41,12 @@ def test_the_example_is_read_with_all_that_it_says(tmp_path: Path) -> None:
 def test_the_section_that_latency_prints_gives_the_cameras_delay(tmp_path: Path) -> None:
     text = LEAST + "[latency]\ndelay = 0.0354\ncamera = 0.0324\nframe = 0.0389\ntotal = 0.0529\n"
     assert read_table_file(written(tmp_path, text)).camera.delay == 0.0354
+
+
+def test_a_profile_of_a_puck_is_not_the_gantrys(tmp_path: Path) -> None:
+    write_profile(tmp_path / "puck.toml", replace(PROFILE, of="puck"))
+    with pytest.raises(ValueError, match=r"gantry.profile is of a puck; expected one of puckpilot identify gantry"):
+        read_table_file(written(tmp_path, LEAST + '[gantry]\nprofile = "puck.toml"\n'))
 
 
 def test_what_is_left_out_has_the_default(tmp_path: Path) -> None:
