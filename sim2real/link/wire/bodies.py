@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import struct
 from dataclasses import fields
@@ -51,14 +52,13 @@ def _several(kind: type, name: str, given: Any, count: int) -> list[Any]:
 
 
 def _number(place: str, value: Any, code: str, low: float, high: float) -> float:
-    what = "a number" if code == "f" else "a whole number"
-    refused = ValueError(f"{place} is {value!r}; expected {what} from {low:.9g} to {high:.10g}")
     try:
         number = float(value) if code == "f" else value.__index__()
     except (TypeError, ValueError, AttributeError, OverflowError):
-        raise refused from None
+        number = math.nan
     if not low <= number <= high:  # so that no number (nan) is refused too
-        raise refused
+        what = "a number" if code == "f" else "a whole number"
+        raise ValueError(f"{place} is {value!r}; expected {what} from {low:.9g} to {high:.10g}")
     return number
 
 

@@ -43,6 +43,9 @@ class RobotSeat(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         self.backend, self.game = backend, game
         self.tables = game.tables
         self.observation_space, self.action_space = seat_spaces(self.tables)
+        low, high = self.tables.action_bounds
+        slack = ROUNDING * (high - low)
+        self._taken = low - slack, high + slack
         self.loop: Loop | None = None  # while connected
         self._stopped = False
         self._over = self._ended = True  # whether no step may follow; whether by the rules
@@ -104,11 +107,11 @@ class RobotSeat(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         """An action (4,) within the space, rounding allowed for. ValueError, in one line that begins with `what`, for
         any other, numbers that are none among them."""
         wanted = np.asarray(real_numbers(action, what), np.float32)
-        low, high = self.tables.action_bounds
-        slack = ROUNDING * (high - low)
-        if wanted.shape != (4,) or not np.all((wanted >= low - slack) & (wanted <= high + slack)):
+        low, high = self._taken
+        if wanted.shape != (4,) or not ((wanted >= low) & (wanted <= high)).all():
             raise ValueError(f"{what} is {wanted.tolist()}; expected four numbers in {self.action_space}")
-        return np.clip(wanted, low, high)
+        low, high = self.tables.action_bounds
+        return np.minimum(np.maximum(wanted, low), high)
 
     def charge_opponent(self, mallet: Motion, action: NDArray[np.float32]) -> float:
         """The reward of the other seat for the last step, at whose beginning its mallet was at `mallet` of the table's

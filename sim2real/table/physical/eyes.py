@@ -12,7 +12,12 @@ from sim2real.table.backend import SeenFrame
 from sim2real.table.faults import Cause, TableFaultError
 from sim2real.table.physical.frame_reader import FrameReader
 
-WARM = (0.0012, 0.0026)  # s before a frame is due, between which its search is rehearsed, which takes a millisecond
+WARM = (
+    0.0016,
+    0.003,
+)  # s before a frame is due, between which its search is rehearsed, which takes one or so
+ALONE = 0.0005  # s before a frame is due, from when on nothing else is done, for it would make the frame wait,
+LATE = 0.0005  # and s for which a late one is waited for so
 EXPECTED = 0.005  # s, farthest from when it was due that a frame comes whose place on the clock is not in doubt
 
 
@@ -50,16 +55,23 @@ class LiveEyes:
         """Whether a frame has come that was not taken yet."""
         return self._coming is not None
 
+    @property
+    def _remaining(self) -> float:
+        """Until the next frame is due [s]; negative once that is past."""
+        return self._due - time.perf_counter()
+
     def rest(self, seconds: float) -> None:
-        """Rest for so many seconds [s], or until a frame comes. What the last frame was needed for is done by now, so
-        that its pixels can be checked."""
+        """Rest for so many seconds [s], or until a frame comes; a millisecond longer where one is due. What the last
+        frame was needed for is done by now, so that its pixels can be checked."""
         if self._not_added is not None:
             self._clock.add(self._not_added.time, self._not_added.host_time)
             self._not_added = None
-        if WARM[0] < self._due - time.perf_counter() < WARM[1]:
+        if WARM[0] < self._remaining < WARM[1]:
             self._reader.keep_warm()
-        else:
+        elif not 0.0 < self._remaining < WARM[0]:
             self._reader.check()
+        if 0.0 < self._remaining < seconds + ALONE:
+            seconds = max(seconds, self._remaining + LATE)
         try:
             self._coming = self._source.newest(seconds) or self._coming
         except CameraError as error:

@@ -19,7 +19,7 @@ class FrameReader:
     picture did (`tracker.set_up`). settings: of the camera, which say what its pictures are."""
 
     def __init__(self, table: TableCalibration, targets: Targets, settings: CameraSettings | None = None) -> None:
-        self.tracker = Tracker(table, targets, settings, keep=False)
+        self.tracker = Tracker(table, targets, settings, live=True)
         kinds = () if settings is not None and settings.mosaic else (colour_mosaic,)
         checks = (over_exposed, *kinds, self.tracker.check_camera, self.tracker.check_pucks)
         self._monitor = FrameMonitor(self.tracker.camera.size, checks)

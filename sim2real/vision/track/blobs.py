@@ -61,6 +61,11 @@ class BlobDetector:
         lamp = level * _falloff(locator, size, np.array([0.5 * length, 0.5 * width]))
         self._limit = np.where(inside > 0, np.clip(lamp, 1.0, NEVER - 1.0), NEVER).astype(np.uint8)[part]
 
+    @property
+    def box(self) -> tuple[int, int, int, int]:
+        """The part of a picture that shows the table: left, top, and the column and row after the last."""
+        return int(self.left), int(self.top), int(self.right), int(self.bottom)
+
     def blobs(self, image: np.ndarray, region: tuple[int, int, int, int] | None = None) -> list[Blob]:
         """Find blobs in a picture uint8 (rows, columns), or only in a search region: left, top, and the column and row
         after the last."""

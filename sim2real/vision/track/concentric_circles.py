@@ -25,9 +25,9 @@ BINS = 36  # sectors of a circle
 def _side(places, steps, i, x, y):
     """The distance [m] of point i from (x, y), and whether its edge faces outwards (1), inwards (-1) or neither (0)."""
     dx, dy = places[i, 0] - x, places[i, 1] - y
-    far = math.hypot(dx, dy)
+    far = math.sqrt(dx * dx + dy * dy)
     facing = steps[i, 0] * dx + steps[i, 1] * dy
-    limit = FACING * far * math.hypot(steps[i, 0], steps[i, 1])
+    limit = FACING * far * math.sqrt(steps[i, 0] * steps[i, 0] + steps[i, 1] * steps[i, 1])
     return far, 1 if facing > limit else -1 if facing < -limit else 0
 
 
@@ -65,6 +65,8 @@ def guess_hole(places, steps, found):
                 far, side = _side(places, steps, n, x, y)
                 if side < 0 and abs(far - radius) < OFF:
                     on += 1
+                elif on + (count - 1 - n) // stride <= best:  # it cannot be better any more
+                    break
             if on > best:
                 best = on
                 found[0], found[1], found[3] = x, y, radius

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,16 +13,16 @@ from sim2real.vision.track.blobs import LEVEL, Blob, BlobDetector
 from sim2real.vision.track.disc import Disc
 from sim2real.vision.track.film import Film, FilmGauge
 from sim2real.vision.track.kalman_tracker import KalmanTracker, Measurement, TrackState, first_state
+from sim2real.vision.track.object_search import ObjectSearch
 from sim2real.vision.track.puck import PuckFinder
 from sim2real.vision.track.ring import Ring, RingFinder
+from sim2real.vision.track.search_parts import Region, SearchInParts
 from sim2real.vision.track.search_region import SearchRegions
 
 SURE_WITHIN = 0.25e-3  # m, greatest standard deviation of a disc that can only be the puck
 PUCK_POWER, OPPONENT_POWER = 0.02, 5.0  # m^2/s^3, spectral density of the white acceleration between contacts
-AROUND = 2.0  # puck radii of a search region round the predicted place,
-ROOM = 4.0  # and standard deviations of the prediction beyond that
-Region = tuple[int, int, int, int]  # of a picture: left, top, and the column and row after the last
-EVERY = 4  # while the opponent is out of sight, one in so many pictures is searched for it
+AROUND = 2.0  # puck radii from the place of an object to the edge of its search region
+PARTS = 4  # of the picture, one of which is searched for an object that can be anywhere
 
 
 @dataclass(frozen=True)
@@ -45,43 +46,42 @@ class Detector:
     def __init__(
         self, locator: Locator, size: tuple[int, int], *, length: float, width: float, film: Film | FilmGauge,
         puck_height: float, ring_height: float, level: float = LEVEL, calibration_error: float = 0.0,
-        mosaic: bool = False,
+        mosaic: bool = False, live: bool = False,
     ) -> None:  # fmt: skip
         """size: columns and rows of the pictures; length, width: of the table [m]; film: of the puck, or the gauge that
         measures it; puck_height, ring_height: of the puck's top and of the opponent's ring above the table [m]; level:
         see `blobs.LEVEL`; calibration_error: standard deviation along each axis of the error common to all pictures
-        [m]; mosaic: whether pictures are raw, of format BayerRG8."""
-        self._regions = [SearchRegions(locator, height, length, width) for height in (puck_height, ring_height)]
+        [m]; mosaic: whether pictures are raw, of format BayerRG8; live: whether time presses, so that the puck too is
+        searched by parts where it can be anywhere."""
         self._blobs = BlobDetector(locator, size, length, width, ring_height, level)
         self._pucks = PuckFinder(PlaceGrid(locator, puck_height, size).places, film)
         self._rings = RingFinder(PlaceGrid(locator, ring_height, size).places)
-        self._puck, self._opponent = KalmanTracker(PUCK_POWER), KalmanTracker(OPPONENT_POWER)
+        of_puck, of_ring = (SearchRegions(locator, height, length, width) for height in (puck_height, ring_height))
+        self._puck = self._search_of(PUCK_POWER, of_puck, PARTS if live else 1)
+        self._opponent = self._search_of(OPPONENT_POWER, of_ring, PARTS)
         self._calibration = np.diag([calibration_error**2, calibration_error**2, 0.0, 0.0])
         self._grey = GreyOfMosaic(size) if mosaic else None
-        self._without_opponent = 0  # pictures in a row in which it was not searched
 
     def detect(self, image: np.ndarray, time: float) -> Detections:
         """Detect in a picture uint8 (rows, columns) of mid-exposure time `time` [s], and update the tracks. Pictures
         come in order of time; ValueError otherwise."""
-        discs = self._discs_near(image, time)
-        rings = None if discs is None else self._rings_near(image, time)
-        if discs is None or rings is None:
-            rings, discs = self._find(image, None)
-        puck = self._puck.update(time, [_disc_measurement(disc) for disc in discs])
-        opponent = self._opponent.update(time, [_ring_measurement(ring) for ring in rings])
+        rings = self._search_rings(image, time)
+        discs = self._search_discs(image, time, rings)
+        puck = self._puck.tracker.update(time, [_disc_measurement(disc) for disc in discs])
+        opponent = self._opponent.tracker.update(time, [_ring_measurement(ring) for ring in rings])
         return Detections(
             self._with_calibration(puck), self._with_calibration(opponent), len(discs),
-            self._puck.measurement, self._opponent.measurement,
+            self._puck.tracker.measurement, self._opponent.tracker.measurement,
         )  # fmt: skip
 
     def keep_warm(self, image: np.ndarray, time: float) -> None:
         """Search as `detect` would, to no effect: what a search needs is in the processor's caches then, and one that
         comes soon takes half the time."""
-        region = self._region(0, time)
+        region = self._puck.predicted(time, self._room)
         if region is not None:
             picture, blobs = self._blobs_in(image, region)
             self._pucks.find(picture, self._rings.find(picture, blobs)[1], measure=False)
-        region = self._region(1, time)
+        region = self._opponent.predicted(time, self._room)
         if region is not None:
             self._rings_in(image, region)
 
@@ -97,42 +97,28 @@ class Detector:
         """The number of discs in a whole picture uint8 (rows, columns) that can only be pucks; no track is updated."""
         return sum(_disc_measurement(disc).sure for disc in self._find(image, None)[1])
 
-    def _discs_near(self, image: np.ndarray, time: float) -> list[Disc] | None:
-        """The discs where the puck is predicted; if it is not there, as far as it can have come. None if that is
-        anywhere."""
-        region = self._region(0, time)
-        if region is not None:
-            _, discs = self._find(image, region)
+    def _search_of(self, power: float, regions: SearchRegions, parts: int) -> ObjectSearch:
+        overlap = regions.longest_side(self._room)
+        return ObjectSearch(KalmanTracker(power), regions, SearchInParts(self._blobs.box, parts, overlap))
+
+    def _search_rings(self, image: np.ndarray, time: float) -> list[Ring]:
+        """The rings where the opponent is likely to be or, if it is not there, in a part of where it can be."""
+        for region in self._opponent.likely(time, self._room):
+            if rings := self._rings_in(image, region):
+                return rings
+        return self._rings_in(image, self._opponent.next_part(time, self._room))
+
+    def _search_discs(self, image: np.ndarray, time: float, rings: list[Ring]) -> list[Disc]:
+        """The discs beside known rings where the puck is likely to be or, if it is not there, in a part of where it can
+        be."""
+        for region in self._puck.likely(time, self._room):
+            discs = self._find(image, region, rings)[1]
             if any(_disc_measurement(disc).sure for disc in discs):
                 return discs
-        region = self._reachable(0, time)
-        return None if region is None else self._find(image, region)[1]
-
-    def _rings_near(self, image: np.ndarray, time: float) -> list[Ring] | None:
-        """The rings where the opponent is predicted; if it is not there, as far as it can have come. None if that is
-        anywhere. While it is out of sight, it is searched in one picture of EVERY."""
-        region = self._region(1, time)
-        if region is not None and (rings := self._rings_in(image, region)):
-            return rings
-        if not self._opponent.in_sight and self._without_opponent < EVERY - 1:
-            self._without_opponent += 1
-            return []
-        self._without_opponent, region = 0, self._reachable(1, time)
-        return None if region is None else self._rings_in(image, region)
+        return self._find(image, self._puck.next_part(time, self._room), rings)[1]
 
     def _rings_in(self, image: np.ndarray, region: Region) -> list[Ring]:
         return self._rings.find(*self._blobs_in(image, region))[0]
-
-    def _region(self, which: int, time: float) -> Region | None:
-        """The search region of the puck (0) or the opponent (1) round its predicted place: left, top, and the column
-        and row after the last; None if that place is unknown."""
-        state = (self._puck, self._opponent)[which].predict(time)
-        return state and self._regions[which].around(state.place, self._room + ROOM * state.deviation)
-
-    def _reachable(self, which: int, time: float) -> Region | None:
-        """The region in which the puck (0) or the opponent (1) can be; None if that is anywhere."""
-        there = (self._puck, self._opponent)[which].reachable(time)
-        return there and self._regions[which].around(there[0], self._room + there[1])
 
     @property
     def _room(self) -> float:
@@ -143,8 +129,13 @@ class Detector:
         """The state with the calibration's error added to its covariance, which no number of pictures reduces."""
         return state and replace(state, covariance=state.covariance + self._calibration)
 
-    def _find(self, image: np.ndarray, region: Region | None) -> tuple[list[Ring], list[Disc]]:
+    def _find(
+        self, image: np.ndarray, region: Region | None, known: Sequence[Ring] = ()
+    ) -> tuple[list[Ring], list[Disc]]:
+        """The rings in a region, None for the whole, that are not known yet, and the discs beside all."""
         image, blobs = self._blobs_in(image, region)
+        for ring in known:
+            blobs = self._rings.beside(ring, blobs)
         rings, rest = self._rings.find(image, blobs)
         return rings, self._pucks.find(image, rest)
 

@@ -86,8 +86,8 @@ def _off(places, steps, i, size, x, y):
     """The distance [px] of point i from the rim round (x, y) as it is seen, positive outside, and whether it faces
     outwards."""
     dx, dy = places[i, 0] - x, places[i, 1] - y
-    far = math.hypot(dx, dy)
-    step = math.hypot(steps[i, 0], steps[i, 1])
+    far = math.sqrt(dx * dx + dy * dy)
+    step = math.sqrt(steps[i, 0] * steps[i, 0] + steps[i, 1] * steps[i, 1])
     if far == 0.0 or step == 0.0:
         return -math.inf, False
     gain = (steps[i, 0] * dx + steps[i, 1] * dy) / far  # m along the radius for a pixel outwards
@@ -95,15 +95,25 @@ def _off(places, steps, i, size, x, y):
 
 
 @kernel
-def _score(places, steps, size, x, y, stride):
-    """The score of a hypothesis from every `stride`-th point: points on the rim minus points outside."""
-    score = 0
-    for i in range(0, places.shape[0], stride):
+def _is_wide(places, i, size, x, y):
+    """Whether point i lies too far from (x, y) to say anything of a disc there."""
+    dx, dy, wide = places[i, 0] - x, places[i, 1] - y, WIDE * size[0]
+    return dx * dx + dy * dy >= wide * wide
+
+
+@kernel
+def _score(places, steps, size, x, y, stride, best):
+    """The score of a hypothesis from every `stride`-th point: points on the rim minus points outside; `best`
+    as soon as it cannot be more than that."""
+    score, count = 0, places.shape[0]
+    for i in range(0, count, stride):
         off, faces = _off(places, steps, i, size, x, y)
         if abs(off) < NEAR and faces:
             score += 1
-        elif off >= 2.0 * NEAR and math.hypot(places[i, 0] - x, places[i, 1] - y) < WIDE * size[0]:
+        elif off >= 2.0 * NEAR and not _is_wide(places, i, size, x, y):
             score -= 1
+        if score + (count - 1 - i) // stride <= best:
+            return best
     return score
 
 
@@ -131,7 +141,7 @@ def _guess(places, steps, size, centre):
                 y = 0.5 * (places[i, 1] + places[j, 1]) + side * aside * dx
                 if not (_off(places, steps, i, size, x, y)[1] and _off(places, steps, j, size, x, y)[1]):
                     continue
-                score = _score(places, steps, size, x, y, stride)
+                score = _score(places, steps, size, x, y, stride, best)
                 if score > best:
                     best = score
                     centre[0], centre[1] = x, y
@@ -210,5 +220,5 @@ def _count(places, steps, size, scatter, centre, bins, counts):
             part = int((angle / (2.0 * math.pi) + 0.5) * BINS) % BINS
             counts[2] += not bins[part]
             bins[part] = True
-        elif away > 2.0 * NEAR and math.hypot(places[i, 0] - centre[0], places[i, 1] - centre[1]) < WIDE * size[0]:
+        elif away > 2.0 * NEAR and not _is_wide(places, i, size, centre[0], centre[1]):
             counts[1] += 1

@@ -87,18 +87,21 @@ class KalmanTracker:
         self._power = power
         self._last: TrackState | None = None  # at the last measurement
         self._time = -math.inf  # of the last picture
+        self._predicted: TrackState | None = None  # from `_last`, for the time that was asked for last
 
     def predict(self, time: float) -> TrackState | None:
         """The predicted state at a time [s] without contacts; None if the present state is unknown."""
-        return (
-            self._last.predicted(time, self._power) if self._last and self.in_sight and self._last.confirmed else None
-        )
+        return self._ahead(self._last, time) if self._last and self.in_sight and self._last.confirmed else None
 
     def reachable(self, time: float) -> tuple[np.ndarray, float] | None:
-        """Where a confirmed track can go on at a time [s]: its last place (2,) [m] and how far from there [m]; None if
-        it can be anywhere."""
-        before = self._last
-        return (before.place, FASTEST * (time - before.time)) if before and before.confirmed else None
+        """Where the object can be at a time [s]: the place (2,) of its last measurement [m] and how far from there [m];
+        None before the first."""
+        return (self._last.place, FASTEST * (time - self._last.time)) if self._last else None
+
+    @property
+    def confirmed(self) -> bool:
+        """Whether the object was measured twice or more, so that it is where it can have come since."""
+        return self._last is not None and self._last.confirmed
 
     def update(self, time: float, measurements: Sequence[Measurement]) -> TrackState | None:
         """Update the track with the measurements of a picture at `time` [s].
@@ -107,7 +110,7 @@ class KalmanTracker:
         """
         if time <= self._time:
             raise ValueError(f"a picture of {time:.6f} s after one of {self._time:.6f} s; expected later ones")
-        self._last, self._time = self._next(time, measurements), time
+        self._last, self._time, self._predicted = self._next(time, measurements), time, None
         return self._last if self._last and self.in_sight and self._last.confirmed else None
 
     @property
@@ -120,12 +123,18 @@ class KalmanTracker:
         """What was taken for the object in the last picture, whether the track is confirmed or not; None if nothing."""
         return self._last.newest if self._last and self.in_sight else None
 
+    def _ahead(self, last: TrackState, time: float) -> TrackState:
+        """The last state as it is at a later time [s]; it is asked for twice, to search in a picture and to update."""
+        if self._predicted is None or self._predicted.time != time:
+            self._predicted = last.predicted(time, self._power)
+        return self._predicted
+
     def _next(self, time: float, measurements: Sequence[Measurement]) -> TrackState | None:
         before = self._last
         sure = [one for one in measurements if one.sure]
         if before is None:
             return _new_track(time, sure)
-        here = before.predicted(time, self._power)
+        here = self._ahead(before, time)
         close = here.deviation <= CLOSE
         fitting = [one for one in measurements if here.squared_distance(one) <= GATE] if close else []
         if fitting:

@@ -53,7 +53,7 @@ class RingFinder:
             if ring and all(np.linalg.norm(ring.centre - other.centre) > other.radius for other in rings):
                 rings.append(ring)
         for ring in rings:
-            blobs = self._beside(ring, blobs)
+            blobs = self.beside(ring, blobs)
         return rings, blobs
 
     def _edge(self, image: np.ndarray, blob: Blob) -> EdgePoints:
@@ -77,7 +77,7 @@ class RingFinder:
             return None
         return Ring(found[:2], EDGE_ERROR**2 * covariance, radius, hole)
 
-    def _beside(self, ring: Ring, blobs: list[Blob]) -> list[Blob]:
+    def beside(self, ring: Ring, blobs: list[Blob]) -> list[Blob]:
         """The parts of blobs that lie outside of a ring."""
         left = []
         for blob in blobs:

@@ -21,6 +21,7 @@ class SearchRegions:
         x, y = (np.arange(-BEYOND, side + BEYOND + APART, APART) for side in (length, width))
         places = np.stack(np.meshgrid(x, y, indexing="ij"), axis=2)
         self._pixels = np.ascontiguousarray(locator.pixels(places.reshape(-1, 2), height).T).reshape(2, len(x), len(y))
+        self._corners = [np.array([x, y]) for x in (0.0, length) for y in (0.0, width)]
 
     def around(self, place: np.ndarray, reach: float) -> tuple[int, int, int, int] | None:
         """The region, left, top, and the column and row after the last, that shows everything within `reach` [m] of a
@@ -33,6 +34,12 @@ class SearchRegions:
         if not math.isfinite(left + top + right + bottom):
             return None
         return math.floor(left), math.floor(top), math.ceil(right) + 1, math.ceil(bottom) + 1
+
+    def longest_side(self, reach: float) -> int:
+        """The longest side [pixels] of regions `reach` [m] around places on the table; a camera that looks at it
+        obliquely has the largest and the smallest in corners."""
+        regions = [region for corner in self._corners if (region := self.around(corner, reach))]
+        return max((max(right - left, bottom - top) for left, top, right, bottom in regions), default=0)
 
 
 @kernel

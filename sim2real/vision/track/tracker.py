@@ -50,16 +50,16 @@ class Targets:
 class Tracker:
     """Tracks puck and opponent through valid frames in order of time.
 
-    settings: of the camera, which say what its pictures are; stills: whether each picture is a scene of its own; keep:
-    whether what is found is kept for `recording` and `counts`.
+    settings: of the camera, which say what its pictures are; stills: whether each picture is a scene of its own; live:
+    whether what is found is needed at once, and not kept for `recording` and `counts`.
     locator: of the camera at present, None while its pose is unknown; pose: the last one found, None before the first.
     """
 
     def __init__(
         self, table: TableCalibration, targets: Targets, settings: CameraSettings | None = None, stills: bool = False,
-        keep: bool = True,
+        live: bool = False,
     ) -> None:  # fmt: skip
-        self._settings, self._stills, self._keep = settings or CameraSettings(), stills, keep
+        self._settings, self._stills, self._live = settings or CameraSettings(), stills, live
         region, whole = self._settings.region, table.setup.camera
         self._whole = table.setup
         self._table = (
@@ -96,7 +96,7 @@ class Tracker:
             found = self._detector.detect_alone(frame.image, frame.time)
         else:
             found = self._detector.detect(frame.image, frame.time)
-        if self._keep:
+        if not self._live:
             self._rows.append((frame.time, *_cells(found.puck), *_cells(found.opponent), found.pucks))
         return found
 
@@ -220,7 +220,7 @@ class Tracker:
         self._detector = Detector(
             self.locator, image.shape[::-1], length=setup.length, width=setup.width, film=self._film,
             puck_height=setup.puck_top, ring_height=targets.ring_height, level=targets.level,
-            calibration_error=self.place_std, mosaic=self._settings.mosaic,
+            calibration_error=self.place_std, mosaic=self._settings.mosaic, live=self._live,
         )  # fmt: skip
 
     def _grey(self, image: np.ndarray) -> np.ndarray:

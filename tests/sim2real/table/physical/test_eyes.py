@@ -100,7 +100,8 @@ def test_a_search_is_rehearsed_before_a_frame_is_due_and_at_no_other_time(monkey
     source, reader = Scripted(), Reader()
     eyes = LiveEyes(source, reader, DELAY)  # pyright: ignore[reportArgumentType]
     eyes.open()
-    monkeypatch.setattr(time, "perf_counter", lambda: now)
+    clock = [10.0]
+    monkeypatch.setattr(time, "perf_counter", lambda: clock[0])
     warmed = []
     for step in range(400):  # of 0.1 ms; a frame every 10 ms
         now = 10.0 + 1e-4 * step
@@ -111,5 +112,20 @@ def test_a_search_is_rehearsed_before_a_frame_is_due_and_at_no_other_time(monkey
         eyes.take(now)
         warmed += [step] * (reader.warmed - before)
     assert {step // 100 for step in warmed} == {1, 2, 3}  # the first period is not known yet
-    within = {step % 100 for step in warmed}  # 2.6 to 1.2 ms before the next
-    assert set(range(75, 88)) <= within <= set(range(74, 89))
+    within = {step % 100 for step in warmed}  # 3.0 to 1.6 ms before the next
+    assert set(range(71, 84)) <= within <= set(range(70, 85))
+
+
+def test_shortly_before_a_frame_nothing_else_is_served_and_a_late_one_is_not_waited_for_long(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    source, waits = Scripted(), []
+    eyes = LiveEyes(source, Reader(), DELAY)  # pyright: ignore[reportArgumentType]
+    eyes.open()
+    clock = [10.0]
+    monkeypatch.setattr(time, "perf_counter", lambda: clock[0])
+    monkeypatch.setattr(source, "newest", lambda wait: waits.append(wait))
+    eyes._due = 10.01
+    for clock[0] in (10.0, 10.0088, 10.0093, 10.0099, 10.0101):
+        eyes.rest(0.0009)
+    assert waits == pytest.approx([0.0009, 0.0017, 0.0012, 0.0009, 0.0009])

@@ -12,8 +12,8 @@ from sim2real.camera.render.renderer import Renderer
 from sim2real.camera.render.scene_state import BodyState, SceneState
 from sim2real.camera.render.table import LOW_RING, STANDARD_RING, Glint, Table
 from sim2real.camera.render.view import CameraView
-from sim2real.vision.track.detector import Detections
-from sim2real.vision.track.film import FilmGauge
+from sim2real.vision.track.detector import Detections, Detector
+from sim2real.vision.track.film import Film, FilmGauge
 from sim2real.vision.trial.rendered_calibration import detector_for, exact_locator
 from tests.sim2real.vision.track.games import judge, share_within
 from tests.sim2real.vision.track.glints import pucks_seen
@@ -65,42 +65,64 @@ def test_puck_and_ring_all_over_the_table():
 def test_where_to_look_is_known_and_what_is_found_there_is_the_same():
     states = flight(BodyState(0.5, 0.4, 3.0, 1.0), BodyState(1.6, 0.5, -1.0, 0.5), AWAY, 12)
     regional, whole = copy.deepcopy(DETECTOR), copy.deepcopy(DETECTOR)
-    whole._discs_near = lambda image, time: None  # searches the whole picture
+    whole._search_discs = lambda image, time, rings: whole._find(image, None, rings)[1]
     for k, state in enumerate(states):
         image = RENDERER.picture(state, k)
         near, everywhere = regional.detect(image, state.time), whole.detect(image, state.time)
         if k:
             assert near.puck is not None and everywhere.puck is not None
             assert near.puck.place == pytest.approx(everywhere.puck.place, abs=1e-9)
-    assert wholes(states) == 2
+    first, *rest = searched(states)
+    assert first >= 1.0 and max(rest) < 0.15
 
 
-def wholes(states: list[SceneState], seen: list[Detections] | None = None) -> int:
-    """How many pictures a fresh detector searches as a whole."""
-    fresh, count = copy.deepcopy(DETECTOR), 0
-    find = fresh._find
+def searched(
+    states: list[SceneState], seen: list[Detections] | None = None, detector: Detector = DETECTOR
+) -> list[float]:
+    """How much of each picture a fresh detector searches, as shares of what shows the table."""
+    fresh, areas = copy.deepcopy(detector), []
+    blobs, (left, top, right, bottom) = fresh._blobs.blobs, fresh._blobs.box
 
-    def counting(image: np.ndarray, region: tuple[int, int, int, int] | None):
-        nonlocal count
-        count += region is None
-        return find(image, region)
+    def measuring(image: np.ndarray, region: tuple[int, int, int, int] | None = None):
+        assert region is not None
+        areas[-1] += (region[2] - region[0]) * (region[3] - region[1]) / ((right - left) * (bottom - top))
+        return blobs(image, region)
 
-    fresh._find = counting
-    found = [fresh.detect(RENDERER.picture(state, k), state.time) for k, state in enumerate(states)]
-    if seen is not None:
-        seen += found
-    return count
+    fresh._blobs.blobs = measuring
+    for k, state in enumerate(states):
+        areas.append(0.0)
+        found = fresh.detect(RENDERER.picture(state, k), state.time)
+        if seen is not None:
+            seen.append(found)
+    return areas
 
 
-def test_without_an_opponent_one_picture_in_four_is_looked_at_as_a_whole_and_one_who_comes_is_soon_known():
+def test_without_an_opponent_a_part_of_each_picture_is_searched_and_one_who_comes_is_soon_known():
     alone = flight(BodyState(0.5, 0.4, 1.0, 0.5), None, AWAY, 22)
     seen: list[Detections] = []
-    assert wholes(alone) == 2 + 5
+    assert max(searched(alone)[2:]) < 0.5
     coming = [replace(state, opponent=BodyState(1.5, 0.6)) if k >= 11 else state for k, state in enumerate(alone)]
-    assert wholes(coming, seen) <= 2 + 2 + 2
+    assert max(searched(coming, seen)[16:]) < 0.1
     known = [k for k, one in enumerate(seen) if one.opponent]
     assert known == list(range(known[0], 22)) and 12 <= known[0] <= 15
     assert all(one.puck for one in seen[1:])
+
+
+def test_while_time_presses_a_lost_puck_is_searched_in_a_part_of_each_picture_and_found_wherever_it_is():
+    live = Detector(
+        exact_locator(TABLE, RENDERER.view), RENDERER.view.size, length=TABLE.length, width=TABLE.width,
+        film=Film.known(TABLE.puck_radius), puck_height=TABLE.puck_height, ring_height=TABLE.ring_height, live=True,
+    )  # fmt: skip
+    opponent, rng = BodyState(1.6, 0.5), np.random.default_rng(0)
+    before = flight(BodyState(0.5, 0.4, 1.0, 0.5), opponent, AWAY, 6)
+    hidden = [SceneState(k / RATE, None, opponent, AWAY) for k in range(6, 20)]
+    for x, y in rng.uniform((0.14, 0.04), (1.4, 0.96), (12, 2)):
+        after = [SceneState(k / RATE, BodyState(x, y), opponent, AWAY) for k in range(20, 26)]
+        seen: list[Detections] = []
+        areas = searched([*before, *hidden, *after], seen, live)
+        assert max(areas[1:]) < 0.5  # a quarter, strips' overlap, the opponent's region
+        found = next(k for k, one in enumerate(seen[20:]) if one.measured_puck)
+        assert found <= 3 and all(one.puck for one in seen[20 + found + 1 :])
 
 
 def test_a_struck_puck_is_looked_for_as_far_as_it_can_have_come_and_no_farther():
@@ -109,7 +131,8 @@ def test_a_struck_puck_is_looked_for_as_far_as_it_can_have_come_and_no_farther()
     struck, put = BodyState(0.55 + 0.11, 0.425 - 0.03, 13.0, -4.0), BodyState(1.4, 0.8)  # m, 0.114 m away and 0.83 m
     for there, taken in ((struck, True), (put, False)):
         seen: list[Detections] = []
-        assert wholes([*before, replace(before[-1], time=6 / RATE, puck=there)], seen) == 2
+        areas = searched([*before, replace(before[-1], time=6 / RATE, puck=there)], seen)
+        assert max(areas[1:]) < 0.2
         assert (seen[-1].measured_puck is not None) == taken
 
 
@@ -126,8 +149,8 @@ def test_keeping_a_search_warm_changes_nothing():
     assert repr(plain._pucks.film) == repr(warm._pucks.film)
 
 
-def test_without_a_puck_every_picture_is_looked_at_as_a_whole():
-    assert wholes(flight(None, BodyState(1.5, 0.6), AWAY, 8)) == 8
+def test_without_a_puck_every_picture_is_searched_as_a_whole():
+    assert min(searched(flight(None, BodyState(1.5, 0.6), AWAY, 8))) >= 1.0
 
 
 def test_half_under_the_beam_it_is_within_its_deviations_and_wholly_under_it_not_known():
