@@ -100,8 +100,7 @@ def test_a_search_is_rehearsed_before_a_frame_is_due_and_at_no_other_time(monkey
     source, reader = Scripted(), Reader()
     eyes = LiveEyes(source, reader, DELAY)  # pyright: ignore[reportArgumentType]
     eyes.open()
-    clock = [10.0]
-    monkeypatch.setattr(time, "perf_counter", lambda: clock[0])
+    monkeypatch.setattr(time, "perf_counter", lambda: now)
     warmed = []
     for step in range(400):  # of 0.1 ms; a frame every 10 ms
         now = 10.0 + 1e-4 * step
