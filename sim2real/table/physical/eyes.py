@@ -68,7 +68,7 @@ class LiveEyes:
             self._not_added = None
         if WARM[0] < self._remaining < WARM[1]:
             self._reader.keep_warm()
-        elif not 0.0 < self._remaining < WARM[0]:
+        elif not -EXPECTED < self._remaining < WARM[1]:
             self._reader.check()
         if 0.0 < self._remaining < seconds + ALONE:
             seconds = max(seconds, self._remaining + LATE)

@@ -46,10 +46,11 @@ class Reader:
     def read(self, frame: Frame) -> SeenFrame:
         return SeenFrame(frame.time, (1.0, 0.5), None)
 
-    warmed = 0
+    warmed = checked = 0
 
     def check(self) -> None:
         """Its frames are always good."""
+        self.checked += 1
 
     def keep_warm(self) -> None:
         self.warmed += 1
@@ -101,18 +102,20 @@ def test_a_search_is_rehearsed_before_a_frame_is_due_and_at_no_other_time(monkey
     eyes = LiveEyes(source, reader, DELAY)  # pyright: ignore[reportArgumentType]
     eyes.open()
     monkeypatch.setattr(time, "perf_counter", lambda: now)
-    warmed = []
+    warmed, checked = [], []
     for step in range(400):  # of 0.1 ms; a frame every 10 ms
         now = 10.0 + 1e-4 * step
         if step % 100 == 0:
             source.frame = Frame(np.zeros((2, 2), np.uint8), now - DELAY, now, step)
-        before = reader.warmed
+        before, checked_before = reader.warmed, reader.checked
         eyes.rest(0.0)
         eyes.take(now)
         warmed += [step] * (reader.warmed - before)
+        checked += [step] * (reader.checked - checked_before)
     assert {step // 100 for step in warmed} == {1, 2, 3}  # the first period is not known yet
     within = {step % 100 for step in warmed}  # 3.0 to 1.6 ms before the next
     assert set(range(71, 84)) <= within <= set(range(70, 85))
+    assert {step % 100 for step in checked if step >= 200} == set(range(1, 71))  # no frame comes meanwhile, nor is late
 
 
 def test_shortly_before_a_frame_nothing_else_is_served_and_a_late_one_is_not_waited_for_long(
