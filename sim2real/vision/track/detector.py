@@ -61,12 +61,14 @@ class Detector:
         self._opponent = self._search_of(OPPONENT_POWER, of_ring, PARTS)
         self._calibration = np.diag([calibration_error**2, calibration_error**2, 0.0, 0.0])
         self._grey = GreyOfMosaic(size) if mosaic else None
+        self._pictures = 0  # searched
 
     def detect(self, image: np.ndarray, time: float) -> Detections:
         """Detect in a picture uint8 (rows, columns) of mid-exposure time `time` [s], and update the tracks. Pictures
         come in order of time; ValueError otherwise."""
         rings = self._search_rings(image, time)
         discs = self._search_discs(image, time, rings)
+        self._pictures += 1
         puck = self._puck.tracker.update(time, [_disc_measurement(disc) for disc in discs])
         opponent = self._opponent.tracker.update(time, [_ring_measurement(ring) for ring in rings])
         return Detections(
@@ -77,13 +79,10 @@ class Detector:
     def keep_warm(self, image: np.ndarray, time: float) -> None:
         """Search as `detect` would, to no effect: what a search needs is in the processor's caches then, and one that
         comes soon takes half the time."""
-        region = self._puck.predicted(time, self._room)
-        if region is not None:
-            picture, blobs = self._blobs_in(image, region)
-            self._pucks.find(picture, self._rings.find(picture, blobs)[1], measure=False)
         region = self._opponent.predicted(time, self._room)
-        if region is not None:
-            self._rings_in(image, region)
+        rings = [] if region is None else self._rings_in(image, region)
+        region = self._puck.predicted(time, self._room) or self._puck.part(time, self._room, self._pictures)
+        self._find(image, region, rings, measure=False)
 
     def detect_alone(self, image: np.ndarray, time: float) -> Detections:
         """Detect in a picture uint8 (rows, columns) that has nothing to do with any other: the best candidates, be they
@@ -106,7 +105,7 @@ class Detector:
         for region in self._opponent.likely(time, self._room):
             if rings := self._rings_in(image, region):
                 return rings
-        return self._rings_in(image, self._opponent.next_part(time, self._room))
+        return self._rings_in(image, self._opponent.part(time, self._room, self._pictures))
 
     def _search_discs(self, image: np.ndarray, time: float, rings: list[Ring]) -> list[Disc]:
         """The discs beside known rings where the puck is likely to be or, if it is not there, in a part of where it can
@@ -115,7 +114,7 @@ class Detector:
             discs = self._find(image, region, rings)[1]
             if any(_disc_measurement(disc).sure for disc in discs):
                 return discs
-        return self._find(image, self._puck.next_part(time, self._room), rings)[1]
+        return self._find(image, self._puck.part(time, self._room, self._pictures), rings)[1]
 
     def _rings_in(self, image: np.ndarray, region: Region) -> list[Ring]:
         return self._rings.find(*self._blobs_in(image, region))[0]
@@ -130,14 +129,15 @@ class Detector:
         return state and replace(state, covariance=state.covariance + self._calibration)
 
     def _find(
-        self, image: np.ndarray, region: Region | None, known: Sequence[Ring] = ()
+        self, image: np.ndarray, region: Region | None, known: Sequence[Ring] = (), measure: bool = True
     ) -> tuple[list[Ring], list[Disc]]:
-        """The rings in a region, None for the whole, that are not known yet, and the discs beside all."""
+        """The rings in a region, None for the whole, that are not known yet, and the discs beside all; measure: whether
+        the puck's film may be measured by them."""
         image, blobs = self._blobs_in(image, region)
         for ring in known:
             blobs = self._rings.beside(ring, blobs)
         rings, rest = self._rings.find(image, blobs)
-        return rings, self._pucks.find(image, rest)
+        return rings, self._pucks.find(image, rest, measure)
 
     def _blobs_in(self, image: np.ndarray, region: Region | None) -> tuple[np.ndarray, list[Blob]]:
         """The picture without its mosaic, and the blobs in a region of it, None for the whole."""

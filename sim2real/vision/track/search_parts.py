@@ -8,7 +8,7 @@ Region = tuple[int, int, int, int]  # of a picture: left, top, and the column an
 
 
 class SearchInParts:
-    """Divides large regions into strips, of which each call gets the next, so that no picture takes long.
+    """Divides large regions into strips, of which each picture gets the next, so that none takes long.
 
     whole: what shows the table; parts: number of strips of that, and a region no larger than one is not divided;
     overlap: of strips [pixels], so that an object lies in one of them entirely.
@@ -16,20 +16,18 @@ class SearchInParts:
 
     def __init__(self, whole: Region, parts: int, overlap: int) -> None:
         self._whole, self._most, self._overlap = whole, _area(whole) / parts, overlap
-        self._calls = 0
 
-    def next_part(self, region: Region | None) -> Region:
-        """What to search now of a region, of the whole if that is None; all of it the first time, when nothing was seen
-        yet."""
+    def part(self, region: Region | None, picture: int) -> Region:
+        """What to search of a region in a picture of this number, of the whole if the region is None; all of it in
+        picture 0, when nothing was seen yet."""
         left, top, right, bottom = clipped = _common(region or self._whole, self._whole)
         strips = max(math.ceil(_area(clipped) / self._most), 1)
-        strip, self._calls = self._calls % strips, self._calls + 1
-        if strips == 1 or self._calls == 1:
+        if strips == 1 or picture == 0:
             return clipped
         if right - left > bottom - top:
-            begin, end = self._span(left, right, strip, strips)
+            begin, end = self._span(left, right, picture % strips, strips)
             return begin, top, end, bottom
-        begin, end = self._span(top, bottom, strip, strips)
+        begin, end = self._span(top, bottom, picture % strips, strips)
         return left, begin, right, end
 
     def _span(self, first: int, last: int, strip: int, strips: int) -> tuple[int, int]:

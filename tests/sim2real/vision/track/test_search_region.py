@@ -50,8 +50,7 @@ def test_parts_that_follow_each_other_contain_every_object_of_a_region_entirely(
         left, top = rng.integers((-50, -50), (1300, 900))
         region = (int(left), int(top), int(left + rng.integers(40, 1500)), int(top + rng.integers(40, 1500)))
         parts = SearchInParts(whole, 4, overlap)
-        parts.next_part(None)
-        several = [parts.next_part(region) for _ in range(4)]
+        several = [parts.part(region, picture) for picture in range(7, 11)]
         inside = max(left, 10), max(top, 20), min(region[2], 1410), min(region[3], 1000)
         for _ in range(20):
             x, y = rng.integers(inside[:2], np.maximum(np.subtract(inside[2:], overlap), inside[:2]) + 1)
@@ -63,6 +62,6 @@ def test_parts_that_follow_each_other_contain_every_object_of_a_region_entirely(
 
 def test_a_region_as_small_as_a_part_is_searched_at_once():
     parts = SearchInParts((0, 0, 1000, 1000), 4, 50)
-    assert parts.next_part(None) == (0, 0, 1000, 1000)  # nothing is known yet
-    assert [parts.next_part((100, 100, 600, 600)) for _ in range(3)] == 3 * [(100, 100, 600, 600)]
-    assert len({parts.next_part(None) for _ in range(8)}) == 4
+    assert parts.part(None, 0) == (0, 0, 1000, 1000)  # nothing is known yet
+    assert [parts.part((100, 100, 600, 600), picture) for picture in range(3)] == 3 * [(100, 100, 600, 600)]
+    assert len({parts.part(None, picture) for picture in range(1, 9)}) == 4
