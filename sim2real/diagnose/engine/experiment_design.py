@@ -22,8 +22,9 @@ def information(
     The sum over units is the criterion of T-optimal design (Atkinson and Fedorov, Biometrika 62, 1975). It equals
     theta' I theta with the Fisher information I = A'A - A'C (C'C)^-1 C'A of theta beside the nuisance parameters phi.
     """
-    a, c = equations.columns(law), equations.columns(others)
-    inner, mixed, outer = (equations.g[np.ix_(units, rows, columns)] for rows, columns in ((a, a), (c, a), (c, c)))
+    g, _ = normal_equations.restricted(equations, equations.columns([*law, *others]), units).whole()
+    n = len(law)
+    inner, mixed, outer = g[:, :n, :n], g[:, n:, :n], g[:, n:, n:]
     phi = normal_equations.solve_normal(outer.sum(axis=0), mixed.sum(axis=0) @ theta)
     alone = np.einsum("i,uij,j->u", theta, inner, theta)
     shared = np.einsum("i,uij,j->u", phi, mixed, theta)

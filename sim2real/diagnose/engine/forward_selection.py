@@ -49,7 +49,7 @@ class Gain:
 class ForwardSelection:
     """Compares models on the units of the clusters `use`.
 
-    `dispersion`: variance of the noise in units of the sensor's, at least 1; see `estimated_dispersion`. `least`:
+    `dispersion`: variance of the noise in units of the sensor's, at least 1; see `dispersion`. `least`:
     reduction of the fitted loss that a law must exceed, for sensors with systematic errors. Losses are cached by model.
     """
 
@@ -200,9 +200,9 @@ class ForwardSelection:
             half = self._launch % 2 == k
             theta = normal_equations.solve_robustly(self.equations, columns, self.use[half], self._freedom[half], ridge)
             halves.append(theta[at])
-            information = self.equations.g[np.ix_(self.use[half], columns[at], columns[at])].sum(axis=0)
+            information = normal_equations.summed(self.equations, columns[at], self.use[half])[0]
             sizes.append(float(halves[k] @ information @ halves[k]))
-        weight = self.equations.g[np.ix_(self.use, columns[at], columns[at])].sum(axis=0)
+        weight = normal_equations.summed(self.equations, columns[at], self.use)[0]
         undetermined = min(sizes) < ENGINE.sign_information * len(law.columns)
         return undetermined or float(halves[0] @ weight @ halves[1]) > 0.0
 
@@ -251,37 +251,3 @@ class ForwardSelection:
         """Return whether a law passes and, if it is listed, has the same sign in both halves of the launches."""
         rest = model.minus(gain.law)
         return self.passes(gain) and (bool(gain.law.family) or self.same_sign_in_halves(rest, gain.law))
-
-
-def estimated_dispersion(
-    equations: NormalEquations, units: Units, base: tuple[str, ...], laws: Sequence[Law], use: np.ndarray
-) -> float:
-    """Estimate the variance of the noise in units of the sensor's, at least 1.
-
-    It is the median over launches of the reduced chi-square of a joint fit of all `laws`, with degrees of freedom from
-    the trace of the hat matrix.
-    """
-    richest = Model(base, tuple(laws), (1.0,) * len(laws))
-    columns, ridge = richest.columns(equations)
-    parts = units.of(use)
-    theta = normal_equations.solve(equations, columns, parts, ridge + ENGINE.dispersion_ridge)
-    fitted = _fitted_freedom(equations, columns, parts, ridge + ENGINE.dispersion_ridge)
-    launch = units.cluster[parts]
-    launches = int(units.cluster.max(initial=0)) + 1
-    squares = np.bincount(launch, normal_equations.losses(equations, columns, theta, parts), launches)
-    free = np.bincount(launch, units.freedom[parts] - fitted, launches)
-    known = free > 1.0
-    return float(max(np.median(squares[known] / free[known]), 1.0)) if known.any() else 1.0
-
-
-def _fitted_freedom(
-    equations: NormalEquations, columns: np.ndarray, units: np.ndarray, ridge: np.ndarray
-) -> np.ndarray:
-    """Return the degrees of freedom (units,) of each unit that a ridge fit of these columns to all units uses.
-
-    Each unit has its share of the trace of the hat matrix, tr(G_u (sum G + ridge)^-1).
-    """
-    normal = normal_equations.summed(equations, columns, units)[0] + np.diag(ridge)
-    size = np.sqrt(np.maximum(np.diag(normal), 0.0))
-    inverse = np.linalg.pinv(normal / size[:, None] / size, hermitian=True) / size[:, None] / size
-    return np.array([np.sum(equations.g[unit][np.ix_(columns, columns)] * inverse) for unit in units])

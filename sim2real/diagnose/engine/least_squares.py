@@ -107,7 +107,7 @@ def fit(
     assert equations is not None
     freedom = float(problem.freedom[clusters].sum())
     spread = normal_equations.covariance(equations, np.arange(len(free)), np.zeros(len(free)), clusters, freedom)
-    without_data = np.diag(equations.g[clusters].sum(axis=0)) <= 0.0
+    without_data = np.diag(normal_equations.summed(equations, np.arange(len(free)), clusters)[0]) <= 0.0
     spread[without_data, without_data] = (high - low)[without_data] ** 2
     bound = tuple(n for n, a, lo, hi in zip(free, best, low, high, strict=True) if a <= lo or a >= hi)
     return LeastSquaresFit(now, free, spread, loss, len(clusters), bound)
@@ -130,7 +130,7 @@ def _step(
     equations: NormalEquations, damping: float, at: np.ndarray, low: np.ndarray, high: np.ndarray, clusters: np.ndarray
 ) -> np.ndarray:
     """Return the step (k,) of the parameters that are not held at a bound: (G + damping diag G) step = -b."""
-    g, b = equations.g[clusters].sum(axis=0), equations.b[clusters].sum(axis=0)
+    g, b = normal_equations.summed(equations, np.arange(len(at)), clusters)
     held = ((at <= low) & (b > 0.0)) | ((at >= high) & (b < 0.0))
     step = np.zeros(len(at))
     moving = ~held

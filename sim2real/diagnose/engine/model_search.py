@@ -18,7 +18,8 @@ from sim2real.diagnose.engine.backward_elimination import (
     without_outliers,
 )
 from sim2real.diagnose.engine.candidate_models import CandidateModel, best_candidate, identifiable
-from sim2real.diagnose.engine.forward_selection import ForwardSelection, Gain, estimated_dispersion
+from sim2real.diagnose.engine.dispersion import estimated_dispersion
+from sim2real.diagnose.engine.forward_selection import ForwardSelection, Gain
 from sim2real.diagnose.engine.law import Law, Model
 from sim2real.diagnose.engine.least_squares import LeastSquaresFit, fit, given
 from sim2real.diagnose.engine.nonparametric import NonparametricFit, fit_nonparametric

@@ -9,25 +9,30 @@ of the recording. Clusters are launches, or the units within them.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from scipy.linalg import eigh
 
-from puckpilot_env.kernel import array_kernel, kernel
+from puckpilot_env.kernel import array_kernel
+from sim2real.diagnose.engine import packed_sums
 from sim2real.diagnose.engine.tuned import ENGINE
 from sim2real.statistics.robust import group_weights
 
 
 @dataclass(frozen=True)
 class NormalEquations:
-    """Sums over each of `c` clusters: `g` = J'J (c, k, k), `b` = J'r (c, k), `s` = r'r (c,); `names` (k) of the columns
-    of J."""
+    """Sums over each of `c` clusters: J'J `g` and J'r `b`, packed by `place` (c, k), `first_g` and `first_b` as in
+    `packed_sums`; `s` = r'r (c,); `names` (k) of the columns of J."""
 
     names: tuple[str, ...]
     g: np.ndarray
     b: np.ndarray
     s: np.ndarray
+    place: np.ndarray
+    first_g: np.ndarray
+    first_b: np.ndarray
 
     @property
     def clusters(self) -> int:
@@ -39,62 +44,91 @@ class NormalEquations:
         index = {name: k for k, name in enumerate(self.names)}
         return np.array([index[name] for name in names], int)
 
+    def whole(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return J'J (c, k, k) and J'r (c, k), with all that is 0."""
+        k, c = len(self.names), self.clusters
+        g, b = np.empty((c, k, k)), np.empty((c, k))
+        packed_sums.unpack(*self._packed, np.arange(k), np.arange(c), g, b)
+        return g, b
+
+    @property
+    def _packed(self) -> tuple[np.ndarray, ...]:
+        return self.g, self.b, self.place, self.first_g, self.first_b
+
 
 def make_equations(
-    names: Sequence[str], r: np.ndarray, jacobian: np.ndarray, cluster: np.ndarray, clusters: int
+    names: Sequence[str],
+    r: np.ndarray,
+    jacobian: np.ndarray | Sequence[np.ndarray],
+    cluster: np.ndarray,
+    clusters: int,
 ) -> NormalEquations:
-    """Sum residuals `r` (n,) and their `jacobian` (n, k) by `cluster` (n,) int, in any order."""
-    k = jacobian.shape[1]
-    g, b = np.zeros((clusters, k, k)), np.zeros((clusters, k))
-    s = np.zeros(clusters)
+    """Sum residuals `r` (n,) and their `jacobian` (n, k), or the blocks of its columns, by `cluster` (n,) int, in any
+    order."""
+    blocks = [jacobian] if isinstance(jacobian, np.ndarray) else jacobian
     order = np.argsort(cluster, kind="stable")
     edges = np.searchsorted(cluster[order], np.arange(clusters + 1))
-    for c in range(clusters):
-        rows = order[edges[c] : edges[c + 1]]
-        j, rest = jacobian[rows], r[rows]
-        g[c], b[c] = j.T @ j, j.T @ rest
-        s[c] = rest @ rest
-    return NormalEquations(tuple(names), g, b, s)
+    rows = [order[begin:end] for begin, end in pairwise(edges)]
+    some = np.array([np.concatenate([block[own].any(axis=0) for block in blocks]) for own in rows], bool)
+    made = _empty(names, some.reshape(clusters, len(names)))
+    for c, own in enumerate(rows):
+        j, rest = np.concatenate([block[own] for block in blocks], axis=1)[:, made.place[c] >= 0], r[own]
+        packed_sums.pack(j.T @ j, j.T @ rest, made.place, made.first_g, made.first_b, c, made.g, made.b)
+        made.s[c] = rest @ rest
+    return made
+
+
+def _empty(names: Sequence[str], some: np.ndarray) -> NormalEquations:
+    """Equations for sums of 0 of clusters that keep the columns `some` (c, k) bool."""
+    place, first_b, first_g = packed_sums.kept_columns(some)
+    g, b = np.zeros(first_g[-1]), np.zeros(first_b[-1])
+    return NormalEquations(tuple(names), g, b, np.zeros(len(some)), place, first_g, first_b)
+
+
+def packed(names: Sequence[str], g: np.ndarray, b: np.ndarray, s: np.ndarray) -> NormalEquations:
+    """The equations of sums J'J (c, k, k), J'r (c, k) and r'r (c,)."""
+    made = _empty(names, np.diagonal(g, axis1=1, axis2=2) > 0.0)
+    for c, own in enumerate(made.place >= 0):
+        packed_sums.pack(g[c][np.ix_(own, own)], b[c][own], made.place, made.first_g, made.first_b, c, made.g, made.b)
+    return replace(made, s=s)
 
 
 def gathered(equations: NormalEquations, into: np.ndarray, count: int) -> NormalEquations:
     """Sum small clusters into larger ones: cluster i is added to number `into[i]` (c,) of `count`."""
-    shapes = {"g": equations.g, "b": equations.b, "s": equations.s}
-    sums = {name: np.zeros((count, *part.shape[1:])) for name, part in shapes.items()}
-    for name, part in shapes.items():
-        np.add.at(sums[name], into, part)
-    return NormalEquations(equations.names, **sums)
+    some, s = np.zeros((count, len(equations.names)), bool), np.zeros(count)
+    np.logical_or.at(some, into, equations.place >= 0)
+    np.add.at(s, into, equations.s)
+    made = _empty(equations.names, some)
+    packed_sums.add_into(*equations._packed, into, made.place, made.first_g, made.first_b, made.g, made.b)
+    return replace(made, s=s)
 
 
 def restricted(equations: NormalEquations, columns: np.ndarray, clusters: np.ndarray) -> NormalEquations:
     """The equations of these columns and clusters alone, as they come: quick to sum again and again."""
-    k, n = len(columns), len(clusters)
-    g, b = np.empty((n, k, k)), np.empty((n, k))
-    _gather(equations.g, equations.b, columns, clusters, g, b)
-    return NormalEquations(tuple(equations.names[column] for column in columns), g, b, equations.s[clusters])
-
-
-@kernel
-def _gather(g, b, columns, clusters, part_g, part_b):
-    for n in range(len(clusters)):
-        for i in range(len(columns)):
-            part_b[n, i] = b[clusters[n], columns[i]]
-            for j in range(len(columns)):
-                part_g[n, i, j] = g[clusters[n], columns[i], columns[j]]
+    made = _empty([equations.names[column] for column in columns], equations.place[np.ix_(clusters, columns)] >= 0)
+    packed_sums.repack(*equations._packed, columns, clusters, made.g, made.b)
+    return replace(made, s=equations.s[clusters])
 
 
 def moved(equations: NormalEquations, columns: np.ndarray, theta: np.ndarray) -> NormalEquations:
     """Return the equations of the residuals `r + J theta` with the same derivatives: b + G theta, s + 2 b'theta +
     theta'G theta."""
-    g = np.einsum("cij,j->ci", equations.g[:, :, columns], theta)
-    more = 2.0 * equations.b[:, columns] @ theta + g[:, columns] @ theta
-    return NormalEquations(equations.names, equations.g, equations.b + g, equations.s + more)
+    b, s = np.empty_like(equations.b), np.empty_like(equations.s)
+    g, before, place, first_g, first_b = equations._packed
+    packed_sums.move(g, before, equations.s, place, first_g, first_b, columns, theta, b, s)
+    return replace(equations, b=b, s=s)
 
 
 def summed(equations: NormalEquations, columns: np.ndarray, clusters: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the sums (k, k) of J'J and (k,) of J'r over `clusters` at these columns, without a copy of gigabytes."""
+    """Return the sums (k, k) of J'J and (k,) of J'r over `clusters` at these columns."""
+    return _weighted(equations, columns, clusters, np.ones(len(clusters)))
+
+
+def _weighted(
+    equations: NormalEquations, columns: np.ndarray, clusters: np.ndarray, weight: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     g, b = np.empty((len(columns), len(columns))), np.empty(len(columns))
-    _sum_weighted(equations.g, equations.b, columns, clusters, np.ones(len(clusters)), g, b)
+    packed_sums.sum_weighted(*equations._packed, columns, clusters, weight, g, b)
     return g, b
 
 
@@ -122,9 +156,8 @@ def solve_robustly(
     """
     penalty = np.diag(np.broadcast_to(ridge, len(columns)).astype(float))
     weight, theta = np.ones(len(clusters)), np.zeros(len(columns))
-    g, b = np.empty((len(columns), len(columns))), np.empty(len(columns))
     for _ in range(ENGINE.reweighting_rounds):
-        _sum_weighted(equations.g, equations.b, columns, clusters, weight, g, b)
+        g, b = _weighted(equations, columns, clusters, weight)
         theta = solve_normal(g + penalty, -b)
         updated = group_weights(losses(equations, columns, theta, clusters), freedom)
         if np.all(np.abs(updated - weight) < ENGINE.reweighting_change * weight):
@@ -181,34 +214,16 @@ def _solve_slowly(g: np.ndarray, b: np.ndarray, theta: np.ndarray) -> None:
 def losses(equations: NormalEquations, columns: np.ndarray, theta: np.ndarray, clusters: np.ndarray) -> np.ndarray:
     """Return the sums of squares (clusters,) under `theta`: s + 2 b'theta + theta'G theta."""
     squares = np.empty(len(clusters))
-    _squares_under(equations.g, equations.b, equations.s, columns, clusters, theta, squares)
+    g, b, place, first_g, first_b = equations._packed
+    packed_sums.squares_under(g, b, equations.s, place, first_g, first_b, columns, clusters, theta, squares)
     return squares
 
 
-@kernel
-def _sum_weighted(g, b, columns, clusters, weight, sum_g, sum_b):
-    """Write to `sum_g` (k, k) and `sum_b` (k,) the sums over `clusters` (n,), each times its `weight` (n,), of the
-    entries of `g` (c, m, m) and `b` (c, m) at `columns` (k,)."""
-    sum_g[:] = 0.0
-    sum_b[:] = 0.0
-    for n in range(len(clusters)):
-        for i in range(len(columns)):
-            sum_b[i] += weight[n] * b[clusters[n], columns[i]]
-            for j in range(len(columns)):
-                sum_g[i, j] += weight[n] * g[clusters[n], columns[i], columns[j]]
-
-
-@kernel
-def _squares_under(g, b, s, columns, clusters, theta, squares):
-    """Write to `squares` (n,) the sums of squares of `clusters` (n,) under `theta` (k,); the others as above."""
-    for n in range(len(clusters)):
-        total = s[clusters[n]]
-        for i in range(len(columns)):
-            row = 2.0 * b[clusters[n], columns[i]]
-            for j in range(len(columns)):
-                row += g[clusters[n], columns[i], columns[j]] * theta[j]
-            total += row * theta[i]
-        squares[n] = total
+def traces(equations: NormalEquations, columns: np.ndarray, clusters: np.ndarray, matrix: np.ndarray) -> np.ndarray:
+    """Return tr(J'J M) (clusters,) of each cluster, for a symmetric `matrix` M (k, k) of `columns`."""
+    found = np.empty(len(clusters))
+    packed_sums.traces(*equations._packed, columns, clusters, matrix, found)
+    return found
 
 
 def covariance(
@@ -230,7 +245,7 @@ def covariance(
     H (sum of u u') H c / (c - 1) of the scores u = b + (G + R / c) theta of c clusters (CR1: Liang and Zeger,
     Biometrika 73, 1986), used if c exceeds the number of columns by more than two.
     """
-    g = equations.g[np.ix_(clusters, columns, columns)]
+    g, b = restricted(equations, columns, clusters).whole()
     penalty = np.broadcast_to(ridge, len(columns)).astype(float)
     total = g.sum(axis=0) + np.diag(penalty)
     size = np.sqrt(np.maximum(np.diag(total), 0.0))
@@ -241,7 +256,7 @@ def covariance(
     model = inverse * dispersion
     if c <= len(columns) + 2:
         return model
-    scores = equations.b[np.ix_(clusters, columns)] + np.einsum("cij,j->ci", g, theta) + penalty * theta / c
+    scores = b + np.einsum("cij,j->ci", g, theta) + penalty * theta / c
     sandwich = inverse @ (scores.T @ scores) @ inverse * c / (c - 1.0)
     more = np.sqrt(np.maximum(np.diag(sandwich) / np.maximum(np.diag(model), 1e-300), 1.0))
     return model * np.outer(more, more)

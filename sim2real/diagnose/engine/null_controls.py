@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from sim2real.diagnose.engine import normal_equations
-from sim2real.diagnose.engine.forward_selection import ForwardSelection, estimated_dispersion
+from sim2real.diagnose.engine.dispersion import estimated_dispersion
+from sim2real.diagnose.engine.forward_selection import ForwardSelection
 from sim2real.diagnose.engine.law import Law, Model
 from sim2real.diagnose.engine.normal_equations import NormalEquations
 from sim2real.diagnose.engine.problem import Units
@@ -37,7 +38,8 @@ def null_controls(
     """
     laws = list({law.columns: law for law in (*model.laws, *listed)}.values())
     every = Model(model.base, tuple(laws), (1.0,) * len(laws))
-    inner = _only(equations, every.columns(equations)[0])
+    columns, clusters = every.columns(equations)[0], np.arange(equations.clusters)
+    inner = normal_equations.restricted(equations, columns, clusters)
     residual = _without(inner, inner.columns(model.base), units, use)
     drawn: Mapping[str, Callable[[np.random.Generator], NormalEquations]] = {
         NULL: lambda rng: _noise(inner, units, rng),
@@ -77,24 +79,17 @@ def _rms(equations: NormalEquations, units: Units, model: Model, use: np.ndarray
         yield float(np.sqrt(max(squares, 0.0) / max(units.freedom[tested].sum(), 1.0)))
 
 
-def _only(equations: NormalEquations, columns: np.ndarray) -> NormalEquations:
-    """Return the equations of these columns alone."""
-    names = tuple(equations.names[k] for k in columns)
-    return replace(equations, names=names, g=equations.g[:, columns][:, :, columns], b=equations.b[:, columns])
-
-
 def _without(equations: NormalEquations, base: np.ndarray, units: Units, use: np.ndarray) -> NormalEquations:
     """Return the equations of the residuals of all units under the baseline fitted to the clusters `use`."""
     fitted = units.of(use)
-    theta = np.zeros(len(equations.names))
-    theta[base] = normal_equations.solve_robustly(equations, base, fitted, units.freedom[fitted])
-    squares = normal_equations.losses(equations, np.arange(len(theta)), theta, np.arange(equations.clusters))
-    return replace(equations, b=equations.b + equations.g @ theta, s=squares)
+    theta = normal_equations.solve_robustly(equations, base, fitted, units.freedom[fitted])
+    return normal_equations.moved(equations, base, theta)
 
 
 def _flipped(equations: NormalEquations, rng: np.random.Generator) -> NormalEquations:
     """Return the equations with a random sign of each unit's residuals."""
-    return replace(equations, b=rng.choice((-1.0, 1.0), (equations.clusters, 1)) * equations.b)
+    signs = rng.choice((-1.0, 1.0), (equations.clusters, 1))[:, 0]
+    return replace(equations, b=np.repeat(signs, np.diff(equations.first_b)) * equations.b)
 
 
 def _noise(equations: NormalEquations, units: Units, rng: np.random.Generator) -> NormalEquations:
@@ -102,10 +97,11 @@ def _noise(equations: NormalEquations, units: Units, rng: np.random.Generator) -
 
     b = J'e has the covariance J'J; s = e'e is a chi-square, the sum of the parts inside and outside the range of J.
     """
-    value, vector = np.linalg.eigh(equations.g)
+    g = equations.whole()[0]
+    value, vector = np.linalg.eigh(g)
     visible = value > ENGINE.rank_tolerance * np.maximum(value[:, -1:], 1e-300)
     e = np.where(visible, rng.normal(size=value.shape), 0.0)
     b = np.einsum("cij,cj->ci", vector, np.sqrt(np.maximum(value, 0.0)) * e)
     rest = np.maximum(units.freedom - visible.sum(axis=1), 0.0)
     s = (e**2).sum(axis=1) + np.where(rest > 0.0, rng.chisquare(np.maximum(rest, 1e-9)), 0.0)
-    return replace(equations, b=b, s=s)
+    return normal_equations.packed(equations.names, g, b, s)

@@ -59,9 +59,8 @@ def contact_design_matrix(
     columns, predicted = _ColumnBlocks(list(free), [exact.jacobian]), problem.predicted(values)
     frictions = _add_frictions(problem, values, predicted, friction, columns)
     families = _add_families(problem, values, predicted, basis_library, prefix, only, columns)
-    jacobian = np.concatenate(columns.blocks, axis=1)
     equations = normal_equations.make_equations(
-        columns.names, exact.r, jacobian, problem.unit_of_rows, len(problem.data)
+        columns.names, exact.r, columns.blocks, problem.unit_of_rows, len(problem.data)
     )
     return DesignMatrix(equations, [*derivatives, *frictions], families)
 

@@ -32,10 +32,8 @@ def gantry_design_matrix(
     laws, smooth = families(problem, problem.record(values), only)
     smooth = np.vstack([smooth, np.zeros((len(exact.r) - len(smooth), smooth.shape[1]))])  # a prior does not change
     names = [*problem.base, *on, *off, *(one.label for one in effects), *(name for law in laws for name in law.columns)]
-    columns = [exact.jacobian, np.zeros((len(exact.r), len(off))), *(one.column[:, None] for one in effects), smooth]
-    equations = normal_equations.make_equations(
-        names, exact.r, np.concatenate(columns, axis=1), exact.cluster, problem.clusters
-    )
+    blocks = [exact.jacobian, np.zeros((len(exact.r), len(off))), *(one.column[:, None] for one in effects), smooth]
+    equations = normal_equations.make_equations(names, exact.r, blocks, exact.cluster, problem.clusters)
     listed = [
         Law(one.name, (one.label,), start={row: one.law.values[row] for row in (*problem.base, *own)})
         for one, own in ((one, EFFECTS[one.name].row_names) for one in effects)

@@ -67,9 +67,8 @@ def glide_columns(
         families.append(family)
         names += families[-1].columns
         blocks.append(block)
-    jacobian = np.concatenate(blocks, axis=1)
     glide = np.repeat(np.arange(problem.data.glides), 2 * np.diff(problem.data.first))
-    equations = normal_equations.make_equations(names, exact.r, jacobian, glide, problem.data.glides)
+    equations = normal_equations.make_equations(names, exact.r, blocks, glide, problem.data.glides)
     return DesignMatrix(equations, [*listed, *patches], families)
 
 

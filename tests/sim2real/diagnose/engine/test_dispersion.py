@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sim2real.diagnose.engine import normal_equations
-from sim2real.diagnose.engine.forward_selection import estimated_dispersion
+from sim2real.diagnose.engine.dispersion import estimated_dispersion
 from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.engine.problem import Units
 

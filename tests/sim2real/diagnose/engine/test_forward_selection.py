@@ -5,7 +5,8 @@ import pytest
 
 from sim2real.diagnose.engine import normal_equations
 from sim2real.diagnose.engine.alternatives import compare, nominal_p
-from sim2real.diagnose.engine.forward_selection import ForwardSelection, estimated_dispersion
+from sim2real.diagnose.engine.dispersion import estimated_dispersion
+from sim2real.diagnose.engine.forward_selection import ForwardSelection
 from sim2real.diagnose.engine.law import Law, Model
 from sim2real.diagnose.engine.problem import DesignMatrix, Units
 
@@ -133,9 +134,8 @@ def test_identical_columns_are_both_possible():
     place = {name: k for k, name in enumerate(equations.names)}
     index = np.arange(len(equations.names))
     index[place["patch"]] = place["tilt"]
-    same = normal_equations.NormalEquations(
-        equations.names, equations.g[:, index][:, :, index], equations.b[:, index], equations.s
-    )
+    g, b = equations.whole()
+    same = normal_equations.packed(equations.names, g[:, index][:, :, index], b[:, index], equations.s)
     selection = ForwardSelection(same, UNITS, EVERY)
     model = BASE.plus(LAWS[0], np.inf)
     also, alternatives = compare(selection, model, LAWS[0], DesignMatrix(same, LAWS, []))

@@ -15,6 +15,11 @@ def _problem(seed: int = 0):
     return r, jacobian, rng.integers(0, 8, 200), truth
 
 
+def assert_equal(one: normal_equations.NormalEquations, other: normal_equations.NormalEquations) -> None:
+    for these, those in zip((*one.whole(), one.s), (*other.whole(), other.s), strict=True):
+        np.testing.assert_allclose(these, those, rtol=1e-12, atol=1e-12 * np.abs(those).max())
+
+
 def test_a_solution_is_that_of_least_squares_on_the_same_rows():
     r, jacobian, cluster, _ = _problem()
     equations = normal_equations.make_equations("abc", r, jacobian, cluster, 8)
@@ -138,8 +143,7 @@ def test_gathered_equations_are_those_of_the_larger_clusters():
         normal_equations.gathered(fine, into, 3),
         normal_equations.make_equations("abc", r, jacobian, into[cluster], 3),
     )
-    for name in ("g", "b", "s"):
-        assert np.allclose(getattr(found, name), getattr(expected, name))
+    assert_equal(found, expected)
 
 
 def test_a_column_without_data_gets_zero():
@@ -154,5 +158,38 @@ def test_moved_equations_are_those_of_the_moved_residuals():
     equations = normal_equations.make_equations("abc", r, jacobian, cluster, 8)
     expected = normal_equations.make_equations("abc", r + jacobian[:, [0, 2]] @ truth[[0, 2]], jacobian, cluster, 8)
     found = normal_equations.moved(equations, np.array([0, 2]), truth[[0, 2]])
-    for name in ("g", "b", "s"):
-        assert np.allclose(getattr(found, name), getattr(expected, name)), name
+    assert_equal(found, expected)
+
+
+def test_columns_that_are_zero_in_a_cluster_take_no_room_and_change_nothing():
+    """Against sums by numpy over all rows, with every column 0 in most clusters."""
+    rng = np.random.default_rng(6)
+    cluster, theta = rng.integers(0, 12, 400), rng.normal(size=9)
+    jacobian = rng.normal(size=(400, 9)) * (rng.random((13, 9)) < 0.3)[cluster]
+    r, names = rng.normal(size=400), tuple("abcdefghi")
+    equations = normal_equations.make_equations(names, r, [jacobian[:, :4], jacobian[:, 4:]], cluster, 12)
+    g = np.array([jacobian[cluster == c].T @ jacobian[cluster == c] for c in range(12)])
+    b = np.array([jacobian[cluster == c].T @ r[cluster == c] for c in range(12)])
+    s = np.array([r[cluster == c] @ r[cluster == c] for c in range(12)])
+    for found, expected in zip((*equations.whole(), equations.s), (g, b, s), strict=True):
+        np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-12)
+    assert len(equations.g) < 0.25 * g.size
+    assert_equal(normal_equations.packed(names, g, b, s), equations)
+    columns, some = np.array([7, 1, 4]), np.array([10, 2, 3])
+    for found, expected in zip(normal_equations.summed(equations, columns, some), (g, b), strict=True):
+        whole = expected[some].sum(axis=0)
+        wanted = whole[np.ix_(columns, columns)] if whole.ndim == 2 else whole[columns]
+        np.testing.assert_allclose(found, wanted, rtol=1e-12, atol=1e-12)
+    part = normal_equations.restricted(equations, columns, some)
+    np.testing.assert_allclose(part.whole()[0], g[np.ix_(some, columns, columns)], rtol=1e-12)
+    np.testing.assert_allclose(part.whole()[1], b[np.ix_(some, columns)], rtol=1e-12)
+    every = np.arange(9)
+    expected = [np.sum((r + jacobian @ theta)[cluster == c] ** 2) for c in some]
+    np.testing.assert_allclose(normal_equations.losses(equations, every, theta, some), expected, rtol=1e-9)
+    gone = normal_equations.moved(equations, every, theta)
+    assert_equal(gone, normal_equations.make_equations(names, r + jacobian @ theta, jacobian, cluster, 12))
+    into = np.arange(12) // 4
+    assert_equal(
+        normal_equations.gathered(equations, into, 3),
+        normal_equations.make_equations(names, r, jacobian, into[cluster], 3),
+    )

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sim2real.diagnose.engine import normal_equations
 from sim2real.diagnose.engine.problem import DesignMatrix, Problem
 from sim2real.diagnose.regimes.gantry.problem import gantry_problem
 from sim2real.diagnose.regimes.mallet.problem import MalletProblem
@@ -36,7 +37,7 @@ def equations_of(columns: DesignMatrix, name: str, free: tuple[str, ...]) -> lis
     """G and b of one smooth term beside the free parameters."""
     law = next(one for one in columns.families if one.name == name)
     at = columns.equations.columns([*free, *law.columns])
-    return [columns.equations.g[:, at][:, :, at], columns.equations.b[:, at]]
+    return list(normal_equations.restricted(columns.equations, at, np.arange(columns.equations.clusters)).whole())
 
 
 @pytest.mark.slow
