@@ -16,8 +16,8 @@ def kept_columns(some: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return `place` (c, k), `first_b` (c + 1,) and `first_g` (c + 1,) for clusters that keep `some` (c, k) bool."""
     place = np.where(some, np.cumsum(some, axis=1) - 1, -1).astype(np.int32)
     width = some.sum(axis=1)
-    firsts = (np.concatenate([[0], np.cumsum(size)]) for size in (width, width * (width + 1) // 2))
-    return place, *firsts
+    first_b, first_g = (np.concatenate([[0], np.cumsum(size)]) for size in (width, width * (width + 1) // 2))
+    return place, first_b, first_g
 
 
 @kernel
