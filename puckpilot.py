@@ -36,6 +36,7 @@ COMMANDS = {
     "export": ("agents.commands.export", "write a policy as .npz or .onnx"),
     "bench": ("puckpilot_env.commands.bench", "how fast the simulator is here"),
     "bench vision": ("sim2real.commands.bench_vision", "how exact and how fast the vision is here"),
+    "bench diagnosis": ("sim2real.commands.bench_diagnosis", "what a diagnosis costs here, by the length of the play"),
     "bench table": ("sim2real.commands.bench_table", "how fast this machine reacts at a table, in real time"),
     "bench twin": ("sim2real.commands.bench_twin", "how fast the twin is here, and whether it plays as the simulator"),
     "play": ("sim2real.commands.play", "a player at the robot's seat of a table: firmware, camera and all, on a twin"),

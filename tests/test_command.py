@@ -51,6 +51,7 @@ OPTIONS = {
     ],
     "export": ["--out"],
     "bench": ["--tables", "--threads", "--seconds", "--against", "--dicts", "--startup", "--json"],
+    "bench diagnosis": ["--seconds", "--mechanism", "--seed", "--json"],
     "bench table": ["--seconds", "--period", "--json"],
     "bench twin": ["--opponent", "--variant", "--games", "--seconds", "--processes", "--folder", "--seed", "--json"],
     "table check": ["--home", "--example", "--json"],
@@ -189,6 +190,10 @@ def test_a_word_of_several_commands_tells_them(more, code, capsys):
         ),
         (["check", "match-v0", "--steps", "0"], "puckpilot check: steps is 0; expected at least 2"),
         (["check", "json:dumps"], "puckpilot check: cannot make 'json:dumps': " + DUMPS),
+        (
+            ["bench", "diagnosis", "--seconds", "5"],
+            "puckpilot bench diagnosis: --seconds has 5; expected lengths from 20 to 3600 s",
+        ),
         (["bench", "--threads", "0"], "puckpilot bench: threads is 0; expected a whole number from 1 to 256"),
         (["bench", "--seconds", "0"], "puckpilot bench: --seconds is 0; expected a number above 0, at most 3600"),
         (["bench", "--seconds", "nan"], "puckpilot bench: --seconds is nan; expected a number above 0, at most 3600"),
