@@ -12,9 +12,9 @@ from itertools import combinations
 import numpy as np
 
 from puckpilot_env.parameters import BY_NAME
-from sim2real.diagnose.engine import normal_equations
 from sim2real.diagnose.engine.law import Model
 from sim2real.diagnose.engine.least_squares import LeastSquaresFit, fit
+from sim2real.diagnose.engine.linear import normal_equations
 from sim2real.diagnose.engine.model_search import SearchResult, search_model
 from sim2real.diagnose.engine.problem import Problem
 from sim2real.diagnose.input_checks import two_tables

@@ -1,8 +1,8 @@
 """The engine: regression and model selection on the residuals of any regime, which a regime supplies as a `problem`.
 
 1. `problem`: what a regime supplies - residuals, design matrix, launches (clusters). `law`: a law and a model of laws.
-2. `normal_equations`: J'J, J'r and r'r of each unit; robust least squares and covariance from sums of them, which
-   `packed_sums` keeps without what is 0. `dispersion`: the noise in units of the sensor's.
+2. `linear`: J'J, J'r and r'r of each unit, kept without what is 0; robust least squares, covariance and the noise in
+   units of the sensor's from sums of them.
 3. `least_squares`: nonlinear fit of a law's parameters (Levenberg-Marquardt, robust by unit) with 95 % intervals.
 4. `forward_selection`: adds laws by cross-validation over units, then eliminates backward what is not needed.
 5. `backward_elimination`: refits the model jointly, drops laws of negligible size, and tests for a remaining misfit.

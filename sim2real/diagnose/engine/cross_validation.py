@@ -12,9 +12,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from puckpilot_env.parameters import BY_NAME
-from sim2real.diagnose.engine import normal_equations
 from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.engine.least_squares import LeastSquaresFit, robust_loss
+from sim2real.diagnose.engine.linear import normal_equations
 from sim2real.diagnose.engine.model_search import SearchResult, without, without_laws
 from sim2real.diagnose.engine.problem import Problem, Residuals
 from sim2real.diagnose.engine.tuned import ENGINE

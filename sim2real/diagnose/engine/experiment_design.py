@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from sim2real.diagnose.engine import normal_equations
-from sim2real.diagnose.engine.normal_equations import NormalEquations
+from sim2real.diagnose.engine.linear import normal_equations
+from sim2real.diagnose.engine.linear.normal_equations import NormalEquations
 from sim2real.diagnose.engine.tuned import ENGINE
 
 

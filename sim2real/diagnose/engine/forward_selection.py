@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from sim2real.diagnose.engine import normal_equations
 from sim2real.diagnose.engine.law import Law, Model
-from sim2real.diagnose.engine.normal_equations import NormalEquations
+from sim2real.diagnose.engine.linear import normal_equations
+from sim2real.diagnose.engine.linear.normal_equations import NormalEquations
 from sim2real.diagnose.engine.problem import Units
 from sim2real.diagnose.engine.tuned import ENGINE
 from sim2real.statistics.robust import group_loss

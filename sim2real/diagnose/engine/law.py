@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from puckpilot_env.physics.effects import EFFECTS
-from sim2real.diagnose.engine.normal_equations import NormalEquations
+from sim2real.diagnose.engine.linear.normal_equations import NormalEquations
 from sim2real.diagnose.engine.tuned import ENGINE
 
 

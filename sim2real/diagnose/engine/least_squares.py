@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from puckpilot_env.parameters import BY_NAME
-from sim2real.diagnose.engine import normal_equations
-from sim2real.diagnose.engine.normal_equations import NormalEquations
+from sim2real.diagnose.engine.linear import normal_equations
+from sim2real.diagnose.engine.linear.normal_equations import NormalEquations
 from sim2real.diagnose.engine.problem import Fittable, Residuals
 from sim2real.diagnose.engine.tuned import ENGINE
 from sim2real.diagnose.result.result import Estimate

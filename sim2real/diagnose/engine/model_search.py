@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from puckpilot_env.parameters import BY_NAME
-from sim2real.diagnose.engine import normal_equations
 from sim2real.diagnose.engine.backward_elimination import (
     defaults_accepted,
     eliminated,
@@ -18,12 +17,13 @@ from sim2real.diagnose.engine.backward_elimination import (
     without_outliers,
 )
 from sim2real.diagnose.engine.candidate_models import CandidateModel, best_candidate, identifiable
-from sim2real.diagnose.engine.dispersion import estimated_dispersion
 from sim2real.diagnose.engine.forward_selection import ForwardSelection, Gain
 from sim2real.diagnose.engine.law import Law, Model
 from sim2real.diagnose.engine.least_squares import LeastSquaresFit, fit, given
+from sim2real.diagnose.engine.linear import normal_equations
+from sim2real.diagnose.engine.linear.dispersion import estimated_dispersion
+from sim2real.diagnose.engine.linear.normal_equations import NormalEquations
 from sim2real.diagnose.engine.nonparametric import NonparametricFit, fit_nonparametric
-from sim2real.diagnose.engine.normal_equations import NormalEquations
 from sim2real.diagnose.engine.problem import DesignMatrix, Problem
 from sim2real.diagnose.engine.tuned import ENGINE
 

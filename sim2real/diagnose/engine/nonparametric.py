@@ -12,10 +12,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from puckpilot_env.parameters import BY_NAME
-from sim2real.diagnose.engine import normal_equations
 from sim2real.diagnose.engine.forward_selection import ForwardSelection
 from sim2real.diagnose.engine.law import Law, Model
 from sim2real.diagnose.engine.least_squares import LeastSquaresFit
+from sim2real.diagnose.engine.linear import normal_equations
 from sim2real.diagnose.engine.problem import DesignMatrix, Problem
 from sim2real.diagnose.engine.tuned import ENGINE
 from sim2real.statistics.robust import group_loss

@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from sim2real.diagnose.engine import normal_equations
-from sim2real.diagnose.engine.dispersion import estimated_dispersion
 from sim2real.diagnose.engine.forward_selection import ForwardSelection
 from sim2real.diagnose.engine.law import Law, Model
-from sim2real.diagnose.engine.normal_equations import NormalEquations
+from sim2real.diagnose.engine.linear import normal_equations
+from sim2real.diagnose.engine.linear.dispersion import estimated_dispersion
+from sim2real.diagnose.engine.linear.normal_equations import NormalEquations
 from sim2real.diagnose.engine.problem import Units
 from sim2real.diagnose.engine.tuned import ENGINE
 from sim2real.diagnose.result.result import NullControl

@@ -14,7 +14,7 @@ import numpy as np
 
 from puckpilot_env.parameters import make_records
 from sim2real.diagnose.engine.law import Law
-from sim2real.diagnose.engine.normal_equations import NormalEquations
+from sim2real.diagnose.engine.linear.normal_equations import NormalEquations
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import minimize
 
-from sim2real.diagnose.engine import normal_equations
+from sim2real.diagnose.engine.linear import normal_equations
 from sim2real.diagnose.formula.shapes import Form, Named
 from sim2real.diagnose.formula.tuned import FORMULA
 from sim2real.diagnose.result.result import Estimate

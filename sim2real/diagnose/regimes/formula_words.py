@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from puckpilot_env.parameters import BY_NAME
-from sim2real.diagnose.engine import normal_equations
+from sim2real.diagnose.engine.linear import normal_equations
 from sim2real.diagnose.engine.model_search import SearchResult
 from sim2real.diagnose.engine.problem import Problem
 from sim2real.diagnose.formula.search import Formula

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from puckpilot_env.physics.effects import EFFECTS
-from sim2real.diagnose.engine import normal_equations
 from sim2real.diagnose.engine.experiment_design import information, most_informative
 from sim2real.diagnose.engine.law import Law
+from sim2real.diagnose.engine.linear import normal_equations
 from sim2real.diagnose.engine.model_search import SearchResult
 from sim2real.diagnose.engine.problem import Problem
 from sim2real.diagnose.result.result import Finding

@@ -13,11 +13,11 @@ from sim2real.vision.track.blobs import LEVEL, Blob, BlobDetector
 from sim2real.vision.track.disc import Disc
 from sim2real.vision.track.film import Film, FilmGauge
 from sim2real.vision.track.kalman_tracker import KalmanTracker, Measurement, TrackState, first_state
-from sim2real.vision.track.object_search import ObjectSearch
 from sim2real.vision.track.puck import PuckFinder
 from sim2real.vision.track.ring import Ring, RingFinder
-from sim2real.vision.track.search_parts import Region, SearchInParts
-from sim2real.vision.track.search_region import SearchRegions
+from sim2real.vision.track.search.object_search import ObjectSearch
+from sim2real.vision.track.search.parts import Region, SearchInParts
+from sim2real.vision.track.search.regions import SearchRegions
 
 SURE_WITHIN = 0.25e-3  # m, greatest standard deviation of a disc that can only be the puck
 PUCK_POWER, OPPONENT_POWER = 0.02, 5.0  # m^2/s^3, spectral density of the white acceleration between contacts

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from puckpilot_env.physics.effects.unlisted_bounce import OF_BOTH, OF_NORMAL, OF_TANGENT
-from sim2real.diagnose.engine import normal_equations
 from sim2real.diagnose.engine.law import Law
+from sim2real.diagnose.engine.linear import normal_equations
 from sim2real.diagnose.engine.problem import DesignMatrix
 from sim2real.diagnose.regimes.contact.data import Contacts
 from sim2real.diagnose.regimes.contact.problem import ContactProblem

@@ -8,8 +8,8 @@ import numpy as np
 
 from puckpilot_env.parameters import BY_NAME
 from puckpilot_env.physics.effects import EFFECTS
-from sim2real.diagnose.engine import normal_equations
 from sim2real.diagnose.engine.law import Law
+from sim2real.diagnose.engine.linear import normal_equations
 from sim2real.diagnose.engine.problem import DesignMatrix
 from sim2real.diagnose.regimes.gantry.basis_library import families
 from sim2real.diagnose.regimes.gantry.listed_effects import STARTS, Candidate

@@ -14,8 +14,8 @@ import numpy as np
 
 from puckpilot_env.parameters import BY_NAME
 from puckpilot_env.physics.effects import EFFECTS
-from sim2real.diagnose.engine import normal_equations
 from sim2real.diagnose.engine.least_squares import LeastSquaresFit, fit
+from sim2real.diagnose.engine.linear import normal_equations
 from sim2real.diagnose.engine.tuned import ENGINE
 from sim2real.diagnose.regimes.gantry.residuals import LOW_ORDER, GantryResiduals
 from sim2real.diagnose.regimes.gantry.tuned import GANTRY_FIT

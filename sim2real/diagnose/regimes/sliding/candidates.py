@@ -9,8 +9,8 @@ from functools import partial
 import numpy as np
 
 from puckpilot_env.physics.effects import EFFECTS
-from sim2real.diagnose.engine import normal_equations
 from sim2real.diagnose.engine.law import Law
+from sim2real.diagnose.engine.linear import normal_equations
 from sim2real.diagnose.engine.problem import DesignMatrix, Residuals
 from sim2real.diagnose.regimes.sliding.as_effect import effect_parameters
 from sim2real.diagnose.regimes.sliding.basis_library import FAMILIES, SPIN, WAVES, Motion

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from sim2real.diagnose.engine import normal_equations
 from sim2real.diagnose.engine.least_squares import given
+from sim2real.diagnose.engine.linear import normal_equations
 from sim2real.diagnose.engine.model_search import SearchResult
 from sim2real.diagnose.engine.problem import Problem
 from sim2real.diagnose.regimes.base import (

@@ -5,8 +5,8 @@ from functools import partial
 
 import numpy as np
 
-from sim2real.diagnose.engine import normal_equations
 from sim2real.diagnose.engine.law import Law
+from sim2real.diagnose.engine.linear import normal_equations
 from sim2real.diagnose.engine.model_search import SearchResult
 from sim2real.diagnose.engine.problem import DesignMatrix, Problem, Residuals, Units
 from sim2real.diagnose.regimes.base import Evidence, Known, RecordingPart, Regime

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sim2real.diagnose.engine import normal_equations
-from sim2real.diagnose.engine.dispersion import estimated_dispersion
 from sim2real.diagnose.engine.law import Law
+from sim2real.diagnose.engine.linear import normal_equations
+from sim2real.diagnose.engine.linear.dispersion import estimated_dispersion
 from sim2real.diagnose.engine.problem import Units
 
 EACH = 2  # residuals of a wall contact

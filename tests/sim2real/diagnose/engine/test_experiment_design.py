@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from sim2real.diagnose.engine import normal_equations
 from sim2real.diagnose.engine.experiment_design import information, most_informative
+from sim2real.diagnose.engine.linear import normal_equations
 
 UNITS, EACH = 12, 30
 NAMES = ("base", "tilt", "warp")

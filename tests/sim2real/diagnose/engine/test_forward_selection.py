@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from sim2real.diagnose.engine import normal_equations
 from sim2real.diagnose.engine.alternatives import compare, nominal_p
-from sim2real.diagnose.engine.dispersion import estimated_dispersion
 from sim2real.diagnose.engine.forward_selection import ForwardSelection
 from sim2real.diagnose.engine.law import Law, Model
+from sim2real.diagnose.engine.linear import normal_equations
+from sim2real.diagnose.engine.linear.dispersion import estimated_dispersion
 from sim2real.diagnose.engine.problem import DesignMatrix, Units
 
 LAUNCHES, SEGMENTS, EACH = 16, 3, 20  # launches, segments in each, residuals in each segment

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sim2real.diagnose.engine import normal_equations
 from sim2real.diagnose.engine.least_squares import fit
+from sim2real.diagnose.engine.linear import normal_equations
 from sim2real.diagnose.engine.nonparametric import fit_nonparametric
 from sim2real.diagnose.regimes.sliding.problem import GlideProblem
 from sim2real.diagnose.split import glides_of

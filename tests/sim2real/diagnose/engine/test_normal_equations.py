@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import t as student
 
-from sim2real.diagnose.engine import normal_equations
+from sim2real.diagnose.engine.linear import normal_equations
 
 
 def _problem(seed: int = 0):

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from sim2real.diagnose.engine import normal_equations
 from sim2real.diagnose.engine.forward_selection import ForwardSelection
 from sim2real.diagnose.engine.law import Law, Model
+from sim2real.diagnose.engine.linear import normal_equations
 from sim2real.diagnose.engine.null_controls import NULL, PERMUTED, null_controls
 from sim2real.diagnose.engine.problem import Units
 

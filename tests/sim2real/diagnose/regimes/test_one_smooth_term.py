@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim2real.diagnose.engine import normal_equations
+from sim2real.diagnose.engine.linear import normal_equations
 from sim2real.diagnose.engine.problem import DesignMatrix, Problem
 from sim2real.diagnose.regimes.gantry.problem import gantry_problem
 from sim2real.diagnose.regimes.mallet.problem import MalletProblem

@@ -6,8 +6,8 @@ import numpy as np
 
 from sim2real.camera.render.table import Table
 from sim2real.camera.render.view import CameraView
-from sim2real.vision.track.search_parts import SearchInParts
-from sim2real.vision.track.search_region import SearchRegions
+from sim2real.vision.track.search.parts import SearchInParts
+from sim2real.vision.track.search.regions import SearchRegions
 from sim2real.vision.trial.rendered_calibration import exact_locator
 
 TABLE = Table.with_markers()

@@ -14,7 +14,7 @@ from puckpilot_env.options.effects_file import described, effect_values
 from puckpilot_env.parameters import TABLE, make_records
 from puckpilot_env.physics.advance import PUCK
 from puckpilot_env.physics.contacts.rebound import strike
-from sim2real.diagnose.engine import normal_equations
+from sim2real.diagnose.engine.linear import normal_equations
 from sim2real.diagnose.output.files import write
 from sim2real.diagnose.pipeline import diagnose
 from sim2real.diagnose.regimes.contact.candidates import COMPONENTS

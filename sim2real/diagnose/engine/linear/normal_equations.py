@@ -16,7 +16,7 @@ import numpy as np
 from scipy.linalg import eigh
 
 from puckpilot_env.kernel import array_kernel
-from sim2real.diagnose.engine import packed_sums
+from sim2real.diagnose.engine.linear import packed_sums
 from sim2real.diagnose.engine.tuned import ENGINE
 from sim2real.statistics.robust import group_weights
 

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sim2real.diagnose.engine import normal_equations
 from sim2real.diagnose.engine.law import Law, Model
-from sim2real.diagnose.engine.normal_equations import NormalEquations
+from sim2real.diagnose.engine.linear import normal_equations
+from sim2real.diagnose.engine.linear.normal_equations import NormalEquations
 from sim2real.diagnose.engine.problem import Units
 from sim2real.diagnose.engine.tuned import ENGINE
 

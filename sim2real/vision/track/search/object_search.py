@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from sim2real.vision.track.kalman_tracker import KalmanTracker
-from sim2real.vision.track.search_parts import Region, SearchInParts
-from sim2real.vision.track.search_region import SearchRegions
+from sim2real.vision.track.search.parts import Region, SearchInParts
+from sim2real.vision.track.search.regions import SearchRegions
 
 ROOM = 4.0  # standard deviations of the prediction from the predicted place to the edge of a search region
 
