@@ -61,14 +61,14 @@ class Detector:
         self._opponent = self._search_of(OPPONENT_POWER, of_ring, PARTS)
         self._calibration = np.diag([calibration_error**2, calibration_error**2, 0.0, 0.0])
         self._grey = GreyOfMosaic(size) if mosaic else None
-        self._pictures = 0  # searched
+        self._pictures, self._several = 0, False  # searched; whether the last one showed several pucks
 
     def detect(self, image: np.ndarray, time: float) -> Detections:
         """Detect in a picture uint8 (rows, columns) of mid-exposure time `time` [s], and update the tracks. Pictures
         come in order of time; ValueError otherwise."""
         rings = self._search_rings(image, time)
         discs = self._search_discs(image, time, rings)
-        self._pictures += 1
+        self._pictures, self._several = self._pictures + 1, sum(_disc_measurement(disc).sure for disc in discs) > 1
         puck = self._puck.tracker.update(time, [_disc_measurement(disc) for disc in discs])
         opponent = self._opponent.tracker.update(time, [_ring_measurement(ring) for ring in rings])
         return Detections(
@@ -109,11 +109,13 @@ class Detector:
 
     def _search_discs(self, image: np.ndarray, time: float, rings: list[Ring]) -> list[Disc]:
         """The discs beside known rings where the puck is likely to be or, if it is not there, in a part of where it can
-        be."""
+        be; in all of that while there were several in the last picture, of which a part might show one."""
         for region in self._puck.likely(time, self._room):
             discs = self._find(image, region, rings)[1]
             if any(_disc_measurement(disc).sure for disc in discs):
                 return discs
+        if self._several:
+            return self._find(image, self._puck.possible(time, self._room), rings)[1]
         return self._find(image, self._puck.part(time, self._room, self._pictures), rings)[1]
 
     def _rings_in(self, image: np.ndarray, region: Region) -> list[Ring]:

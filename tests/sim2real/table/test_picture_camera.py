@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +13,7 @@ from sim2real.camera.frame_monitor import Trouble
 from sim2real.camera.render.renderer import Renderer
 from sim2real.study.independent_table.physics.law import Law
 from sim2real.table.backend import SeenFrame
+from sim2real.table.drills.picture_faults import BESIDE
 from sim2real.table.faults import TableFaultError
 from sim2real.table.twin.camera import CameraErrors
 from sim2real.table.twin.cameras import camera_maker
@@ -98,14 +100,28 @@ def test_the_same_seed_takes_the_same_pictures(make) -> None:
     assert (images[0] != images[2]).mean() > 0.02  # where something moves; what stands still has noise in turn
 
 
-def test_a_second_puck_is_counted(camera: PictureCamera) -> None:
+def test_a_second_puck_beside_the_first_is_counted(camera: PictureCamera) -> None:
     plant = plant_with()
     seen(camera, plant)
-    camera.scene.things = (second_puck((1.3, 0.6), RENDERED),)
-    camera.scene.things += (hand(PUCK),)  # so that the whole picture is searched
-    assert seen(camera, plant)[-1].puck is None
+    beside = second_puck((PUCK[0], PUCK[1] + BESIDE), RENDERED)
+    camera.scene.things = (beside, hand(PUCK))
+    seen(camera, plant)
+    camera.scene.things = (beside,)
+    assert [frame.pucks for frame in seen(camera, plant, 10)[4:]] == 6 * [2]
+
+
+@pytest.mark.slow
+def test_of_two_pucks_far_apart_one_is_tracked_and_both_are_noticed(camera: PictureCamera) -> None:
+    """A puck that was lost is searched in a part of each picture, and the whole is checked twice a second."""
+    plant, other = plant_with(), (1.3, 0.75)
+    seen(camera, plant)
+    camera.scene.things = (second_puck(other, RENDERED), hand(PUCK))
+    seen(camera, plant, 12)
     camera.scene.things = camera.scene.things[:1]
-    assert max(frame.pucks for frame in seen(camera, plant, 1)) == 2
+    first, *more = [frame.puck for frame in seen(camera, plant, 8)[4:]]
+    assert first is not None and min(math.dist(first, one) for one in (PUCK, other)) < 1e-3
+    assert more == 3 * [pytest.approx(first, abs=1e-3)]
+    assert "several pucks" in [trouble.name for _ in range(3) for trouble in troubles(camera, plant)]
 
 
 @pytest.mark.slow

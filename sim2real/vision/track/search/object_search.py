@@ -34,10 +34,13 @@ class ObjectSearch:
         regions = (self.predicted(time, room), None if self.tracker.confirmed else self._reachable(time, room))
         return (region for region in regions if region is not None)
 
+    def possible(self, time: float, room: float) -> Region | None:
+        """Where the object can be: within reach of a confirmed track, or anywhere, which is None."""
+        return self._reachable(time, room) if self.tracker.confirmed else None
+
     def part(self, time: float, room: float, picture: int) -> Region:
-        """The part to be searched, in a picture of this number, of all places where the object can be: those within
-        reach of a confirmed track, or anywhere."""
-        return self.parts.part(self._reachable(time, room) if self.tracker.confirmed else None, picture)
+        """The part of `possible` to be searched in a picture of this number."""
+        return self.parts.part(self.possible(time, room), picture)
 
     def _reachable(self, time: float, room: float) -> Region | None:
         """As far as the object can have come since it was last measured; None if that is anywhere."""
