@@ -49,12 +49,13 @@ class CameraClock:
     def add(self, camera_s: float, host_s: float) -> None:
         """Add a frame by the camera's time of its exposure's middle and the host's time of its arrival [s], in order
         of time. A clock that runs back, or a line that fits no more, is a jump: older frames are dropped."""
-        point = camera_s, host_s - camera_s - self._least_delay - self.late
         if self._earliest and camera_s < self._earliest[-1][0] - BLOCK:
             self.jumps += 1
             self.late = 0.0
             self._earliest.clear()
-            point = camera_s, host_s - camera_s - self._least_delay
+        if self.late > 0.0:
+            self._end_lateness(camera_s, host_s)
+        point = camera_s, host_s - camera_s - self._least_delay - self.late
         if not self._earliest or camera_s - self._begun >= BLOCK:
             self._begun = camera_s
             self._earliest.append(point)
@@ -106,6 +107,12 @@ class CameraClock:
     def _late(self, point: tuple[float, float]) -> float:
         return point[1] - self._slope * (point[0] - self._origin)
 
+    def _end_lateness(self, camera_s: float, host_s: float) -> None:
+        """A frame that comes sooner than late ones can: all come later by less now, or no more."""
+        left = host_s - self.to_host(camera_s) - self._least_delay
+        if left < self.late - MOST_EXCESS:
+            self.late = left if left > MOST_EXCESS else 0.0
+
     def _check_known(self) -> None:
         if not self._earliest:
             raise ValueError("the camera's clock is unknown: no frame has come yet; add one")
@@ -122,10 +129,8 @@ class CameraClock:
             self._earliest = deque((camera, host - step) for camera, host in self._earliest)
 
     def _lateness(self, step: float) -> float:
-        """The part of a step of the offset [s] that is lateness, which begins with one and ends with another back."""
-        if step < 0.0:
-            return -self.late if self.late + step < MOST_EXCESS else step
-        return step if step < LATENESS else 0.0
+        """The part of a step of the offset [s] that is lateness."""
+        return step if 0.0 < step < LATENESS else 0.0
 
     def _fit_newest(self) -> None:
         self._origin = self._earliest[-1][0]
