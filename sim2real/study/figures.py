@@ -63,7 +63,8 @@ def share(name: str, answers: Iterable[bool | None], least: float = 0.0, most: f
     if not known:
         return Figure(name, None, 0.0, 1.0, 0, least, most)
     interval = binomtest(sum(known), len(known)).proportion_ci(0.95, "exact")
-    return Figure(name, sum(known) / len(known), interval.low, interval.high, len(known), least, most)
+    low, high = float(interval.low), float(interval.high)  # plain numbers, as JSON needs them
+    return Figure(name, sum(known) / len(known), low, high, len(known), least, most)
 
 
 def median(name: str, values: Iterable[float | None], least: float = -np.inf, most: float = np.inf) -> Figure:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from math import sqrt
 from pathlib import Path
@@ -181,6 +182,18 @@ def test_a_few_cases_reach_and_miss_nothing():
     assert (four.reached, four.sure, four.too_few) == (None, None, True)
     assert (five.reached, five.too_few) == (False, False)
     assert not share("x", [], 0.5).too_few
+
+
+def test_a_share_is_plain_data_whatever_numbers_the_interval_comes_as(monkeypatch: pytest.MonkeyPatch) -> None:
+    import scipy.stats
+
+    class Numpy:
+        def proportion_ci(self, level: float, method: str) -> Numpy:
+            self.low, self.high = np.float64(0.1), np.float64(0.6)
+            return self
+
+    monkeypatch.setattr(scipy.stats, "binomtest", lambda hits, count: Numpy())
+    json.dumps(share("x", [True] * 3 + [False] * 7, least=0.85).as_dict())
 
 
 def made() -> list[Score]:
