@@ -46,6 +46,14 @@ def next_knot(x, x1, knots):
 
 
 @kernel
+def share_of_time(way, v, v1):
+    """The share of the time that a share `way` of a straight way takes, along which the speed goes from `v` to `v1`."""
+    if way < 1.0 and v1 < v:  # the first part of a way takes less than its share of the time
+        way *= (v + v1) / (v + math.sqrt(v * v + way * (v1 * v1 - v * v)))
+    return way
+
+
+@kernel
 def next_even_knot(x, x1, first, last, count):
     """The same of `count` even knots from `first` to `last`, where x1 > x."""
     gap = (last - first) / (count - 1)

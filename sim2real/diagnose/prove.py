@@ -61,6 +61,6 @@ def rms_residual(problem: Problem, found: SearchResult) -> float:
     if found.unlisted is None or found.effect_parameters():
         squares = float(np.sum(problem.residuals(found.all_values, (), live).r ** 2))
     else:
-        columns = problem.columns(found.law.values, found.law.free, None, only=found.unlisted.name)
+        columns = problem.columns(found.law.values, found.law.free, None, only=[found.unlisted])
         squares = float(found.losses(columns.equations, columns.families[0], problem.units.of(live)).sum())
     return float(np.sqrt(squares / max(float(problem.freedom[live].sum()), 1.0)))

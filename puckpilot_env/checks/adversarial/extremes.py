@@ -58,8 +58,9 @@ def _draw_rows(name: str, rng: np.random.Generator) -> dict[str, float]:
 
 
 def _draw_law(name: str, rng: np.random.Generator) -> dict[str, float]:
-    """Numbers of an effect that is a table of them; none where those drawn made no law."""
+    """Numbers of an effect that has no name; none where those drawn made no law."""
     rows = EFFECTS[name].rows
+    coefficients = [short for short in rows if short[1:].isdigit()]
     for _ in range(TRIES):
         scale, knots = 10.0 ** rng.uniform(-6.0, 0.0), int(rng.choice((0, 0, 2, 4, 5, 10)))
         values = {}
@@ -68,8 +69,8 @@ def _draw_law(name: str, rng: np.random.Generator) -> dict[str, float]:
                 values[short] = float(rng.integers(int(max(row.low, 1.0)), int(row.high) + 1))
             else:
                 values[short] = scale * draw_value(row, rng)
-        ordered = sorted(values[f"c{k:02}"] for k in range(min(knots, len(rows) - len(WHOLE))))
-        values |= {f"c{k:02}": value / scale**0.5 for k, value in enumerate(ordered)}
+        first = coefficients[:knots]
+        values |= dict(zip(first, sorted(values[short] / scale**0.5 for short in first), strict=True))
         values = {short: row.within(values[short]) for short, row in rows.items()}
         if not EFFECTS[name].misfit(values):
             return {row.name: values[short] for short, row in rows.items()}

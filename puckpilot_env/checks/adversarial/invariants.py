@@ -74,7 +74,8 @@ def push_bound(tables: Tables) -> NDArray[np.float64]:
     off = 0.5 * np.hypot(p["length"], p["width"])
     warp = np.sqrt(p["warp_xx"] ** 2 + p["warp_yy"] ** 2 + 2.0 * p["warp_xy"] ** 2)
     law = np.sum([np.abs(p[name]) for name in _FORCES], 0) * (p["unlisted_kind"] != 0.0)
-    return np.hypot(p["tilt_x"], p["tilt_y"]) + warp * off + 2.0 * law + 10.0 * p["impulse_rate"] * p["impulse_speed"]
+    push = np.hypot(p["tilt_x"], p["tilt_y"]) + np.hypot(p["window_push_x"], p["window_push_y"])
+    return push + warp * off + 2.0 * law + 10.0 * p["impulse_rate"] * p["impulse_speed"]
 
 
 class Before:

@@ -6,6 +6,7 @@ import math
 
 from puckpilot_env.effect import Effect, Parameter
 from puckpilot_env.kernel import kernel
+from puckpilot_env.physics.interpolation import share_of_time
 
 _SOURCE = "blocked holes cost up to the whole film: tenths of m/s^2"
 
@@ -40,10 +41,7 @@ def friction(p, t, x, y, vx, vy, friction):
 @kernel
 def edge(p, t, x, y, v, t1, x1, y1, v1):
     """Where a straight way meets the circle; of a way along which the puck slows down, when."""
-    way = _way_to_circle(p, x, y, x1, y1)
-    if way < 1.0 and v1 < v:  # the first part of a way takes less than its share of the time
-        way *= (v + v1) / (v + math.sqrt(v * v + way * (v1 * v1 - v * v)))
-    return way
+    return share_of_time(_way_to_circle(p, x, y, x1, y1), v, v1)
 
 
 @kernel

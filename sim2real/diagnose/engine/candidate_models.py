@@ -41,6 +41,7 @@ def best_candidate(
     listed: Model,
     selection: ForwardSelection,
     screen: DesignMatrix,
+    terms: Sequence[Law],
     use: np.ndarray,
 ) -> CandidateModel:
     """Return the simplest of the candidates that predict well.
@@ -49,20 +50,22 @@ def best_candidate(
     only beside them; and all or fewer of the listed laws with a smooth term for their remaining residuals. Smooth terms
     are tried only if the listed laws have a misfit or a significant remainder.
 
-    `baseline`: fit without laws; `selection`: of the listed laws, in the design matrix `screen` about the baseline.
+    `baseline`: fit without laws; `selection`: of the listed laws, in the design matrix `screen` about the baseline;
+    `terms`: all smooth terms, of which the screen has the best variants beside the baseline alone.
     """
     only_listed = CandidateModel(listed, law, None, np.inf)
-    if explains_nearly_all(problem, baseline, law, use):
+    baseline_loss = float(selection.cv_loss(Model(problem.base)).sum())
+    rivalled = _rivalled(selection, listed, screen, baseline_loss)
+    if not rivalled and explains_nearly_all(problem, baseline, law, use):
         return only_listed
     columns = screen
     if law is not baseline:
-        columns = identifiable(problem.columns(law.values, law.free, None), problem, use, law.free)
+        columns = identifiable(problem.columns(law.values, law.free, None, terms), problem, use, law.free)
     refitted = ForwardSelection(columns.equations, problem.units, use, selection.dispersion, selection.least)
     remainder = _remainder(selection, listed, refitted, law, columns)
-    if remainder is None and not has_misfit(problem, baseline, law, use):
+    if remainder is None and not rivalled and not has_misfit(problem, baseline, law, use):
         return only_listed
     candidates = [replace(only_listed, cv_loss=float(refitted.cv_loss(Model(law.free)).sum()))]
-    baseline_loss = float(selection.cv_loss(Model(problem.base)).sum())
     gains = _promising_terms(selection, Model(problem.base), screen)
     if remainder is not None and not listed.laws and remainder.law.name not in {gain.law.name for gain in gains}:
         gains.append(remainder)
@@ -73,8 +76,9 @@ def best_candidate(
         )  # a lower bound of the term's loss, as far as the linearization of the screen holds
         if least < min(one.cv_loss for one in (*candidates, *alone)):
             alone.append(_with_term(problem, Model(problem.base), baseline, gain, selection, use))
+    candidates += [one for one in alone if one.smooth and one.smooth.family.is_simple]
     if not listed_suffice(candidates[0], alone, baseline_loss):
-        candidates += alone
+        candidates += [one for one in alone if one not in candidates]
         candidates += _term_with_laws(problem, baseline, gains, alone, selection, screen, use)
     if remainder is not None and listed.laws:
         candidates.append(_with_term(problem, listed, law, remainder, selection, use))
@@ -83,6 +87,16 @@ def best_candidate(
             fewer, fitted = eliminated(problem, baseline, fewer, screen, use)
             candidates.append(_with_term(problem, fewer, fitted, remainder, selection, use))
     return simplest(candidates, baseline_loss)
+
+
+def _rivalled(selection: ForwardSelection, listed: Model, screen: DesignMatrix, baseline_loss: float) -> bool:
+    """Return whether a simple term alone predicts much better than the listed laws."""
+    listed_loss = float(selection.cv_loss(listed).sum())
+    gains = [selection.gain(Model(listed.base), law) for law in screen.families if law.is_simple]
+    best = max((gain for gain in gains if selection.passes(gain)), key=lambda gain: gain.total, default=None)
+    if best is None or not listed.laws:
+        return False
+    return listed_loss - (baseline_loss - best.total) > max(ENGINE.cv_gain, ENGINE.share_of_explained * best.total)
 
 
 def simplest(candidates: Sequence[CandidateModel], baseline_loss: float) -> CandidateModel:

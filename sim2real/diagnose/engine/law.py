@@ -43,6 +43,12 @@ class Law:
     variant_of: str = ""
 
     @property
+    def is_simple(self) -> bool:
+        """Whether a smooth term has a place or size of its own and no more than two coefficients: as few numbers as a
+        listed law, which cannot approximate any other."""
+        return self.searched > 1 and len(self.columns) <= 2
+
+    @property
     def rows(self) -> tuple[str, ...]:
         """The free parameters of a listed law in a nonlinear fit.
 

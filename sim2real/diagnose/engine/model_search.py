@@ -146,7 +146,8 @@ def search_model(
     if problem.first_fitted != problem.base:
         first = fit(problem, defaults, problem.first_fitted, use)
     use, baseline = without_leverage(problem, fit(problem, first.values, problem.base, use), use)
-    screen = identifiable(problem.columns(baseline.values, (), use), problem, use)
+    every = problem.columns(baseline.values, (), use)
+    screen = identifiable(every, problem, use)
     laws = [*screen.listed, *screen.families]
     dispersion = dispersion or estimated_dispersion(screen.equations, problem.units, problem.base, laws, use)
     selection = ForwardSelection(screen.equations, problem.units, use, dispersion, _least_gain(problem))
@@ -154,7 +155,7 @@ def search_model(
     listed, law = eliminated(problem, baseline, selection.eliminate_backward(grown), screen, use)
     best = CandidateModel(listed, law, None, np.inf)
     if clear:
-        best = best_candidate(problem, baseline, law, listed, selection, screen, use)
+        best = best_candidate(problem, baseline, law, listed, selection, screen, every.families, use)
     model, law, smooth = best.model, best.law, best.smooth
     kept = use if smooth else without_outliers(problem, law, use)
     if len(kept) < len(use):

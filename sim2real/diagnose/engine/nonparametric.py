@@ -100,7 +100,7 @@ class _Search:
     def linearized(self, law: LeastSquaresFit, family: Law, coefficients: np.ndarray) -> _Linearization:
         """Return the linearization about the trajectory of the law with these coefficients of the term."""
         values: Mapping[str, float] = {**law.values, **(family.switch(coefficients) if coefficients.any() else {})}
-        columns = self._problem.columns(values, law.free, None, only=family.name)
+        columns = self._problem.columns(values, law.free, None, only=[family])
         family = columns.families[0]
         index = columns.equations.columns(family.columns)
         without = normal_equations.moved(columns.equations, index, -coefficients)

@@ -93,13 +93,13 @@ class Problem(Fittable, Protocol):
     place_error_m: float
 
     def columns(
-        self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None, only: str = ""
+        self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None, only: Sequence[Law] = ()
     ) -> DesignMatrix:
         """Return the design matrix of all clusters at the parameters `values`.
 
         It has the columns of the base, of other parameters `free`, of the listed laws and of the smooth terms. The
         start of a nonlinear law, such as a place, is searched for in the clusters `use` alone, or not at all if None.
-        `only`: the name of the smooth term whose columns are wanted, instead of all.
+        Smooth terms whose place or size is searched for are too. `only`: the smooth terms wanted, instead of all.
         """
         ...
 

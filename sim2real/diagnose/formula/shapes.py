@@ -85,7 +85,11 @@ def profiles(axis: Axis, unit: str) -> list[Profile]:
     """
     u = axis.values[np.isfinite(axis.values)]
     low, high = float(u.min()), float(u.max())
-    return [*_powers(axis, unit), *_local(axis, unit, low, high), _sine(axis, unit, high - low)]
+    return [
+        *_powers(axis, unit),
+        *_local(axis, unit, low, high),
+        sine(axis, unit, (high - low) / np.array(FORMULA.periods)),
+    ]
 
 
 def _powers(axis: Axis, unit: str) -> list[Profile]:
@@ -119,13 +123,32 @@ def _local(axis: Axis, unit: str, low: float, high: float) -> list[Profile]:
         lambda u, p: p["size"] * np.exp(-0.5 * ((u - p["middle"]) / p["width"]) ** 2),
         lambda name, p: f"{p['size']:.4g} exp(-({_less(name, p['middle'])} / {p['width']:.4g})^2 / 2)",
     )  # fmt: skip
-    stripe = Profile(
-        "stripe", np.array(list(product(places, 2.0 * widths))), lambda u, n: _box(u, n[0], n[1])[:, None],
+    return [decay, bump, stripe(axis, unit, np.array(list(product(places, 2.0 * widths))))]
+
+
+def stripe(axis: Axis, unit: str, grid: np.ndarray) -> Profile:
+    """Return a size inside a stripe of the coordinate; `grid` (g, 2): its middles and widths."""
+    return Profile(
+        "stripe", grid, lambda u, n: _box(u, n[0], n[1])[:, None],
         lambda n, a: _placed(n, a, unit, axis.unit),
         lambda u, p: p["size"] * _box(u, p["middle"], p["width"]),
         lambda name, p: f"{p['size']:.4g} where |{_less(name, p['middle'])[1:-1]}| < {0.5 * p['width']:.4g}, else 0",
     )  # fmt: skip
-    return [decay, bump, stripe]
+
+
+def pulses(axis: Axis, unit: str, grid: np.ndarray) -> Profile:
+    """Return a size inside stripes that come again and again; `grid` (g, 3): their middle, width and distance."""
+
+    def folded(u: np.ndarray, middle: float, wave: float) -> np.ndarray:
+        return (u - middle + 0.5 * wave) % wave - 0.5 * wave
+
+    return Profile(
+        "pulses", grid, lambda u, n: _box(folded(u, n[0], n[2]), 0.0, n[1])[:, None],
+        lambda n, a: {**_placed(n, a, unit, axis.unit), "wave": (float(n[2]), axis.unit)},
+        lambda u, p: p["size"] * _box(folded(u, p["middle"], p["wave"]), 0.0, p["width"]),
+        lambda name, p: f"{p['size']:.4g} where |{_less(name, p['middle'])[1:-1]}| < {0.5 * p['width']:.4g}"
+        f", every {p['wave']:.4g} {axis.unit}, else 0",
+    )  # fmt: skip
 
 
 def _less(name: str, value: float, unit: str = "") -> str:
@@ -143,8 +166,8 @@ def _box(u: np.ndarray, middle: float, width: float) -> np.ndarray:
     return 0.5 * (np.tanh((u - middle + 0.5 * width) / edge) - np.tanh((u - middle - 0.5 * width) / edge))
 
 
-def _sine(axis: Axis, unit: str, span: float) -> Profile:
-    lengths = span / np.array(FORMULA.periods)
+def sine(axis: Axis, unit: str, lengths: np.ndarray) -> Profile:
+    """Return a sine of the coordinate; `lengths` (g,): of its wave."""
 
     def named(n: np.ndarray, a: np.ndarray) -> Named:
         shift = float(np.arctan2(-a[1], a[0]) / (2 * np.pi) * n[0])

@@ -104,7 +104,7 @@ def _undetermined(each: RegimeResult) -> str:
 
 def _comments(name: str, values: Mapping[str, float]) -> list[str]:
     """Return comments on the meaning of an effect's parameters."""
-    if EFFECTS[name].listed:
+    if name not in TABLES:
         return [f"# {EFFECTS[name].law}"]
     kind = f"{values[EFFECTS[name].rows['kind'].name]:.0f}"
     table = [[cell.strip() for cell in line.split("|")] for line in (MODULES[name].__doc__ or "").splitlines()]

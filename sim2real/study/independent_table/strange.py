@@ -9,9 +9,12 @@ from numba import njit
 
 @njit(error_model="numpy")
 def pull(law, t, x, y):
-    """Acceleration (ax, ay) [m/s^2] by place and time: a vortex, a washboard, a tilt that drifts."""
+    """Acceleration (ax, ay) [m/s^2] by place and time: a vortex, a washboard, a drifting tilt, a push for a while."""
     since = t - law.tilt_drift_from
     ax, ay = law.tilt_drift_x * since, law.tilt_drift_y * since
+    if law.push_from < t < law.push_until:
+        ax += law.push_x
+        ay += law.push_y
     if law.vortex != 0.0:
         dx, dy = (x - law.vortex_x) / law.vortex_size, (y - law.vortex_y) / law.vortex_size
         round_it = law.vortex * exp(0.5 - 0.5 * (dx * dx + dy * dy))  # r exp((1 - r^2) / 2) is 1 at most, at r = 1
@@ -27,6 +30,8 @@ def rub(law, t, x, y, vx, vy, since, friction):
     """Friction [m/s^2] by time, heading, place, speed and time since the last contact; `friction`: without these."""
     if law.breathing != 0.0:
         friction *= 1.0 + law.breathing * sin(2.0 * pi * t / law.breathing_period)
+    if law.pulse != 0.0 and t % law.pulse_period < 0.5 * law.pulse_period:
+        friction *= 1.0 + law.pulse
     if (law.grain != 0.0 or law.nap != 0.0) and (vx != 0.0 or vy != 0.0):
         heading = atan2(vy, vx)
         friction *= 1.0 + law.grain * cos(4.0 * heading) + law.nap * cos(heading - law.nap_heading)

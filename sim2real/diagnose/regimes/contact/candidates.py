@@ -47,7 +47,7 @@ def contact_design_matrix(
     friction: tuple[str, str, Sequence[float]],
     basis_library: BasisLibrary,
     prefix: str = "",
-    only: str = "",
+    only: Sequence[Law] = (),
 ) -> DesignMatrix:
     """All columns of a problem at the parameters `values`; parameter columns are those of the base and `free`.
 
@@ -89,15 +89,15 @@ def _add_families(
     predicted: np.ndarray,
     basis_library: BasisLibrary,
     prefix: str,
-    only: str,
+    only: Sequence[Law],
     columns: _ColumnBlocks,
 ) -> list[Law]:
-    """One smooth law for each basis of the library and each entry of COMPONENTS, or `only` the one of this name."""
-    laws = []
+    """One smooth law for each basis of the library and each entry of COMPONENTS, or `only` those of these names."""
+    laws, names = [], [law.name for law in only]
     for name, (depends, basis) in basis_library.items():
         for component, axes in COMPONENTS.items():
             label = f"{prefix}{component} by {name}"
-            if only not in ("", label):
+            if only and label not in names:
                 continue
             changes = _velocity_changes(problem.data, basis(problem.data), axes, problem.each)
             block = -problem.whitened(problem.with_recoil(values, changes))

@@ -66,11 +66,12 @@ class Signals:
         return np.ones(len(self.t))
 
 
-def families(problem: GantryResiduals, p: np.void, only: str = "") -> tuple[list[Law], np.ndarray]:
-    """The smooth laws, and their columns (rows, k) of the design matrix at the parameters `p`; `only` the one of this
-    name, if one is given."""
+def families(problem: GantryResiduals, p: np.void, only: Sequence[Law] = ()) -> tuple[list[Law], np.ndarray]:
+    """The smooth laws, and their columns (rows, k) of the design matrix at the parameters `p`; `only` these, if
+    some are given."""
     volts, laws = _voltages(problem.runs, problem.basis_runs)
-    wanted = [only in ("", law.name) for law in laws]
+    names = [law.name for law in only or laws]
+    wanted = [law.name in names for law in laws]
     volts = volts[:, :, np.repeat(wanted, [len(law.columns) for law in laws])]
     laws = [law for law, here in zip(laws, wanted, strict=True) if here]
     return laws, -path_responses(problem, p, volts)

@@ -21,10 +21,10 @@ def gantry_design_matrix(
     effects: Sequence[Candidate],
     values: Mapping[str, float],
     free: Sequence[str],
-    only: str = "",
+    only: Sequence[Law] = (),
 ) -> DesignMatrix:
     """All columns of the gantry at the parameters `values`: derivatives, the supported `effects`, and smooth laws, of
-    which `only` one may be wanted."""
+    which `only` some may be wanted."""
     rows = [row for name in STARTS for row in EFFECTS[name].row_names]
     on = [row for row in rows if row in free or values.get(row, BY_NAME[row].default) != BY_NAME[row].default]
     off = [row for row in rows if row not in on]  # parameters that a fit left at zero stay at zero

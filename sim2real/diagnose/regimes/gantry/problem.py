@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.engine.problem import DesignMatrix
 from sim2real.diagnose.regimes.base import UnusableError
 from sim2real.diagnose.regimes.gantry.candidates import gantry_design_matrix
@@ -41,7 +42,7 @@ class GantryProblem(GantryResiduals):
         return GantryProblem([run.with_tick(tick) for run in self.runs], self.common)
 
     def columns(
-        self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None, only: str = ""
+        self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None, only: Sequence[Law] = ()
     ) -> DesignMatrix:
         """See `Problem.columns`."""
         if self._effects is None:

@@ -20,7 +20,7 @@ FRICTION = "mallet_friction"
 
 
 def mallet_design_matrix(
-    problem: ContactProblem[MalletContacts], values: Mapping[str, float], free: Sequence[str], only: str = ""
+    problem: ContactProblem[MalletContacts], values: Mapping[str, float], free: Sequence[str], only: Sequence[Law] = ()
 ) -> DesignMatrix:
     """All columns of a mallet problem at the parameters `values`; parameter columns: those of the base and `free`;
     `only`: see `Problem.columns`."""

@@ -17,6 +17,7 @@ import numpy as np
 from puckpilot_env.kernel import kernel
 from puckpilot_env.parameters import BY_NAME
 from puckpilot_env.physics.contacts.rebound import strike
+from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.engine.problem import DesignMatrix
 from sim2real.diagnose.regimes.contact.problem import ContactProblem
 from sim2real.diagnose.regimes.contact.tuned import CONTACT
@@ -90,7 +91,7 @@ class MalletProblem(ContactProblem[MalletContacts]):
         return recoiling
 
     def columns(
-        self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None, only: str = ""
+        self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None, only: Sequence[Law] = ()
     ) -> DesignMatrix:
         """See `Problem.columns`."""
         return mallet_design_matrix(self, values, free, only)

@@ -12,7 +12,8 @@ from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.engine.model_search import SearchResult
 from sim2real.diagnose.formula.search import Formula
-from sim2real.diagnose.regimes.sliding.basis_library import FAMILIES, Motion, force
+from sim2real.diagnose.regimes.sliding.forces.basis_library import basis_of, force
+from sim2real.diagnose.regimes.sliding.forces.motion import Motion
 from sim2real.diagnose.regimes.sliding.local_accelerations import (
     acceleration_windows,
     mean_motion,
@@ -87,7 +88,7 @@ def smooth_curve(
     Data points are the curve plus the residuals of the final law, because the law may vary within a window.
     """
     frames = problem.motion(problem.linearized(found.all_values)[0])
-    block = FAMILIES[law.name][1](frames)
+    block = basis_of(law.name)(frames)
     spread = found.theta_covariance[-len(law.columns) :, -len(law.columns) :]
     added, equal = force(law.name, frames, found.coefficients), np.ones(len(frames.t))
     look = max(looks, key=lambda one: _size(one, frames, added))

@@ -10,9 +10,22 @@ import numpy as np
 from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.engine.model_search import SearchResult
 from sim2real.diagnose.formula.search import Formula, FormulaProblem, find_formula
-from sim2real.diagnose.formula.shapes import Axis, Direction, Form, Profile, form, harmonic, profiles
-from sim2real.diagnose.regimes.sliding import central_forces
-from sim2real.diagnose.regimes.sliding.basis_library import HARMONICS, Motion, force
+from sim2real.diagnose.formula.shapes import (
+    Axis,
+    Direction,
+    Form,
+    Profile,
+    form,
+    harmonic,
+    profiles,
+    pulses,
+    sine,
+    stripe,
+)
+from sim2real.diagnose.regimes.sliding.forces import central_forces
+from sim2real.diagnose.regimes.sliding.forces.basis_library import HARMONICS, force
+from sim2real.diagnose.regimes.sliding.forces.motion import Motion
+from sim2real.diagnose.regimes.sliding.forces.searched_forces import Span, Wave, searched_force
 from sim2real.diagnose.regimes.sliding.problem import GlideProblem
 from sim2real.diagnose.regimes.sliding.views import COORDINATES, DIRECTIONS, Projection, around, view
 
@@ -44,6 +57,16 @@ def readable_formula(
     return best, candidates.views(best)
 
 
+def near(force: Span | Wave, axis: Axis, unit: str) -> Profile:
+    """The profile of a searched force, to be fitted near what was found."""
+    if isinstance(force, Wave):
+        return sine(axis, unit, np.array([force.period]))
+    middle, width = 0.5 * (force.low + force.high), force.high - force.low
+    if force.every:
+        return pulses(axis, unit, np.array([[middle, width, force.every]]))
+    return stripe(axis, unit, np.array([[middle, width]]))
+
+
 class FormulaCandidates:
     """The candidate forms of a family's formula: `single` ones along one direction, and `joined` ones along two."""
 
@@ -52,10 +75,13 @@ class FormulaCandidates:
         self._motion = motion
         self._sides = {"push": ("x", "y"), "brake": ("along",), "side": ("across",)}.get(kind, ("along", "across"))
         self._of: dict[str, tuple[Profile, str, tuple[str, ...]]] = {}
+        self._searched = searched_force(law.name)
         coordinates = ("x", "y") if law.family == "position" else (law.family,)
+        if isinstance(self._searched, Span) and self._searched.of != "t":
+            coordinates = (self._searched.of,)
         self.single = [self._form(one, name, (side,)) for name in coordinates for side in self._sides
                        for one in self._profiles(name, side)]  # fmt: skip
-        if law.family == "position":
+        if law.family == "position" and not self._searched:
             self.single += central_forces.pushes(motion) if kind == "push" else [central_forces.brake(motion)]
 
     def joined(self, one: Form, shape: np.ndarray) -> Sequence[Form]:
@@ -84,7 +110,8 @@ class FormulaCandidates:
     def _profiles(self, name: str, side: str) -> list[Profile]:
         if name == "heading":
             return [harmonic(order, UNIT) for order in range(1, HARMONICS + 1)]
-        return profiles(self._axis(name, side), UNIT)
+        axis = self._axis(name, side)
+        return [*profiles(axis, UNIT), *([near(self._searched, axis, UNIT)] if self._searched else [])]
 
     def _form(self, profile: Profile, name: str, sides: tuple[str, ...]) -> Form:
         """The form of a profile over the coordinate `name`; it is stored so that `views` can find its projections."""

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim2real.diagnose.regimes.sliding.basis_library import Motion
 from sim2real.diagnose.regimes.sliding.data import GlideData
+from sim2real.diagnose.regimes.sliding.forces.motion import Motion
 from sim2real.diagnose.regimes.sliding.problem import GlideProblem
 from sim2real.diagnose.regimes.sliding.tuned import SLIDING
 

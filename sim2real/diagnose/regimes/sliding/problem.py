@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from puckpilot_env.parameters import BY_NAME
+from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.engine.least_squares import LeastSquaresFit
 from sim2real.diagnose.engine.problem import DesignMatrix
-from sim2real.diagnose.regimes.sliding.basis_library import force
 from sim2real.diagnose.regimes.sliding.candidates import glide_columns
+from sim2real.diagnose.regimes.sliding.forces.basis_library import force
 from sim2real.diagnose.regimes.sliding.residuals import GlideResiduals
 from sim2real.diagnose.regimes.sliding.trajectory import braking
 from sim2real.diagnose.regimes.sliding.tuned import SLIDING
@@ -38,7 +39,7 @@ class GlideProblem(GlideResiduals):
     """`GlideResiduals` with candidate laws and the states at the ends of glides."""
 
     def columns(
-        self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None, only: str = ""
+        self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None, only: Sequence[Law] = ()
     ) -> DesignMatrix:
         """See `Problem.columns`."""
         return glide_columns(self, values, free, use, only)

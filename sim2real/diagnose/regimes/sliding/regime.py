@@ -102,7 +102,7 @@ def states_of_others(glides: GlideProblem, found: SearchResult | None, law: Mapp
     """`states_of` for glides that were not fitted; coefficients of single launches are estimated from their glides."""
     if found is None or found.unlisted is None or not found.unlisted.each_launch:
         return states_of(glides, found, law)
-    columns = glides.columns(found.law.values, found.law.free, None, only=found.unlisted.name)
+    columns = glides.columns(found.law.values, found.law.free, None, only=[found.unlisted])
     family = columns.families[0]
     free = columns.equations.columns(found.law.free)
     stepped = normal_equations.moved(columns.equations, free, found.theta[: len(found.law.free)])

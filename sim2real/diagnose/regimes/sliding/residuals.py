@@ -10,8 +10,8 @@ import numpy as np
 from puckpilot_env.parameters import BY_NAME
 from puckpilot_env.physics.advance import PUCK
 from sim2real.diagnose.engine.problem import Residuals, Units, record_of
-from sim2real.diagnose.regimes.sliding.basis_library import Motion
 from sim2real.diagnose.regimes.sliding.data import GlideData
+from sim2real.diagnose.regimes.sliding.forces.motion import Motion
 from sim2real.diagnose.regimes.sliding.trajectory import linear_response, trace
 from sim2real.diagnose.regimes.sliding.tuned import SLIDING
 from sim2real.diagnose.sensor_noise.covariance import PositionCovariance

@@ -11,7 +11,7 @@ from puckpilot_env.kernel import array_kernel, kernel
 from puckpilot_env.physics import compose
 from puckpilot_env.physics.sliding.slide import slide
 from sim2real.diagnose.engine.problem import record_of
-from sim2real.diagnose.regimes.sliding.basis_library import Motion
+from sim2real.diagnose.regimes.sliding.forces.motion import Motion
 from sim2real.diagnose.regimes.sliding.tuned import SLIDING
 
 X, Y, VX, VY, SPIN = range(5)

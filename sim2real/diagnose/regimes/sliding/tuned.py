@@ -106,8 +106,8 @@ class SlidingNumbers:
         "neighbours, with a shorter one a wave lies between them", "choice: four minutes",
     )  # fmt: skip
     wave_numbers: tuple[int, int] = tuned(
-        (6, 49), "1", "whole numbers from the first to below the last: 40 s, as long as a drift, to 5 s, a launch",
-        "choice: between a launch and a drift",
+        (6, 97), "1", "whole numbers from the first to below the last: 40 s, as long as a drift, to 2.5 s",
+        "choice: between half a launch and a drift",
     )  # fmt: skip
     patch_radii: tuple[float, ...] = tuned(
         (0.05, 0.1, 0.15, 0.2, 0.3), "m", "radii at which friction patches are searched",
@@ -129,6 +129,24 @@ class SlidingNumbers:
         2, "1", "rounds of looking nearby, each with half the step", "choice: a quarter step"
     )
     patch_growth: float = tuned(0.4, "1", "step of the radius in radii, in the same search", "choice: as the places'")
+    span_edges: int = tuned(
+        48, "1", "places of edges in the first search, as many frames apart: with fewer a short span is missed",
+        "choice: a fiftieth of the data",
+    )  # fmt: skip
+    widest_span: float = tuned(
+        0.9, "of the data", "a span that differs from no span at a few frames alone", "choice: a tenth is outside"
+    )
+    least_search_gain: float = tuned(
+        15.0, "loss", "time for forces that explain too little to be selected", "choice: half of the engine's fit_gain"
+    )
+    span_refinements: int = tuned(
+        4, "1", "rounds of looking nearby, the first with half the distance of two edges, each with half the step",
+        "choice: a sixteenth of that distance",
+    )  # fmt: skip
+    pulse_begins: int = tuned(12, "1", "beginnings of pulses in the first search, of a period", "choice: as hours")
+    pulse_shares: tuple[float, ...] = tuned(
+        (0.15, 0.3, 0.5), "1", "shares of a period that pulses last, in the first search", "choice: up to a half"
+    )
     patch_chunk: int = tuned(
         120,
         "discs",

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim2real.diagnose.regimes.sliding.basis_library import Motion
+from sim2real.diagnose.regimes.sliding.forces.motion import Motion
 
 Column = Callable[[Motion], np.ndarray]
 

@@ -21,7 +21,7 @@ ONE_LAW_PER_PARAMETER = ("wall_to_wall_restitution", "speed_dependent_restitutio
 
 
 def wall_design_matrix(
-    problem: ContactProblem[WallContacts], values: Mapping[str, float], free: Sequence[str], only: str = ""
+    problem: ContactProblem[WallContacts], values: Mapping[str, float], free: Sequence[str], only: Sequence[Law] = ()
 ) -> DesignMatrix:
     """All columns of a wall problem at the parameters `values`; parameter columns: those of the base and `free`;
     `only`: see `Problem.columns`."""

@@ -9,6 +9,7 @@ import numpy as np
 from puckpilot_env.kernel import kernel
 from puckpilot_env.physics.contacts import bounce
 from puckpilot_env.physics.contacts.rebound import rebound
+from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.engine.problem import DesignMatrix
 from sim2real.diagnose.regimes.contact.problem import ContactProblem
 from sim2real.diagnose.regimes.contact.tuned import CONTACT
@@ -114,7 +115,7 @@ class WallProblem(ContactProblem[WallContacts]):
         return np.where(unknown, np.hypot(1.0, reach * self._whitening[:, 1, 1]), 1.0)
 
     def columns(
-        self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None, only: str = ""
+        self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None, only: Sequence[Law] = ()
     ) -> DesignMatrix:
         """See `Problem.columns`."""
         return wall_design_matrix(self, values, free, only)

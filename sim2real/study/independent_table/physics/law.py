@@ -110,12 +110,22 @@ class Law:
     stripe: float = 0.0  # m/s^2, more friction where |x - stripe_x| < stripe_width / 2
     stripe_x: float = 1.0  # m
     stripe_width: float = 0.3  # m
+    push_x: float = 0.0  # m/s^2, a pull that lasts from `push_from` to `push_until`
+    push_y: float = 0.0
+    push_from: float = 0.0  # s
+    push_until: float = 0.0  # s
+    pulse: float = 0.0  # 1, friction (1 + a) in the first half of every period
+    pulse_period: float = 6.0  # s
 
     # Walls and mallets: `bounce.off_wall`, `bounce.off_mallet`.
     wall_wave: float = 0.0  # 1, e + a sin(2 pi s / length) at s metres along the wall
     wall_wave_length: float = 0.5  # m
     wall_warming: float = 0.0  # 1/s, e + rate t
     mallet_warming: float = 0.0  # 1/s, the same at the mallets
+    stretch_wall: int = -1  # 0..3: x0, xL, y0, yW
+    stretch_extra: float = 0.0  # 1, its restitution from `stretch_from` to `stretch_until` minus that elsewhere
+    stretch_from: float = 0.0  # m along the wall
+    stretch_until: float = 0.0  # m
 
     motor_friction_left: float = 0.0  # V, against the motion of the left motor's belt, x - y
     motor_friction_right: float = 0.0  # V, against that of the right one's, -x - y

@@ -33,7 +33,17 @@ def _tilt_drift(rng: Rng, share: float, law: Law, scenario: str) -> Change:
 
 
 def _breathing(rng: Rng, share: float, law: Law, scenario: str) -> Change:
-    return Change(law={"breathing": min(0.9, 0.4 * share), "breathing_period": rng.uniform(8.0, 20.0)})
+    return Change(law={"breathing": min(0.9, 0.4 * share), "breathing_period": rng.uniform(4.0, 20.0)})
+
+
+def _push(rng: Rng, share: float, law: Law, scenario: str) -> Change:
+    heading, size, begin = rng.uniform(-pi, pi), 0.06 * share, rng.uniform(8.0, 35.0)
+    changes = {"push_x": size * cos(heading), "push_y": size * sin(heading), "push_from": begin}
+    return Change(law={**changes, "push_until": begin + rng.uniform(12.0, 25.0)})
+
+
+def _pulse(rng: Rng, share: float, law: Law, scenario: str) -> Change:
+    return Change(law={"pulse": 0.4 * share, "pulse_period": rng.uniform(4.0, 12.0)})
 
 
 def _cubic(rng: Rng, share: float, law: Law, scenario: str) -> Change:
@@ -64,6 +74,14 @@ def _wall_warming(rng: Rng, share: float, law: Law, scenario: str) -> Change:
     return Change(law={"wall_warming": -0.003 * share, "wall_restitution": 0.85})
 
 
+def _soft_stretch(rng: Rng, share: float, law: Law, scenario: str) -> Change:
+    wall = int(rng.integers(4))
+    along = law.width if wall < 2 else law.length
+    begin, part = rng.uniform(0.1, 0.5), rng.uniform(0.25, 0.4)
+    changes = {"stretch_wall": wall, "stretch_extra": -0.12 * share, "wall_restitution": 0.75}
+    return Change(law={**changes, "stretch_from": begin * along, "stretch_until": (begin + part) * along})
+
+
 def _mallet_warming(rng: Rng, share: float, law: Law, scenario: str) -> Change:
     return Change(law={"mallet_warming": -0.004 * share, "mallet_restitution": 0.85})
 
@@ -82,6 +100,8 @@ LAWS: dict[str, tuple[Mechanism, tuple[str, ...]]] = {
     "washboard": (Mechanism("glide", PUCK, _washboard), ("position",)),
     "stripe": (Mechanism("glide", PUCK, _stripe), ("position",)),
     "tilt_drift": (Mechanism("glide", PUCK, _tilt_drift), ("time",)),
+    "push": (Mechanism("glide", PUCK, _push), ("time",)),
+    "pulse": (Mechanism("glide", PUCK, _pulse), ("time",)),
     "breathing": (Mechanism("glide", PUCK, _breathing), ("time",)),
     "cubic_drag": (Mechanism("glide", PUCK, _cubic), ("speed",)),
     "slow_friction": (Mechanism("glide", PUCK, _slow), ("speed",)),
@@ -90,6 +110,7 @@ LAWS: dict[str, tuple[Mechanism, tuple[str, ...]]] = {
     "fading": (Mechanism("glide", PUCK, _fading), ("history",)),
     "wall_wave": (Mechanism("wall", PUCK, _wall_wave), ("position",)),
     "wall_warming": (Mechanism("wall", PUCK, _wall_warming), ("time",)),
+    "soft_stretch": (Mechanism("wall", PUCK, _soft_stretch), ("position",)),
     "mallet_warming": (Mechanism("mallet", ROBOT, _mallet_warming), ("time",)),
     "rough": (Mechanism("gantry", GANTRY, _rough), ("position",)),
     "cubic_loss": (Mechanism("gantry", GANTRY, _cubic_loss), ("speed",)),

@@ -5,8 +5,8 @@ import pytest
 
 from sim2real.diagnose.formula.search import FormulaProblem, find_formula
 from sim2real.diagnose.formula.shapes import Axis, Direction, form, harmonic, profiles
-from sim2real.diagnose.regimes.sliding import central_forces
-from sim2real.diagnose.regimes.sliding.basis_library import Motion
+from sim2real.diagnose.regimes.sliding.forces import central_forces
+from sim2real.diagnose.regimes.sliding.forces.motion import Motion
 
 NOISE = 0.01
 CLUSTERS = 20

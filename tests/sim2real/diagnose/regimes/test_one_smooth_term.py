@@ -47,7 +47,7 @@ def test_a_term_alone_is_what_it_is_among_all(make, tmp_path: Path) -> None:
     values = {name: DEFAULTS[name] for name in problem.base}
     every = problem.columns(values, problem.base, None)
     for law in (every.families[0], every.families[-1]):
-        alone = problem.columns(values, problem.base, None, only=law.name)
+        alone = problem.columns(values, problem.base, None, only=[law])
         assert [one.name for one in alone.families] == [law.name]
         for wanted, found in zip(*(equations_of(one, law.name, problem.base) for one in (every, alone)), strict=True):
             np.testing.assert_allclose(found, wanted, rtol=1e-9, atol=1e-9 * np.abs(wanted).max())

@@ -51,6 +51,20 @@ def test_laws_that_change_with_time():
     assert end(breathes, (0.5, 0.5, 0.8, 0.0))[0] == pytest.approx(0.8 - 0.125 * (1.0 + 1.0 / pi), abs=1e-10)
 
 
+def test_a_push_for_a_while_and_friction_in_pulses():
+    push = replace(ICE, push_x=0.1, push_y=-0.2, push_from=1.2, push_until=1.7)
+    assert end(push, (0.5, 0.5, 0.1, 0.1), clock=1.0) == pytest.approx((0.15, 0.0), abs=1e-4)
+    pulse = replace(ROUGH, pulse=0.5, pulse_period=0.4)
+    assert end(pulse, (0.5, 0.5, 0.8, 0.0))[0] == pytest.approx(0.8 - 0.125 * (1.0 + 0.5 * 0.6), abs=1e-4)
+
+
+def test_a_stretch_of_one_wall_that_is_softer():
+    law = replace(ICE, stretch_wall=2, stretch_extra=-0.2, stretch_from=0.8, stretch_until=1.2)  # y0
+    for x, kept in ((1.0, 0.5), (0.5, 0.7)):
+        assert end(law, (x, 0.3, 0.0, -1.0), 0.5)[1] == pytest.approx(kept, abs=1e-9)
+    assert end(law, (1.0, 0.7, 0.0, 1.0), 0.5)[1] == pytest.approx(-0.7, abs=1e-9)
+
+
 def test_laws_of_speed():
     assert end(replace(ICE, cubic_drag=0.3), (0.2, 0.5, 1.2, 0.0))[0] == pytest.approx(
         (1.2**-2 + 0.6) ** -0.5, abs=1e-10

@@ -10,12 +10,14 @@ from puckpilot_env import Tables
 from puckpilot_env.options.effects_file import effect_values
 from puckpilot_env.parameters import make_records
 from puckpilot_env.physics.advance import PUCK
-from puckpilot_env.physics.effects.unlisted_force import acceleration, friction
+from puckpilot_env.physics.effects import unlisted_force, unlisted_window
 from puckpilot_env.physics.sliding.slide import slide
 from sim2real.diagnose.output.files import write
 from sim2real.diagnose.pipeline import diagnose
-from sim2real.diagnose.regimes.sliding.as_effect import SWITCHES, effect_parameters
-from sim2real.diagnose.regimes.sliding.basis_library import FAMILIES, Motion
+from sim2real.diagnose.regimes.sliding.forces.as_effect import SWITCHES, effect_parameters
+from sim2real.diagnose.regimes.sliding.forces.basis_library import basis_of
+from sim2real.diagnose.regimes.sliding.forces.motion import Motion
+from sim2real.diagnose.regimes.sliding.forces.searched_forces import Span, Wave
 from sim2real.recording.folder import read_recording
 from sim2real.study.independent_table import Law, run
 from sim2real.study.independent_table.recorder.camera import Camera
@@ -25,7 +27,13 @@ SIZE = np.array([2.0, 1.0])
 VORTEX = Law(vortex=0.06, vortex_x=1.0, vortex_y=0.5, vortex_size=0.3)
 
 
-@pytest.mark.parametrize("family", SWITCHES)
+SEARCHED = [
+    Wave(7.25), Span("push", "t", 10.0, 30.5), Span("brake", "x", 0.4, 1.1), Span("push", "y", -1.0, 0.25),
+    Span("brake", "t", 1.5, 3.25, 6.5),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("family", [*SWITCHES, *(one.name for one in SEARCHED)])
 def test_the_simulator_s_force_is_the_family_s(family):
     """The family's columns times coefficients, also at motions outside the data that its knots come from."""
     rng = np.random.default_rng(4)
@@ -40,13 +48,15 @@ def test_the_simulator_s_force_is_the_family_s(family):
         SIZE,
         np.linspace(0.1, 2.5, 6),
     )
-    columns = FAMILIES[family][1](motion)
+    columns = basis_of(family)(motion)
     theta = rng.normal(0, 1, columns.shape[2])
     p = make_records(1, effect_parameters(family, motion, theta))[0]
     for k in range(n):
         place, velocity = motion.place[k], motion.velocity[k]
-        extra = friction(p, motion.t[k], *place, *(1e-12 * velocity), 0.0)
-        force = acceleration(p, motion.t[k], *place, *velocity, 3.0) - extra * motion.along[k]
+        force = np.zeros(2)
+        for effect in (unlisted_force, unlisted_window):
+            extra = effect.friction(p, motion.t[k], *place, *(1e-12 * velocity), 0.0)
+            force += effect.acceleration(p, motion.t[k], *place, *velocity, 3.0) - extra * motion.along[k]
         assert force == pytest.approx(columns[k] @ theta, abs=1e-9)
 
 

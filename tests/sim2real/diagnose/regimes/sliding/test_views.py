@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sim2real.diagnose.regimes.sliding.basis_library import Motion
+from sim2real.diagnose.regimes.sliding.forces.motion import Motion
 from sim2real.diagnose.regimes.sliding.trajectory import accelerations
 from sim2real.diagnose.regimes.sliding.views import listed_view, varied
 

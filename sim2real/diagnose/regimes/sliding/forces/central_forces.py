@@ -8,7 +8,7 @@ from itertools import product
 import numpy as np
 
 from sim2real.diagnose.formula.shapes import Form, Named
-from sim2real.diagnose.regimes.sliding.basis_library import Motion
+from sim2real.diagnose.regimes.sliding.forces.motion import Motion
 from sim2real.diagnose.regimes.sliding.tuned import SLIDING
 
 ROUND, OUTWARD = "round", "away from"

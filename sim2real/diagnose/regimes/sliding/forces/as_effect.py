@@ -1,21 +1,20 @@
-"""Convert a nonparametric force to parameters of the simulator's `unlisted_force`, so that it can be simulated."""
+"""Convert a nonparametric force to parameters of the simulator's `unlisted_force` or `unlisted_window`."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import partial
 
 import numpy as np
 
 from puckpilot_env.physics.effects import unlisted_force
 from puckpilot_env.physics.effects.unlisted_force import WAVES_X, WAVES_Y
-from sim2real.diagnose.regimes.sliding.basis_library import (
-    WAVES,
-    Motion,
+from sim2real.diagnose.regimes.sliding.forces.basis_library import (
     cosine_sizes,
     ripple_sizes,
     time_knots,
 )
+from sim2real.diagnose.regimes.sliding.forces.motion import Motion
+from sim2real.diagnose.regimes.sliding.forces.searched_forces import searched_force
 from sim2real.diagnose.regimes.sliding.tuned import SLIDING
 from sim2real.statistics.piecewise import spline_basis
 
@@ -56,10 +55,6 @@ def _by_time(motion: Motion, theta: np.ndarray) -> np.ndarray:
     return np.concatenate([knots[[0, -1]], values.ravel()])
 
 
-def _wave(period: float, motion: Motion, theta: np.ndarray) -> np.ndarray:
-    return np.array([period, *SLIDING.unit * theta])
-
-
 # family: kind of the simulator's force, and its numbers from the family's coefficients
 SWITCHES: Mapping[str, tuple[int, Callable[[Motion, np.ndarray], np.ndarray]]] = {
     "push by position": (unlisted_force.PUSH_BY_PLACE, _over_place),
@@ -73,15 +68,16 @@ SWITCHES: Mapping[str, tuple[int, Callable[[Motion, np.ndarray], np.ndarray]]] =
     "force by heading": (unlisted_force.BY_HEADING, _scaled),
     "push by time": (unlisted_force.PUSH_BY_TIME, _by_time),
     "brake by time": (unlisted_force.BRAKE_BY_TIME, _by_time),
-    **{name: (unlisted_force.BRAKE_BY_WAVE, partial(_wave, period)) for name, period in WAVES.items()},
 }
 
 
 def effect_parameters(family: str, motion: Motion, theta: np.ndarray) -> dict[str, float]:
-    """Parameters of `unlisted_force` by name, for the coefficients `theta` of a family fitted to `motion`.
+    """The simulator's parameters by name, for the coefficients `theta` of a family fitted to `motion`.
 
     Empty for forces by the time since a contact, which the simulator does not support.
     """
+    if searched := searched_force(family):
+        return searched.effect(SLIDING.unit * theta)
     if family not in SWITCHES:
         return {}
     kind, numbers = SWITCHES[family]
