@@ -178,7 +178,7 @@ class BoardLine:
         if event.code != Notice.REFUSED:
             return
         name, reason = NAMES.get(event.detail >> 8, "message"), Refusal(event.detail & 0xFF)
-        if name in HARMLESS:
+        if name in HARMLESS or (name == "traj" and not self._armed):  # a plan from before a stop
             return
         if name == "traj" and reason == Refusal.TOO_LATE:
             self._fates.refuse_late()

@@ -14,6 +14,7 @@ class Cause(StrEnum):
     BOARD_STOPPED = "board stopped"  # the board switched the motors off by itself
     BOARD_NOT_ARMED = "board not armed"  # it was reset, or disarmed by somebody else
     PLAN_REFUSED = "plan refused"
+    OVERRUN = "overrun"  # the player, or the computer, took so long that the board was not served
     CAMERA_SILENT = "camera silent"
     CAMERA_LATE = "camera late"
     CAMERA_TROUBLE = "camera trouble"  # moved, wrong light, damaged pictures

@@ -17,6 +17,8 @@ from sim2real.table.mallet_driver import MalletPlan
 from sim2real.table.watchdog import CameraWatchdog
 
 Part = TypeVar("Part")
+PAUSE_EXPLAINS = 0.1  # s after a pause in which these are put down to it
+BY_PAUSES = (Cause.BOARD_STOPPED, Cause.BOARD_SILENT, Cause.PLAN_REFUSED, Cause.CAMERA_SILENT, Cause.CAMERA_LATE)
 
 
 class Eyes(Protocol):
@@ -56,6 +58,8 @@ class LiveTable(Backend):
         self.person: Person | None = None
         self.stopped_at = -math.inf
         self._frames: list[SeenFrame] = []
+        self._served_at = math.inf  # when the board heard of the host last [s]
+        self._pause, self._paused_until = 0.0, -math.inf  # s, the newest that was too long for the board, and its end
         self._watchdog: CameraWatchdog | None = None
 
     @abstractmethod
@@ -102,6 +106,7 @@ class LiveTable(Backend):
         """Enable the motors; from now on every doubt stops them."""
         line = self._opened(self.line)
         line.arm()
+        self._served_at, self._paused_until = self.now(), -math.inf
         line.take_mallets()
         self._opened(self.eyes).take(self.now())  # what came meanwhile is old
         self._frames = []
@@ -127,6 +132,7 @@ class LiveTable(Backend):
         line, eyes, watchdog = self._opened(self.line), self._opened(self.eyes), self._opened(self._watchdog)
         try:
             self.pass_time(min(self.now() + POLL, until))
+            self._note_served()
             if self.frame_waits:
                 line.keep_alive()
             else:
@@ -136,9 +142,26 @@ class LiveTable(Backend):
             new = eyes.take(now)
             self._frames += new
             watchdog.check(now, new)
-        except TableFaultError:
+        except TableFaultError as fault:
             self.stop()
-            raise
+            raise self._explained(fault) from None
+
+    def _note_served(self) -> None:
+        """The board is served now; if that took too long, it stops, or has stopped already."""
+        now = self.now()
+        if now - self._served_at > 1e-3 * self.config.silence:
+            self._pause, self._paused_until = now - self._served_at, now
+        self._served_at = now
+
+    def _explained(self, fault: TableFaultError) -> TableFaultError:
+        """The fault, or that nobody served the board, where it follows from that."""
+        if fault.cause not in BY_PAUSES or self.now() - self._paused_until > PAUSE_EXPLAINS:
+            return fault
+        return TableFaultError(
+            Cause.OVERRUN,
+            f"the board was not served for {1e3 * self._pause:.0f} ms, and it stops after {self.config.silence} ms: "
+            "the player or this computer is too slow; clear, and play on",
+        )
 
     def place(self) -> Place:
         """See `Backend.place`."""
@@ -153,11 +176,12 @@ class LiveTable(Backend):
 
     def send(self, plan: MalletPlan) -> MalletPlan:
         """See `Backend.send`."""
+        self._note_served()
         try:
             return self._opened(self.line).send(plan)
-        except TableFaultError:
+        except TableFaultError as fault:
             self.stop()
-            raise
+            raise self._explained(fault) from None
 
     def place_puck(self, puck: np.ndarray) -> None:
         """See `Backend.place_puck`."""

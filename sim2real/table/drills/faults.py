@@ -118,6 +118,6 @@ FAULTS = (
     Fault("reset", "the board is reset", _reset, _nothing,
           frozenset({Cause.BOARD_NOT_ARMED, Cause.BOARD_SILENT}), UNPLUGGED),
     Fault("hang", f"the policy hangs for {1e3 * HANG:.0f} ms", _hang, _nothing,
-          frozenset({Cause.BOARD_STOPPED, Cause.BOARD_SILENT}), UNPLUGGED),
+          frozenset({Cause.OVERRUN}), UNPLUGGED),
     Fault("held", "the mallet is held fast", _hold, _release, frozenset({Cause.BOARD_STOPPED})),
 )  # fmt: skip

@@ -61,6 +61,21 @@ def test_a_camera_that_is_unplugged_stops_the_mallet(seat: RobotSeat) -> None:
     assert board.machine.motors.duties == (0.0, 0.0)
 
 
+@pytest.mark.parametrize("seconds", [0.02, 0.3])
+def test_a_player_that_takes_too_long_is_told_so(seat: RobotSeat, seconds: float) -> None:
+    """And not that the table or the cable is to be seen to."""
+    seat.reset(seed=1)
+    twin = twin_of(seat)
+    twin.pass_time(twin.now() + seconds)
+    with pytest.raises(
+        TableFaultError, match=rf"not served for {1e3 * seconds:.0f}.* ms.*player or this computer"
+    ) as why:
+        seat.step(STAY)
+    assert why.value.cause == Cause.OVERRUN
+    seat.clear()
+    seat.step(STAY)
+
+
 def test_a_board_that_is_reset_ends_the_game_with_motors_off(seat: RobotSeat) -> None:
     seat.reset(seed=1)
     seat.step(np.array([0.9, 0.9, 3.0, 3.0], np.float32))
