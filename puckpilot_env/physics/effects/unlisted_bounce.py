@@ -12,6 +12,7 @@ adds nothing to one. A place s is that of the puck's middle along its wall; by p
 | 4 | by place along each wall | lengths [m] of the walls x0, x1, y0, y1; for each 4, of cos(pi i s / length), i < 4 |
 | 5 | by place alike on all walls | lengths [m] along x and along y; 10, of cos(pi i s / length), i < 10 |
 | 6 | by a single wave, alike on all walls | its length [m]; 2, of sin(2 pi s / length) and cos(2 pi s / length) |
+| 7 | inside a stretch of one wall | the wall (0 x0, 1 x1, 2 y0, 3 y1), its begin and end [m], the amount inside |
 """
 
 from __future__ import annotations
@@ -24,8 +25,9 @@ from puckpilot_env.kernel import kernel
 from puckpilot_env.physics.contacts import bounce
 from puckpilot_env.physics.interpolation import cosines, over_knots
 
-BY_SPEED, BY_ANGLE, BY_TIME, BY_PLACE, BY_PLACE_ALIKE, BY_WAVE = range(1, 7)
+BY_SPEED, BY_ANGLE, BY_TIME, BY_PLACE, BY_PLACE_ALIKE, BY_WAVE, BY_STRETCH = range(1, 8)
 OF_NORMAL, OF_TANGENT, OF_BOTH = range(1, 4)
+WALLS = (bounce.WALL_X0, bounce.WALL_X1, bounce.WALL_Y0, bounce.WALL_Y1)
 KNOTS, WAVES, RIPPLES = 5, 4, 10
 NUMBERS = 4 + 4 * WAVES
 _SOURCE = "found by a diagnosis; no table is known to have it"
@@ -38,6 +40,11 @@ SHORTEST = 1e-3  # m, of a length
 def misfit(numbers: Mapping[str, float]) -> str:
     """Of which numbers no straight pieces or waves can be made."""
     kind = int(numbers["kind"])
+    if kind == BY_STRETCH:
+        wall, begin, end = (numbers[f"c{k:02}"] for k in range(3))
+        if wall not in range(len(WALLS)):
+            return f"wall {wall:g} is none; expected 0, 1, 2 or 3"
+        return "" if begin < end else f"it goes from {begin:g} to {end:g} m; expected an end after the beginning"
     first = [numbers[f"c{k:02}"] for k in range(LENGTHS.get(kind, KNOTS))]
     if kind not in LENGTHS:
         return falling(first) if kind else ""
@@ -54,7 +61,7 @@ EFFECT = Effect(
             "1",
             0.0,
             0.0,
-            6.0,
+            7.0,
             "what the change of a share is a function of; 0: no change",
             _SOURCE,
             whole=True,
@@ -100,6 +107,8 @@ def change_of_share(p, t, kind, x, y, closing, along):
         return over_any_wall(p, kind, x, y)
     if p.bounce_kind == BY_WAVE:
         return over_wave(p, kind, x, y)
+    if p.bounce_kind == BY_STRETCH:
+        return over_stretch(p, kind, x, y)
     at = closing
     if p.bounce_kind == BY_ANGLE:
         at = math.atan2(abs(along), closing)
@@ -140,6 +149,15 @@ def over_wave(p, kind, x, y):
     s = y if kind == bounce.WALL_X0 or kind == bounce.WALL_X1 else x
     turns = 2.0 * math.pi * s / p.bounce_00
     return p.bounce_01 * math.sin(turns) + p.bounce_02 * math.cos(turns)
+
+
+@kernel
+def over_stretch(p, kind, x, y):
+    """The amount inside one stretch of one wall."""
+    if kind != WALLS[int(p.bounce_00)]:
+        return 0.0
+    s = y if kind == bounce.WALL_X0 or kind == bounce.WALL_X1 else x
+    return p.bounce_03 if p.bounce_01 <= s < p.bounce_02 else 0.0
 
 
 @kernel

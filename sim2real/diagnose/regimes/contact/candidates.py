@@ -99,12 +99,25 @@ def _add_families(
             label = f"{prefix}{component} by {name}"
             if only and label not in names:
                 continue
-            changes = _velocity_changes(problem.data, basis(problem.data), axes, problem.each)
-            block = -problem.whitened(problem.with_recoil(values, changes))
-            block = problem.with_common_noise(values, predicted, block)
+            block = columns_of_shares(problem, values, basis(problem.data), axes, predicted)
             law = Law(label, tuple(f"{label} {k}" for k in range(block.shape[1])), depends)
             laws.append(columns.add(law, block))
     return laws
+
+
+def columns_of_shares(
+    problem: ContactProblem,
+    values: Mapping[str, float],
+    shares: np.ndarray,
+    axes: Sequence[int],
+    predicted: np.ndarray | None = None,
+) -> np.ndarray:
+    """Columns (rows, k) for changes of the kept share of a velocity's components `axes` in proportion to `shares`
+    (n, k). predicted: the result of `predicted` for `values`, if it is known."""
+    predicted = problem.predicted(values) if predicted is None else predicted
+    changes = _velocity_changes(problem.data, shares, axes, problem.each)
+    block = -problem.whitened(problem.with_recoil(values, changes))
+    return problem.with_common_noise(values, predicted, block)
 
 
 def components_of(law: Law) -> tuple[int, ...]:

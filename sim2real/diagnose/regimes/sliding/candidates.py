@@ -11,12 +11,12 @@ import numpy as np
 from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.engine.linear import normal_equations
+from sim2real.diagnose.engine.linear.rest import Rest
 from sim2real.diagnose.engine.problem import DesignMatrix, Residuals
 from sim2real.diagnose.regimes.sliding.forces.as_effect import effect_parameters
 from sim2real.diagnose.regimes.sliding.forces.basis_library import FAMILIES, SPIN, basis_of
 from sim2real.diagnose.regimes.sliding.forces.force_search import Found, searched_forces
 from sim2real.diagnose.regimes.sliding.forces.patch_search import patch_laws
-from sim2real.diagnose.regimes.sliding.forces.rest import Rest
 from sim2real.diagnose.regimes.sliding.residuals import GlideResiduals
 
 BY_SPIN = "spin_side_force"  # depends on the spin, which the camera does not measure: the family SPIN represents it

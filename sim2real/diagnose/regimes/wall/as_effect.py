@@ -11,6 +11,7 @@ from sim2real.diagnose.regimes.contact.candidates import SHARE_NUMBERS
 from sim2real.diagnose.regimes.contact.tuned import CONTACT
 from sim2real.diagnose.regimes.wall.basis_library import KNOTS, RIPPLES, SINGLE_WAVES, table_lengths, wall_lengths
 from sim2real.diagnose.regimes.wall.data import WallContacts
+from sim2real.diagnose.regimes.wall.stretch import stretch_named
 from sim2real.statistics.piecewise import expected_size, knots_and_values
 
 PARAMETERS = unlisted_bounce.EFFECT.row_names
@@ -52,9 +53,12 @@ def effect_parameters(law: str, data: WallContacts, theta: np.ndarray) -> dict[s
     simulator does not support.
     """
     share, basis = law.split(" by ", 1)
-    if basis not in EFFECT_TABLES:
+    if stretch := stretch_named(basis):
+        kind, numbers = unlisted_bounce.BY_STRETCH, stretch.numbers
+    elif basis in EFFECT_TABLES:
+        kind, numbers = EFFECT_TABLES[basis]
+    else:
         return {}
-    kind, numbers = EFFECT_TABLES[basis]
     found = [
         float(kind), float(SHARE_NUMBERS[share]), *map(float, numbers(data, CONTACT.coefficient_unit * theta)),
     ]  # fmt: skip

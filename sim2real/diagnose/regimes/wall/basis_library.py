@@ -10,7 +10,8 @@ from puckpilot_env.physics.effects.unlisted_bounce import KNOTS, RIPPLES, WAVES
 from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.regimes.contact.candidates import basis_name_of
 from sim2real.diagnose.regimes.contact.tuned import CONTACT
-from sim2real.diagnose.regimes.wall.data import KINDS, WallContacts
+from sim2real.diagnose.regimes.wall.data import KINDS, WallContacts, at_short_walls, place_along_wall
+from sim2real.diagnose.regimes.wall.stretch import stretch_named
 from sim2real.diagnose.regimes.wall.tuned import WALL
 from sim2real.statistics.piecewise import after_contact_hats, cosine_basis, spread_hats
 
@@ -30,15 +31,6 @@ def table_lengths(data: WallContacts) -> np.ndarray:
     return np.maximum(data.place.max(axis=0, initial=0.0), WALL.least_length)
 
 
-def place_along_wall(data: WallContacts) -> np.ndarray:
-    """Places (n,) [m] along the walls: y at the short ones, x elsewhere."""
-    return np.where(_at_short_walls(data), data.place[:, 1], data.place[:, 0])
-
-
-def _at_short_walls(data: WallContacts) -> np.ndarray:
-    return (data.kind == KINDS["x0"]) | (data.kind == KINDS["x1"])
-
-
 def _at_walls(data: WallContacts) -> np.ndarray:
     return np.isin(data.kind, list(KINDS.values()))
 
@@ -54,7 +46,7 @@ def _by_place_on_each_wall(data: WallContacts) -> np.ndarray:
 def _by_place_on_all_walls(data: WallContacts) -> np.ndarray:
     """Cosines (n, RIPPLES) of the place along a wall: x at the long walls, y at the short ones; 0 at a post."""
     x, y = table_lengths(data)
-    share = np.where(_at_short_walls(data), data.place[:, 1] / y, data.place[:, 0] / x)
+    share = np.where(at_short_walls(data), data.place[:, 1] / y, data.place[:, 0] / x)
     return cosine_basis(share, RIPPLES) * _at_walls(data)[:, None]
 
 
@@ -84,4 +76,6 @@ BASIS_LIBRARY: dict[str, tuple[str, Callable[[WallContacts], np.ndarray]]] = {
 
 def added_shares(data: WallContacts, law: Law) -> np.ndarray:
     """The change (n, k) of each contact's kept share of a speed by each coefficient of a smooth law."""
-    return CONTACT.coefficient_unit * BASIS_LIBRARY[basis_name_of(law)][1](data)
+    name = basis_name_of(law)
+    stretch = stretch_named(name)
+    return CONTACT.coefficient_unit * (stretch.inside(data) if stretch else BASIS_LIBRARY[name][1](data))

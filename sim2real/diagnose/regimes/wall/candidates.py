@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
+import numpy as np
+
 from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.engine.problem import DesignMatrix
@@ -14,6 +16,7 @@ from sim2real.diagnose.regimes.contact.problem import ContactProblem
 from sim2real.diagnose.regimes.wall.as_effect import effect_parameters
 from sim2real.diagnose.regimes.wall.basis_library import BASIS_LIBRARY, SINGLE_WAVES
 from sim2real.diagnose.regimes.wall.data import WallContacts
+from sim2real.diagnose.regimes.wall.stretch import find_stretches, stretch_named
 from sim2real.diagnose.regimes.wall.tuned import WALL
 
 FRICTION = "wall_friction_spin"
@@ -21,21 +24,37 @@ ONE_LAW_PER_PARAMETER = ("wall_to_wall_restitution", "speed_dependent_restitutio
 
 
 def wall_design_matrix(
-    problem: ContactProblem[WallContacts], values: Mapping[str, float], free: Sequence[str], only: Sequence[Law] = ()
+    problem: ContactProblem[WallContacts],
+    values: Mapping[str, float],
+    free: Sequence[str],
+    use: np.ndarray | None,
+    only: Sequence[Law] = (),
 ) -> DesignMatrix:
     """All columns of a wall problem at the parameters `values`; parameter columns: those of the base and `free`;
-    `only`: see `Problem.columns`."""
+    stretches of a wall are searched in the clusters `use`; `only`: see `Problem.columns`."""
     friction = (FRICTION, "wall_mu", WALL.frictions)
-    columns = contact_design_matrix(problem, values, free, _derivative_laws(), friction, BASIS_LIBRARY, only=only)
-    return replace(columns, families=[_with_effect(law, problem) for law in columns.families])
+    stretches = list(filter(None, (stretch_named(basis_name_of(law)) for law in only)))
+    searched = {one.name: law.searched for law in only if (one := stretch_named(basis_name_of(law)))}
+    if use is not None:
+        own_walls = EFFECTS["wall_to_wall_restitution"].row_names
+        exact = problem.residuals(values, (*problem.base, *own_walls), np.arange(problem.clusters))
+        stretches, count = find_stretches(problem, values, exact, len(problem.base), use)
+        searched = dict.fromkeys((one.name for one in stretches), count)
+    library = BASIS_LIBRARY | {one.name: ("position", one.inside) for one in stretches}
+    columns = contact_design_matrix(problem, values, free, _derivative_laws(), friction, library, only=only)
+    return replace(columns, families=[_with_effect(law, problem, searched) for law in columns.families])
 
 
-def _with_effect(law: Law, problem: ContactProblem[WallContacts]) -> Law:
-    """Add the simulator's effect to the law; for a single wave also the number of lengths that were searched."""
+def _with_effect(law: Law, problem: ContactProblem[WallContacts], searched: Mapping[str, int]) -> Law:
+    """Add the simulator's effect to the law; for a single wave or a stretch also the number of those that were
+    searched."""
     law = replace(law, switch=partial(effect_parameters, law.name, problem.data), linear=True)
-    if basis_name_of(law) not in SINGLE_WAVES:
-        return law
-    return replace(law, searched=len(SINGLE_WAVES), variant_of=f"{law.name.split(' by ', 1)[0]} by a wave")
+    name, component = basis_name_of(law), law.name.split(" by ", 1)[0]
+    if name in searched:
+        return replace(law, searched=searched[name], variant_of=f"{component} by a stretch")
+    if name in SINGLE_WAVES:
+        return replace(law, searched=len(SINGLE_WAVES), variant_of=f"{component} by a wave")
+    return law
 
 
 def _derivative_laws() -> list[Law]:

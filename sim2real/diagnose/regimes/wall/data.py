@@ -67,6 +67,16 @@ def is_usual(every: WallContacts, known: WallContacts) -> np.ndarray:
     return ~wall | (np.abs(restitution - usual) < WALL.most_unusual_restitution)
 
 
+def place_along_wall(data: WallContacts) -> np.ndarray:
+    """Places (n,) [m] along the walls: y at the short ones, x elsewhere."""
+    return np.where(at_short_walls(data), data.place[:, 1], data.place[:, 0])
+
+
+def at_short_walls(data: WallContacts) -> np.ndarray:
+    """Which (n,) bool are at a short wall."""
+    return (data.kind == KINDS["x0"]) | (data.kind == KINDS["x1"])
+
+
 def split_spin_chains(contacts: WallContacts, number: np.ndarray, spin_chains: np.ndarray) -> WallContacts:
     """Split the spin chains at omitted contacts, because the spin after an omitted contact is unknown.
 

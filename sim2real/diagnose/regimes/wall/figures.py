@@ -14,8 +14,8 @@ from sim2real.diagnose.formula.search import Formula
 from sim2real.diagnose.regimes.contact.candidates import components_of
 from sim2real.diagnose.regimes.contact.formula import NORMAL, TANGENT, ContactProjection
 from sim2real.diagnose.regimes.contact.tuned import CONTACT
-from sim2real.diagnose.regimes.wall.basis_library import added_shares, place_along_wall
-from sim2real.diagnose.regimes.wall.data import KINDS, WallContacts
+from sim2real.diagnose.regimes.wall.basis_library import added_shares
+from sim2real.diagnose.regimes.wall.data import KINDS, WallContacts, place_along_wall
 from sim2real.diagnose.regimes.wall.problem import WallProblem
 from sim2real.diagnose.result.result import Curve, Mismatch
 from sim2real.statistics.binned import binned, half_band, is_rough, over, singles

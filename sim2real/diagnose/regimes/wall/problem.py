@@ -118,7 +118,7 @@ class WallProblem(ContactProblem[WallContacts]):
         self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None, only: Sequence[Law] = ()
     ) -> DesignMatrix:
         """See `Problem.columns`."""
-        return wall_design_matrix(self, values, free, only)
+        return wall_design_matrix(self, values, free, use, only)
 
     def _velocity_after(self, record: np.void, before: np.ndarray, spin: float = 0.0) -> np.ndarray:
         """Velocities after (n, 2) [m/s] in the table's frame, given those before (n, 2) and the chains' first spin."""

@@ -41,6 +41,20 @@ class WallNumbers:
         "less drops contacts by errors of the glide law; more keeps gaps in which more than a contact happened",
         "choice: twice what a single contact with a wall may be off",
     )
+    stretch_edges: int = tuned(
+        24, "1", "edges on each wall between which a stretch is searched: fewer miss a short one, more take time",
+        "choice: as many as a minute's contacts with a wall",
+    )  # fmt: skip
+    fewest_of_stretch: int = tuned(
+        2, "contacts", "a single one is an outlier; more miss a short stretch, or one that nearly all of a wall is",
+        "choice: the least number that agrees with itself",
+    )  # fmt: skip
+    least_stretch_gain: float = tuned(
+        15.0,
+        "loss",
+        "time for stretches that explain too little to be selected",
+        "choice: half of the engine's fit_gain",
+    )
     unknown_spin: float = tuned(
         30.0,
         "rad/s",

@@ -75,11 +75,9 @@ def _wall_warming(rng: Rng, share: float, law: Law, scenario: str) -> Change:
 
 
 def _soft_stretch(rng: Rng, share: float, law: Law, scenario: str) -> Change:
-    wall = int(rng.integers(4))
-    along = law.width if wall < 2 else law.length
-    begin, part = rng.uniform(0.1, 0.5), rng.uniform(0.25, 0.4)
-    changes = {"stretch_wall": wall, "stretch_extra": -0.12 * share, "wall_restitution": 0.75}
-    return Change(law={**changes, "stretch_from": begin * along, "stretch_until": (begin + part) * along})
+    begin, part = rng.uniform(0.1, 0.5), rng.uniform(0.35, 0.5)
+    changes = {"stretch_wall": int(rng.integers(2, 4)), "stretch_extra": -0.12 * share, "wall_restitution": 0.75}
+    return Change(law={**changes, "stretch_from": begin * law.length, "stretch_until": (begin + part) * law.length})
 
 
 def _mallet_warming(rng: Rng, share: float, law: Law, scenario: str) -> Change:

@@ -13,8 +13,8 @@ from typing import TypeVar
 
 import numpy as np
 
+from sim2real.diagnose.engine.linear.rest import Rest, gains_of_groups
 from sim2real.diagnose.regimes.sliding.forces.motion import Motion, along_axes, scaled
-from sim2real.diagnose.regimes.sliding.forces.rest import Rest, gains_of_groups
 from sim2real.diagnose.regimes.sliding.forces.searched_forces import COORDINATES, Span, Wave
 from sim2real.diagnose.regimes.sliding.tuned import SLIDING
 

@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from sim2real.diagnose.engine.law import Law
+from sim2real.diagnose.engine.linear.rest import Rest
 from sim2real.diagnose.regimes.sliding.forces.motion import Motion
-from sim2real.diagnose.regimes.sliding.forces.rest import Rest
 from sim2real.diagnose.regimes.sliding.tuned import SLIDING
 
 Columns = Callable[[np.ndarray], np.ndarray]  # accelerations (n, 2, k) [m/s^2] to columns (2n, k) of the residuals
