@@ -15,6 +15,7 @@ from puckpilot_env.physics.effects.unlisted_bounce import (
     BY_PLACE,
     BY_PLACE_ALIKE,
     BY_SPEED,
+    BY_STRETCH,
     BY_TIME,
     BY_WAVE,
     OF_BOTH,
@@ -101,6 +102,17 @@ def test_a_single_wave_is_the_same_in_metres_along_every_wall(wall: str, turned:
     change = 0.05 * math.sin(2.0 * math.pi * s / 0.7) - 0.02 * math.cos(2.0 * math.pi * s / 0.7)
     values = bounce_table(BY_WAVE, OF_BOTH, 0.7, 0.05, -0.02)
     assert kept(values, 2.0, 1.0, wall, turned=turned) == pytest.approx((E + change, E + change))
+
+
+@pytest.mark.parametrize("turned", [0, 1])
+@pytest.mark.parametrize("wall", WALLS)
+def test_a_stretch_is_of_one_wall_and_between_two_places(wall: str, turned: int) -> None:
+    s = WALLS[wall][3]
+    for k, other in enumerate(WALLS):
+        for begin, end in ((s - 0.1, s + 0.01), (s + 0.01, s + 0.2), (s - 0.2, s - 0.01)):
+            change = -0.2 if wall == other and begin < s < end else 0.0
+            values = bounce_table(BY_STRETCH, OF_BOTH, float(k), begin, end, -0.2)
+            assert kept(values, 2.0, 1.0, wall, turned=turned) == pytest.approx((E + change, E + change))
 
 
 def test_by_place_it_ends_with_the_length_and_leaves_posts_alone() -> None:

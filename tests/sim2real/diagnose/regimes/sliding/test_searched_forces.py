@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from sim2real.diagnose.engine.linear.rest import Rest, gains_of_groups
 from sim2real.diagnose.regimes.sliding.forces.force_search import ForceSearch, Steps, searched_forces
 from sim2real.diagnose.regimes.sliding.forces.motion import Motion
-from sim2real.diagnose.engine.linear.rest import Rest, gains_of_groups
 from sim2real.diagnose.regimes.sliding.forces.searched_forces import Span, Wave, searched_force
 
 FORCES = [

@@ -23,6 +23,7 @@ from sim2real.diagnose.regimes.wall.as_effect import EFFECT_TABLES, effect_param
 from sim2real.diagnose.regimes.wall.basis_library import BASIS_LIBRARY, SINGLE_WAVES, added_shares
 from sim2real.diagnose.regimes.wall.data import KINDS, WallContacts
 from sim2real.diagnose.regimes.wall.problem import WallProblem
+from sim2real.diagnose.regimes.wall.stretch import Stretch
 from sim2real.diagnose.result.result import Finding, RegimeResult
 from sim2real.recording.folder import read_recording
 from sim2real.study.independent_table import Law
@@ -71,7 +72,7 @@ def random_contacts(count: int) -> WallContacts:
 
 
 @pytest.mark.parametrize("component", COMPONENTS)
-@pytest.mark.parametrize("basis", EACH)
+@pytest.mark.parametrize("basis", [*EACH, Stretch("y1", 0.5, 1.2).name, Stretch("x0", 0.05, 0.4).name])
 def test_the_simulator_plays_the_law_that_was_fitted(basis, component):
     """A basis times coefficients, in addition to the walls' friction."""
     data, name = random_contacts(150), f"{component} by {basis}"
