@@ -79,6 +79,9 @@ class LiveTable(Backend):
         """Whether a frame has come that is to be read at once; the line is served a moment later then."""
         return False
 
+    def check_camera(self) -> None:
+        """Read a first picture, where there are any. TableFaultError, in one line, if it shows not what it must."""
+
     def connect(self, home: Place) -> None:
         """See `Backend.connect`."""
         self.open(home)

@@ -26,7 +26,7 @@ def run_steps(rig: Rig, report: Callable[[StepResult], None]) -> bool:
             try:
                 report(StepResult(name, True, step(rig)))
             except ValueError as error:
-                report(StepResult(name, False, str(error)))
+                report(StepResult(name, False, str(error).removesuffix("; then clear")))  # which is for a game
                 return False
         return True
     finally:
@@ -35,4 +35,5 @@ def run_steps(rig: Rig, report: Callable[[StepResult], None]) -> bool:
 
 def _open(rig: Rig) -> str:
     rig.table.open(rig.home)
-    return "port and camera are open"
+    rig.table.check_camera()
+    return "port and camera are open, and the camera's place is found in its pictures"

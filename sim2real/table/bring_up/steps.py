@@ -62,7 +62,8 @@ def homing(rig: Rig) -> str:
     """The mallet is put home by hand, and the board takes its place."""
     rig.table.home_by_hand(rig.home)
     x, y = rig.line.place
-    return f"the mallet is at ({x:.4f}, {y:.4f}) m"
+    off = 1e3 * math.dist(rig.line.place, rig.home)
+    return f"the mallet is at ({x:.4f}, {y:.4f}) m by its encoders, {off:.1f} mm from where it was to be put"
 
 
 def power(rig: Rig) -> str:

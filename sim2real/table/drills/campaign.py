@@ -12,6 +12,8 @@ from typing import Any
 
 import numpy as np
 
+import sim2real
+from sim2real.study.version import code_version
 from sim2real.table.drills.drill import Drill, Stop
 from sim2real.table.drills.known_faults import BY_NAME
 from sim2real.table.faults import TableFaultError
@@ -19,13 +21,14 @@ from sim2real.table.game.robot_seat import make_robot_seat
 
 PART = 120.0  # s of play of a part
 BETWEEN = (1.0, 6.0)  # s of play between two faults
+ROOT = Path(sim2real.__file__).parents[1]
 BEGINS = b'{"seed": '  # a line of a part
 
 
 @dataclass(frozen=True)
 class Part:
-    """A part of a campaign: its seed and `conditions`, which are faults, player and camera; seconds of play, what each
-    fault did, the worst volts at a motor [V] and the farthest outside its area [m]; why it ended early, "" if it did
+    """A part of a campaign: its seed and `conditions`, as faults, player and code; seconds of play, what each fault
+    did, the worst volts at a motor [V] and the farthest outside its area [m]; why it ended early, "" if it did
     not."""
 
     seed: int
@@ -57,8 +60,8 @@ def play_part(seed: int, names: Sequence[str], player: str, camera: str) -> Part
 
 
 def conditions(names: Sequence[str], player: str, camera: str) -> str:
-    """What parts of one campaign have in common."""
-    return f"{player}, {camera}: {', '.join(names)}"
+    """What parts of one campaign have in common, the code that plays them among it."""
+    return f"{player}, {camera}, code {code_version(ROOT)}: {', '.join(names)}"
 
 
 def run_campaign(

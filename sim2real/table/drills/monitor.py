@@ -14,10 +14,10 @@ AT_REST = 0.05  # m/s: slower a mallet stands
 
 @dataclass
 class Worst:
-    """The worst that was seen: volts at a motor [V]; distance outside its area [m]."""
+    """The worst that was seen: volts at a motor [V]; distance outside its area [m], negative inside."""
 
     volts: float = 0.0
-    outside: float = 0.0
+    outside: float = -math.inf
 
 
 class MalletMonitor:

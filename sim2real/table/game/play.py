@@ -82,12 +82,14 @@ def _cleared(
 
 
 def _note(log: GameLog, info: dict[str, Any], report: Callable[[str], None]) -> None:
-    """Add a step to the log, and report goals and fouls."""
+    """Add a step to the log, and report goals, fouls and face-offs."""
     score, fouls = ((int(info[name][0]), int(info[name][1])) for name in ("score", "fouls"))
     for name, before, after in (("goal", log.score, score), ("foul", log.fouls, fouls)):
         for who, was, is_now in zip(("robot", "opponent"), before, after, strict=True):
             if is_now > was:
                 report(f"{info['play_time']:6.1f} s  {name} of the {who}, {score[0]}:{score[1]}")
+    if info["new_point"]:
+        report(f"{info['play_time']:6.1f} s  face-off")
     log.score, log.fouls, log.seconds = score, fouls, info["play_time"]
     log.plans, log.parked = info["plans"], info["parked"]
     log.off_path = max(log.off_path, info["off_path"])

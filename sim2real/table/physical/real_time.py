@@ -85,6 +85,10 @@ class RealTimeTable(LiveTable):
         self._read_frames(1, SETTLED)  # those that came meanwhile keep the loop from its board
         super().arm()
 
+    def check_camera(self) -> None:
+        """See `LiveTable.check_camera`."""
+        self._read_frames(1, 0.0)
+
     def _read_frames(self, fewest: int, seconds: float) -> None:
         """Read frames, so many at least, for so many seconds from the first on."""
         eyes, patient = self._opened(self._live), self.now() + FIRST_FRAME

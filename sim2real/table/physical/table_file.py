@@ -40,13 +40,13 @@ gain = 25.0                     # dB
 rate = 120.0                    # Hz
 delay = 0.006                   # s from the middle of the exposure until a frame comes; or [latency] has it
 ring_height = 0.05              # m, of the opponent's ring above the table
-film_radius = 0.0309            # m, of the puck's film; left out, it is measured
+# film_radius = 0.0309          # m, of the puck's film; left out, it is measured
 
 [board]
 port = "/dev/ttyUSB0"
 supply = 24.0                   # V
-pulley_radius = 0.0353          # m, of `puckpilot calibrate gantry`
-offsets = [0.51, -1.22]         # rad, of the shafts' encoders, of the same; left out, the home is where the jig is
+# pulley_radius = 0.0353        # m, once `puckpilot calibrate gantry` has found it
+# offsets = [0.51, -1.22]       # rad, of the shafts' encoders, of the same; left out, the home is where the jig is
 proportional = [400.0, 400.0]   # V/m, of axes x and y; and so integral [V/m/s], derivative [V s/m]
 
 # [gantry]                      # once `puckpilot identify gantry` has made one; until then the simulator's hold
@@ -101,6 +101,8 @@ class TableFile:
 def read_table_file(path: str | PathLike[str]) -> TableFile:
     """Read a table.toml. Raises ValueError, in one line, for a file that is none."""
     folder = Path(path).absolute().parent
+    if Path(path).suffix == ".json":
+        raise ValueError(f"{path} is a calibration; expected a table.toml, which names it under [camera]")
     return read_toml(path, "a table", "table.toml (see puckpilot table check --help)", "'port = \"/dev/ttyUSB0\"'",
                      lambda content: _table(content, folder))  # fmt: skip
 

@@ -17,7 +17,7 @@ BASE = {"wall_restitution": 0.7}
 
 
 def problem_of(softer: Stretch | None) -> WallProblem:
-    """A hundred and fifty contacts, of which those in a stretch keep a fifth less of either speed; noise of 0.5 mm/s."""
+    """Contacts of which those in a stretch keep a fifth less of either speed; noise of 0.5 mm/s."""
     data = random_contacts(150)
     data = replace(data, kind=np.where(data.kind == 5, KINDS["y0"], data.kind))
     common = {row.name: row.default for row in TABLE}
