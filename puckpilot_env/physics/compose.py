@@ -12,6 +12,7 @@ An effect's file has the hooks of its regime, every one a kernel; those that it 
 | wall, corner | `restitution(p, kind, closing, e)` | restitution from that so far; `kind` as in `bounce` |
 | wall | `tangent(p, closing, e, along, spin, after)` | (tangential speed, spin) after it, from the speed so far |
 | wall | `shares(p, t, kind, x, y, closing, along)` | (of the normal speed, of the tangential): kept beyond all this |
+| wall | `angle(p, kind)` | how far [rad] a wall's normal is turned counter-clockwise; added to that of others |
 | mallet | `mallet_restitution(p, closing, e)` | restitution from that so far |
 | mallet | `mallet_impulse(p, impulse)` | normal impulse [m/s] from that so far |
 | mallet | `mallet_tangent(p, impulse, along, spin, after)` | (tangential speed, spin), relative to the mallet |
@@ -153,6 +154,14 @@ def _shares(first: Hook, second: Hook) -> Hook:
     return both
 
 
+def _sum_of_kind(first: Hook, second: Hook) -> Hook:
+    @inner
+    def both(p, kind):
+        return first(p, kind) + second(p, kind)
+
+    return both
+
+
 def _mallet_restitution(first: Hook, second: Hook) -> Hook:
     @inner
     def both(p, closing, e):
@@ -222,6 +231,7 @@ stride = reduce(_stride, _where_on("stride", _stride_where_on))
 restitution = reduce(_restitution, _hooks("restitution"))
 tangent = reduce(_tangent, _hooks("tangent"))
 shares = reduce(_shares, _hooks("shares"))
+angle = reduce(_sum_of_kind, _hooks("angle"))
 mallet_restitution = reduce(_mallet_restitution, _hooks("mallet_restitution"))
 mallet_impulse = reduce(_mallet_impulse, _hooks("mallet_impulse"))
 mallet_tangent = reduce(_mallet_tangent, _hooks("mallet_tangent"))

@@ -55,8 +55,22 @@ def more_shares(puck, p, t, kind, closing, along):
 def rebound(puck, p, t, kind, nx, ny):
     """Let a puck bounce off a wall or post (`kind` as in `bounce`), of unit normal `n` towards the puck, in place.
 
-    `t` [s] is the time of the episode.
+    `t` [s] is the time of the episode. Off a wall that is turned it goes no deeper into the straight one.
     """
+    angle = compose.angle(p, kind if puck.turned == 0 else bounce.opposite(kind))
+    if angle == 0.0:
+        rebound_off(puck, p, t, kind, nx, ny)
+        return
+    c, s = math.cos(angle), math.sin(angle)
+    rebound_off(puck, p, t, kind, c * nx - s * ny, s * nx + c * ny)
+    out = puck.vx * nx + puck.vy * ny
+    if out < 0.0:
+        puck.vx, puck.vy = puck.vx - out * nx, puck.vy - out * ny
+
+
+@kernel
+def rebound_off(puck, p, t, kind, nx, ny):
+    """`rebound` off a surface of unit normal `n`."""
     closing = -(puck.vx * nx + puck.vy * ny)
     if closing <= bounce.SLIDING:
         puck.vx, puck.vy = bounce.reflect(puck.vx, puck.vy, nx, ny, p.wall_restitution)

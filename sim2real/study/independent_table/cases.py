@@ -67,8 +67,7 @@ def draw_case(seed: int, number: int, kind: str | None = None, name: str | None 
     if kind == "two":
         scenario, names = _pair(rng)
     elif kind in ("one", "unlisted"):
-        listed = [each for each, one in MECHANISMS.items() if one.dealt]
-        names = [name or _dealt(listed if kind == "one" else list(LAWS), seed, turn)]
+        names = [name or _dealt(list(MECHANISMS if kind == "one" else LAWS), seed, turn)]
         scenario = str(rng.choice(_mechanism(names[0]).scenarios))
     else:
         scenario, names = _choice(rng, PLAIN_SCENARIOS), []
@@ -121,8 +120,7 @@ def _pair(rng: Rng) -> tuple[str, list[str]]:
     """A scenario and two compatible mechanisms that it shows."""
     scenario = _choice(rng, PAIRS)
     regimes = LIFTED.get(scenario, ())
-    dealt = {name: one for name, one in MECHANISMS.items() if one.dealt}
-    able = [name for name, one in dealt.items() if scenario in one.scenarios or one.regime in regimes]
+    able = [name for name, one in MECHANISMS.items() if scenario in one.scenarios or one.regime in regimes]
     while True:
         names = [str(name) for name in rng.choice(able, 2, replace=False)]
         if not any(set(names) <= group for group in INCOMPATIBLE):

@@ -32,15 +32,11 @@ class Change:
 
 @dataclass(frozen=True)
 class Mechanism:
-    """`draw(rng, share, law, scenario)` draws the change; `scenarios`: those that show it, most probable first.
-
-    `dealt`: False if it is drawn by name alone, so that the cases of a seed stay what they were before it was known.
-    """
+    """`draw(rng, share, law, scenario)` draws the change; `scenarios`: those that show it, most probable first."""
 
     regime: str
     scenarios: tuple[str, ...]
     draw: Callable[[Rng, float, Law, str], Change]
-    dealt: bool = True
 
 
 PUCK, TABLE_AND_PUCK = ("launches",), ("launches", "posts")
@@ -180,6 +176,15 @@ def _stamps(rng: Rng, share: float, law: Law, scenario: str) -> Change:
     return Change(camera={"jitter": 0.0, "arrival": late}, values={"std_s": late})
 
 
+def _alignment(rng: Rng, share: float, law: Law, scenario: str) -> Change:
+    """The long walls are not parallel: the width changes by some millimetres along the table."""
+    change = 0.004 * share * _sign(rng)  # m from one end to the other
+    left = rng.uniform(0.0, 1.0)
+    slopes = {"wall_slope_y0": -left * change / law.length, "wall_slope_y1": (1.0 - left) * change / law.length}
+    angles = {"x0": 0.0, "x1": 0.0, "y0": slopes["wall_slope_y0"], "y1": slopes["wall_slope_y1"]}
+    return Change(law=slopes, values=angles)
+
+
 MECHANISMS = {
     "table_tilt": Mechanism("glide", PUCK, _tilt),
     "table_warp": Mechanism("glide", PUCK, _warp),
@@ -198,15 +203,16 @@ MECHANISMS = {
     "mallet_give": Mechanism("mallet", ROBOT, _plain("mallet_give", 0.2, "mass_ratio", "ratio")),
     "voltage_sag": Mechanism("gantry", GANTRY, _plain("voltage_sag", 0.02, "sag")),
     "motor_deadband": Mechanism("gantry", GANTRY, _plain("deadband", 0.4, "V")),
-    "motor_friction": Mechanism("gantry", GANTRY, _friction, dealt=False),
+    "motor_friction": Mechanism("gantry", GANTRY, _friction),
     "command_delay": Mechanism("gantry", ("gantry",), _plain("command_delay", 0.015, "delay_s")),
     "belt_compliance": Mechanism("gantry", GANTRY, _belt),
     "backlash": Mechanism("gantry", GANTRY, _plain("backlash", 0.001, "gap")),
     "camera_delay": Mechanism("sensing", ROBOT, _plain("camera_delay", 0.018, "delay_s")),
     "clock_drift": Mechanism("sensing", ("gantry", "rally"), _clock),
     "scale_error": Mechanism("sensing", PUCK, _scale),
+    "wall_alignment": Mechanism("wall", PUCK, _alignment),
     "held_frames": Mechanism("sensing", ("launches", "rally"), _held),
-    "stamp_jitter": Mechanism("sensing", ("launches", "rally"), _stamps, dealt=False),
+    "stamp_jitter": Mechanism("sensing", ("launches", "rally"), _stamps),
 }
 # Groups that must not occur in one law, because one mechanism cancels or hides the other
 INCOMPATIBLE = (

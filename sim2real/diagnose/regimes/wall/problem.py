@@ -14,7 +14,7 @@ from sim2real.diagnose.engine.problem import DesignMatrix
 from sim2real.diagnose.regimes.contact.problem import ContactProblem
 from sim2real.diagnose.regimes.contact.tuned import CONTACT
 from sim2real.diagnose.regimes.wall.candidates import wall_design_matrix
-from sim2real.diagnose.regimes.wall.data import WallContacts
+from sim2real.diagnose.regimes.wall.data import KINDS, WallContacts
 from sim2real.diagnose.regimes.wall.tuned import WALL
 from sim2real.statistics.whitening import whitened
 
@@ -103,6 +103,19 @@ class WallProblem(ContactProblem[WallContacts]):
             if by_start @ by_start > 1e-12:
                 rows[here] = whitened(by_start[:, None], rows[here])
         return rows
+
+    def widening(self, values: Mapping[str, float], others: Mapping[str, float]) -> float:
+        """Half of the change [m] of the distance of two opposite walls from one end to the other, the larger one, by
+        which two laws differ. A map that is turned or sheared turns both alike, and is none."""
+        changes = [0.0]
+        for first, second, along in (("x0", "x1", "width"), ("y0", "y1", "length")):
+            if all((self.data.kind == KINDS[wall]).sum() >= WALL.fewest_of_wall for wall in (first, second)):
+                apart = [
+                    one.get(f"wall_angle_{first}", 0.0) - one.get(f"wall_angle_{second}", 0.0)
+                    for one in (values, others)
+                ]
+                changes.append(0.5 * abs(apart[0] - apart[1]) * self._common[along])
+        return max(changes)
 
     def _tangential_growth(self, values: Mapping[str, float]) -> np.ndarray:
         """The factor (n,) by which the tangential noise grows if spin or normal are unknown; the largest effect of

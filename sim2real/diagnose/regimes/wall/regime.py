@@ -54,6 +54,12 @@ class Wall(ContactRegime):
         assert isinstance(problem, WallProblem)
         return search_wall_model(problem, defaults, use, clear)
 
+    def size(self, problem: Problem, found: SearchResult, other: SearchResult) -> float:
+        """See `Regime.size`; of walls that are turned at least half of how much farther two of them are apart at one
+        end than at the other."""
+        assert isinstance(problem, WallProblem)
+        return max(super().size(problem, found, other), problem.widening(found.all_values, other.all_values))
+
     def mismatch(self, problem: Problem, found: SearchResult) -> Mismatch:
         """See `Regime.mismatch`."""
         assert isinstance(problem, WallProblem)

@@ -58,9 +58,9 @@ def off_wall(law, t, which, puck, nx, ny):
         e += law.odd_wall_extra
     e += law.wall_warming * t
     if law.wall_wave != 0.0:
-        e += law.wall_wave * sin(2.0 * pi * (puck[Y] if nx != 0.0 else puck[X]) / law.wall_wave_length)
+        e += law.wall_wave * sin(2.0 * pi * (puck[Y] if which < 2 else puck[X]) / law.wall_wave_length)
     if which == law.stretch_wall:
-        s = puck[Y] if nx != 0.0 else puck[X]
+        s = puck[Y] if which < 2 else puck[X]
         e += law.stretch_extra if law.stretch_from < s < law.stretch_until else 0.0
     if law.restitution_power != 0.0 and closing > 0.0:
         e = min(1.0, e * closing**-law.restitution_power)

@@ -64,6 +64,17 @@ class Law:
     odd_wall: int = -1  # 0..3: x0, xL, y0, yW
     odd_wall_extra: float = 0.0  # 1, its restitution minus the others'
 
+    # Walls that are not where the drawing has them: `table.wall_line`. Displacement [m] of each along its axis at its
+    # middle, and slope [1]: by how much more for each metre along it.
+    wall_offset_x0: float = 0.0
+    wall_offset_x1: float = 0.0
+    wall_offset_y0: float = 0.0
+    wall_offset_y1: float = 0.0
+    wall_slope_x0: float = 0.0
+    wall_slope_x1: float = 0.0
+    wall_slope_y0: float = 0.0
+    wall_slope_y1: float = 0.0
+
     # Mallets: `bounce.off_mallet`.
     mallet_restitution_slope: float = 0.0  # s/m
     mallet_mu: float = 0.0  # 1, Coulomb impulse along the rim

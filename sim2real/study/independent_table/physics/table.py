@@ -18,15 +18,31 @@ FAR = 1e3  # m, the gap to an obstacle that is out of reach
 
 
 @njit(error_model="numpy")
+def wall_line(law, which):
+    """Place [m] of a wall along its axis at its middle, and its slope [1], against the walls' nominal directions."""
+    if which == 0:
+        return law.wall_offset_x0, law.wall_slope_x0
+    if which == 1:
+        return law.length + law.wall_offset_x1, law.wall_slope_x1
+    if which == 2:
+        return law.wall_offset_y0, law.wall_slope_y0
+    return law.width + law.wall_offset_y1, law.wall_slope_y1
+
+
+@njit(error_model="numpy")
 def gap(law, which, puck, mallets):
     """Distance [m] that the puck can still move towards obstacle `which` before contact."""
     x, y = puck[X], puck[Y]
     if which < 2:  # a short wall has no surface inside the mouth
         if abs(y - 0.5 * law.width) < 0.5 * law.goal_width:
             return FAR
-        return (x if which == 0 else law.length - x) - law.puck_radius
+        place, slope = wall_line(law, which)
+        beyond = (x - place - slope * (y - 0.5 * law.width)) / sqrt(1.0 + slope * slope)
+        return (beyond if which == 0 else -beyond) - law.puck_radius
     if which < POST:
-        return (y if which == 2 else law.width - y) - law.puck_radius
+        place, slope = wall_line(law, which)
+        beyond = (y - place - slope * (x - 0.5 * law.length)) / sqrt(1.0 + slope * slope)
+        return (beyond if which == 2 else -beyond) - law.puck_radius
     if which < GOAL:
         post_x, post_y = post(law, which)
         return sqrt((x - post_x) ** 2 + (y - post_y) ** 2) - law.puck_radius
@@ -39,14 +55,14 @@ def gap(law, which, puck, mallets):
 @njit(error_model="numpy")
 def normal(law, which, puck, mallets):
     """Unit vector from the obstacle to the puck's centre at contact."""
-    if which == 0 or which == GOAL:
+    if which == GOAL:
         return 1.0, 0.0
-    if which == 1 or which == GOAL + 1:
+    if which == GOAL + 1:
         return -1.0, 0.0
-    if which == 2:
-        return 0.0, 1.0
-    if which == 3:
-        return 0.0, -1.0
+    if which < POST:
+        _, slope = wall_line(law, which)
+        long = sqrt(1.0 + slope * slope) * (1.0 if which % 2 == 0 else -1.0)
+        return (1.0 / long, -slope / long) if which < 2 else (-slope / long, 1.0 / long)
     if which < GOAL:
         from_x, from_y = post(law, which)
     else:
