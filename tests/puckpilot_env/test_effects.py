@@ -41,7 +41,7 @@ SOME = {
 
 HOOKS = {
     "glide": ("is_on", "acceleration", "friction"),
-    "wall": ("restitution", "tangent", "shares"),
+    "wall": ("restitution", "tangent", "shares", "angle"),
     "corner": ("restitution",),
     "mallet": ("mallet_restitution", "mallet_impulse", "mallet_tangent", "mallet_shares"),
     "sensing": ("camera_map",),

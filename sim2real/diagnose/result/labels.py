@@ -37,6 +37,12 @@ def _odd_wall(law: Law, fit: LeastSquaresFit) -> Numbers:
     return {"delta": fit.estimate(row)}
 
 
+def _angles(law: Law, fit: LeastSquaresFit) -> Numbers:
+    """The angle of each wall, and first that of the wall that is turned most; the finding's `where` names those."""
+    numbers = _fitted_numbers(law, fit)
+    return {"angle": max(numbers.values(), key=lambda one: abs(one.value)), **numbers}
+
+
 def _posts(law: Law, fit: LeastSquaresFit) -> Numbers:
     rows = ("wall_restitution", "post_extra")
     return {"e": _derived(fit, sum(float(fit.values[name]) for name in rows), dict.fromkeys(rows, 1.0))}
@@ -62,6 +68,7 @@ SPECIAL: dict[str, Callable[[Law, LeastSquaresFit], Numbers]] = {
     "mallet_speed_restitution": _falling("mallet_restitution"),
     "tangential_restitution": _tangential,
     "wall_to_wall_restitution": _odd_wall,
+    "wall_alignment": _angles,
     "corner_restitution": _posts,
     "friction_anisotropy": _headings,
 }

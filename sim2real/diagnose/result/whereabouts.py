@@ -8,6 +8,8 @@ from typing import Any
 from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.engine.law import Law
 
+LEAST_ANGLE = 3e-4  # rad, of a wall that is said to be turned: half a millimetre on a table's length
+
 
 def whereabouts(law: Law, values: Mapping[str, float]) -> dict[str, Any]:
     """Return the walls, the area of the table or the stream on which a listed law acts; empty if it acts everywhere."""
@@ -17,6 +19,9 @@ def whereabouts(law: Law, values: Mapping[str, float]) -> dict[str, Any]:
     if law.name == "wall_to_wall_restitution":
         rows = EFFECTS[law.name].rows
         return {"walls": [wall for wall, row in rows.items() if row.name in law.columns]}
+    if law.name == "wall_alignment":
+        rows = EFFECTS[law.name].rows
+        return {"walls": [wall for wall, row in rows.items() if abs(values[row.name]) >= LEAST_ANGLE]}
     if law.name == "clock_drift":
         return {"stream": "mallet"}
     return {}

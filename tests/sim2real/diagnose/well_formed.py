@@ -11,6 +11,7 @@ DEPENDS = {"position", "speed", "heading", "time", "history", "command"}
 MECHANISMS = {
     "table_tilt", "table_warp", "linear_drag", "friction_patch", "air_drift", "friction_anisotropy", "side_force",
     "speed_dependent_restitution", "tangential_restitution", "wall_friction_spin", "wall_to_wall_restitution",
+    "wall_alignment",
     "corner_restitution", "mallet_speed_restitution", "mallet_friction", "mallet_give", "voltage_sag", "motor_deadband",
     "motor_friction", "command_delay", "belt_compliance", "backlash", "camera_delay", "clock_drift", "scale_error",
     "held_frames", "stamp_jitter", "unlisted",

@@ -94,7 +94,9 @@ def test_through_three_contacts_it_is_the_reference_s(name: str) -> None:
 
 
 def test_every_effect_of_a_contact_is_held_against_the_reference() -> None:
-    assert {name for name, e in EFFECTS.items() if e.regime in ("wall", "corner", "mallet")} <= {*CONTACTS}
+    """But for walls that are turned, which the simulator leaves at their places: see test_wall_alignment."""
+    names = {name for name, e in EFFECTS.items() if e.regime in ("wall", "corner", "mallet")}
+    assert names - {"wall_alignment"} <= {*CONTACTS}
 
 
 velocity = st.floats(-8.0, 8.0)

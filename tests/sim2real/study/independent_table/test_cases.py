@@ -30,8 +30,7 @@ def test_every_block_holds_every_kind_and_every_mechanism_comes_once_a_round():
     for start in range(0, 80, BLOCK):
         assert Counter(case.truth["kind"] for case in cases[start : start + BLOCK]) == KINDS
     ones = [case.truth["mechanisms"][0] for case in cases if case.truth["kind"] == "one"]
-    dealt = [name for name, one in MECHANISMS.items() if one.dealt]
-    assert Counter(ones[: len(dealt)]) == dict.fromkeys(dealt, 1)
+    assert Counter(ones[: len(MECHANISMS)]) == dict.fromkeys(MECHANISMS, 1)
     unlisted = [case.truth["law"] for case in cases if case.truth["kind"] == "unlisted"]
     assert set(unlisted) <= set(LAWS)
     assert len(set(unlisted)) == len(unlisted)
@@ -55,6 +54,8 @@ def test_what_is_missing_is_in_the_law_and_nothing_else_is():
             assert changed <= set(BASELINE) and "friction" in changed
         elif "held_frames" in names:
             assert case.camera.held > 0.05
+        elif "stamp_jitter" in names:
+            assert case.camera.arrival > 1e-4
         else:
             assert changed - set(BASELINE)
         assert case.camera.held <= 0.02 or "held_frames" in names
@@ -70,7 +71,8 @@ def test_what_is_missing_is_in_the_law_and_nothing_else_is():
 def test_each_can_be_asked_for_and_changes_the_recording(name: str, tmp_path: Path):
     case = draw_case(2, 0, name=name)
     assert case.truth["kind"] == ("one" if name in MECHANISMS else "unlisted")
-    truth = make_recording(tmp_path / "a", case.law, case.scenario, 3, 6.0, case.camera, hand=case.hand, dt=1e-4)
+    seconds = 40.0 if name in ("push", "soft_stretch") else 6.0  # these are met later, or seldom
+    truth = make_recording(tmp_path / "a", case.law, case.scenario, 3, seconds, case.camera, hand=case.hand, dt=1e-4)
     if name in ("held_frames", "stamp_jitter"):  # faults of the camera, which stays the same below
         assert (case.camera.held > 0.05) == (name == "held_frames")
         assert (case.camera.arrival > 2e-4) == (name == "stamp_jitter")
@@ -82,7 +84,8 @@ def test_each_can_be_asked_for_and_changes_the_recording(name: str, tmp_path: Pa
             assert np.std(seen["t"] - known["t"]) == pytest.approx(case.camera.arrival, rel=0.1)
         return
     known = {key: getattr(case.law, key) for key in BASELINE}
-    still = make_recording(tmp_path / "b", Law(**known), case.scenario, 3, 6.0, case.camera, hand=case.hand, dt=1e-4)
+    plain = Law(**known)
+    still = make_recording(tmp_path / "b", plain, case.scenario, 3, seconds, case.camera, hand=case.hand, dt=1e-4)
     if name in ("camera_delay", "clock_drift", "scale_error"):
         files = ("frames.csv", "mallet.csv") if case.scenario != "launches" else ("frames.csv",)
         assert any((tmp_path / "a" / f).read_bytes() != (tmp_path / "b" / f).read_bytes() for f in files)
