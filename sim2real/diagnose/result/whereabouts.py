@@ -21,7 +21,7 @@ def whereabouts(law: Law, values: Mapping[str, float]) -> dict[str, Any]:
         return {"walls": [wall for wall, row in rows.items() if row.name in law.columns]}
     if law.name == "wall_alignment":
         rows = EFFECTS[law.name].rows
-        return {"walls": [wall for wall, row in rows.items() if abs(values[row.name]) >= LEAST_ANGLE]}
+        return {"walls": [wall for wall, row in rows.items() if abs(values.get(row.name, 0.0)) >= LEAST_ANGLE]}
     if law.name == "clock_drift":
         return {"stream": "mallet"}
     return {}

@@ -21,6 +21,16 @@ from sim2real.diagnose.regimes.wall.tuned import WALL
 
 FRICTION = "wall_friction_spin"
 ONE_LAW_PER_PARAMETER = ("wall_to_wall_restitution", "speed_dependent_restitution")
+ALIGNMENT = "wall_alignment"
+TURNED = (
+    ("y0", "y1"),
+    ("x0", "x1"),
+    ("x0", "x1", "y0", "y1"),
+    ("x0",),
+    ("x1",),
+    ("y0",),
+    ("y1",),
+)  # walls, alternatively
 
 
 def wall_design_matrix(
@@ -60,7 +70,8 @@ def _with_effect(law: Law, problem: ContactProblem[WallContacts], searched: Mapp
 def _derivative_laws() -> list[Law]:
     """Listed effects whose columns are derivatives at the baseline.
 
-    Each wall's own restitution is a separate law, and so is each form of the dependence on speed.
+    Each wall's own restitution is a separate law, and so is each form of the dependence on speed. Of walls that are
+    turned, some that were met often are alternatives to all.
     """
     found = []
     for name, effect in EFFECTS.items():
@@ -68,6 +79,8 @@ def _derivative_laws() -> list[Law]:
             continue
         if name in ONE_LAW_PER_PARAMETER:
             found += [Law(name, (row,)) for row in effect.row_names]
+        elif name == ALIGNMENT:
+            found += [Law(name, tuple(effect.rows[wall].name for wall in walls)) for walls in TURNED]
         else:
             found.append(Law(name, effect.row_names))
     return found
