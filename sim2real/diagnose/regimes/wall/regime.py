@@ -55,10 +55,15 @@ class Wall(ContactRegime):
         return search_wall_model(problem, defaults, use, clear)
 
     def size(self, problem: Problem, found: SearchResult, other: SearchResult) -> float:
-        """See `Regime.size`; of walls that are turned at least half of how much farther two of them are apart at one
-        end than at the other."""
+        """See `Regime.size`; of walls that are turned half of how much farther two of them are apart at one end than at
+        the other: bounces off walls that are all turned alike are those of a map that is turned or sheared."""
         assert isinstance(problem, WallProblem)
-        return max(super().size(problem, found, other), problem.widening(found.all_values, other.all_values))
+        turned = [
+            {name for name, value in one.all_values.items() if "wall_angle" in name and value} for one in (found, other)
+        ]
+        if turned[0] != turned[1]:
+            return problem.widening(found.all_values, other.all_values)
+        return super().size(problem, found, other)
 
     def mismatch(self, problem: Problem, found: SearchResult) -> Mismatch:
         """See `Regime.mismatch`."""
