@@ -25,7 +25,7 @@ SLOPES = {"x0": -1.0, "x1": -1.0, "y0": 1.0, "y1": 1.0}  # of the wall along its
 def test_a_direction_is_that_off_the_reference_s_slanted_wall(wall: str, angle: float, turned: int) -> None:
     kind, (nx, ny), place, _ = WALLS[wall]
     vx, vy = -1.2 * nx - 0.8 * ny, -1.2 * ny + 0.8 * nx
-    slant = Law(friction=0.0, drag=0.0, **{f"wall_slope_{wall}": SLOPES[wall] * math.tan(angle)})
+    slant = Law(**{**vars(Law(friction=0.0, drag=0.0)), f"wall_slope_{wall}": SLOPES[wall] * math.tan(angle)})
     back = 0.1  # s, before the bounce
     end = run(slant, (place[0] - back * vx, place[1] - back * vy, vx, vy), duration=0.3).end_puck
     puck = new_puck(*place, vx, vy)

@@ -70,7 +70,7 @@ class LinearProblem:
         return Residuals(residuals[here], jacobian[here], self.launch[here])
 
     def columns(
-        self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None, only: str = ""
+        self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None, only: Sequence[Law] = ()
     ) -> DesignMatrix:
         """See `Problem.columns`; there is one smooth term at most."""
         exact = self.residuals(values, NAMES, np.arange(LAUNCHES))

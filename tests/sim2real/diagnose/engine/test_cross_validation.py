@@ -111,7 +111,7 @@ def test_a_law_is_found_beside_coefficients_of_each_launch() -> None:
 class _Curved(LinearProblem):
     """A smooth term that the simulator can represent: it is linearized anew, so that the law's parameters change."""
 
-    def columns(self, values, free, use, only=""):
+    def columns(self, values, free, use, only=()):
         found = super().columns(values, free, use, only)
         shape = Law(
             "push by place", ("tilt_x", "tilt_y"), "position", switch=lambda theta: dict(zip(TILT, theta, strict=True))

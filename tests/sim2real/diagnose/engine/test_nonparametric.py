@@ -85,7 +85,7 @@ def test_a_term_whose_steps_all_increase_the_loss_predicts_nothing(grainy, monke
     problem, baseline, use = grainy
     original = problem.columns
 
-    def opposite(values, free, at, only=""):
+    def opposite(values, free, at, only=()):
         found = original(values, free, at, only)
         turned = [replace(one, switch=lambda theta, one=one: one.switch(-theta)) for one in found.families]
         return replace(found, families=turned)

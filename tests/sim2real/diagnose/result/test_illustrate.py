@@ -154,7 +154,7 @@ def test_periodic_friction_is_a_sine_of_time(tmp_path):
 class _Unlisted(LinearProblem):
     """A linear problem whose missing law is a smooth term."""
 
-    def columns(self, values, free, use, only=""):
+    def columns(self, values, free, use, only=()):
         found = super().columns(values, free, use, only)
         return replace(found, listed=[], families=[Tried("push by place", ("tilt_x", "tilt_y"), "position")])
 

@@ -35,8 +35,8 @@ def test_a_table_that_is_wider_at_one_end(tmp_path: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("turn", [0.0006, -0.0006])
 def test_walls_that_are_all_turned_alike_are_a_turned_map(tmp_path: Path, turn: float) -> None:
-    slopes = {"wall_slope_x0": -turn, "wall_slope_x1": -turn, "wall_slope_y0": turn, "wall_slope_y1": turn}
-    found = diagnosis_of(Law(**slopes), tmp_path / "table")
+    law = Law(wall_slope_x0=-turn, wall_slope_x1=-turn, wall_slope_y0=turn, wall_slope_y1=turn)
+    found = diagnosis_of(law, tmp_path / "table")
     assert [one.mechanism for one in found.findings] == []
 
 
