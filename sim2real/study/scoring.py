@@ -13,7 +13,7 @@ VECTORS = (
     ("warp_xx", "warp_yy", "warp_xy"),
     ("scale_x", "scale_y", "shear"),
     ("grain", "turning"),
-    ("x0", "x1", "y0", "y1"),
+    ("x0", "x1", "y0", "y1", "angle"),
 )
 PLACES = ("walls", "stream")  # keys of the place of a law that is zero elsewhere
 OTHER_NAMES = {"e_slope": "slope"}

@@ -169,3 +169,19 @@ def test_only_kernels_that_make_arrays_count_references(copied, decorator, count
 def test_the_running_folder_is_that_of_these_sources():
     assert sys.modules["puckpilot_env.kernel"].CACHE_FOLDER == kernel.CACHE_FOLDER
     assert kernel.CACHE_FOLDER.name == load(REPOSITORY).CACHE_FOLDER.name
+
+
+def test_hooks_that_were_made_inside_a_function_have_names_of_their_own() -> None:
+    """In cached kernels of two processes one name would stand for two functions."""
+    from puckpilot_env.physics import compose
+
+    found, todo = (
+        {},
+        [compose.acceleration, compose.friction, compose.edge, compose.stride, compose.angle, compose.shares],
+    )
+    while todo:
+        function = todo.pop().py_func
+        parts = [cell.cell_contents for cell in function.__closure__ or ()]
+        todo += parts
+        found.setdefault((function.__module__, function.__qualname__), set()).add(function)
+    assert len(found) > 40 and all(len(same) == 1 for same in found.values())

@@ -182,7 +182,7 @@ def _alignment(rng: Rng, share: float, law: Law, scenario: str) -> Change:
     left = rng.uniform(0.0, 1.0)
     slopes = {"wall_slope_y0": -left * change / law.length, "wall_slope_y1": (1.0 - left) * change / law.length}
     angles = {"x0": 0.0, "x1": 0.0, "y0": slopes["wall_slope_y0"], "y1": slopes["wall_slope_y1"]}
-    return Change(law=slopes, values=angles)
+    return Change(law=slopes, values={**angles, "angle": max(angles.values(), key=abs)})
 
 
 MECHANISMS = {
