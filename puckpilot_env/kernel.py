@@ -144,8 +144,8 @@ def inner(function: Callable[..., Any]) -> Callable[..., Any]:
     """Compile a function that was made inside another one: it becomes part of each `kernel` that calls it.
 
     It has no cache of its own, for numba tells functions apart by where they stand; its callers' caches hold it. There
-    each gets a name of its own, by what it calls: two of one name, of kernels that were compiled in two processes, would
-    be taken for one and the same when both kernels are loaded.
+    each gets a name of its own, by what it calls: two of one name, in kernels that were compiled in two processes,
+    would be taken for one and the same when both kernels are loaded.
     """
     calls = [cell.cell_contents.py_func for cell in function.__closure__ or ()]
     words = " ".join(f"{one.__module__}.{one.__qualname__}" for one in calls)
