@@ -62,7 +62,7 @@ def test_a_camera_that_is_unplugged_stops_the_mallet(seat: RobotSeat) -> None:
 
 
 @pytest.mark.parametrize("seconds", [0.02, 0.3])
-def test_a_player_that_takes_too_long_is_told_so(seat: RobotSeat, seconds: float) -> None:
+def test_a_player_that_takes_too_long_is_reported_as_such(seat: RobotSeat, seconds: float) -> None:
     """And not that the table or the cable is to be seen to."""
     seat.reset(seed=1)
     twin = twin_of(seat)

@@ -22,15 +22,8 @@ from sim2real.diagnose.regimes.wall.tuned import WALL
 FRICTION = "wall_friction_spin"
 ONE_LAW_PER_PARAMETER = ("wall_to_wall_restitution", "speed_dependent_restitution")
 ALIGNMENT = "wall_alignment"
-TURNED = (
-    ("y0", "y1"),
-    ("x0", "x1"),
-    ("x0", "x1", "y0", "y1"),
-    ("x0",),
-    ("x1",),
-    ("y0",),
-    ("y1",),
-)  # walls, alternatively
+# Walls that may be turned, alternatives to each other: both of a pair, all, or one
+TURNED = (("y0", "y1"), ("x0", "x1"), ("x0", "x1", "y0", "y1"), ("x0",), ("x1",), ("y0",), ("y1",))
 
 
 def wall_design_matrix(

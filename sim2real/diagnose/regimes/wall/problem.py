@@ -105,16 +105,16 @@ class WallProblem(ContactProblem[WallContacts]):
         return rows
 
     def widening(self, values: Mapping[str, float], others: Mapping[str, float]) -> float:
-        """Half of the change [m] of the distance of two opposite walls from one end to the other, the larger one, by
-        which two laws differ. A map that is turned or sheared turns both alike, and is none."""
+        """Half of the difference [m] between two laws in how much the distance of two opposite walls changes from one
+        end to the other; of the pair for which it is larger. A turned or sheared map turns both alike: 0."""
         changes = [0.0]
         for first, second, along in (("x0", "x1", "width"), ("y0", "y1", "length")):
             if all((self.data.kind == KINDS[wall]).sum() >= WALL.fewest_of_wall for wall in (first, second)):
-                apart = [
+                angle, other = (
                     one.get(f"wall_angle_{first}", 0.0) - one.get(f"wall_angle_{second}", 0.0)
                     for one in (values, others)
-                ]
-                changes.append(0.5 * abs(apart[0] - apart[1]) * self._common[along])
+                )
+                changes.append(0.5 * abs(angle - other) * self._common[along])
         return max(changes)
 
     def _tangential_growth(self, values: Mapping[str, float]) -> np.ndarray:

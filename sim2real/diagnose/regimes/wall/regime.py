@@ -55,8 +55,8 @@ class Wall(ContactRegime):
         return search_wall_model(problem, defaults, use, clear)
 
     def size(self, problem: Problem, found: SearchResult, other: SearchResult) -> float:
-        """See `Regime.size`; of walls that are turned half of how much farther two of them are apart at one end than at
-        the other: bounces off walls that are all turned alike are those of a map that is turned or sheared."""
+        """See `Regime.size`; of walls that are turned see `WallProblem.widening`: bounces off walls that are all turned
+        alike are those of a map that is turned or sheared."""
         assert isinstance(problem, WallProblem)
         turned = [
             {name for name, value in one.all_values.items() if "wall_angle" in name and value} for one in (found, other)

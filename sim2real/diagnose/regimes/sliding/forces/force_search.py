@@ -14,11 +14,10 @@ from typing import TypeVar
 import numpy as np
 
 from sim2real.diagnose.engine.linear.rest import Rest, gains_of_groups
-from sim2real.diagnose.regimes.sliding.forces.motion import Motion, along_axes, scaled
+from sim2real.diagnose.regimes.sliding.forces.motion import Columns, Motion, along_axes, scaled
 from sim2real.diagnose.regimes.sliding.forces.searched_forces import COORDINATES, Span, Wave
 from sim2real.diagnose.regimes.sliding.tuned import SLIDING
 
-Columns = Callable[[np.ndarray], np.ndarray]  # accelerations (n, 2, k) [m/s^2] to columns (2n, k) of the residuals
 Shape = tuple[float, ...]
 Force = TypeVar("Force", Span, Wave)
 FREQUENCIES = np.arange(*map(float, SLIDING.wave_numbers)) / SLIDING.wave_span  # Hz, of waves in time

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.engine.linear.rest import Rest
-from sim2real.diagnose.regimes.sliding.forces.motion import Motion
+from sim2real.diagnose.regimes.sliding.forces.motion import Columns, Motion
 from sim2real.diagnose.regimes.sliding.tuned import SLIDING
 
-Columns = Callable[[np.ndarray], np.ndarray]  # accelerations (n, 2, k) [m/s^2] to columns (2n, k) of the residuals
 MOVES = (-1, 0, 1)  # steps to places nearby
 
 
