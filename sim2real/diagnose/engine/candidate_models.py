@@ -76,9 +76,10 @@ def best_candidate(
         )  # a lower bound of the term's loss, as far as the linearization of the screen holds
         if least < min(one.cv_loss for one in (*candidates, *alone)):
             alone.append(_with_term(problem, Model(problem.base), baseline, gain, selection, use))
-    candidates += [one for one in alone if one.smooth and one.smooth.family.is_simple]
-    if not listed_suffice(candidates[0], alone, baseline_loss):
-        candidates += [one for one in alone if one not in candidates]
+    if listed_suffice(candidates[0], alone, baseline_loss):
+        candidates += [one for one in alone if one.smooth and one.smooth.family.is_simple]
+    else:
+        candidates += alone
         candidates += _term_with_laws(problem, baseline, gains, alone, selection, screen, use)
     if remainder is not None and listed.laws:
         candidates.append(_with_term(problem, listed, law, remainder, selection, use))
