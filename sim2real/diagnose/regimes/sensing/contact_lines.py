@@ -21,7 +21,7 @@ class ContactLine:
 
     `values` (2,): place [m] at the middle of the wall, and slant [1]; `covariance` (2, 2) of these. For each contact on
     the line: `along` (n,) [m]: place along the wall from its middle; `place` (n,) [m]: across, with standard deviation
-    `std` (n,) [m]; `launch` (n,).
+    `std` (n,) [m]; `launch` (n,); and the velocity `jumps` (n) themselves.
     """
 
     values: np.ndarray
@@ -30,6 +30,7 @@ class ContactLine:
     place: np.ndarray
     std: np.ndarray
     launch: np.ndarray
+    jumps: tuple[VelocityJump, ...]
 
 
 def contact_lines(found: list[VelocityJump], g: Geometry, skip=()) -> dict[str, ContactLine]:
@@ -58,8 +59,9 @@ def _line(wall: str, found: list[VelocityJump], g: Geometry) -> ContactLine | No
     if here.sum() < max(CONTACT_LINES.fewest_contacts, CONTACT_LINES.least_share * len(near)):
         return None
     launch = np.array([s.launch for s in near])
+    jumps = tuple(near[k] for k in np.flatnonzero(here))
     values, covariance = _fit_line(along[here], place[here], std[here])
-    return ContactLine(values, covariance, along[here], place[here], std[here], launch[here])
+    return ContactLine(values, covariance, along[here], place[here], std[here], launch[here], jumps)
 
 
 def _densest(along: np.ndarray, place: np.ndarray) -> np.ndarray:

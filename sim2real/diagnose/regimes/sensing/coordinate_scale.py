@@ -1,8 +1,8 @@
-"""Identify a stretch or shear of the map from image to table, from the walls' contact lines.
+"""Identify a stretch or shear of the map from image to table, from the walls' contact lines and the bounces there.
 
 A stretch moves the far lines outwards and not the near ones; a wrong radius of the puck moves all lines inwards
-equally; a shear slants the short walls. In glides a stretch is equivalent to a change of drag and friction, so only the
-lines are used.
+equally; a shear slants the short walls, and deflects bounces off the long ones. In glides a stretch is equivalent to a
+change of drag and friction, so only contacts are used.
 """
 
 from __future__ import annotations
@@ -14,6 +14,8 @@ import numpy as np
 from scipy import stats
 
 from puckpilot_env.physics.effects import EFFECTS
+from sim2real.diagnose.regimes.contact.tuned import CONTACT
+from sim2real.diagnose.regimes.sensing.bounce_angles import bounce_angles
 from sim2real.diagnose.regimes.sensing.contact_lines import ContactLine, contact_lines
 from sim2real.diagnose.regimes.sensing.held_out import held_out_errors
 from sim2real.diagnose.regimes.sensing.tuned import SCALE, SIGNIFICANCE_LEVEL
@@ -111,11 +113,11 @@ def _is_warped(values: np.ndarray, std: np.ndarray) -> bool:
 
 
 def _design(walls: dict[str, ContactLine], g: Geometry) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The lines' displacements from nominal (2n,), the Jacobian (2n, 7) by NAMES, radius, offsets and turn, and their
-    covariance (2n, 2n)."""
-    nominal = nominal_lines(g)
-    moved, rows = [], []
-    covariance = np.zeros((2 * len(walls), 2 * len(walls)))
+    """What is known of n walls and of k that deflect bounces: the lines' displacements from nominal and the angles
+    (2n + k,), the Jacobian (2n + k, 7) by NAMES, radius, offsets and turn, and their covariance."""
+    nominal, angles = nominal_lines(g), bounce_angles(walls)
+    moved, rows, slant_of = [], [], {}
+    covariance = np.zeros((2 * len(walls) + len(angles.walls),) * 2)
     for k, (wall, line) in enumerate(walls.items()):
         axis, inward = wall_axis(wall)
         place, slant = np.zeros(7), np.zeros(7)
@@ -128,6 +130,14 @@ def _design(walls: dict[str, ContactLine], g: Geometry) -> tuple[np.ndarray, np.
         covariance[2 * k : 2 * k + 2, 2 * k : 2 * k + 2] = line.covariance + np.diag(
             np.square([SCALE.wall_place_std, SCALE.wall_slant_std])
         )
+        slant_of[wall] = 2 * k + 1
+    covariance[2 * len(walls) :, 2 * len(walls) :] = angles.covariance
+    for k, (wall, value) in enumerate(zip(angles.walls, angles.values, strict=True), 2 * len(walls)):
+        axis, _ = wall_axis(wall)
+        rows.append(np.array([0.0, 0.0, axis, 0.0, 0.0, 0.0, (-1.0, 1.0)[axis]]))
+        moved.append(value)
+        covariance[k, k] += SCALE.wall_slant_std**2  # a wall that is slanted itself deflects by the opposite angle
+        covariance[k, slant_of[wall]] = covariance[slant_of[wall], k] = -(SCALE.wall_slant_std**2)
     return np.array(moved), np.array(rows).reshape(-1, 7), covariance
 
 
@@ -142,24 +152,24 @@ def _solve(walls: dict[str, ContactLine], g: Geometry) -> tuple[np.ndarray, np.n
 
 
 def distances_of_others(found: list[VelocityJump], values: np.ndarray, g: Geometry) -> np.ndarray:
-    """Distances (n, 4) of holdout contacts under the map `values`; see `_distances`."""
-    return _distances(contact_lines(found, g), values, {s.launch for s in found}, g)
+    """Errors (n, 4) of holdout contacts under the map `values`; see `_errors`."""
+    return _errors(contact_lines(found, g), values, {s.launch for s in found}, g)
 
 
 def _left_out(found: list[VelocityJump], g: Geometry) -> np.ndarray:
-    """Cross-validated `_distances` (n, 4) of all contacts: each under a map fitted without its launch."""
+    """Cross-validated `_errors` (n, 4) of all contacts: each under a map fitted without its launch."""
     launches = sorted({s.launch for s in found})
     lines, rows = contact_lines(found, g), [np.zeros((0, 4))]
     for fold in range(min(SCALE.folds, len(launches))):
         skip = set(launches[fold :: SCALE.folds])
         values, covariance = _solve(contact_lines(found, g, skip), g)
-        rows.append(_distances(lines, np.where(np.sqrt(np.diag(covariance)) < SCALE.known, values, 0.0), skip, g))
+        rows.append(_errors(lines, np.where(np.sqrt(np.diag(covariance)) < SCALE.known, values, 0.0), skip, g))
     return np.concatenate(rows)
 
 
-def _distances(walls: dict[str, ContactLine], values: np.ndarray, launches: Set[int], g: Geometry) -> np.ndarray:
-    """Distances (n, 4) of the contacts in `launches`: from their lines under the camera's own map and under the map
-    `values` [m], standard deviation [m], and launch."""
+def _errors(walls: dict[str, ContactLine], values: np.ndarray, launches: Set[int], g: Geometry) -> np.ndarray:
+    """Errors (n, 4) of the contacts in `launches`: under the camera's own map and under the map `values` [m], standard
+    deviation [m], and launch. They are distances from the walls' lines, and `_deflections`."""
     rows = [np.zeros((0, 4))]
     for wall, line in walls.items():
         here = np.isin(line.launch, list(launches))
@@ -170,4 +180,13 @@ def _distances(walls: dict[str, ContactLine], values: np.ndarray, launches: Set[
             moved = moved + values[2] * (g.width / 2 + line.along[here])
         place = line.place[here]
         rows.append(np.stack([place - expected, place - moved, line.std[here], line.launch[here]], axis=1))
-    return np.concatenate(rows)
+    return np.concatenate([*rows, _deflections(walls, values, launches)])
+
+
+def _deflections(walls: dict[str, ContactLine], values: np.ndarray, launches: Set[int]) -> np.ndarray:
+    """The same of bounces off the long walls: by how far a shear deflects the puck in `CONTACT.flight_time`."""
+    angles = bounce_angles(walls)
+    long_walls = [k for k, wall in enumerate(angles.walls) if wall_axis(wall)[0] == 1]
+    here = np.isin(angles.launch, list(launches)) & np.isin(angles.wall, long_walls)
+    each = (angles.deflected, angles.deflected - values[2] * angles.change, angles.std)
+    return np.stack([*(CONTACT.flight_time * one[here] for one in each), angles.launch[here]], axis=1)

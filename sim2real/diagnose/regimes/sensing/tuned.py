@@ -125,6 +125,30 @@ class ContactLineNumbers:
 
 
 @dataclass(frozen=True)
+class BounceAngleNumbers:
+    """Tuned numbers of the angles by which a map deflects bounces."""
+
+    fewest_bounces: int = tuned(
+        6, "bounces", "of a wall: fewer do not separate an angle from friction", "choice: twice the numbers of a wall"
+    )
+    rolling: float = tuned(
+        0.1, "m/s", "velocity along a wall at which it ceases to slip: a step would follow noise", "choice: a slow puck"
+    )
+    wall_std: float = tuned(
+        0.0003,
+        "rad",
+        "by which opposite walls may differ: less takes crooked cushions for turned walls",
+        "choice: a good cushion",
+    )
+    alike: float = tuned(
+        0.01,
+        "1",
+        "p-value of equal angles: less reads turned walls as a shear, more misses shears by chance",
+        "choice: once in a hundred",
+    )
+
+
+@dataclass(frozen=True)
 class ScaleNumbers:
     """Tuned numbers of the camera's map, estimated from the contact lines."""
 
@@ -291,6 +315,7 @@ class SensingConsistencyNumbers:
 SIGNIFICANCE_LEVEL = 1e-5  # p-value of exact sensors below which a sensor error is reported
 CLOCK = ClockNumbers()
 CONTACT_LINES = ContactLineNumbers()
+BOUNCE_ANGLES = BounceAngleNumbers()
 SCALE = ScaleNumbers()
 REPEATED_FRAMES = RepeatedFrameNumbers()
 STAMPS = StampNumbers()
