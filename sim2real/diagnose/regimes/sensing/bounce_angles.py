@@ -103,4 +103,4 @@ def _row(number: int, wall: str, jump: VelocityJump) -> tuple[float, ...]:
     along = 1 - across
     change, both = jump.v_out - jump.v_in, [3 + along, 5 + along]
     variance = np.array([-1.0, 1.0]) @ jump.covariance[np.ix_(both, both)] @ np.array([-1.0, 1.0])
-    return number, change[along], np.sqrt(variance), jump.v_in[along], change[across], jump.launch
+    return number, change[along], float(np.sqrt(variance)), jump.v_in[along], change[across], jump.launch
