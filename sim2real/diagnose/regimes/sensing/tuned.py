@@ -286,10 +286,10 @@ class StampNumbers:
     )
     fewest_pieces: int = tuned(30, "1", "fewer let chance decide", "choice: two seconds of gliding")
     worse: float = tuned(
-        1.05,
+        1.02,
         "1",
         "how much worse fits with the stamps must be: less names what no prediction notices",
-        "choice: a twentieth of the noise",
+        "choice: an error of a fifth of the noise",
     )
 
 
