@@ -64,7 +64,8 @@ class ObservationDecoder:
                 for c in range(3):
                     scale[:, a, c] = numbers[:, self._columns[f"gantry_c{c + 5}_{axis}"]]
         held = numbers[:, self._columns["held"]] if "held" in self._columns else np.zeros(len(numbers))
-        return DecodedState(puck, self._motion(numbers, "mallet"), opponent, scale, held)
+        state = (puck, self._motion(numbers, "mallet"), opponent, scale, held)
+        return DecodedState(*map(np.ascontiguousarray, state))  # kernels compile anew for every memory layout
 
     def _motion(self, numbers: NDArray[np.float64], what: str) -> NDArray[np.float64]:
         """(n, 4) motion of "puck", "mallet" or "opponent"."""

@@ -50,18 +50,19 @@ def park_opponent(mallet):
 
 
 @kernel
-def value_of(action, puck, opponent, held, p, weights, mallets, free, log, volts):
+def value_of(action, puck, opponent, held, p, weights, scene, log, volts):
     """The value of playing `action` (4,).
 
     `puck`, `opponent`: motions (x, y, vx, vy); `held`: see `DecodedState`; `weights`: a record of VALUE_WEIGHTS;
-    `mallets` (2,): the own one at its present motion, and the opponent's, parked; `free` (a puck) and `log` are
-    scratch; `volts`: the highest voltage [V].
+    `scene`: its mallets are the own one at its present motion, and the opponent's, parked; its puck is scratch; `log`
+    has no rows; `volts`: the highest voltage [V].
     """
+    free, mallets = scene.puck, scene.mallets
     plan_mallet(mallets[0], action[0], action[1], action[2], action[3], mirror.area(0, p), p.max_voltage)
     free.x, free.y, free.vx, free.vy, free.spin = puck[0], puck[1], puck[2], puck[3], 0.0
     now = 0.0
     for _ in range(MOST_CROSSINGS):
-        kind, now, _ = advance(free, p, mallets, 0.0, now, HORIZON, log, log[:, :3])
+        kind, now, _ = advance(free, p, mallets, 0.0, now, HORIZON, log, log)
         if kind == bounce.GOAL_X0:
             return -1.0 - (HORIZON - now)
         if kind == bounce.GOAL_X1:

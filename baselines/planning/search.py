@@ -18,6 +18,8 @@ MOST_CANDIDATES = 64
 STRIKES, STRIKE_INTERVAL = 2, 0.08  # strikes for each shot, and s between them
 LINES = (0.06, 0.15, 0.3)  # m from the goal line, at which an incoming puck is blocked
 RING = 8  # target positions around the puck
+# As a table has them (`game.state.TABLE`), so that `advance` is compiled once for players and tables
+SCENE = np.dtype([("puck", PUCK), ("mallets", MALLET, 2)], align=True)
 
 
 @array_kernel
@@ -65,14 +67,14 @@ def _clip(action, bounds):
 
 
 @array_kernel
-def _best_candidate(puck, own, opponent, held, last, p, weights, mallets, bounds, shots, variations, scratch, out):
+def _best_candidate(puck, own, opponent, held, last, p, weights, scene, bounds, shots, variations, scratch, out):
     """Write the best candidate, improved by hill climbing over `variations`, into `out` (4,)."""
-    free, log, found, trial = scratch
+    log, found, trial = scratch
     volts = bounds[1, 3]
     best = -math.inf
-    for i in range(_propose_candidates(puck, own, last, p, weights, mallets[0], bounds, shots, found)):
+    for i in range(_propose_candidates(puck, own, last, p, weights, scene.mallets[0], bounds, shots, found)):
         _clip(found[i], bounds)
-        value = value_of(found[i], puck, opponent, held, p, weights, mallets, free[0], log, volts)
+        value = value_of(found[i], puck, opponent, held, p, weights, scene, log, volts)
         if value > best:
             best = value
             out[:] = found[i]
@@ -80,7 +82,7 @@ def _best_candidate(puck, own, opponent, held, last, p, weights, mallets, bounds
         for c in range(4):
             trial[c] = out[c] + variations[i, c]
         _clip(trial, bounds)
-        value = value_of(trial, puck, opponent, held, p, weights, mallets, free[0], log, volts)
+        value = value_of(trial, puck, opponent, held, p, weights, scene, log, volts)
         if value > best:
             best = value
             out[:] = trial
@@ -97,9 +99,9 @@ def search_actions(
     `variations` (k, 4): added to the best action in turn.
     """
     p, weights = nominal[0], value_weights[0]
-    mallets = np.zeros(2, MALLET)
-    park_opponent(mallets[1])
-    scratch = (np.zeros(1, PUCK), np.zeros((0, EVENT_COLUMNS)), np.zeros((MOST_CANDIDATES, 4)), np.zeros(4))
+    scene = np.zeros(1, SCENE)[0]
+    park_opponent(scene.mallets[1])
+    scratch = (np.zeros((0, EVENT_COLUMNS)), np.zeros((MOST_CANDIDATES, 4)), np.zeros(4))
     for i in range(pucks.shape[0]):
         puck, own = pucks[i], owns[i]
         ahead = puck[0] + HORIZON * puck[2]
@@ -107,8 +109,8 @@ def search_actions(
             actions[i, 0], actions[i, 1] = guard_place(puck[0], puck[1], p, weights.guard)
             actions[i, 2], actions[i, 3] = bounds[1, 2], bounds[1, 3]
             continue
-        fill_mallet(mallets[0], p, scales[i], own)
+        fill_mallet(scene.mallets[0], p, scales[i], own)
         _best_candidate(
-            puck, own, opponents[i], helds[i], lasts[i], p, weights, mallets, bounds, shots, variations, scratch,
+            puck, own, opponents[i], helds[i], lasts[i], p, weights, scene, bounds, shots, variations, scratch,
             actions[i],
         )  # fmt: skip
