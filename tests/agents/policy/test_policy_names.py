@@ -76,9 +76,16 @@ def test_one_policy_is_found_by_all_its_names(name: str) -> None:
     assert full_name(name) == f"policy:{name.removeprefix('policy:')}"
 
 
+# An evaluation takes seconds, so that most of its spellings are left to a long run.
+SPELT = [
+    pytest.param(command, name, marks=pytest.mark.long if command == "evaluate" and name != "run" else ())
+    for command in ("match", "evaluate", "exploit", "export")
+    for name in SPELLINGS
+]
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("name", SPELLINGS)
-@pytest.mark.parametrize("command", ["match", "evaluate", "exploit", "export"])
+@pytest.mark.parametrize(("command", "name"), SPELT)
 def test_every_command_accepts_every_spelling(
     command: str, name: str, here: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

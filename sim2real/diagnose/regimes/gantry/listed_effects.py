@@ -80,6 +80,7 @@ def candidates(problem: GantryResiduals, values: Mapping[str, float]) -> list[Ca
         if not fits:
             break
         best = min(fits, key=lambda name: fits[name].law.loss)
+        fits[best] = _converged(thin, fits[best])
         share = GANTRY_FIT.later_share if chosen else GANTRY_FIT.first_share
         if now.law.loss - fits[best].law.loss < share * (now.law.loss - freedom):
             break
@@ -127,6 +128,17 @@ def _fit_in_stages(problem: GantryResiduals, starts: Sequence[Mapping[str, float
     if "command_delay" in rows:
         best = _delay_in_steps(problem, best)
     return StagedFit(best, fit(problem, best.values, (*problem.base, *rows), problem.everything, GANTRY_FIT.rounds))
+
+
+def _converged(problem: GantryResiduals, one: StagedFit) -> StagedFit:
+    """The fit continued while that improves it: what friction and another effect share is told apart slowly."""
+    law = one.law
+    for _ in range(GANTRY_FIT.continued):
+        more = fit(problem, law.values, law.free, problem.everything, GANTRY_FIT.rounds)
+        better, law = more.loss < GANTRY_FIT.still_better * law.loss, min(law, more, key=lambda each: each.loss)
+        if not better:
+            break
+    return StagedFit(one.low_order, law)
 
 
 def _delay_in_steps(problem: GantryResiduals, law: LeastSquaresFit) -> LeastSquaresFit:

@@ -29,7 +29,7 @@ from tests.puckpilot_env.physics.table_driver import (
 )
 
 CLOSE = 1e-5  # m
-STARTS = 12
+STARTS = 8
 SECONDS, SAMPLES = 1.0, 201
 WAITING = (1.9, 0.06)  # m, of a mallet that is out of the way
 

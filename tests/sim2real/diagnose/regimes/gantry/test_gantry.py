@@ -55,7 +55,7 @@ def diagnosed(recording: Recording) -> RegimeResult:
         (Law(motor_friction_left=0.5, motor_friction_right=0.4, axis_friction_y=0.6), "motor_friction", "V_left", 0.5),
         (Law(command_delay=0.012), "command_delay", "delay_s", 0.012),
         (replace(OTHER, belt_hz=16.0, belt_zeta=0.1), "belt_compliance", "hz", 16.0),
-        (Law(backlash=0.001), "backlash", "gap", 0.001),
+        pytest.param(Law(backlash=0.001), "backlash", "gap", 0.001, marks=pytest.mark.long),
         (Law(encoder_clock=-3e-4), "clock_drift", "ppm", -300.0),
     ],
 )
