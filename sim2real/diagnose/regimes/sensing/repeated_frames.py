@@ -65,7 +65,7 @@ def _while_moving(p: np.ndarray, segments: Segments) -> tuple[np.ndarray, np.nda
     total = np.concatenate([[0], np.cumsum(segments.held)])
     repeats = total[after] - total[here]
     step_before = np.linalg.norm(p[here] - p[before], axis=1) / (here - before)
-    step_after = np.linalg.norm(p[after] - p[here], axis=1)
+    step_after = np.linalg.norm(p[after] - p[here], axis=1) / (after - here)  # per frame, lest repeats count for more
     moved = REPEATED_FRAMES.moved * segments.noise_std + REPEATED_FRAMES.rounding
     counted = (step_before > moved) & (step_after > moved) & (after - here - 1 == repeats)
     return before[counted], here[counted], after[counted], repeats[counted]
