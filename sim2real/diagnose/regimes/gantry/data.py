@@ -77,11 +77,11 @@ class GantryRecording:
         extra = np.zeros((len(self.t), 2, 0)) if extra is None else extra
         changes, volts = self.drive_inputs.at_motors(p)
         uncertain = self.drive_inputs.uncertain_switches(p)
-        observed = self.observed - (self.friction(p, delay) if friction is None else friction)
+        dry = self.friction(p, delay) if friction is None else friction
         rows, found = self.windows.rows, []
         for axis in range(2):
             out = np.empty((len(self.t), 1 + extra.shape[2]))
-            columns = (observed[:, axis], 1.0 / self.noise[:, axis])
+            columns = (self.observed[:, axis], dry[:, axis], 1.0 / self.noise[:, axis])
             axis_residuals(
                 p, axis, changes + delay, volts[:, axis].copy(), uncertain, self.t, *(c.copy() for c in columns),
                 self.windows.begin, self.windows.end, np.ascontiguousarray(extra[:, axis]), out,

@@ -8,17 +8,15 @@ from itertools import pairwise
 import numpy as np
 
 from puckpilot_env.parameters import BY_NAME
-from puckpilot_env.physics.effects import motor_friction
+from puckpilot_env.physics.effects import belt_compliance, motor_friction
 from sim2real.diagnose.engine.problem import Residuals, Units, record_of
 from sim2real.diagnose.regimes.gantry.data import GantryRecording
 from sim2real.diagnose.regimes.gantry.tuned import GANTRY_FIT
 
 PRIOR_PARAMETERS = ("a1", "b1")  # coefficients of the jerk: almost equivalent to a delay, so they have a prior
 LOW_ORDER = ("a2", "a3", "b2", "b3")  # the baseline's other parameters
-CHANGE_FRICTION = (
-    *motor_friction.EFFECT.row_names,
-    "command_delay",
-)  # of which friction's displacement depends strongly
+# Those on which friction's displacement depends strongly
+CHANGE_FRICTION = (*motor_friction.EFFECT.row_names, *belt_compliance.EFFECT.row_names, "command_delay")
 MIRRORED = {"b1": "a1", "b2": "a2", "b3": "a3"}  # x depends on the difference a - b, y on the sum a + b
 
 

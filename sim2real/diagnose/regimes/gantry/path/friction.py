@@ -1,4 +1,4 @@
-"""The path's change by dry friction of motors and axes, whose direction is that of the simulated motion.
+"""The change of the mallet's path by dry friction of motors and axes, whose direction is that of the motors' motion.
 
 Under constant volts an axis has a closed form; friction is held for a small step at a time.
 """
@@ -11,7 +11,7 @@ import numpy as np
 
 from puckpilot_env.kernel import array_kernel, kernel
 from puckpilot_env.physics.effects.motor_friction import EFFECT
-from sim2real.diagnose.regimes.gantry.path.response import axis_of, drive_on
+from sim2real.diagnose.regimes.gantry.path.response import axis_of, drive_on, place
 from sim2real.diagnose.regimes.gantry.tuned import GANTRY_DATA
 from sim2real.diagnose.regimes.gantry.windows import StreamWindows
 
@@ -61,7 +61,7 @@ def _change(p, sizes, changes, volts, unknown, t, velocity, begin, end, numbers,
             without, to_x, to_y = _drive(x, y, none, changes, volts, without, moment, t[i], to_x, to_y, numbers)
             now, at_x, at_y = _drive(x, y, sizes, changes, volts, now, moment, t[i], at_x, at_y, numbers)
             moment = t[i]
-            path[i, 0], path[i, 1] = _place(at_x) - _place(to_x), _place(at_y) - _place(to_y)
+            path[i, 0], path[i, 1] = place(x, at_x) - place(x, to_x), place(y, at_y) - place(y, to_y)
 
 
 @kernel
@@ -84,11 +84,6 @@ def _drive(x, y, sizes, changes, volts, now, moment, until, at_x, at_y, numbers)
 
 
 @kernel
-def _place(state):
-    return state[0] + state[1] + state[2]
-
-
-@kernel
 def _held(vx, vy, numbers):
     """How long [s] friction is held, whose direction may turn where a speed is small: a short step there, and less than
     a speed takes to vanish elsewhere."""
@@ -101,7 +96,7 @@ def _start(c, velocity, volts):
     """The state at 0 with a velocity [m/s], whose fast mode is as long constant `volts` [V] leave it."""
     slow_rate, _, rest_gain, slow_gain, fast_gain = c[:5]
     slow = (rest_gain * volts - velocity) / slow_rate - slow_gain * volts
-    return -slow - fast_gain * volts, slow, fast_gain * volts, 0.0, 0.0
+    return -slow - fast_gain * volts, slow, fast_gain * volts, 0.0, velocity
 
 
 @kernel

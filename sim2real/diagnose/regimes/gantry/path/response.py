@@ -126,12 +126,13 @@ def shift_by_play(gap, motor, play):
 
 
 @array_kernel
-def axis_residuals(p, axis, changes, volts, uncertain, t, observed, weight, begin, end, extra, out):
+def axis_residuals(p, axis, changes, volts, uncertain, t, observed, dry, weight, begin, end, extra, out):
     """Write to `out` (samples, 1 + m) the weighted residual and columns of `extra` (samples, m) [m], with the starts
     projected out.
 
     changes (k,) [s], volts (k,) [V]: at the motors; uncertain: indices of uncertain switches; t [s], observed [m],
-    weight [1/m] (samples,): of the encoders; begin, end (windows,): first sample of each window, and one past its last.
+    dry [m] (samples,): what friction adds to the path; weight [1/m] (samples,): of the encoders; begin, end (windows,):
+    first sample of each window, and one past its last.
     """
     c, gap = axis_of(p, axis), p.backlash_gap
     carried, next_uncertain = 0.0, 0
@@ -155,6 +156,7 @@ def axis_residuals(p, axis, changes, volts, uncertain, t, observed, weight, begi
         for i in range(n):
             columns[i, :count] *= weight[a + i]
             out[a + i, 1:] = extra[a + i] * weight[a + i]
+            path[i] += dry[a + i]
             out[a + i, 0] = (observed[a + i] - path[i]) * weight[a + i]
         project_out(columns, count, out[a:b])
         if gap > 0.0:
