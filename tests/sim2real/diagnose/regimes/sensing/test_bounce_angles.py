@@ -34,8 +34,8 @@ def bounces(shear: float, turned: dict[str, float], friction: float, seed: int =
             seen = [np.array([one[0] + shear * one[1], one[1]]) for one in places]
             state = np.concatenate([[len(found)], *seen]) + rng.normal(0.0, STD)
             v_in, v_out = state[3:5], state[5:7]
-            t, x, y = state[:3]
-            event = ContactEvent("wall", wall, t, x, y, v_in, v_out, 0.01, (0, 1), 9.0, True)
+            t, *at = state[:3]
+            event = ContactEvent("wall", wall, t, at[0], at[1], v_in, v_out, 0.01, (0, 1), 9.0, True)
             found.append(VelocityJump(event, state, np.diag(STD**2), len(found) // 2))
     return found
 
