@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,6 +22,7 @@ pytestmark = pytest.mark.slow
 LAW = Law(motor_friction_left=0.5, motor_friction_right=0.3, axis_friction_x=0.1, axis_friction_y=0.6)
 SIZES = {name: float(getattr(LAW, name)) for name in EFFECT.row_names}
 SUPPLY, SECONDS = 24.0, 16.0
+Lag = dict[str, float]
 
 
 @pytest.fixture(scope="module")
@@ -56,6 +58,20 @@ def test_a_path_that_begins_in_a_move_is_run_in_by_the_volts_before_it(recording
     fast = speed.t[(speed.t > 4.0) & (np.abs(speed.velocity[:, 0]) > 0.8)][0]
     run = read_gantry(second_part(recording, float(fast)), SUPPLY, np.zeros(0))
     assert left_over(run, **SIZES) == pytest.approx(1.0, abs=0.05)
+
+
+@pytest.mark.parametrize(
+    ("beside", "parameters"),
+    [
+        ({"backlash": 0.0015}, {"backlash_gap": 0.0015}),
+        ({"belt_hz": 12.0, "belt_zeta": 0.2}, {"belt_hz": 12.0, "belt_zeta": 0.2}),
+    ],
+)
+def test_the_mallet_lags_the_motor_s_path_with_its_friction(tmp_path: Path, beside: Lag, parameters: Lag) -> None:
+    make_recording(tmp_path / "lagging", replace(LAW, **beside), "gantry", 3, SECONDS, dt=1e-4)
+    run = read_gantry(read_recording(tmp_path / "lagging"), SUPPLY, np.zeros(0))
+    assert left_over(run, **SIZES, **parameters) == pytest.approx(1.0, abs=0.06)
+    assert left_over(run, **SIZES) > 2.0
 
 
 def staged(loss: float) -> StagedFit:
