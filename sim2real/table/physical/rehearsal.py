@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from itertools import islice
 from multiprocessing.connection import Connection
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -28,6 +29,9 @@ from sim2real.table.physical.frame_reader import FrameReader
 from sim2real.table.physical.real_time import RealTimeTable
 from sim2real.table.twin.rendered_table import RenderedTable
 from sim2real.vision.track.kalman_tracker import FASTEST
+
+if TYPE_CHECKING:
+    from sim2real.emulate.machine import Machine
 
 RATE, DELAY = 120.0, 0.0  # Hz; s from exposure to arrival
 PATIENCE = 2.0  # s: nobody looks for a puck that is not seen
@@ -113,7 +117,9 @@ def emulated_board(place: Place) -> Iterator[str]:
         try:
             port = here.recv()
         except EOFError:
-            raise ValueError("the board cannot be emulated here; run puckpilot firmware emulate to see why") from None
+            raise ValueError("the emulated board ended at once; run puckpilot firmware emulate to see why") from None
+        if isinstance(port, Exception):
+            raise ValueError(f"the board cannot be emulated here: {port}") from None
         yield port
     finally:
         with suppress(OSError):  # it may have ended
@@ -123,16 +129,27 @@ def emulated_board(place: Place) -> Iterator[str]:
 
 
 def _serve_board(parent: Connection, place: Place) -> None:
-    """In the other process: emulate the board until the parent says something, or is gone."""
-    from firmware import ELF
-    from sim2real.emulate.gantry import Gantry
-    from sim2real.emulate.machine import Machine
+    """In the other process: emulate the board until the parent says something, or is gone. It tells its port, or why
+    there is none."""
     from sim2real.emulate.pseudo_terminal import serve, terminal
 
-    machine = Machine(ELF, seed=1)
-    Gantry(machine, place=place)
+    try:
+        machine = _machine(place)
+    except (ImportError, OSError, ValueError) as error:
+        parent.send(error)
+        return
     gc.collect()
     gc.freeze()  # as the host does: a full collection would hold a board of real time for tens of milliseconds
     with terminal() as (descriptor, name):
         parent.send(name)
         serve(machine, descriptor, lambda seconds: not parent.poll())
+
+
+def _machine(place: Place) -> Machine:
+    from firmware import ELF
+    from sim2real.emulate.gantry import Gantry
+    from sim2real.emulate.machine import Machine
+
+    machine = Machine(ELF, seed=1)
+    Gantry(machine, place=place)
+    return machine

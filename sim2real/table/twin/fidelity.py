@@ -14,13 +14,16 @@ from pathlib import Path
 
 import numpy as np
 
+import sim2real
 from puckpilot_env.files.whole_file import write_text_whole
 from puckpilot_env.variants import find_variant
+from sim2real.study.version import code_version
 from sim2real.table.game.play import play_game
 from sim2real.table.game.robot_seat import make_robot_seat
 
 FORMAT = "puckpilot-twin-game/1"
 WARM = 0.3  # s of a game before the first one that is timed, in which all is compiled
+ROOT = Path(sim2real.__file__).parents[1]  # of the checkout whose code plays
 RESAMPLES = 2000  # of the bootstrap
 
 
@@ -110,7 +113,8 @@ def _file(folder: Path, meeting: Meeting) -> Path:
 
 
 def _play_and_write(meeting: Meeting, folder: Path) -> None:
-    content = {"format": FORMAT, "meeting": asdict(meeting), "game": asdict(play_on_twin(meeting))}
+    game = asdict(play_on_twin(meeting))
+    content = {"format": FORMAT, "code": code_version(ROOT), "meeting": asdict(meeting), "game": game}
     write_text_whole(_file(folder, meeting), json.dumps(content, indent=1) + "\n")
 
 
@@ -122,9 +126,12 @@ def _read(folder: Path, meeting: Meeting) -> TwinGame | None:
         content = json.loads(path.read_text(encoding="utf-8"))
         if content["format"] != FORMAT or Meeting(**content["meeting"]) != meeting:
             raise ValueError
-        return TwinGame(**content["game"] | {"goals": tuple(content["game"]["goals"])})
+        code, game = content["code"], TwinGame(**content["game"] | {"goals": tuple(content["game"]["goals"])})
     except (ValueError, KeyError, TypeError):
         raise ValueError(f"{path}: is no result of this meeting; name another folder, or remove it") from None
+    if code != code_version(ROOT):
+        raise ValueError(f"{path}: was played by another version of the code; name another folder, or remove it")
+    return game
 
 
 def goals_a_minute(games: list[TwinGame], side: int) -> tuple[float, float, float]:

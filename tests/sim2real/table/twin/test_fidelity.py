@@ -44,6 +44,15 @@ def test_a_file_of_another_meeting_is_refused(text: str, tmp_path: Path) -> None
         play_all(MEETINGS, tmp_path, 1, lambda done, count: None)
 
 
+def test_a_game_of_another_version_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(fidelity, "play_on_twin", result)
+    monkeypatch.setattr(fidelity, "code_version", lambda root: "before")
+    play_all(MEETINGS, tmp_path, 1, lambda done, count: None)
+    monkeypatch.setattr(fidelity, "code_version", lambda root: "after")
+    with pytest.raises(ValueError, match=r"game_3.json: was played by another version of the code; name another"):
+        play_all(MEETINGS, tmp_path, 1, lambda done, count: None)
+
+
 def test_goals_a_minute_are_all_goals_by_all_minutes() -> None:
     games = [TwinGame(1, (7, 1), 30.0, 31.0, 9.0, 9.0), TwinGame(1, (5, 0), 90.0, 91.0, 9.0, 9.0)]
     rate, low, high = goals_a_minute(games, 0)
