@@ -8,6 +8,7 @@ from sim2real.study.cost import diagnosis_costs
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_the_cost_of_a_diagnosis_and_what_it_found() -> None:
     steps: list[tuple[int, int]] = []
     (cost,) = diagnosis_costs([30.0], "table_tilt", 4, lambda done, total: steps.append((done, total)))

@@ -80,6 +80,7 @@ def test_a_decaying_deceleration_gets_its_formula_and_its_mismatch(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_falling_wall_restitution_gets_a_slope(tmp_path):
     one = _diagnosis(tmp_path / "table", Law(wall_warming=-0.003, wall_restitution=0.85)).findings[0]
     assert (one.mechanism, one.depends_on) == ("unlisted", ("time",))
@@ -171,6 +172,7 @@ def test_residuals_are_shown_under_the_law_with_its_smooth_term():
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_law_of_speed_angle_and_spin_is_shown_as_measured_against_predicted(tmp_path):
     law = Law(wall_spin=True, wall_mu=0.15, wall_restitution=0.8)
     curve = _curve(_diagnosis(tmp_path / "table", law))

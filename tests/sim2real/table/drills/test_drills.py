@@ -20,7 +20,7 @@ from sim2real.table.drills.faults import FAULTS, Fault
 from sim2real.table.drills.picture_faults import PICTURE_FAULTS
 from sim2real.table.game.robot_seat import make_robot_seat
 
-LONG = ("dark", "glare", "hand", "camera-knocked")  # of those that pictures show
+LONG = ("dark", "glare", "hand", "camera-knocked", "second-puck")  # of those that pictures show
 
 
 @pytest.mark.slow

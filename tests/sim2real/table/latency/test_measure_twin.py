@@ -76,6 +76,7 @@ def test_the_least_and_the_greatest_delay_of_the_camera_come_back(late: float) -
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_the_opponents_ring_on_the_robots_mallet_is_seen_in_pictures() -> None:
     game = GameRecord(find_variant("match-v0"))
     options = twin_options({"camera": 0.02}, game.p)

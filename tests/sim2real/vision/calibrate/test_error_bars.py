@@ -15,6 +15,8 @@ from tests.sim2real.vision import world
 from tests.sim2real.vision.calibrate.test_multiview import SETUP, true_vector
 
 TABLES = 8
+# Errors of a ruler [m]
+RULERS = [*(pytest.param(one, marks=pytest.mark.long) for one in (0.3e-3, 0.5e-3)), 1.0e-3, 1.5e-3]
 PIXEL_NOISE, CORNER_NOISE = 0.2, 0.1
 
 
@@ -37,7 +39,7 @@ def tables(ruler: float) -> list[MultiviewFit]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("ruler", [pytest.param(0.3e-3, marks=pytest.mark.long), 0.5e-3, 1.0e-3, 1.5e-3])
+@pytest.mark.parametrize("ruler", RULERS)
 def test_deviations_are_as_large_as_errors(ruler: float):
     """A ruler of 0.3 mm is better than is believed of any, and bars are then a quarter too long."""
     z = np.array(
@@ -51,7 +53,7 @@ def test_deviations_are_as_large_as_errors(ruler: float):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("ruler", [pytest.param(0.3e-3, marks=pytest.mark.long), 0.5e-3, 1.0e-3, 1.5e-3])
+@pytest.mark.parametrize("ruler", RULERS)
 def test_good_points_are_not_called_wrong(ruler: float):
     named = sum(int(np.concatenate(one.wrong).sum()) for one in tables(ruler))
     assert named <= 0.01 * TABLES * 108

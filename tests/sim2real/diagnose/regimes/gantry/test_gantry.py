@@ -203,6 +203,7 @@ def test_two_gantries_are_refused(baseline: Recording, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_the_labelled_sag_is_found() -> None:
     if not (SHARED / "practice" / "sag").exists():
         pytest.skip("no practice recordings beside the project")
