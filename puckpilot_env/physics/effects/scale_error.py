@@ -16,7 +16,7 @@ EFFECT = Effect(
         "shear": Parameter("camera_shear", "1", 0.0, -0.05, 0.05, "how far along x a place is seen for its y", _SOURCE),
     },
     depends_on=("position",),
-    excited_by="hits of all four walls, and the table's true size",
+    excited_by="hits of all four walls (a shear: of the long ones), and the table's true size",
     source="the linear part of any smooth map",
 )
 

@@ -80,7 +80,9 @@ def candidates(problem: GantryResiduals, values: Mapping[str, float]) -> list[Ca
         if not fits:
             break
         best = min(fits, key=lambda name: fits[name].law.loss)
-        fits[best] = _converged(thin, fits[best])
+        fits[best] = _converged(thin, fits[best], freedom)
+        if not is_supported(thin, now.law, fits[best].law, best):
+            break
         share = GANTRY_FIT.later_share if chosen else GANTRY_FIT.first_share
         if now.law.loss - fits[best].law.loss < share * (now.law.loss - freedom):
             break
@@ -130,15 +132,20 @@ def _fit_in_stages(problem: GantryResiduals, starts: Sequence[Mapping[str, float
     return StagedFit(best, fit(problem, best.values, (*problem.base, *rows), problem.everything, GANTRY_FIT.rounds))
 
 
-def _converged(problem: GantryResiduals, one: StagedFit) -> StagedFit:
-    """The fit continued while that improves it: what friction and another effect share is told apart slowly."""
-    law = one.law
+def _converged(problem: GantryResiduals, one: StagedFit, freedom: float) -> StagedFit:
+    """Both fits continued while that reduces their excess over the noise, of `freedom`: what friction and another
+    effect share is told apart slowly."""
+    return StagedFit(*(_continued(problem, each, freedom) for each in (one.low_order, one.law)))
+
+
+def _continued(problem: GantryResiduals, law: LeastSquaresFit, freedom: float) -> LeastSquaresFit:
     for _ in range(GANTRY_FIT.continued):
         more = fit(problem, law.values, law.free, problem.everything, GANTRY_FIT.rounds)
-        better, law = more.loss < GANTRY_FIT.still_better * law.loss, min(law, more, key=lambda each: each.loss)
+        better = more.loss - freedom < GANTRY_FIT.still_better * (law.loss - freedom)
+        law = min(law, more, key=lambda each: each.loss)
         if not better:
             break
-    return StagedFit(one.low_order, law)
+    return law
 
 
 def _delay_in_steps(problem: GantryResiduals, law: LeastSquaresFit) -> LeastSquaresFit:

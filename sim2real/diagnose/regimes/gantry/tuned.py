@@ -146,7 +146,7 @@ class GantryFitNumbers:
     still_better: float = tuned(
         0.9,
         "1",
-        "share of the loss below which continuing a fit was worth it: more takes time, less stops halfway",
+        "share of the excess below which continuing a fit was worth it: more takes time, less stops halfway",
         "choice: a tenth better",
     )
     samples: int = tuned(

@@ -15,7 +15,7 @@ from scipy import stats
 
 from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.regimes.contact.tuned import CONTACT
-from sim2real.diagnose.regimes.sensing.bounce_angles import bounce_angles
+from sim2real.diagnose.regimes.sensing.bounce_angles import BounceAngles, bounce_angles, deflections
 from sim2real.diagnose.regimes.sensing.contact_lines import ContactLine, contact_lines
 from sim2real.diagnose.regimes.sensing.held_out import held_out_errors
 from sim2real.diagnose.regimes.sensing.tuned import SCALE, SIGNIFICANCE_LEVEL
@@ -49,13 +49,14 @@ def identify_scale(found: list[VelocityJump], g: Geometry, calibrated: bool = Fa
     wrong = wrong_size(values, std, g)
     if wrong:
         return ScaleResult(np.zeros(3), (), None, wrong)
-    p_values = 2 * stats.norm.sf(np.abs(values) / std)
-    chance = float(stats.chi2.sf(values @ np.linalg.solve(covariance, values), len(NAMES)))
+    p_values, known = 2 * stats.norm.sf(np.abs(values) / std), std < SCALE.known
+    together = values[known] @ np.linalg.solve(covariance[np.ix_(known, known)], values[known])
+    chance = float(stats.chi2.sf(together, max(known.sum(), 1)))
     if chance > SIGNIFICANCE_LEVEL or not np.any(
-        (p_values < SCALE.significance) & (np.abs(values) > SCALE.least_scale) & (std < SCALE.known)
+        (p_values < SCALE.significance) & (np.abs(values) > SCALE.least_scale) & known
     ):
         return ScaleResult(np.zeros(3), (), None)
-    named = (p_values < SCALE.significance) & (std < SCALE.known)
+    named = (p_values < SCALE.significance) & known
     kept = np.where(named, values, 0.0)
     sizes = held_out_errors(*_left_out(found, g).T)
     share = 0.0 if sizes is None else explained(sizes.before, sizes.after)
@@ -108,14 +109,16 @@ def _is_warped(values: np.ndarray, std: np.ndarray) -> bool:
     A wrong measurement of the table affects one size, or both by the same factor.
     """
     x, y, _ = values
-    clear = np.abs(values) > SCALE.least_warp + 3 * std
+    clear = (np.abs(values) > SCALE.least_warp + 3 * std) & (std < SCALE.known)
     return bool(clear[2] or (clear[0] and clear[1] and abs(x - y) > SCALE.least_scale + 3 * np.hypot(std[0], std[1])))
 
 
-def _design(walls: dict[str, ContactLine], g: Geometry) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _design(
+    walls: dict[str, ContactLine], angles: BounceAngles, g: Geometry
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """What is known of n walls and of k that deflect bounces: the lines' displacements from nominal and the angles
     (2n + k,), the Jacobian (2n + k, 7) by NAMES, radius, offsets and turn, and their covariance."""
-    nominal, angles = nominal_lines(g), bounce_angles(walls)
+    nominal = nominal_lines(g)
     moved, rows, slant_of = [], [], {}
     covariance = np.zeros((2 * len(walls) + len(angles.walls),) * 2)
     for k, (wall, line) in enumerate(walls.items()):
@@ -142,8 +145,17 @@ def _design(walls: dict[str, ContactLine], g: Geometry) -> tuple[np.ndarray, np.
 
 
 def _solve(walls: dict[str, ContactLine], g: Geometry) -> tuple[np.ndarray, np.ndarray]:
-    """Estimates (3,) of NAMES and their covariance (3, 3), with the errors of a good calibration as a prior."""
-    moved, jacobian, covariance = _design(walls, g)
+    """Estimates (3,) of NAMES and their covariance (3, 3). Bounces are left out if the slants of the short walls' lines
+    contradict the shear that they show: walls that are turned where they are deflect bounces too."""
+    by_lines, spread = _solve_with(walls, BounceAngles((), np.zeros(0), np.zeros((0, 0))), g)
+    by_both, less = _solve_with(walls, bounce_angles(walls), g)
+    off = abs(by_both[2] - by_lines[2]) / np.sqrt(spread[2, 2] + less[2, 2])
+    return (by_lines, spread) if off > SCALE.contradicted else (by_both, less)
+
+
+def _solve_with(walls: dict[str, ContactLine], angles: BounceAngles, g: Geometry) -> tuple[np.ndarray, np.ndarray]:
+    """The same by these lines and angles, with the errors of a good calibration as a prior."""
+    moved, jacobian, covariance = _design(walls, angles, g)
     weight = np.linalg.inv(covariance)
     radius, offset, turn = (std**-2 for std in (SCALE.radius_std, SCALE.offset_std, SCALE.turn_std))
     prior = np.diag([1.0, 1.0, 1.0, radius, offset, offset, turn])  # the prior of a scale has a std of 100 %
@@ -169,7 +181,8 @@ def _left_out(found: list[VelocityJump], g: Geometry) -> np.ndarray:
 
 def _errors(walls: dict[str, ContactLine], values: np.ndarray, launches: Set[int], g: Geometry) -> np.ndarray:
     """Errors (n, 4) of the contacts in `launches`: under the camera's own map and under the map `values` [m], standard
-    deviation [m], and launch. They are distances from the walls' lines, and `_deflections`."""
+    deviation [m], and launch. They are distances from the walls' lines, and how far `deflections` of bounces off the
+    long walls lead in `CONTACT.flight_time`."""
     rows = [np.zeros((0, 4))]
     for wall, line in walls.items():
         here = np.isin(line.launch, list(launches))
@@ -180,13 +193,6 @@ def _errors(walls: dict[str, ContactLine], values: np.ndarray, launches: Set[int
             moved = moved + values[2] * (g.width / 2 + line.along[here])
         place = line.place[here]
         rows.append(np.stack([place - expected, place - moved, line.std[here], line.launch[here]], axis=1))
-    return np.concatenate([*rows, _deflections(walls, values, launches)])
-
-
-def _deflections(walls: dict[str, ContactLine], values: np.ndarray, launches: Set[int]) -> np.ndarray:
-    """The same of bounces off the long walls: by how far a shear deflects the puck in `CONTACT.flight_time`."""
-    angles = bounce_angles(walls)
-    long_walls = [k for k, wall in enumerate(angles.walls) if wall_axis(wall)[0] == 1]
-    here = np.isin(angles.launch, list(launches)) & np.isin(angles.wall, long_walls)
-    each = (angles.deflected, angles.deflected - values[2] * angles.change, angles.std)
-    return np.stack([*(CONTACT.flight_time * one[here] for one in each), angles.launch[here]], axis=1)
+    turned = deflections(walls, float(values[2]))
+    turned = turned[np.isin(turned[:, 3], list(launches))] * [*np.full(3, CONTACT.flight_time), 1.0]
+    return np.concatenate([*rows, turned])

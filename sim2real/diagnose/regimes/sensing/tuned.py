@@ -205,6 +205,12 @@ class ScaleNumbers:
         "standard deviation above which they do not even determine a wrong size",
         "choice: half of `most_scale`",
     )
+    contradicted: float = tuned(
+        2.5,
+        "standard deviations",
+        "between the shears by lines alone and with bounces: less loses shears by chance, more takes turned walls",
+        "choice: once in eighty",
+    )
     folds: int = tuned(20, "1", "fewer leave a wall too few contacts", "choice: nearly one launch at a time")
 
 

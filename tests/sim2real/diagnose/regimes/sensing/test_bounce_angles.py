@@ -51,6 +51,17 @@ def test_a_shear_is_seen_at_the_long_walls(shear: float, friction: float) -> Non
     assert result.values[0] == 0.0  # no short wall was met
 
 
+@pytest.mark.parametrize("friction", [0.0, 0.5])
+def test_friction_takes_no_part_of_the_shear(friction: float) -> None:
+    """Friction acts on the velocity along the wall, of which the map shows too much."""
+    found = [fitted_map(bounces(0.012, {}, friction, seed), TABLE) for seed in range(12)]
+    values = np.array([one[2] for one, _ in found])
+    stds = np.sqrt([covariance[2, 2] for _, covariance in found])
+    assert values.mean() == pytest.approx(0.012, abs=3 * 0.0009 / np.sqrt(12))
+    assert np.abs((values - 0.012) / stds).max() < 3.0
+    assert 0.6 < values.std() / stds.mean() < 1.5
+
+
 def test_no_shear_is_named_where_none_is() -> None:
     for seed in range(12):
         assert not identify_scale(bounces(0.0, {}, 0.2, seed), TABLE).findings
