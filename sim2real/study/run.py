@@ -15,7 +15,7 @@ from sim2real.study.diagnosing import THIS, diagnose_cases
 from sim2real.study.figures import Figure, by_mechanism, figures
 from sim2real.study.making import ROOT, Plan, make_cases
 from sim2real.study.scoring import Score, score
-from sim2real.study.version import code_version
+from sim2real.study.version import OF_STUDIES, code_version
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ def _claim(folder: Path, plan: Plan, tool: Sequence[str] | None, heldout: bool) 
     "".
     """
     note, message = folder / "plan.json", ""
-    wanted = {**plan.as_dict(), "tool": tool, "heldout": heldout, "code": code_version(ROOT)}
+    wanted = {**plan.as_dict(), "tool": tool, "heldout": heldout, "code": code_version(ROOT, OF_STUDIES)}
     if note.exists():
         there = json.loads(note.read_text())
         other = [name for name, value in wanted.items() if name != "cases" and there.get(name) != value]

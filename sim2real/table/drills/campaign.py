@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 import sim2real
-from sim2real.study.version import code_version
+from sim2real.study.version import OF_GAMES, code_version
 from sim2real.table.drills.drill import Drill, Stop
 from sim2real.table.drills.known_faults import BY_NAME
 from sim2real.table.faults import TableFaultError
@@ -61,7 +61,7 @@ def play_part(seed: int, names: Sequence[str], player: str, camera: str) -> Part
 
 def conditions(names: Sequence[str], player: str, camera: str) -> str:
     """What parts of one campaign have in common, the code that plays them among it."""
-    return f"{player}, {camera}, code {code_version(ROOT)}: {', '.join(names)}"
+    return f"{player}, {camera}, code {code_version(ROOT, OF_GAMES)}: {', '.join(names)}"
 
 
 def run_campaign(

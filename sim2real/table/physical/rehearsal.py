@@ -11,7 +11,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from itertools import islice
 from multiprocessing.connection import Connection
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -29,9 +28,6 @@ from sim2real.table.physical.frame_reader import FrameReader
 from sim2real.table.physical.real_time import RealTimeTable
 from sim2real.table.twin.rendered_table import RenderedTable
 from sim2real.vision.track.kalman_tracker import FASTEST
-
-if TYPE_CHECKING:
-    from sim2real.emulate.machine import Machine
 
 RATE, DELAY = 120.0, 0.0  # Hz; s from exposure to arrival
 PATIENCE = 2.0  # s: nobody looks for a puck that is not seen
@@ -131,10 +127,14 @@ def emulated_board(place: Place) -> Iterator[str]:
 def _serve_board(parent: Connection, place: Place) -> None:
     """In the other process: emulate the board until the parent says something, or is gone. It tells its port, or why
     there is none."""
-    from sim2real.emulate.pseudo_terminal import serve, terminal
-
     try:
-        machine = _machine(place)
+        from firmware import ELF
+        from sim2real.emulate.gantry import Gantry
+        from sim2real.emulate.machine import Machine
+        from sim2real.emulate.pseudo_terminal import serve, terminal
+
+        machine = Machine(ELF, seed=1)
+        Gantry(machine, place=place)
     except (ImportError, OSError, ValueError) as error:
         parent.send(error)
         return
@@ -143,13 +143,3 @@ def _serve_board(parent: Connection, place: Place) -> None:
     with terminal() as (descriptor, name):
         parent.send(name)
         serve(machine, descriptor, lambda seconds: not parent.poll())
-
-
-def _machine(place: Place) -> Machine:
-    from firmware import ELF
-    from sim2real.emulate.gantry import Gantry
-    from sim2real.emulate.machine import Machine
-
-    machine = Machine(ELF, seed=1)
-    Gantry(machine, place=place)
-    return machine

@@ -17,7 +17,7 @@ import numpy as np
 import sim2real
 from puckpilot_env.files.whole_file import write_text_whole
 from puckpilot_env.variants import find_variant
-from sim2real.study.version import code_version
+from sim2real.study.version import OF_GAMES, code_version
 from sim2real.table.game.play import play_game
 from sim2real.table.game.robot_seat import make_robot_seat
 
@@ -88,20 +88,22 @@ def play_all(
 ) -> list[TwinGame]:
     """Play the games whose results are not in `folder` yet, and return all of them, in the order of `meetings`.
 
-    Each result is written there as soon as its game is over. ValueError, in one line, for a file of another meeting.
+    Each result is written there as soon as its game is over. ValueError, in one line, for a file of another meeting, or
+    of another version of the code.
     """
-    missing = [one for one in meetings if _read(folder, one) is None]
-    for done, _ in enumerate(_results(missing, folder, processes), len(meetings) - len(missing) + 1):
+    code = code_version(ROOT, OF_GAMES)
+    missing = [one for one in meetings if _read(folder, one, code) is None]
+    for done, _ in enumerate(_results(missing, folder, code, processes), len(meetings) - len(missing) + 1):
         progress(done, len(meetings))
-    return [game for one in meetings if (game := _read(folder, one)) is not None]
+    return [game for one in meetings if (game := _read(folder, one, code)) is not None]
 
 
-def _results(missing: list[Meeting], folder: Path, processes: int) -> Iterator[None]:
+def _results(missing: list[Meeting], folder: Path, code: str, processes: int) -> Iterator[None]:
     if processes == 1 or len(missing) < 2:
-        yield from (_play_and_write(one, folder) for one in missing)
+        yield from (_play_and_write(one, folder, code) for one in missing)
         return
     with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
-        coming = [pool.submit(_play_and_write, one, folder) for one in missing]
+        coming = [pool.submit(_play_and_write, one, folder, code) for one in missing]
         try:
             yield from (one.result() for one in as_completed(coming))
         finally:
@@ -112,13 +114,13 @@ def _file(folder: Path, meeting: Meeting) -> Path:
     return folder / f"game_{meeting.seed}.json"
 
 
-def _play_and_write(meeting: Meeting, folder: Path) -> None:
+def _play_and_write(meeting: Meeting, folder: Path, code: str) -> None:
     game = asdict(play_on_twin(meeting))
-    content = {"format": FORMAT, "code": code_version(ROOT), "meeting": asdict(meeting), "game": game}
+    content = {"format": FORMAT, "code": code, "meeting": asdict(meeting), "game": game}
     write_text_whole(_file(folder, meeting), json.dumps(content, indent=1) + "\n")
 
 
-def _read(folder: Path, meeting: Meeting) -> TwinGame | None:
+def _read(folder: Path, meeting: Meeting, code: str) -> TwinGame | None:
     path = _file(folder, meeting)
     if not path.exists():
         return None
@@ -126,10 +128,10 @@ def _read(folder: Path, meeting: Meeting) -> TwinGame | None:
         content = json.loads(path.read_text(encoding="utf-8"))
         if content["format"] != FORMAT or Meeting(**content["meeting"]) != meeting:
             raise ValueError
-        code, game = content["code"], TwinGame(**content["game"] | {"goals": tuple(content["game"]["goals"])})
+        game = TwinGame(**content["game"] | {"goals": tuple(content["game"]["goals"])})
     except (ValueError, KeyError, TypeError):
         raise ValueError(f"{path}: is no result of this meeting; name another folder, or remove it") from None
-    if code != code_version(ROOT):
+    if content.get("code") != code:
         raise ValueError(f"{path}: was played by another version of the code; name another folder, or remove it")
     return game
 

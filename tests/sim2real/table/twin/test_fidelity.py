@@ -46,9 +46,9 @@ def test_a_file_of_another_meeting_is_refused(text: str, tmp_path: Path) -> None
 
 def test_a_game_of_another_version_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(fidelity, "play_on_twin", result)
-    monkeypatch.setattr(fidelity, "code_version", lambda root: "before")
+    monkeypatch.setattr(fidelity, "code_version", lambda *_: "before")
     play_all(MEETINGS, tmp_path, 1, lambda done, count: None)
-    monkeypatch.setattr(fidelity, "code_version", lambda root: "after")
+    monkeypatch.setattr(fidelity, "code_version", lambda *_: "after")
     with pytest.raises(ValueError, match=r"game_3.json: was played by another version of the code; name another"):
         play_all(MEETINGS, tmp_path, 1, lambda done, count: None)
 
