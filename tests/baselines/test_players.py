@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
@@ -39,6 +40,14 @@ def _play_along(name: str, tables: Tables, steps: int) -> NDArray[np.float32]:
 @pytest.mark.parametrize("name", player_names())
 def test_actions_stay_inside_the_bounds_on_every_variant(name: str, variant: str) -> None:
     _play_along(name, Tables(variant, 3, seed=1), 50)
+
+
+@pytest.mark.parametrize("variant", list(all_variants()))
+def test_decoded_states_have_one_memory_layout(variant: str) -> None:
+    """Kernels compile anew for each, and the veteran's search takes minutes."""
+    tables = Tables(variant, 3, seed=1)
+    state = make_player("still", Seat.from_tables(tables)).decoder.decode(tables.observations[:, 0])
+    assert all(getattr(state, field.name).flags.c_contiguous for field in fields(state))
 
 
 @pytest.mark.parametrize("name", player_names())

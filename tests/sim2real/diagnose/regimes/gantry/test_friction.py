@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ import pytest
 from puckpilot_env.parameters import make_records
 from puckpilot_env.physics.effects.motor_friction import EFFECT
 from sim2real.diagnose.engine.least_squares import LeastSquaresFit
+from sim2real.diagnose.regimes.gantry import listed_effects
 from sim2real.diagnose.regimes.gantry.data import GantryRecording, read_gantry
 from sim2real.diagnose.regimes.gantry.listed_effects import StagedFit, _stands_out
 from sim2real.recording.folder import Recording, Stream, read_recording
@@ -72,6 +74,19 @@ def test_the_mallet_lags_the_motor_s_path_with_its_friction(tmp_path: Path, besi
     run = read_gantry(read_recording(tmp_path / "lagging"), SUPPLY, np.zeros(0))
     assert left_over(run, **SIZES, **parameters) == pytest.approx(1.0, abs=0.06)
     assert left_over(run, **SIZES) > 2.0
+
+
+def test_a_fit_goes_on_while_its_excess_falls(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a freedom of 100: 500, 300, 120, 119.5; the last step is not worth another."""
+    losses = iter([300.0, 120.0, 119.5, 0.0])
+
+    def goes_on(problem: object, values: object, free: object, clusters: object, rounds: int) -> LeastSquaresFit:
+        return staged(next(losses)).law
+
+    monkeypatch.setattr(listed_effects, "fit", goes_on)
+    problem = SimpleNamespace(everything=np.arange(3))
+    found = listed_effects._continued(problem, staged(500.0).law, 100.0)  # type: ignore[arg-type] - all that it asks for
+    assert found.loss == 119.5
 
 
 def staged(loss: float) -> StagedFit:
