@@ -16,7 +16,7 @@ from tests.sim2real.vision.calibrate.test_multiview import SETUP, true_vector
 
 TABLES = 8
 # Errors of a ruler [m]
-RULERS = [*(pytest.param(one, marks=pytest.mark.long) for one in (0.3e-3, 0.5e-3)), 1.0e-3, 1.5e-3]
+RULERS = [*(pytest.param(one, marks=pytest.mark.long) for one in (0.3e-3, 0.5e-3, 1.0e-3)), 1.5e-3]
 PIXEL_NOISE, CORNER_NOISE = 0.2, 0.1
 
 
