@@ -133,8 +133,8 @@ def _fit_in_stages(problem: GantryResiduals, starts: Sequence[Mapping[str, float
 
 
 def _converged(problem: GantryResiduals, one: StagedFit, freedom: float) -> StagedFit:
-    """Both fits continued while that reduces their excess over the noise, of `freedom`: what friction and another
-    effect share is told apart slowly."""
+    """Both fits continued while that reduces their excess over the noise, of `freedom`: friction and
+    another effect correlate, so that convergence is slow."""
     return StagedFit(*(_continued(problem, each, freedom) for each in (one.low_order, one.law)))
 
 

@@ -76,10 +76,10 @@ def _often_met(lines: Mapping[str, ContactLine], wall: str) -> bool:
 
 def _alike(values: np.ndarray, covariance: np.ndarray, first: int) -> bool:
     """Whether the walls `first` and the next deflect bounces by the same angle, and it is known."""
-    pair, apart = slice(first, first + 2), np.array([1.0, -1.0])
-    variance = apart @ covariance[pair, pair] @ apart + 2 * BOUNCE_ANGLES.wall_std**2
+    pair, contrast = slice(first, first + 2), np.array([1.0, -1.0])
+    variance = contrast @ covariance[pair, pair] @ contrast + 2 * BOUNCE_ANGLES.wall_std**2
     known = np.sqrt(np.diag(covariance)[pair].max()) < SCALE.known
-    return bool(known and 2 * stats.norm.sf(abs(apart @ values[pair]) / np.sqrt(variance)) > BOUNCE_ANGLES.alike)
+    return bool(known and 2 * stats.norm.sf(abs(contrast @ values[pair]) / np.sqrt(variance)) > BOUNCE_ANGLES.alike)
 
 
 def _bounces(lines: Mapping[str, ContactLine], walls: Sequence[str]) -> _Bounces:
