@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from puckpilot_env.game import state
+from puckpilot_env.game.motion import play_step
 from puckpilot_env.game.sensing import EXACT, MOST_WANTED, SHOT_COLUMNS
-from puckpilot_env.game.step import plan_both, play_and_film, play_step
+from puckpilot_env.game.step import plan_both, play_and_film
 from puckpilot_env.kernel import announce_compilation, array_kernel
 from puckpilot_env.physics.advance import EVENT_COLUMNS
 from puckpilot_env.tables import Tables

@@ -17,6 +17,10 @@ TURNED_ERROR = (
     -1.0,
 )  # what becomes of the terms of a camera's error: the odd ones turn by themselves
 
+OF_PLAYERS = (  # what a table has of each
+    "mallets", "motors", "carriages", "gantry_scale", "streams", "score", "last_score", "fouls", "last_fouls", "defending"
+)  # fmt: skip
+
 
 @kernel
 def place(player, x, y, p):
@@ -65,12 +69,16 @@ def turn_table(tables: np.ndarray, frames: np.ndarray, length: np.ndarray, width
         tables["camera"][f"puck_v{axis}"] *= -1.0
         frames["puck"][axis] = extent[:, None] - frames["puck"][axis]
         frames["mallets"][axis] = extent[:, None, None] - frames["mallets"][axis]
-        mallets = tables["mallets"][axis]
-        for name in ("rest", "rest1", "rest2"):
-            mallets[name] = extent[:, None] - mallets[name]
-        for name in ("slow", "fast", "slow1", "fast1", "slow2", "fast2", "volts"):
-            mallets[name] *= -1.0
-    for name in ("mallets", "gantry_scale", "streams", "score", "last_score", "fouls", "last_fouls", "defending"):
+        for mallets in (tables["mallets"][axis], tables["motors"][axis]):
+            for name in ("rest", "rest1", "rest2"):
+                mallets[name] = extent[:, None] - mallets[name]
+            for name in ("slow", "fast", "slow1", "fast1", "slow2", "fast2", "volts"):
+                mallets[name] *= -1.0
+        carriages = tables["carriages"][:, :, "xy".index(axis)]
+        carriages *= -1.0
+        carriages[..., 0] += extent[:, None]
+        carriages[..., 2] += extent[:, None]
+    for name in OF_PLAYERS:
         tables[name] = tables[name][:, ::-1].copy()
     tables["puck"]["touched"] = tables["puck"]["touched"][:, ::-1].copy()
     tables["subject"] = 1 - tables["subject"]

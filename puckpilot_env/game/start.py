@@ -6,7 +6,7 @@ import math
 
 from puckpilot_env.game import mirror, random_stream
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics.gantry import mallet
+from puckpilot_env.physics.gantry import drivetrain, mallet
 from puckpilot_env.physics.vector import size
 
 DEFENCE, ATTACK, MATCH = range(3)  # the games
@@ -36,7 +36,8 @@ def build_gantries(table, p):
                     table.gantry_scale[k, a, c] += random_stream.between(
                         table.streams[k], -p.gantry_spread, p.gantry_spread
                     )
-            mallet.set_scaled(table.mallets[k].x if a == 0 else table.mallets[k].y, p, a, table.gantry_scale[k, a])
+            for gantry in (table.mallets[k], table.motors[k]):
+                mallet.set_scaled(gantry.x if a == 0 else gantry.y, p, a, table.gantry_scale[k, a])
 
 
 @kernel
@@ -47,6 +48,7 @@ def place_mallet(table, p, k, x, y):
         axis = table.mallets[k].x if a == 0 else table.mallets[k].y
         mallet.place_axis(axis, x if a == 0 else y, 0.0, 0.0)
         mallet.idle(axis)  # of late orders, those before are forgotten
+    drivetrain.stand(table.motors[k], table.carriages[k], x, y)
 
 
 @kernel

@@ -32,6 +32,7 @@ TABLE = np.dtype(
         ("puck", PUCK),
         ("mallets", MALLET, 2),  # with their gantries and plans
         ("orders", np.float64, (2, 2, 3)),  # that are on their way, of player, axis: signed volts [V], t1, t2 [s]
+        ("in_pieces", np.int64),  # 1 if the mallets go piece by piece, see `physics.gantry.drivetrain`
         ("gantry_scale", np.float64, (2, 2, 3)),  # C5, C6, C7 relative to the parameters', of player, axis
         ("frame_phase", np.float64),  # frame j is exposed at (j + frame_phase)/frame_rate
         ("last_frame", np.int64),  # newest frame taken
@@ -51,6 +52,8 @@ TABLE = np.dtype(
         ("winner", np.int64),  # of the last episode: 0, 1, or -1 for none
         ("streams", STREAM, 2),  # of each player: what happens to it alone, in its own frame
         ("stream", STREAM),  # of the table
+        ("motors", MALLET, 2),  # of mallets that go piece by piece
+        ("carriages", np.float64, (2, 2, 3)),  # of player, axis, see `physics.gantry.carriage`
     ],
     align=True,
 )

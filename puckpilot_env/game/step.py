@@ -3,28 +3,24 @@
 from __future__ import annotations
 
 from puckpilot_env.game import mirror, observation, random_stream, reward, rules, sensing
+from puckpilot_env.game.motion import play_step
 from puckpilot_env.game.start import begin_episode
 from puckpilot_env.kernel import inlined_kernel, kernel
 from puckpilot_env.physics import compose
-from puckpilot_env.physics.advance import advance
 from puckpilot_env.physics.contacts import bounce
-from puckpilot_env.physics.exposures import of_glide
-from puckpilot_env.physics.gantry import drive
-from puckpilot_env.physics.gantry.mallet import halt, place_at, place_now, settle
+from puckpilot_env.physics.gantry import drive, drivetrain
+from puckpilot_env.physics.gantry.mallet import place_now
 from puckpilot_env.physics.gantry.plan import plan_mallet, plan_orders
-from puckpilot_env.physics.sliding.drift import drift
-
-MOST_CROSSINGS = (
-    200  # of the middle line in one stretch; a puck that jitters there more often is set to rest, and the mallets stall
-)
-
-AT_MOST = 1.0 + 1e-6  # times a step: how long late orders are followed
 
 
 @kernel
 def plan_both(table, p, nominal, actions, rewards):
-    """Both players' plans, and what J.3 charges for them. actions: float32 (2, 4) in each player's own frame. Where
-    orders are late, the mallets go on with those before, and the table keeps what is on its way."""
+    """Both players' plans, and what J.3 charges for them. actions: float32 (2, 4) in each player's own frame.
+
+    Where orders are late, the mallets go on with those before, and the table keeps what is on its way. So it does where
+    mallets go in pieces; these plans are made from where the motors are.
+    """
+    table.in_pieces = compose.in_pieces(p)
     late = compose.delay(p) > 0.0
     for k in range(2):
         mallet = table.mallets[k]
@@ -37,78 +33,16 @@ def plan_both(table, p, nominal, actions, rewards):
             vx *= 1.0 + p.action_noise * dx
             vy *= 1.0 + p.action_noise * dy
         area = mirror.area(k, p)
-        if late:
+        if table.in_pieces:
+            motor = table.motors[k]
+            drivetrain.join(p, motor, mallet)
+            drive.send(p, plan_orders(motor, x_f, y_f, vx, vy, area, p.max_voltage), table.orders[k])
+        elif late:
             drive.send(p, plan_orders(mallet, x_f, y_f, vx, vy, area, p.max_voltage), table.orders[k])
         else:
             plan_mallet(mallet, x_f, y_f, vx, vy, area, p.max_voltage)
             if compose.loses(p):
                 drive.weaken(mallet, p, area, p.max_voltage)
-
-
-@kernel
-def play(table, p, rule, now, until, rewards, log, film):
-    """The puck's motion from `now` until `until` [s] of the plans with what it means; True if the point is over."""
-    for _ in range(MOST_CROSSINGS):
-        kind, now, _ = advance(table.puck, p, table.mallets, table.time, now, until, log, film)
-        if kind == bounce.NOTHING:
-            return False
-        if kind == bounce.MIDDLE_LINE:
-            entered = 1 if table.puck.vx > 0.0 else 0
-            x, y = place_at(table.mallets[entered], now)
-            table.held = -now  # the step's period is added at its end
-            if table.ending == rules.RUNNING:
-                rules.crossed_middle(table, p, rule, rewards, x, y)
-        else:
-            return True
-    table.puck.vx, table.puck.vy = 0.0, 0.0
-    of_glide(film, table.puck, 1.0, 0.0, 0.0, now, until, p.friction, p.drag)
-    halt(table.mallets[0], now)
-    halt(table.mallets[1], now)
-    return False
-
-
-@inlined_kernel
-def _play_late(table, p, rule, until, delay, rewards, log, film):
-    """`play_step` where the plans of this step begin `delay` [s] late, and the mallets are on those before till then.
-
-    From then on the new plans' time counts.
-    """
-    first = 0
-    while first < film.shape[0] and film[first, 0] <= delay:
-        first += 1
-    sensing.shoot_mallets(table.mallets, film[:first])
-    alone = drift(table.puck, p, table.mallets, table.orders, table.time, delay, until, film)
-    over = alone == 0.0 and play(table, p, rule, 0.0, delay, rewards, log, film)
-    for i in range(first, film.shape[0]):
-        film[i, 0] -= delay
-    for k in range(2):
-        settle(table.mallets[k], delay)
-        drive.follow(table.mallets[k], table.orders[k], mirror.area(k, p), p.max_voltage, AT_MOST * until)
-    table.time += delay
-    table.held += delay
-    if not over:
-        over = play(table, p, rule, max(alone - delay, 0.0), until - delay, rewards, log, film[first:])
-    sensing.shoot_mallets(table.mallets, film[first:])
-    for k in range(2):
-        settle(table.mallets[k], until - delay)
-        drive.carry_on(table.mallets[k], until - delay)
-    table.time -= delay
-    table.held -= delay
-    return over
-
-
-@kernel
-def play_step(table, p, rule, until, rewards, log, film):
-    """`play` for a step up to `until` [s], with both mallets' places in the shots of `film`; afterwards the mallets are
-    where they are then."""
-    delay = min(compose.delay(p), until)
-    if delay > 0.0:
-        return _play_late(table, p, rule, until, delay, rewards, log, film)
-    over = play(table, p, rule, 0.0, until, rewards, log, film)
-    sensing.shoot_mallets(table.mallets, film)
-    for k in range(2):
-        settle(table.mallets[k], until)
-    return over
 
 
 @kernel

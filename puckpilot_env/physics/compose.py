@@ -21,6 +21,10 @@ An effect's file has the hooks of its regime, every one a kernel; those that it 
 | gantry | `loses(p)` | whether less arrives at the motors than a plan asks for; goes with the next |
 | gantry | `delivered(p, volts, load)` | volts at a motor from those so far; `load` = abs(V_x) + abs(V_y) as asked for |
 | gantry | `delay(p)` | how long after its decision a plan starts [s], less than the time between two decisions |
+| gantry | `in_pieces(p)` | whether a mallet's path is found piece by piece (see `drivetrain`); goes with the next |
+| gantry | `dry_friction(p)` | volts that the left and the right motor, the x and the y axis lose; of one effect alone |
+| gantry | `spring(p)` | (angular frequency [rad/s], 0 if rigid; damping ratio) of the belt; of one effect alone |
+| gantry | `play(p)` | gap [m] between what drags the mallet and the mallet; of one effect alone |
 
 `t` [s] is the time of the episode, (x, y) [m] a place, spin [rad/s] counter-clockwise, `closing` [m/s] > 0 the normal
 speed before; the tangent is the normal turned counter-clockwise. Impulses are per unit mass of the puck.
@@ -240,3 +244,7 @@ camera_map = reduce(_camera_map, _hooks("camera_map"))
 loses = reduce(_either, _hooks("loses"))
 delivered = reduce(_delivered, _hooks("delivered"))
 delay = reduce(_delay, _hooks("delay"))
+in_pieces = reduce(_either, _hooks("in_pieces"))
+(dry_friction,) = _hooks("dry_friction")
+(spring,) = _hooks("spring")
+(play,) = _hooks("play")

@@ -14,7 +14,6 @@ EFFECT = Effect(
     depends_on=("history",),
     excited_by="many reversals of each axis",
     source="play operator",
-    not_simulated="a mallet that lags its motors has no plan in closed form",
 )
 
 
@@ -22,3 +21,15 @@ EFFECT = Effect(
 def carried(gap, mallet, motor):
     """Where the mallet is [m] when the motor's side has come to `motor` [m]; it was at `mallet` before."""
     return min(max(mallet, motor - 0.5 * gap), motor + 0.5 * gap)
+
+
+@kernel
+def in_pieces(p):
+    """Whether there is play, which a plan takes up on its way."""
+    return p.backlash_gap > 0.0
+
+
+@kernel
+def play(p):
+    """The gap [m]."""
+    return p.backlash_gap

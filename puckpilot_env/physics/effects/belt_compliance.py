@@ -1,7 +1,8 @@
 """The belt gives: the mallet rides on the motor's path as a damped mass on a spring.
 
 With the motor's path m, the mallet's x obeys `x'' = w^2 (m - x) + 2 zeta w (m' - x')`, w = 2 pi hz. Between switches m
-is a ramp and two fading modes, each of which x follows in proportion; what is left rings and fades by itself.
+is a ramp and two fading modes, each of which x follows in proportion; what is left rings and fades by itself. The
+mallet does not pull on the motor.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ import math
 
 from puckpilot_env.effect import Effect, Parameter
 from puckpilot_env.kernel import kernel
+from puckpilot_env.physics.gantry.decay import fade
 
 _SOURCE = "toothed belts of a metre: some 10 to 50 Hz with a mallet's mass"
 
@@ -23,7 +25,6 @@ EFFECT = Effect(
     depends_on=("command", "history"),
     excited_by="sharp reversals, sampled at five times the resonance or more",
     source="two masses and a spring, the motor's side driven",
-    not_simulated="a mallet that rings on its belt has no plan in closed form",
 )
 
 
@@ -42,3 +43,28 @@ def ring(w, zeta, x, v, duration):
     cos, sin = math.cos(damped * duration), math.sin(damped * duration)
     lift = (v + zeta * w * x) / damped
     return fade * (x * cos + lift * sin), fade * (v * cos - (w * w * x + zeta * w * v) / damped * sin)
+
+
+@kernel
+def carried(w, zeta, x, v, start, speed, slow_rate, slow, fast_rate, fast, duration):
+    """`(x, v)` of the mallet `duration` [s] on, whose motor goes along `start + speed t` and two modes, `slow` and
+    `fast` [m] at the start, that fade at their rates [1/s]."""
+    by_slow, by_fast = transfer(w, zeta, slow_rate) * slow, transfer(w, zeta, fast_rate) * fast
+    x -= start + by_slow + by_fast
+    v -= speed - slow_rate * by_slow - fast_rate * by_fast
+    x, v = ring(w, zeta, x, v, duration)
+    by_slow *= math.exp(-slow_rate * duration)
+    by_fast *= fade(fast_rate, duration)
+    return x + start + speed * duration + by_slow + by_fast, v + speed - slow_rate * by_slow - fast_rate * by_fast
+
+
+@kernel
+def in_pieces(p):
+    """Whether the belt gives: then the mallet's path has no closed form that contacts could be found in."""
+    return p.belt_hz > 0.0
+
+
+@kernel
+def spring(p):
+    """`(w [rad/s], zeta)` of the belt; w is 0 for a rigid one."""
+    return 2.0 * math.pi * p.belt_hz, p.belt_zeta

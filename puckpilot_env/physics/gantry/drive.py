@@ -23,8 +23,8 @@ def weaken(mallet, p, area, max_voltage):
     """Give a mallet that was just planned the volts that arrive under `p`; the others as in `plan_mallet`."""
     load = abs(mallet.x.volts) + abs(mallet.y.volts)
     limit = 2.0 * (max_voltage - SMALLEST_VOLTAGE)
-    _weaken_axis(mallet.x, compose.delivered(p, mallet.x.volts, load), area[0], area[1], limit, math.inf)
-    _weaken_axis(mallet.y, compose.delivered(p, mallet.y.volts, load), area[2], area[3], limit, math.inf)
+    drive_axis(mallet.x, compose.delivered(p, mallet.x.volts, load), area[0], area[1], limit, math.inf)
+    drive_axis(mallet.y, compose.delivered(p, mallet.y.volts, load), area[2], area[3], limit, math.inf)
 
 
 @kernel
@@ -46,7 +46,7 @@ def follow(mallet, orders, area, max_voltage, duration):
     for a in range(2):
         axis = mallet.x if a == 0 else mallet.y
         axis.t1, axis.t2, axis.halt = orders[a, 1], orders[a, 2], math.inf
-        _weaken_axis(axis, orders[a, 0], area[2 * a], area[2 * a + 1], limit, duration)
+        drive_axis(axis, orders[a, 0], area[2 * a], area[2 * a + 1], limit, duration)
 
 
 @kernel
@@ -67,7 +67,7 @@ def carry_on(mallet, elapsed):
 
 
 @kernel
-def _weaken_axis(axis, volts, low, high, limit, duration):
+def drive_axis(axis, volts, low, high, limit, duration):
     """The modes of a plan whose times stay, under `volts` [V], and where the rail at `low` or `high` [m] ends it; as
     far as `duration` [s] asks for them."""
     axis.volts = volts

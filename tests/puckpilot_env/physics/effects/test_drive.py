@@ -82,6 +82,9 @@ def test_the_rail_stops_a_mallet_that_brakes_too_weakly() -> None:
         {"motor_deadband": 2.0},
         {"voltage_sag": 0.2, "motor_deadband": 6.0},
         {"command_delay": 0.09},
+        {"motor_friction_left": 0.7, "motor_friction_right": 3.0, "axis_friction_x": 6.0, "axis_friction_y": 0.1},
+        {"belt_hz": 8.0, "belt_zeta": 0.0},
+        {"belt_hz": 60.0, "backlash_gap": 0.02, "axis_friction_y": 1.0, "voltage_sag": 0.2, "command_delay": 0.03},
     ],
     ids=str,
 )

@@ -1,0 +1,116 @@
+"""The mallet of one axis behind a belt that gives, or play: where its motor's path takes it, for a piece of time.
+
+The belt's end is a closed form of the motor's; of play only the events in it have to be found. A mallet on such a path
+is an axis (see `mallet`) with other modes than the motor's: those with the same place and velocity at both ends of the
+piece. A piece is short beside the belt's period, so that in between they are nanometres to a tenth of a micron apart.
+
+A carriage is (place and velocity of the belt's end, place of the mallet); a rigid belt's end is the motor's path.
+"""
+
+from __future__ import annotations
+
+import math
+
+from puckpilot_env.kernel import kernel
+from puckpilot_env.physics.effects import backlash, belt_compliance
+from puckpilot_env.physics.gantry.mallet import axis_at, axis_velocity
+
+RADIANS = 0.5  # of the belt's ringing, in one piece
+SHORT = 2e-5  # s; in a shorter piece the mallet's velocity is constant
+LOOSE = 1e-7  # m; from where play is taken up
+STILL = 1e-6  # m/s; a belt's end that turns with less rests
+HALVINGS = 30  # of a span in which something happens
+
+
+@kernel
+def end_of_belt(axis, carriage, spring, t):
+    """`(place, velocity)` of the belt's end at `t` [s] of a piece in which its motor follows `axis`; spring: see
+    `compose.spring`."""
+    w, zeta = spring
+    if w == 0.0:
+        rest, slow, fast, _ = axis_at(axis, t)
+        return rest + slow + fast, axis_velocity(axis, slow, fast)
+    runs = min(t, axis.halt)
+    slow_end, fast_end = -axis.slow_gain * axis.volts, axis.fast_gain * axis.volts
+    x, v = belt_compliance.carried(
+        w, zeta, carriage[0], carriage[1], axis.rest + slow_end + fast_end, axis.rest_gain * axis.volts, axis.slow_rate,
+        axis.slow - slow_end, axis.fast_rate, axis.fast - fast_end, runs,
+    )  # fmt: skip
+    if t > runs:
+        x, v = belt_compliance.ring(w, zeta, x - axis_at(axis, runs)[0], v, t - runs)
+        x += axis_at(axis, t)[0]
+    return x, v
+
+
+@kernel
+def _drags(place, velocity, mallet, gap):
+    """Whether the belt's end is at the end of the gap and moves on."""
+    ahead = place - mallet
+    return abs(ahead) >= 0.5 * gap - LOOSE and ahead * velocity >= 0.0
+
+
+@kernel
+def first_event(axis, carriage, spring, gap, end):
+    """When [s] the belt's end turns or has taken up the play, at most `end`."""
+    place, velocity = end_of_belt(axis, carriage, spring, 0.0)
+    _, later = end_of_belt(axis, carriage, spring, end)
+    if velocity * later < 0.0 and max(abs(velocity), abs(later)) > STILL:
+        end = _last_before(axis, carriage, spring, velocity, 0.0, math.inf, end)
+    last, _ = end_of_belt(axis, carriage, spring, end)
+    if not _drags(place, velocity, carriage[2], gap) and abs(last - carriage[2]) > 0.5 * gap + LOOSE:
+        end = _last_before(axis, carriage, spring, 0.0, carriage[2], 0.5 * gap, end)
+    return end
+
+
+@kernel
+def _last_before(axis, carriage, spring, heading, middle, room, end):
+    """The last time in [0, end] at which the belt's end moves as `heading` does, and is within `room` of `middle`."""
+    begin = 0.0
+    for _ in range(HALVINGS):
+        t = 0.5 * (begin + end)
+        place, velocity = end_of_belt(axis, carriage, spring, t)
+        if heading * velocity >= 0.0 and abs(place - middle) <= room:
+            begin = t
+        else:
+            end = t
+    return begin
+
+
+@kernel
+def drag(axis, carriage, spring, gap, low, high, h):
+    """Move a carriage to the end of a piece of `h` [s] whose motor follows `axis`, and make that axis the mallet's.
+
+    The mallet stays in [low, high] [m]: the rail stops it dead.
+    """
+    place, velocity = end_of_belt(axis, carriage, spring, 0.0)
+    x0, v0 = carriage[2], velocity if _drags(place, velocity, carriage[2], gap) else 0.0
+    place, velocity = end_of_belt(axis, carriage, spring, h)
+    x1 = backlash.carried(gap, x0, place)
+    v1 = velocity if _drags(place, velocity, x1, gap) else 0.0
+    if not low <= x1 <= high:
+        x1, v1, velocity = min(max(x1, low), high), 0.0, 0.0
+        place = min(max(place, x1 - 0.5 * gap), x1 + 0.5 * gap)
+    carriage[0], carriage[1], carriage[2] = place, velocity, x1
+    _pass_through(axis, x0, v0, x1, v1, h)
+
+
+@kernel
+def _pass_through(axis, x0, v0, x1, v1, h):
+    """Give an axis the modes and volts with which it has these places [m] and velocities [m/s] now and `h` [s] on.
+
+    Its path is `start + speed t + slow exp(-slow_rate t) + fast exp(-fast_rate t)`: four numbers for four.
+    """
+    a, b = axis.slow_rate, axis.fast_rate
+    slow, fast, speed = 0.0, 0.0, (x1 - x0) / h
+    if h > SHORT:
+        loss_a, loss_b = -math.expm1(-a * h), -math.expm1(-b * h)
+        lag_a, lag_b = a * h - loss_a, b * h - loss_b  # how far a mode is behind one that keeps its first rate
+        more, further = v1 - v0, x1 - x0 - v0 * h
+        scale = a * loss_a * lag_b - b * loss_b * lag_a
+        slow = (more * lag_b - b * loss_b * further) / scale
+        fast = (a * loss_a * further - more * lag_a) / scale
+        speed = v0 + a * slow + b * fast
+    volts = speed / axis.rest_gain
+    axis.volts, axis.t1, axis.t2, axis.halt = volts, 2.0 * h, 2.0 * h, math.inf
+    axis.slow, axis.fast = slow - axis.slow_gain * volts, fast + axis.fast_gain * volts
+    axis.rest = x0 - axis.slow - axis.fast

@@ -1,0 +1,122 @@
+"""Mallets that their motors do not carry freely and rigidly: dry friction, a belt that gives, play.
+
+None of these leaves a plan in closed form. Time is cut into pieces instead, in which the volts that friction leaves are
+constant: at the orders' switches, where a part that rubs comes to a stop, where play is taken up, and as often as a
+belt's ringing asks for. In a piece both mallets follow plans again, so that the puck meets them as it always does.
+
+Between pieces the table keeps, of each mallet, its `motor`: a MALLET whose modes are those on a rigid belt, and whose
+plan is what is left of the orders that it follows; and its `carriage`, see there, of each axis.
+"""
+
+from __future__ import annotations
+
+import math
+
+from puckpilot_env.kernel import kernel
+from puckpilot_env.physics import compose
+from puckpilot_env.physics.gantry import carriage, dry_friction
+from puckpilot_env.physics.gantry.drive import drive_axis
+from puckpilot_env.physics.gantry.mallet import axis_at, axis_place, idle
+from puckpilot_env.physics.gantry.plan import SMALLEST_VOLTAGE
+
+LONGEST, SHORTEST = 0.02, 1e-6  # s, of a piece
+MANY_PIECES = 1000  # of a step; further ones are at least this part of it
+RAIL = 1e-5  # m; how far before its area's edge a mallet on a belt stops, which is off its path in between by less
+
+
+@kernel
+def is_rigid(p):
+    """Whether a mallet is where its motors are."""
+    return compose.spring(p)[0] == 0.0 and compose.play(p) == 0.0
+
+
+@kernel
+def stand(motor, own, x, y):
+    """Let the motors of a mallet with the carriages `own` stand at (x, y) [m], without orders, and belts with them."""
+    for a in range(2):
+        axis, place = (motor.x, x) if a == 0 else (motor.y, y)
+        axis.rest, axis.slow, axis.fast = place, 0.0, 0.0
+        idle(axis)
+        own[a, 0], own[a, 1], own[a, 2] = place, 0.0, place
+
+
+@kernel
+def join(p, motor, mallet):
+    """Let the motors be where their mallet is, if it is rigid."""
+    if not is_rigid(p):
+        return
+    for a in range(2):
+        axis, own = (motor.x, mallet.x) if a == 0 else (motor.y, mallet.y)
+        axis.rest, axis.slow, axis.fast = own.rest, own.slow, own.fast
+
+
+@kernel
+def take(motor, orders):
+    """Let motors follow `orders` (2, 3) from now on: signed volts, t1 and t2 of each axis."""
+    for a in range(2):
+        axis = motor.x if a == 0 else motor.y
+        axis.volts, axis.t1, axis.t2 = orders[a, 0], orders[a, 1], orders[a, 2]
+
+
+@kernel
+def _ordered(axis):
+    """`(volts, until)`: what an axis is ordered now, and till when [s]."""
+    if axis.t1 > 0.0:
+        return axis.volts, axis.t1
+    if axis.t2 > 0.0:
+        return -axis.volts, axis.t2
+    return 0.0, math.inf
+
+
+@kernel
+def begin_piece(p, motor, mallet, own, area, least, longest):
+    """Let a mallet do as its motor does without belt and play, from now on; how long [s] it may.
+
+    own: the mallet's carriages (2, 3); area: in which it must stay; least <= longest: bounds of the piece [s].
+    """
+    (volts_x, until_x), (volts_y, until_y) = _ordered(motor.x), _ordered(motor.y)
+    h = min(min(until_x, until_y), min(longest, LONGEST))
+    rubs = compose.dry_friction(p)
+    if max(max(rubs[0], rubs[1]), max(rubs[2], rubs[3])) > 0.0:
+        volts_x, volts_y, held = dry_friction.left_volts(rubs, motor, volts_x, volts_y)
+        h = dry_friction.first_stop(rubs, motor, volts_x, volts_y, min(h, held))
+    spring, gap = compose.spring(p), compose.play(p)
+    if spring[0] > 0.0:
+        h = min(h, carriage.RADIANS / spring[0])
+    h, limit = max(h, least), 2.0 * (p.max_voltage - SMALLEST_VOLTAGE)
+    for a in range(2):
+        axis, driven = (mallet.x, motor.x) if a == 0 else (mallet.y, motor.y)
+        axis.rest, axis.slow, axis.fast = driven.rest, driven.slow, driven.fast
+        axis.t1, axis.t2, axis.halt = 2.0 * h, 2.0 * h, math.inf
+        drive_axis(axis, volts_x if a == 0 else volts_y, area[2 * a], area[2 * a + 1], limit, h)
+        if gap > 0.0:
+            h = max(carriage.first_event(axis, own[a], spring, gap, h), least)
+    return h
+
+
+@kernel
+def drag(p, motor, mallet, own, area, h):
+    """Settle on pieces of `h` [s]: the motors come to their end, and the mallet, on its belt, follows in the piece."""
+    rigid = is_rigid(p)
+    for a in range(2):
+        axis, driven = (mallet.x, motor.x) if a == 0 else (mallet.y, motor.y)
+        driven.rest, driven.slow, driven.fast, _ = axis_at(axis, h)
+        driven.t1 -= h
+        driven.t2 -= h
+        if axis.halt <= h:
+            idle(driven)  # the rail ends what it was ordered
+        if not rigid:
+            low, high = area[2 * a] + RAIL, area[2 * a + 1] - RAIL
+            carriage.drag(axis, own[a], compose.spring(p), compose.play(p), low, high, h)
+
+
+@kernel
+def end_piece(motor, mallet, own, h):
+    """Let the motors stall, and with them the belt, of a mallet that was stopped in a piece of `h` [s]."""
+    for a in range(2):
+        axis, driven = (mallet.x, motor.x) if a == 0 else (mallet.y, motor.y)
+        if axis.halt <= h:
+            place = axis_place(axis, h)
+            driven.rest, driven.slow, driven.fast = place, 0.0, 0.0
+            idle(driven)
+            own[a, 0], own[a, 1], own[a, 2] = place, 0.0, place
