@@ -18,7 +18,8 @@ TURNED_ERROR = (
 )  # what becomes of the terms of a camera's error: the odd ones turn by themselves
 
 OF_PLAYERS = (  # what a table has of each
-    "mallets", "motors", "carriages", "gantry_scale", "streams", "score", "last_score", "fouls", "last_fouls", "defending"
+    "mallets", "motors", "carriages", "gantry_scale", "streams", "score", "last_score", "fouls", "last_fouls",
+    "defending",
 )  # fmt: skip
 
 

@@ -76,12 +76,12 @@ def _play_late(table, p, rule, until, delay, rewards, log, film):
 
 
 @kernel
-def _begin_piece(table, p, least, longest):
-    """Begin a piece of both mallets' motion; how long it is [s]."""
+def _begin_piece(table, p, t, least, longest):
+    """Begin a piece of both mallets' motion at the time `t` [s]; how long it is [s]."""
     h = longest
     for k in range(2):
         motor, mallet, own = table.motors[k], table.mallets[k], table.carriages[k]
-        h = drivetrain.begin_piece(p, motor, mallet, own, mirror.area(k, p), min(least, h), h)
+        h = drivetrain.begin_piece(p, k, t, motor, mallet, own, mirror.area(k, p), min(least, h), h)
     for k in range(2):
         drivetrain.drag(p, table.motors[k], table.mallets[k], table.carriages[k], mirror.area(k, p), h)
     return h
@@ -114,7 +114,7 @@ def _play_in_pieces(table, p, rule, until, rewards, log, film):
     """`play_step` of mallets that go piece by piece, see `physics.gantry.drivetrain`."""
     begin = min(compose.delay(p), until)  # of the plans that are on their way
     over, alone, now, shots, waits, pieces = False, 0.0, 0.0, 0, True, 0
-    if begin == 0.0 and drivetrain.is_rigid(p):
+    if begin == 0.0 and drivetrain.only_loses(p):
         alone = drift(table.puck, p, table.mallets, table.orders, table.time, until, until, film)
     while until - now > ROUNDING:
         if waits and begin - now <= ROUNDING:
@@ -122,7 +122,7 @@ def _play_in_pieces(table, p, rule, until, rewards, log, film):
                 drivetrain.take(table.motors[k], table.orders[k])
             waits = False
         least = drivetrain.SHORTEST if pieces < drivetrain.MANY_PIECES else until / drivetrain.MANY_PIECES
-        h = _begin_piece(table, p, least, (begin if waits else until) - now)
+        h = _begin_piece(table, p, table.time + now, least, (begin if waits else until) - now)
         last = _shots_until(film, shots, now, h)
         if not over and alone == 0.0:
             over = _play_piece(table, p, rule, now, h, rewards, log, film[shots:last])

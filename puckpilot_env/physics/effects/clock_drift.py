@@ -16,7 +16,7 @@ EFFECT = Effect(
     depends_on=("time",),
     excited_by="a mallet that moves all the time, for minutes, with plans and encoders stamped by their own clocks",
     source="two clocks that were set alike once",
-    not_simulated="the simulator has one clock",
+    not_simulated="players see what has arrived, however it is stamped, and the simulator has one clock",
 )
 
 

@@ -1,4 +1,4 @@
-"""Mallets that their motors do not carry freely and rigidly: dry friction, a belt that gives, play.
+"""Mallets that their motors do not carry freely and rigidly: dry friction, extra volts, a belt that gives, play.
 
 None of these leaves a plan in closed form. Time is cut into pieces instead, in which the volts that friction leaves are
 constant: at the orders' switches, where a part that rubs comes to a stop, where play is taken up, and as often as a
@@ -16,7 +16,7 @@ from puckpilot_env.kernel import kernel
 from puckpilot_env.physics import compose
 from puckpilot_env.physics.gantry import carriage, dry_friction
 from puckpilot_env.physics.gantry.drive import drive_axis
-from puckpilot_env.physics.gantry.mallet import axis_at, axis_place, idle
+from puckpilot_env.physics.gantry.mallet import axis_at, axis_place, idle, motion_now
 from puckpilot_env.physics.gantry.plan import SMALLEST_VOLTAGE
 
 LONGEST, SHORTEST = 0.02, 1e-6  # s, of a piece
@@ -28,6 +28,12 @@ RAIL = 1e-5  # m; how far before its area's edge a mallet on a belt stops, which
 def is_rigid(p):
     """Whether a mallet is where its motors are."""
     return compose.spring(p)[0] == 0.0 and compose.play(p) == 0.0
+
+
+@kernel
+def only_loses(p):
+    """Whether a mallet is where its motors are, which get no more than they are ordered: so it gets no farther."""
+    return is_rigid(p) and compose.holds(p) == math.inf
 
 
 @kernel
@@ -69,13 +75,31 @@ def _ordered(axis):
 
 
 @kernel
-def begin_piece(p, motor, mallet, own, area, least, longest):
-    """Let a mallet do as its motor does without belt and play, from now on; how long [s] it may.
+def _extra_volts(p, player, t, ahead, motor, volts_x, volts_y):
+    """The extra volts of both axes where and as fast as the motors will be, nearly, `ahead` [s]: at the time `t`."""
+    x, y, vx, vy = motion_now(motor)
+    x, y = x + vx * ahead, y + vy * ahead
+    if player == 0:
+        return compose.extra_volts(p, t, x, y, vx, vy, volts_x, volts_y)
+    x, y = p.length - x, p.width - y  # a gantry stands at its player's end
+    more_x, more_y = compose.extra_volts(p, t, x, y, -vx, -vy, -volts_x, -volts_y)
+    return -more_x, -more_y
+
+
+@kernel
+def begin_piece(p, player, t, motor, mallet, own, area, least, longest):
+    """Let a player's mallet do as its motor does without belt and play, from the time `t` [s] on; how long [s] it may.
 
     own: the mallet's carriages (2, 3); area: in which it must stay; least <= longest: bounds of the piece [s].
     """
+    limit = 2.0 * (p.max_voltage - SMALLEST_VOLTAGE)
     (volts_x, until_x), (volts_y, until_y) = _ordered(motor.x), _ordered(motor.y)
     h = min(min(until_x, until_y), min(longest, LONGEST))
+    if compose.holds(p) < math.inf:
+        h = min(h, compose.holds(p))
+        more_x, more_y = _extra_volts(p, player, t + 0.5 * h, 0.5 * h, motor, volts_x, volts_y)
+        volts_x = min(max(volts_x + more_x, -limit), limit)
+        volts_y = min(max(volts_y + more_y, -limit), limit)
     rubs = compose.dry_friction(p)
     if max(max(rubs[0], rubs[1]), max(rubs[2], rubs[3])) > 0.0:
         volts_x, volts_y, held = dry_friction.left_volts(rubs, motor, volts_x, volts_y)
@@ -83,7 +107,7 @@ def begin_piece(p, motor, mallet, own, area, least, longest):
     spring, gap = compose.spring(p), compose.play(p)
     if spring[0] > 0.0:
         h = min(h, carriage.RADIANS / spring[0])
-    h, limit = max(h, least), 2.0 * (p.max_voltage - SMALLEST_VOLTAGE)
+    h = max(h, least)
     for a in range(2):
         axis, driven = (mallet.x, motor.x) if a == 0 else (mallet.y, motor.y)
         axis.rest, axis.slow, axis.fast = driven.rest, driven.slow, driven.fast

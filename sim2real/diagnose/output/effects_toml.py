@@ -15,10 +15,12 @@ from sim2real.diagnose.result.result import Finding, RegimeResult
 TABLES = {
     "unlisted_force": "an unlisted force",
     "unlisted_bounce": "an unlisted change of the speed ratio at walls (share 1: normal, 2: along the wall, 3: both)",
+    "unlisted_drive": "unlisted extra volts on the gantry's axes (axes 1: x, 2: y, 3: both)",
     "unlisted_blow": "an unlisted change of the speed ratio at a mallet (share 1: normal, 2: tangential, 3: both)",
 }
 GANTRY = ("a1", "a2", "a3", "b1", "b2", "b3")
 NO_HISTORY = "the simulator does not store the time of the puck's last contact"
+NO_HISTORY_OF_VOLTS = "the simulator does not store averages of the motors' volts and speeds"
 
 
 def effects_toml(diagnosis: Diagnosis) -> str:
@@ -36,7 +38,7 @@ def effects_toml(diagnosis: Diagnosis) -> str:
         taken = {} if effect.not_simulated else effect.rows
         numbers = [f"{key} = {values[row.name]!r}" for key, row in taken.items() if row.name in values]
         lines += ["", *_comments(name, values), f"[effects.{name}]", *numbers] if numbers else []
-    lines += [f"# as a formula, fitted separately: {one.formula}" for one in diagnosis.findings if _is_table(one)]
+    lines += [_formula(one) for one in diagnosis.findings if _is_table(one)]
     lines += [
         f"{NOT_SWITCHED} {_size(name, value)}" for name, value in diagnosis.sizes.items() if not _fits(name, value)
     ]
@@ -112,6 +114,11 @@ def _comments(name: str, values: Mapping[str, float]) -> list[str]:
     return [f"# {TABLES[name]}: {meaning[0]}; coefficients c00, c01, ...: {meaning[1]}"]
 
 
+def _formula(one: Finding) -> str:
+    """Return the comment on the formula of a table of coefficients; that of the gantry is made of the formula."""
+    return f"# as a formula{'' if one.regime == 'gantry' else ', fitted separately'}: {one.formula}"
+
+
 def _is_table(one: Finding) -> bool:
     """Return whether the simulator represents a finding as a table of coefficients."""
     return one.mechanism == "unlisted" and _simulated(one)
@@ -122,8 +129,8 @@ def _simulated(one: Finding) -> bool:
 
 
 def _why_not(one: Finding) -> str:
-    if one.mechanism == "unlisted" and one.regime in ("glide", "wall") and "history" in one.depends_on:
-        return NO_HISTORY
+    if one.mechanism == "unlisted" and "history" in one.depends_on:
+        return NO_HISTORY_OF_VOLTS if one.regime == "gantry" else NO_HISTORY
     return EFFECTS[one.mechanism].not_simulated if one.mechanism in EFFECTS else ""
 
 

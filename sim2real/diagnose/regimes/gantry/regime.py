@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from sim2real.diagnose.engine.problem import Problem
 from sim2real.diagnose.regimes.base import Evidence, Known, RecordingPart, Regime, UnusableError
 from sim2real.diagnose.regimes.formula_words import mismatch_by_launch, with_formula
 from sim2real.diagnose.regimes.gantry import figures
+from sim2real.diagnose.regimes.gantry.as_effect import effect_parameters
 from sim2real.diagnose.regimes.gantry.formula import is_readable, readable_formula
 from sim2real.diagnose.regimes.gantry.problem import GantryProblem, gantry_problem
 from sim2real.diagnose.result.result import Finding, Mismatch
@@ -65,7 +67,8 @@ class Gantry(Regime):
             return finding
         formula, projection = readable_formula(problem, found, found.unlisted, use)
         curve = figures.smooth_curve(problem, found, formula, projection)
-        return with_formula(finding, problem, found, formula, curve, use)
+        values = effect_parameters(found.unlisted, found, formula, projection)
+        return with_formula(replace(finding, values=values), problem, found, formula, curve, use)
 
 
 def _contact_times(segments: Sequence[Segments]) -> list[np.ndarray]:

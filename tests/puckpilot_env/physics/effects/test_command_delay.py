@@ -8,36 +8,24 @@ import pytest
 from puckpilot_env import Tables
 from puckpilot_env.physics.gantry.mallet import place_now
 from sim2real.study.independent_table import Law, run
-from tests.puckpilot_env.physics.table_driver import areas, plan_both, record
+from tests.puckpilot_env.physics.reference_play import PERIOD, asked_for, gentle
 
 DELAY, STEPS = 0.055, 14
 LATE = {"command_delay": {"delay_s": DELAY}}
 CLEAN = {"camera_noise": 0.0, "camera_error": 0.0, "beam_noise": 0.0, "dropped_frames": 0.0, "held_frames": 0.0}
 
 
-def gentle(tables: Tables, rng: np.random.Generator) -> np.ndarray:
-    """Actions (n, 2, 4) that keep clear of the rails, which no reference has."""
-    actions = np.empty((len(tables), 2, 4), np.float32)
-    actions[..., 0], actions[..., 1] = rng.uniform((0.3, 0.3), (0.7, 0.7), (len(tables), 2, 2)).transpose(2, 0, 1)
-    actions[..., 2:] = rng.uniform(2.0, 5.0, (len(tables), 2, 2))
-    return actions
-
-
 def played(variant: str, **parameters: float) -> tuple[Tables, np.ndarray, np.ndarray, list[list]]:
     """A table after STEPS; where the mallets were (steps + 1, 2, 2); its plans as they were made, of either mallet."""
-    tables, rng, p = Tables(variant, 1, seed=3, effects=LATE, parameters=parameters), np.random.default_rng(5), record()
+    tables, rng = Tables(variant, 1, seed=3, effects=LATE, parameters=parameters), np.random.default_rng(5)
     places, plans = [_places(tables)], [[], []]
     for step in range(STEPS):
         actions = gentle(tables, rng)
-        requests = actions[0].astype(float)
-        requests[1, :2] = (p.length, p.width) - requests[1, :2]
-        copy = tables.states.copy().view(np.recarray)[0]
-        plan_both(copy.mallets, requests, areas(p), p.max_voltage)
-        for k, m in enumerate(copy.mallets):
-            plans[k].append((0.1 * step, (m.x.volts, m.y.volts, m.x.t1, m.y.t1, m.x.t2, m.y.t2)))
+        for k, plan in enumerate(asked_for(tables, actions)):
+            plans[k].append((PERIOD * step, plan))
         tables.step(actions)
         places.append(_places(tables))
-    return tables, np.array(places), np.arange(STEPS + 1) * 0.1, plans
+    return tables, np.array(places), np.arange(STEPS + 1) * PERIOD, plans
 
 
 def _places(tables: Tables) -> list[tuple[float, float]]:
@@ -70,7 +58,7 @@ def test_the_camera_sees_both_stretches_of_a_step() -> None:
 
 def test_the_puck_goes_where_the_reference_goes() -> None:
     """Four milliseconds late, so that pucks mostly meet nothing meanwhile, and then the mallet's new plan."""
-    effects, rng, p = {"command_delay": {"delay_s": 0.004}}, np.random.default_rng(8), record()
+    effects, rng = {"command_delay": {"delay_s": 0.004}}, np.random.default_rng(8)
     tables = Tables("match-v0", 6, seed=3, effects=effects)
     before, states, struck = _places(tables), tables.states.view(np.recarray), 0
     for table in range(len(tables)):
@@ -78,11 +66,7 @@ def test_the_puck_goes_where_the_reference_goes() -> None:
         puck.x, puck.y, puck.vx, puck.vy = x + 0.1 + 0.005 * table, y + 0.002 * table, -1.0, 0.05
     begun = [(q.x, q.y, q.vx, q.vy) for q in states.puck]
     actions = np.repeat(gentle(tables, rng)[:1], len(tables), axis=0)
-    requests = actions[0].astype(float)
-    requests[1, :2] = (p.length, p.width) - requests[1, :2]
-    copy = tables.states.copy().view(np.recarray)[0]
-    plan_both(copy.mallets, requests, areas(p), p.max_voltage)
-    plans = [[(0.0, (m.x.volts, m.y.volts, m.x.t1, m.y.t1, m.x.t2, m.y.t2))] for m in copy.mallets]
+    plans = [[(0.0, plan)] for plan in asked_for(tables, actions)]
     tables.step(actions)
     for table, start in enumerate(begun):
         late, prompt = (run(Law(command_delay=d), start, before, plans, 0.1, 1e-5) for d in (0.004, 0.0))

@@ -7,11 +7,14 @@ import pytest
 
 from puckpilot_env import Tables
 from puckpilot_env.batch.motion import mallet_motion
+from puckpilot_env.physics.effects.unlisted_drive import EFFECT, LOSS_BY_PLACE, LOSS_BY_SPEED, NUMBERS
 from sim2real.study.independent_table import Law, run
-from tests.puckpilot_env.physics.table_driver import areas, plan_both, record
+from tests.puckpilot_env.physics.reference_play import PERIOD, asked_for, gentle
+from tests.puckpilot_env.physics.table_driver import record
 
-STEPS, PERIOD = 14, 0.1
+STEPS = 14
 FRICTION = {"motor_friction_left": 0.7, "motor_friction_right": 0.5, "axis_friction_x": 0.3, "axis_friction_y": 0.8}
+DRIVE = EFFECT.row_names
 CASES = {
     "friction": (FRICTION, Law(**FRICTION), 2e-4, 5e-3),
     "belt": ({"belt_hz": 20.0, "belt_zeta": 0.08}, Law(belt_hz=20.0, belt_zeta=0.08), 2e-6, 1e-3),
@@ -31,25 +34,6 @@ CASES = {
 }
 
 
-def gentle(tables: Tables, rng: np.random.Generator) -> np.ndarray:
-    """Actions (n, 2, 4) that keep clear of the rails, which no reference has."""
-    actions = np.empty((len(tables), 2, 4), np.float32)
-    actions[..., 0], actions[..., 1] = rng.uniform((0.3, 0.3), (0.7, 0.7), (len(tables), 2, 2)).transpose(2, 0, 1)
-    actions[..., 2:] = rng.uniform(2.0, 5.0, (len(tables), 2, 2))
-    return actions
-
-
-def asked_for(tables: Tables, actions: np.ndarray) -> list[tuple[float, ...]]:
-    """The plans of the first table's mallets from where their motors are, as the players ask for them."""
-    p, state = record(), tables.states.copy().view(np.recarray)[0]
-    is_rigid = not (tables.params["belt_hz"][0] or tables.params["backlash_gap"][0])
-    gantries = state.mallets if is_rigid else state.motors
-    requests = actions[0].astype(float)
-    requests[1, :2] = (p.length, p.width) - requests[1, :2]
-    plan_both(gantries, requests, areas(p), p.max_voltage)
-    return [(m.x.volts, m.y.volts, m.x.t1, m.y.t1, m.x.t2, m.y.t2) for m in gantries]
-
-
 def played(variant: str, values: dict[str, float]) -> tuple[Tables, np.ndarray, list[list]]:
     """A table after STEPS; its mallets' motion (steps + 1, 2, 4); its plans, of either mallet."""
     tables, rng = Tables(variant, 1, seed=3, parameters=values), np.random.default_rng(5)
@@ -63,20 +47,42 @@ def played(variant: str, values: dict[str, float]) -> tuple[Tables, np.ndarray, 
     return tables, np.array(motion), plans
 
 
+def at_steps(law: Law, places: np.ndarray, plans: list[list]) -> np.ndarray:
+    """The reference's motion of both mallets (steps + 1, 2, 4) at the ends of the steps."""
+    times = np.arange(len(plans[0]) + 1) * PERIOD
+    trace = run(law, None, places, plans, times[-1], 1e-5)
+    return np.array([[np.interp(times, trace.t, m[:, c]) for c in (0, 3, 1, 4)] for m in trace.mallets]).transpose(
+        2, 0, 1
+    )
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
 def test_mallets_go_where_the_reference_goes(case: str) -> None:
     values, law, close, alike = CASES[case]
     _, motion, plans = played("match-v0", values)
-    times = np.arange(STEPS + 1) * PERIOD
-    trace, plain = (run(one, None, motion[0, :, :2], plans, times[-1], 1e-5) for one in (law, Law()))
-    seen, without = (
-        np.array([[np.interp(times, t.t, path[:, c]) for c in (0, 3, 1, 4)] for path in t.mallets]).transpose(2, 0, 1)
-        for t in (trace, plain)
-    )
+    seen, without = (at_steps(one, motion[0, :, :2], plans) for one in (law, Law()))
     assert np.abs(seen - motion)[..., :2].max() < close
     assert np.abs(seen - motion)[..., 2:].max() < alike
     assert np.abs(without - motion)[..., :2].max() > 5.0 * close  # it matters
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "kind, last, share, law",
+    [
+        (LOSS_BY_PLACE, 1.0, lambda q: 0.3 * np.sin(2.0 * np.pi * q / 0.5), Law(rough=0.3, rough_length=0.5)),
+        (LOSS_BY_SPEED, 3.0, lambda q: 0.2 * q**2, Law(cubic_loss=0.2)),
+    ],
+)
+def test_a_table_of_volts_is_the_law_that_it_tells(kind: int, last: float, share, law: Law) -> None:
+    """A loss of C7 v (1 + share) in the reference takes C7 share v / (R/2) volts; C7 is a3 on both axes."""
+    p = record()
+    numbers = -2.0 * p.a3 / p.pulley_radius * share(np.linspace(0.0, last, NUMBERS))
+    _, motion, plans = played("match-v0", dict(zip(DRIVE, [kind, 3.0, 0.0, last, *numbers], strict=True)))
+    seen, without = (at_steps(one, motion[0, :, :2], plans) for one in (law, Law()))
+    matters = np.abs(without - motion)[:, 0, :2].max()  # of player_0: the other's gantry has the law in its own frame
+    assert np.abs(seen - motion)[:, 0, :2].max() < 0.05 * matters and matters > 0.005
 
 
 def pulled(tables: Tables, volts: float, steps: int) -> None:
