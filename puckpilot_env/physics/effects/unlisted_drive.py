@@ -27,16 +27,8 @@ from puckpilot_env.effect import Effect, Parameter
 from puckpilot_env.kernel import kernel
 from puckpilot_env.physics.interpolation import over_even_knots
 
-(
-    FORCE_BY_PLACE,
-    LOSS_BY_PLACE,
-    LOSS_BY_SPEED,
-    PULL_BY_VOLTS,
-    PULL_BY_LOAD,
-    LOSS_BY_TIME,
-    PULL_BY_TIME,
-    LOSS_BY_HEADING,
-) = range(1, 9)
+FORCE_BY_PLACE, LOSS_BY_PLACE, LOSS_BY_SPEED, PULL_BY_VOLTS = range(1, 5)
+PULL_BY_LOAD, LOSS_BY_TIME, PULL_BY_TIME, LOSS_BY_HEADING = range(5, 9)
 ON_X, ON_Y, ON_BOTH = range(1, 4)
 NUMBERS = 32
 STEP = 2e-3  # s

@@ -1,4 +1,4 @@
-"""Convert the formula of an unlisted law to parameters of the simulator's `unlisted_drive`, so that it can be simulated."""
+"""Convert the formula of an unlisted law to parameters of the simulator's `unlisted_drive`, to simulate it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An unlisted law of the gantry, and friction, are found in a recording, switched on in the simulator, and played on."""
+"""An unlisted law of the gantry, and friction, are found in a recording and switched on in the simulator."""
 
 from __future__ import annotations
 
