@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from puckpilot_env.kernel import array_kernel
 from puckpilot_env.physics.gantry.mallet import axis_at
 from tests.puckpilot_env.physics.scenes import edged
 from tests.puckpilot_env.physics.table_driver import cut, place, plan_both, put_at_rest
@@ -18,13 +18,13 @@ CHAIN = 40  # plans in a row before the mallets start anew
 UNITS = 10  # numbers that make a link
 
 
-@njit(error_model="numpy")
+@array_kernel
 def position(axis, t):
     rest, slow, fast, _ = axis_at(axis, t)
     return rest + slow + fast
 
 
-@njit(error_model="numpy")
+@array_kernel
 def request_for(u, axis, low, high):
     """A target [m]: anywhere, an edge, out of this world, where the axis is, or where it would coast to."""
     if u < 0.15:
@@ -44,7 +44,7 @@ def request_for(u, axis, low, high):
     return low + (high - low) * (u - 0.52) / 0.48
 
 
-@njit(error_model="numpy")
+@array_kernel
 def volts_for(u, v, max_voltage):
     """A voltage [V]: any, none, a denormal, huge, or the most there is; either sign."""
     sign = 1.0 if v < 0.5 else -1.0
@@ -61,7 +61,7 @@ def volts_for(u, v, max_voltage):
     return sign * 2.0 * max_voltage * ((u - 0.4) / 0.6) ** 2
 
 
-@njit(error_model="numpy")
+@array_kernel
 def cut_time(u, v, axis):
     """When a plan is cut [s]: at a frame, a step, a switch or just beside one, or at any moment of it."""
     end = min(axis.t2, 2.0)
@@ -82,7 +82,7 @@ def cut_time(u, v, axis):
     return 10.0 ** (-9.0 * v)
 
 
-@njit(error_model="numpy")
+@array_kernel
 def look_at(axis, low, high, target, verdict):
     """One planned axis: its times, and its path before, around, between and far after its switches."""
     t1, t2 = axis.t1, axis.t2
@@ -112,7 +112,7 @@ def look_at(axis, low, high, target, verdict):
         verdict[AWAY_AT_END] = max(verdict[AWAY_AT_END], abs(position(axis, t2 + later) - position(axis, t2 + 0.02)))
 
 
-@njit(error_model="numpy")
+@array_kernel
 def link(u, p, area, mallets, requests, verdict, fresh):
     """Plan both mallets from `u` (2, UNITS), look, and cut."""
     for k in range(2):
@@ -136,7 +136,7 @@ def link(u, p, area, mallets, requests, verdict, fresh):
     cut(mallets, cut_time(u[1, 8], u[0, 9], chosen.x if u[1, 9] < 0.5 else chosen.y))
 
 
-@njit(error_model="numpy")
+@array_kernel
 def chains(units, p, area, table, requests, verdict):
     """Worst verdicts over links `units` (n, 2, UNITS)."""
     for i in range(units.shape[0]):

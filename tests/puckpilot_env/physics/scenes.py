@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
+from puckpilot_env.kernel import array_kernel
 from puckpilot_env.physics.gantry.mallet import place_at
 from tests.puckpilot_env.physics.table_driver import cut, place, plan_both, put_at_rest
 
@@ -19,19 +18,19 @@ KINDS = 6
 FASTEST = 30.0  # m/s
 
 
-@njit(error_model="numpy")
+@array_kernel
 def edged(u, low, high):
     """A number in [low, high]; each end gets a share of its own."""
     return low + (high - low) * min(max(1.2 * u - 0.1, 0.0), 1.0)
 
 
-@njit(error_model="numpy")
+@array_kernel
 def small(u):
     """A gap [m]: exactly none, or 1e-10 ... 1e-1."""
     return 0.0 if u < 0.15 else 10.0 ** (-10.0 + 9.0 * (u - 0.15) / 0.85)
 
 
-@njit(error_model="numpy")
+@array_kernel
 def place_puck(u, kind, p):
     """Where a puck of this kind of scene is; u has 4 numbers."""
     rp, half_goal = p.puck_radius, 0.5 * p.goal_width
@@ -62,7 +61,7 @@ def place_puck(u, kind, p):
     return x, y
 
 
-@njit(error_model="numpy")
+@array_kernel
 def voltages(u, v, max_voltage):
     """Requested magnitudes: often all on one axis, often the most there is, sometimes next to none."""
     total = 2.0 * max_voltage * (1.0 if v > 0.5 else 2.0 * v)
@@ -72,7 +71,7 @@ def voltages(u, v, max_voltage):
     return total * share, total * (1.0 - share)
 
 
-@njit(error_model="numpy")
+@array_kernel
 def aim(u, mallet_x, mallet_y, x, y, area):
     """A target [m]: mostly beyond the puck as the mallet sees it; or anywhere in the area, its edges included."""
     if u[0] < 0.25:
@@ -83,7 +82,7 @@ def aim(u, mallet_x, mallet_y, x, y, area):
     return x + beyond * dx / size, y + beyond * dy / size + 0.02 * (u[2] - 0.5)
 
 
-@njit(error_model="numpy")
+@array_kernel
 def clear_until(mallets, x, y, distance):
     """The last of 401 instants of the plans up to which both mallets keep `distance` from (x, y); negative if none."""
     longest = 0.0
@@ -100,7 +99,7 @@ def clear_until(mallets, x, y, distance):
     return last
 
 
-@njit(error_model="numpy")
+@array_kernel
 def start_mallets(u, middle, x, y, mallets, distance, area, requests, max_voltage):
     """Both mallets at rest, somewhere or close to the puck, with a first request; False where one has no room."""
     inset = 1e-3  # the plans keep clear of the area's edge by less
@@ -124,7 +123,7 @@ def start_mallets(u, middle, x, y, mallets, distance, area, requests, max_voltag
     return True
 
 
-@njit(error_model="numpy")
+@array_kernel
 def build(u, p, area, table, requests):
     """Set up `table` and its last `requests` (2, 4); False where the numbers make no possible scene."""
     mallets, puck = table.mallets, table.puck

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from puckpilot_env.kernel import array_kernel
 from puckpilot_env.physics.contacts import bounce
 from tests.puckpilot_env.physics.scenes import UNITS, build
 from tests.puckpilot_env.physics.table_driver import (
@@ -29,7 +29,7 @@ VERDICTS = 10
 GRAZE = 1e-2  # of the puck's speed (and of 1 m/s); a mallet that changes its velocity by less has hardly touched it
 
 
-@njit(error_model="numpy")
+@array_kernel
 def judge_events(log, events, verdict):
     """Share of energy gained without a mallet, and whether any mallet only grazed the puck."""
     verdict[EVENTS] = events
@@ -49,7 +49,7 @@ def judge_events(log, events, verdict):
             verdict[GAIN] = max(verdict[GAIN], change)
 
 
-@njit(error_model="numpy")
+@array_kernel
 def sweep(units, p, area, table, requests, duration, out, whole, log, verdicts):
     """Play each scene in `len(out) - 1` pieces and again in `len(whole) - 1`; `verdicts` (n, VERDICTS)."""
     puck, mallets = table.puck, table.mallets

@@ -8,9 +8,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from puckpilot_env.game.state import TABLE
+from puckpilot_env.kernel import array_kernel
 from puckpilot_env.parameters import make_records
 from puckpilot_env.physics.advance import EVENT_COLUMNS, advance
 from puckpilot_env.physics.contacts import bounce
@@ -39,7 +39,7 @@ def new_table(p: np.record) -> np.record:
     return table
 
 
-@njit(error_model="numpy")
+@array_kernel
 def give_gantries(table, p):
     for k in range(2):
         mallet = table.mallets[k]
@@ -57,18 +57,18 @@ def new_log(rows: int = 4000) -> np.ndarray:
     return np.zeros((rows, EVENT_COLUMNS))
 
 
-@njit(error_model="numpy")
+@array_kernel
 def put_at_rest(axis, position):
     axis.rest, axis.slow, axis.fast, axis.halt = position, 0.0, 0.0, math.inf
 
 
-@njit(error_model="numpy")
+@array_kernel
 def place(axis):
     """Position [m] of an axis when its plan begins."""
     return axis.rest + axis.slow + axis.fast
 
 
-@njit(error_model="numpy")
+@array_kernel
 def plan_both(mallets, requests, area, max_voltage):
     """`requests` (2, 4): x_f, y_f, vx, vy of either player; `area` (2, 4)."""
     for k in range(2):
@@ -76,14 +76,14 @@ def plan_both(mallets, requests, area, max_voltage):
         plan_mallet(mallets[k], q[0], q[1], q[2], q[3], area[k], max_voltage)
 
 
-@njit(error_model="numpy")
+@array_kernel
 def cut(mallets, t):
     """Cut both plans at t."""
     for k in range(2):
         settle(mallets[k], t)
 
 
-@njit(error_model="numpy")
+@array_kernel
 def sample(row, t, puck, mallets):
     row[T] = t
     row[PX], row[PY], row[PVX], row[PVY] = puck.x, puck.y, puck.vx, puck.vy
@@ -91,7 +91,7 @@ def sample(row, t, puck, mallets):
         row[M0X + 2 * k], row[M0Y + 2 * k] = place_at(mallets[k], t)
 
 
-@njit(error_model="numpy")
+@array_kernel
 def play(puck, p, mallets, start, end, out, log):
     """From `start` to `end` in `len(out) - 1` calls or more; `out` (n, SAMPLE_COLUMNS) takes the states between.
 
@@ -114,7 +114,7 @@ def play(puck, p, mallets, start, end, out, log):
     return kind, pieces + 1, events
 
 
-@njit(error_model="numpy")
+@array_kernel
 def deepest(out, rows, p):
     """Largest violations [m] in samples: `(out of the table, into a post, into a mallet)`; negative when clear.
 

@@ -130,12 +130,12 @@ def shots(seed: int, count: int, fastest: float) -> list[Start]:
 
 @pytest.mark.slow
 def test_between_contacts_and_after_three(effort):
-    starts = shots(6, 100 * effort, 10.0)
-    worst, calm, left_out, seen = compare(starts, 1.0, 3, 2e-5)
+    starts = shots(6, 60 * effort, 10.0)
+    worst, calm, left_out, seen = compare(starts, 1.0, 3, 4e-5)
     assert calm <= BETWEEN
     assert worst <= AFTER_THREE
     assert left_out <= 0.05 * len(starts)
-    assert seen["wall"] > 50 and seen["mallet"] > 50
+    assert seen["wall"] > 30 and seen["mallet"] > 30
 
 
 def at_the_mouth(seed: int, count: int) -> list[Start]:
@@ -170,8 +170,8 @@ def test_goal_mouth(effort):
     outcomes, left_out = {"goal": 0, "post": 0, "out again": 0}, 0
     for start in starts:
         motion, plans = ours(start, 0.6)
-        trace = theirs(start, plans, 0.6, 2e-5)
-        others = theirs(start, plans, 0.6, 1e-5), theirs(start, plans, 0.6, 2e-5, 1e-9)
+        trace = theirs(start, plans, 0.6, 4e-5)
+        others = theirs(start, plans, 0.6, 2e-5), theirs(start, plans, 0.6, 4e-5, 1e-9)
         if max(spread(trace.puck, other.puck) for other in others) > MOVED:
             left_out += 1
             continue

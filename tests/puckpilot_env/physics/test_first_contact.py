@@ -9,9 +9,9 @@ import math
 
 import numpy as np
 import pytest
-from numba import njit
 from scipy.integrate import solve_ivp
 
+from puckpilot_env.kernel import array_kernel
 from puckpilot_env.physics.contacts.contact import first_contact
 from sim2real.study.independent_table.physics.gantry import advance_axis
 from sim2real.study.independent_table.physics.law import Law
@@ -25,12 +25,12 @@ CLEAR = 1e-5  # m; nearer than this they may overlap between two steps without t
 END = 0.1  # s
 
 
-@njit(error_model="numpy")
+@array_kernel
 def volts_at(axis, t):
     return axis.volts if t < axis.t1 else -axis.volts if t < axis.t2 else 0.0
 
 
-@njit(error_model="numpy")
+@array_kernel
 def step_axis(law, c5, c6, c7, half_radius, axis, state, t, h):
     """Advance (p, p', p'') from t to t + h by the reference's Runge-Kutta, stopping at each change of voltage."""
     end = t + h
@@ -43,7 +43,7 @@ def step_axis(law, c5, c6, c7, half_radius, axis, state, t, h):
         t = until
 
 
-@njit(error_model="numpy")
+@array_kernel
 def gap_after(law, puck, mallet, sx, sy, t, h, reach):
     """Gap [m] at t + h; puck and both axis states are advanced in place."""
     advance_puck(law, t, puck, h, puck)
@@ -53,14 +53,14 @@ def gap_after(law, puck, mallet, sx, sy, t, h, reach):
     return math.hypot(puck[0] - sx[0], puck[1] - sy[0]) - reach
 
 
-@njit(error_model="numpy")
+@array_kernel
 def begin_axis(axis, state):
     state[0] = axis.rest + axis.slow + axis.fast
     state[1] = -axis.slow_rate * axis.slow - axis.fast_rate * axis.fast
     state[2] = axis.slow_rate**2 * axis.slow + axis.fast_rate**2 * axis.fast
 
 
-@njit(error_model="numpy")
+@array_kernel
 def scan(law, puck, mallet, reach, end):
     """`(time of the first contact or inf, nearest gap before it)` in steps of STEP, the first overlap halved."""
     sx, sy = np.zeros(3), np.zeros(3)
@@ -87,7 +87,7 @@ def scan(law, puck, mallet, reach, end):
     return math.inf, nearest
 
 
-@njit(error_model="numpy")
+@array_kernel
 def ask_both(p, law, puck, mallet, end, answer):
     """`answer` (3,): the product's time of contact in [0, end), the scan's, the scan's nearest gap before that."""
     v, reach = math.hypot(puck.vx, puck.vy), p.puck_radius + p.mallet_radius
@@ -97,7 +97,7 @@ def ask_both(p, law, puck, mallet, end, answer):
     answer[1], answer[2] = scan(law, state, mallet, reach, end)
 
 
-@njit(error_model="numpy")
+@array_kernel
 def ask_on_scenes(units, p, law, area, table, requests, answers):
     """`answers` (n, 2, 3) for both mallets of each scene, NaN where there is no scene."""
     for i in range(units.shape[0]):

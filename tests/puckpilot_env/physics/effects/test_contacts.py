@@ -28,7 +28,8 @@ from tests.puckpilot_env.physics.table_driver import (
     record,
 )
 
-CLOSE = 1e-5  # m
+CLOSE, MATTERS = 1e-5, 0.01  # m
+STEP = 2.5e-5  # s, of the reference
 STARTS = 8
 SECONDS, SAMPLES = 1.0, 201
 WAITING = (1.9, 0.06)  # m, of a mallet that is out of the way
@@ -64,6 +65,11 @@ def play_simulator(values: dict[str, float], start, mallet) -> np.ndarray:
     return samples[:rows]
 
 
+def reference(law: Law, start, mallet) -> Trace:
+    """The reference's motion, at the times of the samples."""
+    return run(law, start, [mallet, WAITING], duration=SECONDS, dt=STEP, sample=SECONDS / (SAMPLES - 1))
+
+
 def comparable(trace: Trace, rows: int, give: float) -> int:
     """Rows before the fourth contact; before the second where mallets recoil, for those of the simulator do not."""
     times = [c.t for c in trace.contacts][1:2] if give > 0.0 else [c.t for c in trace.contacts][3:4]
@@ -80,17 +86,18 @@ def test_through_three_contacts_it_is_the_reference_s(name: str) -> None:
     for _ in range(STARTS):
         start, mallet = draw_start(rng, name)
         samples = play_simulator(values, start, mallet)
-        trace = run(law, start, [mallet, WAITING], duration=SECONDS, sample=SECONDS / (SAMPLES - 1))
+        trace = reference(law, start, mallet)
         if trace.near_miss < 1e-4:
             continue
         rows = comparable(trace, len(samples), law.mallet_give)
         apart = np.hypot(*(samples[:rows, [PX, PY]] - trace.puck[:rows, :2]).T)
         assert apart.max() < CLOSE, (start, trace.contacts)
         contacts += len(trace.contacts)
-        plain = run(Law(), start, [mallet, WAITING], duration=SECONDS, sample=SECONDS / (SAMPLES - 1))
-        changed = max(changed, float(np.nanmax(np.hypot(*(plain.puck[:rows, :2] - trace.puck[:rows, :2]).T))))
+        if changed <= MATTERS:
+            plain = reference(Law(), start, mallet)
+            changed = float(np.nanmax(np.hypot(*(plain.puck[:rows, :2] - trace.puck[:rows, :2]).T)))
     assert contacts >= STARTS // 2
-    assert changed > 0.01, "the effect hardly acted"
+    assert changed > MATTERS, "the effect hardly acted"
 
 
 def test_every_effect_of_a_contact_is_held_against_the_reference() -> None:
