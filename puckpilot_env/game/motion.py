@@ -76,14 +76,11 @@ def _play_late(table, p, rule, until, delay, rewards, log, film):
 
 
 @kernel
-def _begin_piece(table, p, t, least, longest):
-    """Begin a piece of both mallets' motion at the time `t` [s]; how long it is [s]."""
-    h = longest
-    for k in range(2):
-        motor, mallet, own = table.motors[k], table.mallets[k], table.carriages[k]
-        h = drivetrain.begin_piece(p, k, t, motor, mallet, own, mirror.area(k, p), min(least, h), h)
-    for k in range(2):
-        drivetrain.drag(p, table.motors[k], table.mallets[k], table.carriages[k], mirror.area(k, p), h)
+def _begin_piece(table, p, k, t, least, longest):
+    """Begin a piece of the motion of mallet `k` at the time `t` [s]; how long it is [s]."""
+    motor, mallet, own, area = table.motors[k], table.mallets[k], table.carriages[k], mirror.area(k, p)
+    h = drivetrain.begin_piece(p, k, t, motor, mallet, own, area, min(least, longest), longest)
+    drivetrain.drag(p, motor, mallet, own, area, h)
     return h
 
 
@@ -110,27 +107,39 @@ def _shots_until(film, first, now, h):
 
 
 @kernel
+def _expect(table, p):
+    """Let both mallets expect their orders, see `drivetrain.expect`."""
+    one = drivetrain.expect(p, table.mallets[0], table.orders[0])
+    return drivetrain.expect(p, table.mallets[1], table.orders[1]) and one
+
+
+@kernel
 def _play_in_pieces(table, p, rule, until, rewards, log, film):
     """`play_step` of mallets that go piece by piece, see `physics.gantry.drivetrain`."""
     begin = min(compose.delay(p), until)  # of the plans that are on their way
-    over, alone, now, shots, waits, pieces = False, 0.0, 0.0, 0, True, 0
-    if begin == 0.0 and drivetrain.only_loses(p):
+    alone, over, waits, shots, pieces = 0.0, False, True, 0, 0
+    if begin == 0.0 and _expect(table, p):
         alone = drift(table.puck, p, table.mallets, table.orders, table.time, until, until, film)
+    now, left_0, left_1 = 0.0, 0.0, 0.0
     while until - now > ROUNDING:
         if waits and begin - now <= ROUNDING:
+            waits, left_0, left_1 = False, 0.0, 0.0
             for k in range(2):
                 drivetrain.take(table.motors[k], table.orders[k])
-            waits = False
         least = drivetrain.SHORTEST if pieces < drivetrain.MANY_PIECES else until / drivetrain.MANY_PIECES
-        h = _begin_piece(table, p, table.time + now, least, (begin if waits else until) - now)
+        longest = (begin if waits else until) - now
+        if left_0 <= ROUNDING:
+            left_0 = _begin_piece(table, p, 0, table.time + now, least, longest)
+        if left_1 <= ROUNDING:
+            left_1 = _begin_piece(table, p, 1, table.time + now, least, longest)
+        h = min(left_0, left_1)
         last = _shots_until(film, shots, now, h)
         if not over and alone == 0.0:
             over = _play_piece(table, p, rule, now, h, rewards, log, film[shots:last])
         sensing.shoot_mallets(table.mallets, film[shots:last])
         for k in range(2):
-            drivetrain.end_piece(table.motors[k], table.mallets[k], table.carriages[k], h)
-            settle(table.mallets[k], h)
-        now, shots, pieces = now + h, last, pieces + 1
+            drivetrain.go_on(table.motors[k], table.mallets[k], table.carriages[k], h)
+        left_0, left_1, now, shots, pieces = left_0 - h, left_1 - h, now + h, last, pieces + 1
     return over
 
 

@@ -20,7 +20,7 @@ SHARED = ("length", "width", "goal_width", "puck_radius", "mallet_radius", "fram
 GANTRY = ("pulley_radius", "max_voltage", "a1", "a2", "a3", "b1", "b2", "b3", "gantry_spread")
 OWN = tuple(row.name for row in TABLE if row not in EFFECT_ROWS and row.name not in (*SHARED, *GANTRY))
 SIMULATED = tuple(name for name, effect in EFFECTS.items() if not effect.not_simulated)
-WHOLE = ("kind", "share")  # short names of rows that choose one of some laws
+WHOLE = ("kind", "share", "axes")  # short names of rows that choose one of some laws
 TRIES = 50  # of numbers that make a table together, before the defaults are taken
 
 

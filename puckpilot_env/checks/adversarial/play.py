@@ -24,6 +24,7 @@ REPLANT = 16  # steps after which pucks are put in hard places again
 MOST_MEDIANS = 200.0  # that the slowest step may take; 141 in ten million steps
 SUSPECT = 20.0  # times the batch's median: such a step is timed again
 REPEATS = 5
+PIECES = 50.0  # steps that one of mallets which go piece by piece may take as long as
 BINS, BINS_OF_DOUBLE = 800, 20  # of a histogram of times: bin k begins at 2^(k / BINS_OF_DOUBLE) ns
 
 
@@ -154,10 +155,12 @@ def play_batch(name: str, seed: int, note: Callable[[int, int], None] = no_note)
             tables.states["puck"]["touched"] = 0
         before, kept = invariants.Before(tables), stepper.kept()
         actions = adversaries.act(tables, styles, step, rng)
-        taken = stepper.step(actions, out, lambda i, step=step: note(step, i)) / short
+        taken = stepper.step(actions, out, lambda i, step=step: note(step, i))
+        worth = short * np.where(tables.states["in_pieces"] == 1, PIECES, 1.0)
+        taken = taken / worth
         usual = SUSPECT * float(np.median(taken[~out])) if not out.all() else 0.0
         for i in np.flatnonzero(taken > max(usual, 1e9 * found.slowest.seconds)).tolist():
-            taken[i] = min(taken[i], stepper.again(kept, actions, i) / short)
+            taken[i] = min(taken[i], stepper.again(kept, actions, i) / worth[i])
         bins = np.clip(BINS_OF_DOUBLE * np.log2(np.maximum(taken[~out], 1.0)), 0, BINS - 1).astype(np.int64)
         np.add.at(found.times, bins, 1)
         found.steps += int((~out).sum())

@@ -2,9 +2,9 @@
 
 None of these leaves a plan in closed form. Time is cut into pieces instead, in which the volts that friction leaves are
 constant: at the orders' switches, where a part that rubs comes to a stop, where play is taken up, and as often as a
-belt's ringing asks for. In a piece both mallets follow plans again, so that the puck meets them as it always does.
+belt's ringing asks for. In a piece a mallet follows a plan again, so that the puck meets it as it always does.
 
-Between pieces the table keeps, of each mallet, its `motor`: a MALLET whose modes are those on a rigid belt, and whose
+Each mallet has pieces of its own. Between them the table keeps, of each mallet, its `motor`: a MALLET whose modes are those on a rigid belt, and whose
 plan is what is left of the orders that it follows; and its `carriage`, see there, of each axis.
 """
 
@@ -16,11 +16,11 @@ from puckpilot_env.kernel import kernel
 from puckpilot_env.physics import compose
 from puckpilot_env.physics.gantry import carriage, dry_friction
 from puckpilot_env.physics.gantry.drive import drive_axis
-from puckpilot_env.physics.gantry.mallet import axis_at, axis_place, idle, motion_now
+from puckpilot_env.physics.gantry.mallet import axis_at, idle, motion_now, settle
 from puckpilot_env.physics.gantry.plan import SMALLEST_VOLTAGE
 
 LONGEST, SHORTEST = 0.02, 1e-6  # s, of a piece
-MANY_PIECES = 1000  # of a step; further ones are at least this part of it
+MANY_PIECES = 150  # of a step; further ones are at least this part of it
 RAIL = 1e-5  # m; how far before its area's edge a mallet on a belt stops, which is off its path in between by less
 
 
@@ -31,8 +31,13 @@ def is_rigid(p):
 
 
 @kernel
-def only_loses(p):
-    """Whether a mallet is where its motors are, which get no more than they are ordered: so it gets no farther."""
+def expect(p, mallet, orders):
+    """Give a mallet between two pieces, as the volts of its axes, the most that any will get for `orders` (2, 3).
+
+    False if they may get any. A motor that rubs loses along one axis what it adds along the other.
+    """
+    rubs = compose.dry_friction(p)
+    mallet.x.volts, mallet.y.volts = abs(orders[0, 0]) + rubs[0] + rubs[1], abs(orders[1, 0]) + rubs[0] + rubs[1]
     return is_rigid(p) and compose.holds(p) == math.inf
 
 
@@ -102,8 +107,8 @@ def begin_piece(p, player, t, motor, mallet, own, area, least, longest):
         volts_y = min(max(volts_y + more_y, -limit), limit)
     rubs = compose.dry_friction(p)
     if max(max(rubs[0], rubs[1]), max(rubs[2], rubs[3])) > 0.0:
-        volts_x, volts_y, held = dry_friction.left_volts(rubs, motor, volts_x, volts_y)
-        h = dry_friction.first_stop(rubs, motor, volts_x, volts_y, min(h, held))
+        volts_x, volts_y, h = dry_friction.left_volts(rubs, motor, volts_x, volts_y, h)
+        h = dry_friction.first_stop(rubs, motor, volts_x, volts_y, h)
     spring, gap = compose.spring(p), compose.play(p)
     if spring[0] > 0.0:
         h = min(h, carriage.RADIANS / spring[0])
@@ -120,7 +125,7 @@ def begin_piece(p, player, t, motor, mallet, own, area, least, longest):
 
 @kernel
 def drag(p, motor, mallet, own, area, h):
-    """Settle on pieces of `h` [s]: the motors come to their end, and the mallet, on its belt, follows in the piece."""
+    """Settle on a piece of `h` [s]: the motors come to its end, and the mallet, on its belt, follows in the piece."""
     rigid = is_rigid(p)
     for a in range(2):
         axis, driven = (mallet.x, motor.x) if a == 0 else (mallet.y, motor.y)
@@ -135,12 +140,16 @@ def drag(p, motor, mallet, own, area, h):
 
 
 @kernel
-def end_piece(motor, mallet, own, h):
-    """Let the motors stall, and with them the belt, of a mallet that was stopped in a piece of `h` [s]."""
+def go_on(motor, mallet, own, h):
+    """Let a mallet be where it is `h` [s] on in its piece; where an axis was stopped before, so are its motor and belt."""
+    settle(mallet, h)
     for a in range(2):
         axis, driven = (mallet.x, motor.x) if a == 0 else (mallet.y, motor.y)
         if axis.halt <= h:
-            place = axis_place(axis, h)
-            driven.rest, driven.slow, driven.fast = place, 0.0, 0.0
+            idle(axis)
+            driven.rest, driven.slow, driven.fast = axis.rest, 0.0, 0.0
             idle(driven)
-            own[a, 0], own[a, 1], own[a, 2] = place, 0.0, place
+            own[a, 0], own[a, 1], own[a, 2] = axis.rest, 0.0, axis.rest
+        axis.t1 -= h
+        axis.t2 -= h
+        axis.halt -= h

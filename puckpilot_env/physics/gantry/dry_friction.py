@@ -2,7 +2,7 @@
 
 Friction has four parts, of the left and the right motor and of the x and the y axis, which move with the speeds
 `x' - y'`, `-x' - y'`, `x'` and `y'`. Each takes volts from the axes in the same proportions. Of a part that moves they
-are known. Those of parts that stand are found together, such that after HELD seconds each still stands, or moves
+are known. Those of parts that stand are found together, such that HELD seconds later each still stands, or moves
 against its whole friction (time stepping as in Moreau, 1988; solved by projected Gauss-Seidel).
 """
 
@@ -44,8 +44,8 @@ def _held(lost, speed, gain, size):
 
 
 @kernel
-def left_volts(sizes, motor, volts_x, volts_y):
-    """`(x, y, longest)`: volts that are left of a mallet's, and how long [s] they stay as they are if nothing stops.
+def left_volts(sizes, motor, volts_x, volts_y, longest):
+    """`(x, y, until)`: volts that are left of a mallet's, and till when [s] if nothing stops before, at most `longest`.
 
     sizes: the four frictions [V]; motor: a MALLET, whose modes are those of a rest where an axis is at rest.
     """
@@ -54,13 +54,14 @@ def left_volts(sizes, motor, volts_x, volts_y):
     if abs(vx) > STANDING and abs(vy) > STANDING and min(abs(vx - vy), abs(vx + vy)) > STANDING:
         left, right = math.copysign(sizes[0], vx - vy), math.copysign(sizes[1], -vx - vy)
         along_x, along_y = math.copysign(sizes[2], vx), math.copysign(sizes[3], vy)
-        return volts_x - left + right - along_x, volts_y + left + right - along_y, math.inf
+        return volts_x - left + right - along_x, volts_y + left + right - along_y, longest
     left, right = _of_moving(vx - vy, sizes[0]), _of_moving(-vx - vy, sizes[1])
     along_x, along_y = _of_moving(vx, sizes[2]), _of_moving(vy, sizes[3])
     left_stands, right_stands = abs(vx - vy) <= STANDING, abs(vx + vy) <= STANDING
     x_stands, y_stands = abs(vx) <= STANDING, abs(vy) <= STANDING
-    gain_x, gain_y = velocity_after(x, 1.0, HELD), velocity_after(y, 1.0, HELD)
-    none_x, none_y = velocity_after(x, 0.0, HELD), velocity_after(y, 0.0, HELD)
+    held = min(HELD, longest)
+    gain_x, gain_y = velocity_after(x, 1.0, held), velocity_after(y, 1.0, held)
+    none_x, none_y = velocity_after(x, 0.0, held), velocity_after(y, 0.0, held)
     gain_x, gain_y = gain_x - none_x, gain_y - none_y
     u = none_x + gain_x * (volts_x - left + right - along_x)
     w = none_y + gain_y * (volts_y + left + right - along_y)
@@ -86,7 +87,7 @@ def left_volts(sizes, motor, volts_x, volts_y):
     starts = starts or (x_stands and not rest_x) or (y_stands and not rest_y)
     left_x = 0.0 if rest_x else volts_x - left + right - along_x
     left_y = 0.0 if rest_y else volts_y + left + right - along_y
-    return left_x, left_y, HELD if starts else math.inf
+    return left_x, left_y, held if starts else longest
 
 
 @kernel
@@ -101,38 +102,39 @@ def _comes_to_rest(axis, velocity, later):
 @kernel
 def first_stop(sizes, motor, volts_x, volts_y, end):
     """When [s] the first part that rubs and moves comes to a stop under constant volts, at most `end`."""
-    end = _stop(motor, volts_x, volts_y, 1.0, -1.0, end) if sizes[0] > 0.0 else end
-    end = _stop(motor, volts_x, volts_y, 1.0, 1.0, end) if sizes[1] > 0.0 else end
-    end = _stop(motor, volts_x, volts_y, 1.0, 0.0, end) if sizes[2] > 0.0 else end
-    return _stop(motor, volts_x, volts_y, 0.0, 1.0, end) if sizes[3] > 0.0 else end
-
-
-@kernel
-def _speed(motor, volts_x, volts_y, of_x, of_y, t):
-    speed = 0.0
-    if of_x != 0.0:
-        speed += of_x * velocity_after(motor.x, volts_x, t)
-    if of_y != 0.0:
-        speed += of_y * velocity_after(motor.y, volts_y, t)
-    return speed
-
-
-@kernel
-def _stop(motor, volts_x, volts_y, of_x, of_y, end):
-    """`first_stop` of the part that moves with `of_x x' + of_y y'`."""
-    now = _speed(motor, volts_x, volts_y, of_x, of_y, 0.0)
-    if abs(now) <= STANDING:
-        return end
+    vx, vy = velocity_after(motor.x, volts_x, 0.0), velocity_after(motor.y, volts_y, 0.0)
     before = 0.0
     for k in range(3):
         after = end if k == 2 else 0.5 * end if k == 1 else min(TRANSIENT, 0.25 * end)
-        if _speed(motor, volts_x, volts_y, of_x, of_y, after) * now <= 0.0:
-            for _ in range(HALVINGS):
-                middle = 0.5 * (before + after)
-                if _speed(motor, volts_x, volts_y, of_x, of_y, middle) * now > 0.0:
-                    before = middle
-                else:
-                    after = middle
-            return before
+        ux, uy = velocity_after(motor.x, volts_x, after), velocity_after(motor.y, volts_y, after)
+        found = after
+        if sizes[0] > 0.0 and _stops(vx - vy, ux - uy):
+            found = _stop(motor, volts_x, volts_y, 1.0, -1.0, vx - vy, before, found)
+        if sizes[1] > 0.0 and _stops(vx + vy, ux + uy):
+            found = _stop(motor, volts_x, volts_y, 1.0, 1.0, vx + vy, before, found)
+        if sizes[2] > 0.0 and _stops(vx, ux):
+            found = _stop(motor, volts_x, volts_y, 1.0, 0.0, vx, before, found)
+        if sizes[3] > 0.0 and _stops(vy, uy):
+            found = _stop(motor, volts_x, volts_y, 0.0, 1.0, vy, before, found)
+        if found < after:
+            return found
         before = after
     return end
+
+
+@kernel
+def _stops(speed, later):
+    return abs(speed) > STANDING and speed * later <= 0.0
+
+
+@kernel
+def _stop(motor, volts_x, volts_y, of_x, of_y, speed, before, after):
+    """The last time [s] between `before` and `after` at which `of_x x' + of_y y'` has not passed 0, as `speed` has."""
+    for _ in range(HALVINGS):
+        middle = 0.5 * (before + after)
+        now = of_x * velocity_after(motor.x, volts_x, middle) + of_y * velocity_after(motor.y, volts_y, middle)
+        if now * speed > 0.0:
+            before = middle
+        else:
+            after = middle
+    return before
