@@ -78,13 +78,13 @@ def _play_late(table, p, rule, until, delay, rewards, log, film):
 @kernel
 def _begin_piece(table, p, k, t, least, longest):
     """Begin a piece of the motion of mallet `k` at the time `t` [s]; how long it is [s]."""
-    motor, mallet, own, area = table.motors[k], table.mallets[k], table.carriages[k], mirror.area(k, p)
-    h = drivetrain.begin_piece(p, k, t, motor, mallet, own, area, min(least, longest), longest)
-    drivetrain.drag(p, motor, mallet, own, area, h)
+    motor, mallet, carriages, area = table.motors[k], table.mallets[k], table.carriages[k], mirror.area(k, p)
+    h = drivetrain.begin_piece(p, k, t, motor, mallet, carriages, area, min(least, longest), longest)
+    drivetrain.settle_piece(p, motor, mallet, carriages, area, h)
     return h
 
 
-@kernel
+@inlined_kernel
 def _play_piece(table, p, rule, now, h, rewards, log, film):
     """`play` a piece of `h` [s] that begins `now` [s] after the decision; `film` has its shots, in its own time."""
     table.time += now
@@ -95,51 +95,64 @@ def _play_piece(table, p, rule, now, h, rewards, log, film):
     return over
 
 
-@kernel
-def _shots_until(film, first, now, h):
-    """The number of shots up to the end of a piece that begins `now` [s] after the decision; from `first` on they are
-    given its own time."""
+@inlined_kernel
+def _shots_until(film, first, now, h, until):
+    """The number of shots up to the end of a piece that begins `now` [s] after the decision, all if that is `until`;
+    from `first` on they are given its own time."""
+    end = until if until - (now + h) <= ROUNDING else now + h
     last = first
-    while last < film.shape[0] and film[last, 0] <= now + h:
+    while last < film.shape[0] and film[last, 0] <= end:
         film[last, 0] = min(max(film[last, 0] - now, ROUNDING), h)
         last += 1
     return last
 
 
 @kernel
-def _expect(table, p):
-    """Let both mallets expect their orders, see `drivetrain.expect`."""
-    one = drivetrain.expect(p, table.mallets[0], table.orders[0])
-    return drivetrain.expect(p, table.mallets[1], table.orders[1]) and one
+def _rest_in(film, puck):
+    """The puck's place in shots of when the point is over."""
+    for i in range(film.shape[0]):
+        film[i, 1], film[i, 2] = puck.x, puck.y
 
 
 @kernel
+def _take_orders(table):
+    for k in range(2):
+        drivetrain.take(table.motors[k], table.orders[k])
+
+
+@inlined_kernel
 def _play_in_pieces(table, p, rule, until, rewards, log, film):
     """`play_step` of mallets that go piece by piece, see `physics.gantry.drivetrain`."""
     begin = min(compose.delay(p), until)  # of the plans that are on their way
     alone, over, waits, shots, pieces = 0.0, False, True, 0, 0
-    if begin == 0.0 and _expect(table, p):
+    if begin == 0.0 and drivetrain.is_driven_by_orders(p):
+        for k in range(2):
+            drivetrain.expect(p, table.mallets[k], table.orders[k])
         alone = drift(table.puck, p, table.mallets, table.orders, table.time, until, until, film)
-    now, left_0, left_1 = 0.0, 0.0, 0.0
+    now, rest_0, rest_1 = 0.0, 0.0, 0.0  # rest of each mallet's piece
+    many = drivetrain.FEW_PIECES + drivetrain.PIECES_A_SECOND * until
     while until - now > ROUNDING:
         if waits and begin - now <= ROUNDING:
-            waits, left_0, left_1 = False, 0.0, 0.0
-            for k in range(2):
-                drivetrain.take(table.motors[k], table.orders[k])
-        least = drivetrain.SHORTEST if pieces < drivetrain.MANY_PIECES else until / drivetrain.MANY_PIECES
+            waits, rest_0, rest_1 = False, 0.0, 0.0
+            _take_orders(table)
+        least = drivetrain.SHORTEST if pieces < many else drivetrain.LEAST
         longest = (begin if waits else until) - now
-        if left_0 <= ROUNDING:
-            left_0 = _begin_piece(table, p, 0, table.time + now, least, longest)
-        if left_1 <= ROUNDING:
-            left_1 = _begin_piece(table, p, 1, table.time + now, least, longest)
-        h = min(left_0, left_1)
-        last = _shots_until(film, shots, now, h)
-        if not over and alone == 0.0:
+        for k in range(2):
+            if (rest_0 if k == 0 else rest_1) <= ROUNDING:
+                piece = _begin_piece(table, p, k, table.time + now, least, longest)
+                rest_0, rest_1 = (piece, rest_1) if k == 0 else (rest_0, piece)
+        h = min(rest_0, rest_1)
+        last = _shots_until(film, shots, now, h, until)
+        if over:
+            _rest_in(film[shots:last], table.puck)
+        elif alone == 0.0:
             over = _play_piece(table, p, rule, now, h, rewards, log, film[shots:last])
         sensing.shoot_mallets(table.mallets, film[shots:last])
         for k in range(2):
-            drivetrain.go_on(table.motors[k], table.mallets[k], table.carriages[k], h)
-        left_0, left_1, now, shots, pieces = left_0 - h, left_1 - h, now + h, last, pieces + 1
+            drivetrain.go_on(table.motors[k], table.mallets[k], table.carriages[k], mirror.area(k, p), h)
+        rest_0, rest_1, now, shots, pieces = rest_0 - h, rest_1 - h, now + h, last, pieces + 1
+    if waits:  # they came with the end of the step
+        _take_orders(table)
     return over
 
 

@@ -17,8 +17,8 @@ from puckpilot_env.physics.gantry.plan import plan_mallet, plan_orders
 def plan_both(table, p, nominal, actions, rewards):
     """Both players' plans, and what J.3 charges for them. actions: float32 (2, 4) in each player's own frame.
 
-    Where orders are late, the mallets go on with those before, and the table keeps what is on its way. So it does where
-    mallets go in pieces; these plans are made from where the motors are.
+    Where orders are late, the mallets go on with those before, and the table keeps what is on its way. The table also
+    keeps the orders of mallets that go in pieces, which are planned from where their motors are.
     """
     table.in_pieces = compose.in_pieces(p)
     late = compose.delay(p) > 0.0

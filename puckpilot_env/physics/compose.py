@@ -26,7 +26,7 @@ An effect's file has the hooks of its regime, every one a kernel; those that it 
 | gantry | `spring(p)` | (angular frequency [rad/s], 0 if rigid; damping ratio) of the belt; of one effect alone |
 | gantry | `holds(p)` | how long [s] the next are well told by those half-way, infinite if there are none |
 | gantry | `extra_volts(p, t, x, y, vx, vy, volts_x, volts_y)` | (x, y), which are added to the motors' |
-| gantry | `play(p)` | gap [m] between what drags the mallet and the mallet; of one effect alone |
+| gantry | `gap(p)` | gap [m] between what drags the mallet and the mallet; of one effect alone |
 
 `t` [s] is the time of the episode, (x, y) [m] a place, spin [rad/s] counter-clockwise, `closing` [m/s] > 0 the normal
 speed before; the tangent is the normal turned counter-clockwise. Impulses are per unit mass of the puck.
@@ -249,6 +249,6 @@ delay = reduce(_delay, _hooks("delay"))
 in_pieces = reduce(_either, _hooks("in_pieces"))
 (dry_friction,) = _hooks("dry_friction")
 (spring,) = _hooks("spring")
-(play,) = _hooks("play")
+(gap,) = _hooks("gap")
 (holds,) = _hooks("holds")
 (extra_volts,) = _hooks("extra_volts")

@@ -45,7 +45,7 @@ HOOKS = {
     "corner": ("restitution",),
     "mallet": ("mallet_restitution", "mallet_impulse", "mallet_tangent", "mallet_shares"),
     "sensing": ("camera_map",),
-    "gantry": ("loses", "delivered", "delay", "in_pieces", "dry_friction", "spring", "play", "holds", "extra_volts"),
+    "gantry": ("loses", "delivered", "delay", "in_pieces", "dry_friction", "spring", "gap", "holds", "extra_volts"),
 }
 
 

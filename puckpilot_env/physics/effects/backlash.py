@@ -30,6 +30,6 @@ def in_pieces(p):
 
 
 @kernel
-def play(p):
+def gap(p):
     """The gap [m]."""
     return p.backlash_gap

@@ -13,7 +13,7 @@ _SOURCE = "brushes, bearings and belts: half a volt to a volt on a real gantry"
 
 
 def _lost(name: str, what: str) -> Parameter:
-    return Parameter(name, "V", 0.0, -1.0, 6.0, f"volts that {what} loses against its motion", _SOURCE)
+    return Parameter(name, "V", 0.0, -1.0, 6.0, f"volts that {what} loses against its motion; below 0 none", _SOURCE)
 
 
 EFFECT = Effect(

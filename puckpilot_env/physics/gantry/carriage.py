@@ -1,8 +1,9 @@
 """The mallet of one axis behind a belt that gives, or play: where its motor's path takes it, for a piece of time.
 
-The belt's end is a closed form of the motor's; of play only the events in it have to be found. A mallet on such a path
-is an axis (see `mallet`) with other modes than the motor's: those with the same place and velocity at both ends of the
-piece. A piece is short beside the belt's period, so that in between they are nanometres to a tenth of a micron apart.
+The belt's end is a closed form of the motor's path; of play and of the rail only the events have to be found. A mallet
+on such a path is an axis (see `mallet`) with rates and modes of its own: those with which it has the same place and
+velocity at both ends of the piece. A piece is short beside the belt's period, so that in between both are within
+some tenths of a micron of each other for each millimetre that the belt gives.
 
 A carriage is (place and velocity of the belt's end, place of the mallet); a rigid belt's end is the motor's path.
 """
@@ -11,14 +12,15 @@ from __future__ import annotations
 
 import math
 
-from puckpilot_env.kernel import kernel
+from puckpilot_env.kernel import inlined_kernel, kernel
 from puckpilot_env.physics.effects import backlash, belt_compliance
 from puckpilot_env.physics.gantry.mallet import axis_at, axis_velocity
 
 RADIANS = 0.5  # of the belt's ringing, in one piece
-SHORT = 2e-5  # s; in a shorter piece the mallet's velocity is constant
+SLOW, FAST = 0.5, 2.0  # rates of a mallet's modes, times the length of a piece
+LOSS_A, LOSS_B = -math.expm1(-SLOW), -math.expm1(-FAST)
 LOOSE = 1e-7  # m; from where play is taken up
-STILL = 1e-6  # m/s; a belt's end that turns with less rests
+STILL = 1e-4  # m/s; a belt's end that turns with less rests
 HALVINGS = 30  # of a span in which something happens
 
 
@@ -44,21 +46,25 @@ def end_of_belt(axis, carriage, spring, t):
 
 @kernel
 def _drags(place, velocity, mallet, gap):
-    """Whether the belt's end is at the end of the gap and moves on."""
+    """Whether the belt's end is at the end of the gap and moves on; always if there is no gap."""
     ahead = place - mallet
-    return abs(ahead) >= 0.5 * gap - LOOSE and ahead * velocity >= 0.0
+    return gap == 0.0 or (abs(ahead) >= 0.5 * gap - LOOSE and ahead * velocity >= 0.0)
 
 
 @kernel
-def first_event(axis, carriage, spring, gap, end):
-    """When [s] the belt's end turns or has taken up the play, at most `end`."""
+def first_event(axis, carriage, spring, gap, low, high, end):
+    """When [s] the belt's end turns or has taken up the play, or the mallet leaves [low, high] [m]; at most `end`."""
     place, velocity = end_of_belt(axis, carriage, spring, 0.0)
-    _, later = end_of_belt(axis, carriage, spring, end)
-    if velocity * later < 0.0 and max(abs(velocity), abs(later)) > STILL:
+    last, later = end_of_belt(axis, carriage, spring, end)
+    if gap > 0.0 and velocity * later < 0.0 and max(abs(velocity), abs(later)) > STILL:
         end = _last_before(axis, carriage, spring, velocity, 0.0, math.inf, end)
-    last, _ = end_of_belt(axis, carriage, spring, end)
+        last, _ = end_of_belt(axis, carriage, spring, end)
     if not _drags(place, velocity, carriage[2], gap) and abs(last - carriage[2]) > 0.5 * gap + LOOSE:
         end = _last_before(axis, carriage, spring, 0.0, carriage[2], 0.5 * gap, end)
+        last, _ = end_of_belt(axis, carriage, spring, end)
+    middle, room = 0.5 * (low + high), 0.5 * (high - low + gap)
+    if abs(last - middle) > room:
+        end = _last_before(axis, carriage, spring, 0.0, middle, room, end)
     return end
 
 
@@ -76,17 +82,18 @@ def _last_before(axis, carriage, spring, heading, middle, room, end):
     return begin
 
 
-@kernel
-def drag(axis, carriage, spring, gap, low, high, h):
+@inlined_kernel
+def follow(axis, carriage, spring, gap, low, high, h):
     """Move a carriage to the end of a piece of `h` [s] whose motor follows `axis`, and make that axis the mallet's.
 
     The mallet stays in [low, high] [m]: the rail stops it dead.
     """
     place, velocity = end_of_belt(axis, carriage, spring, 0.0)
-    x0, v0 = carriage[2], velocity if _drags(place, velocity, carriage[2], gap) else 0.0
+    x0, drags = carriage[2], _drags(place, velocity, carriage[2], gap)
+    v0 = velocity if drags else 0.0
     place, velocity = end_of_belt(axis, carriage, spring, h)
     x1 = backlash.carried(gap, x0, place)
-    v1 = velocity if _drags(place, velocity, x1, gap) else 0.0
+    v1 = velocity if drags and _drags(place, velocity, x1, gap) else 0.0
     if not low <= x1 <= high:
         x1, v1, velocity = min(max(x1, low), high), 0.0, 0.0
         place = min(max(place, x1 - 0.5 * gap), x1 + 0.5 * gap)
@@ -94,23 +101,22 @@ def drag(axis, carriage, spring, gap, low, high, h):
     _pass_through(axis, x0, v0, x1, v1, h)
 
 
-@kernel
+@inlined_kernel
 def _pass_through(axis, x0, v0, x1, v1, h):
-    """Give an axis the modes and volts with which it has these places [m] and velocities [m/s] now and `h` [s] on.
+    """Give an axis rates, modes and volts with which it has these places [m] and velocities [m/s] now and `h` [s] on.
 
-    Its path is `start + speed t + slow exp(-slow_rate t) + fast exp(-fast_rate t)`: four numbers for four.
+    Its path is `start + speed t + slow exp(-slow_rate t) + fast exp(-fast_rate t)`: four numbers for four, with rates
+    that bend it smoothly from end to end.
     """
-    a, b = axis.slow_rate, axis.fast_rate
-    slow, fast, speed = 0.0, 0.0, (x1 - x0) / h
-    if h > SHORT:
-        loss_a, loss_b = -math.expm1(-a * h), -math.expm1(-b * h)
-        lag_a, lag_b = a * h - loss_a, b * h - loss_b  # how far a mode is behind one that keeps its first rate
-        more, further = v1 - v0, x1 - x0 - v0 * h
-        scale = a * loss_a * lag_b - b * loss_b * lag_a
-        slow = (more * lag_b - b * loss_b * further) / scale
-        fast = (a * loss_a * further - more * lag_a) / scale
-        speed = v0 + a * slow + b * fast
+    axis.slow_rate, axis.fast_rate = SLOW / h, FAST / h
+    lag_a, lag_b = SLOW - LOSS_A, FAST - LOSS_B  # how far a mode is behind one that keeps its first rate
+    more, further = (v1 - v0) * h, x1 - x0 - v0 * h
+    scale = SLOW * LOSS_A * lag_b - FAST * LOSS_B * lag_a
+    slow = (more * lag_b - FAST * LOSS_B * further) / scale
+    fast = (SLOW * LOSS_A * further - more * lag_a) / scale
+    speed = v0 + axis.slow_rate * slow + axis.fast_rate * fast
     volts = speed / axis.rest_gain
+    axis.slow_gain, axis.fast_gain = axis.rest_gain / axis.slow_rate, 0.0
     axis.volts, axis.t1, axis.t2, axis.halt = volts, 2.0 * h, 2.0 * h, math.inf
-    axis.slow, axis.fast = slow - axis.slow_gain * volts, fast + axis.fast_gain * volts
+    axis.slow, axis.fast = slow - axis.slow_gain * volts, fast
     axis.rest = x0 - axis.slow - axis.fast

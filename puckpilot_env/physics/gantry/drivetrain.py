@@ -4,15 +4,16 @@ None of these leaves a plan in closed form. Time is cut into pieces instead, in 
 constant: at the orders' switches, where a part that rubs comes to a stop, where play is taken up, and as often as a
 belt's ringing asks for. In a piece a mallet follows a plan again, so that the puck meets it as it always does.
 
-Each mallet has pieces of its own. Between them the table keeps, of each mallet, its `motor`: a MALLET whose modes are those on a rigid belt, and whose
-plan is what is left of the orders that it follows; and its `carriage`, see there, of each axis.
+Each mallet has pieces of its own. Between them the table keeps, of each mallet, its `motor`: a MALLET whose modes are
+those on a rigid belt, and whose plan is what is left of the orders that it follows; and its `carriage`, see there, of
+each axis.
 """
 
 from __future__ import annotations
 
 import math
 
-from puckpilot_env.kernel import kernel
+from puckpilot_env.kernel import inlined_kernel, kernel
 from puckpilot_env.physics import compose
 from puckpilot_env.physics.gantry import carriage, dry_friction
 from puckpilot_env.physics.gantry.drive import drive_axis
@@ -20,35 +21,39 @@ from puckpilot_env.physics.gantry.mallet import axis_at, idle, motion_now, settl
 from puckpilot_env.physics.gantry.plan import SMALLEST_VOLTAGE
 
 LONGEST, SHORTEST = 0.02, 1e-6  # s, of a piece
-MANY_PIECES = 150  # of a step; further ones are at least this part of it
+FEW_PIECES, PIECES_A_SECOND = 150, 2500.0  # of a step; further ones are at least LEAST
+LEAST = 1e-3  # s
 RAIL = 1e-5  # m; how far before its area's edge a mallet on a belt stops, which is off its path in between by less
 
 
 @kernel
 def is_rigid(p):
     """Whether a mallet is where its motors are."""
-    return compose.spring(p)[0] == 0.0 and compose.play(p) == 0.0
+    return compose.spring(p)[0] == 0.0 and compose.gap(p) == 0.0
 
 
 @kernel
-def expect(p, mallet, orders):
-    """Give a mallet between two pieces, as the volts of its axes, the most that any will get for `orders` (2, 3).
-
-    False if they may get any. A motor that rubs loses along one axis what it adds along the other.
-    """
-    rubs = compose.dry_friction(p)
-    mallet.x.volts, mallet.y.volts = abs(orders[0, 0]) + rubs[0] + rubs[1], abs(orders[1, 0]) + rubs[0] + rubs[1]
+def is_driven_by_orders(p):
+    """Whether a mallet is where its motors are, and these get nothing but orders, less friction."""
     return is_rigid(p) and compose.holds(p) == math.inf
 
 
 @kernel
-def stand(motor, own, x, y):
-    """Let the motors of a mallet with the carriages `own` stand at (x, y) [m], without orders, and belts with them."""
+def expect(p, mallet, orders):
+    """Give a mallet between two pieces, as the volts of its axes, the most that these can get for `orders` (2, 3): a
+    motor that rubs adds along one axis what it loses along the other."""
+    rubs = compose.dry_friction(p)
+    mallet.x.volts, mallet.y.volts = abs(orders[0, 0]) + rubs[0] + rubs[1], abs(orders[1, 0]) + rubs[0] + rubs[1]
+
+
+@kernel
+def stand(motor, carriages, x, y):
+    """Let the motors of a mallet stand at (x, y) [m], without orders, and its `carriages` (2, 3) with them."""
     for a in range(2):
         axis, place = (motor.x, x) if a == 0 else (motor.y, y)
         axis.rest, axis.slow, axis.fast = place, 0.0, 0.0
         idle(axis)
-        own[a, 0], own[a, 1], own[a, 2] = place, 0.0, place
+        carriages[a, 0], carriages[a, 1], carriages[a, 2] = place, 0.0, place
 
 
 @kernel
@@ -79,7 +84,7 @@ def _ordered(axis):
     return 0.0, math.inf
 
 
-@kernel
+@inlined_kernel
 def _extra_volts(p, player, t, ahead, motor, volts_x, volts_y):
     """The extra volts of both axes where and as fast as the motors will be, nearly, `ahead` [s]: at the time `t`."""
     x, y, vx, vy = motion_now(motor)
@@ -91,11 +96,11 @@ def _extra_volts(p, player, t, ahead, motor, volts_x, volts_y):
     return -more_x, -more_y
 
 
-@kernel
-def begin_piece(p, player, t, motor, mallet, own, area, least, longest):
+@inlined_kernel
+def begin_piece(p, player, t, motor, mallet, carriages, area, least, longest):
     """Let a player's mallet do as its motor does without belt and play, from the time `t` [s] on; how long [s] it may.
 
-    own: the mallet's carriages (2, 3); area: in which it must stay; least <= longest: bounds of the piece [s].
+    carriages: the mallet's (2, 3); area: in which it must stay; least <= longest: bounds of the piece [s].
     """
     limit = 2.0 * (p.max_voltage - SMALLEST_VOLTAGE)
     (volts_x, until_x), (volts_y, until_y) = _ordered(motor.x), _ordered(motor.y)
@@ -107,24 +112,34 @@ def begin_piece(p, player, t, motor, mallet, own, area, least, longest):
         volts_y = min(max(volts_y + more_y, -limit), limit)
     rubs = compose.dry_friction(p)
     if max(max(rubs[0], rubs[1]), max(rubs[2], rubs[3])) > 0.0:
-        volts_x, volts_y, h = dry_friction.left_volts(rubs, motor, volts_x, volts_y, h)
+        volts_x, volts_y, h = dry_friction.remaining_volts(rubs, motor, volts_x, volts_y, h)
         h = dry_friction.first_stop(rubs, motor, volts_x, volts_y, h)
-    spring, gap = compose.spring(p), compose.play(p)
+    spring, gap, rigid = compose.spring(p), compose.gap(p), is_rigid(p)
     if spring[0] > 0.0:
         h = min(h, carriage.RADIANS / spring[0])
     h = max(h, least)
     for a in range(2):
         axis, driven = (mallet.x, motor.x) if a == 0 else (mallet.y, motor.y)
-        axis.rest, axis.slow, axis.fast = driven.rest, driven.slow, driven.fast
+        _take_modes(axis, driven)
         axis.t1, axis.t2, axis.halt = 2.0 * h, 2.0 * h, math.inf
         drive_axis(axis, volts_x if a == 0 else volts_y, area[2 * a], area[2 * a + 1], limit, h)
-        if gap > 0.0:
-            h = max(carriage.first_event(axis, own[a], spring, gap, h), least)
+        if not rigid:
+            low, high = area[2 * a] + RAIL, area[2 * a + 1] - RAIL
+            h = min(h, axis.halt if axis.halt > least else h)
+            h = max(carriage.first_event(axis, carriages[a], spring, gap, low, high, h), least)
     return h
 
 
 @kernel
-def drag(p, motor, mallet, own, area, h):
+def _take_modes(axis, driven):
+    """Give an axis the rates, gains and modes of another."""
+    axis.slow_rate, axis.fast_rate = driven.slow_rate, driven.fast_rate
+    axis.rest_gain, axis.slow_gain, axis.fast_gain = driven.rest_gain, driven.slow_gain, driven.fast_gain
+    axis.rest, axis.slow, axis.fast = driven.rest, driven.slow, driven.fast
+
+
+@inlined_kernel
+def settle_piece(p, motor, mallet, carriages, area, h):
     """Settle on a piece of `h` [s]: the motors come to its end, and the mallet, on its belt, follows in the piece."""
     rigid = is_rigid(p)
     for a in range(2):
@@ -136,20 +151,23 @@ def drag(p, motor, mallet, own, area, h):
             idle(driven)  # the rail ends what it was ordered
         if not rigid:
             low, high = area[2 * a] + RAIL, area[2 * a + 1] - RAIL
-            carriage.drag(axis, own[a], compose.spring(p), compose.play(p), low, high, h)
+            carriage.follow(axis, carriages[a], compose.spring(p), compose.gap(p), low, high, h)
 
 
 @kernel
-def go_on(motor, mallet, own, h):
-    """Let a mallet be where it is `h` [s] on in its piece; where an axis was stopped before, so are its motor and belt."""
+def go_on(motor, mallet, carriages, area, h):
+    """Let a mallet be where it is `h` [s] on in its piece. Of an axis that was stopped, motor and belt stand there too:
+    what the belt had stretched, and where in its gap the mallet was, is forgotten."""
     settle(mallet, h)
     for a in range(2):
         axis, driven = (mallet.x, motor.x) if a == 0 else (mallet.y, motor.y)
         if axis.halt <= h:
+            place = min(max(axis.rest, area[2 * a]), area[2 * a + 1])  # each stop at the rail may be a rounding beyond
+            axis.rest = place
             idle(axis)
-            driven.rest, driven.slow, driven.fast = axis.rest, 0.0, 0.0
+            driven.rest, driven.slow, driven.fast = place, 0.0, 0.0
             idle(driven)
-            own[a, 0], own[a, 1], own[a, 2] = axis.rest, 0.0, axis.rest
+            carriages[a, 0], carriages[a, 1], carriages[a, 2] = place, 0.0, place
         axis.t1 -= h
         axis.t2 -= h
         axis.halt -= h

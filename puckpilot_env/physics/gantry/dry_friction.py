@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from puckpilot_env.kernel import kernel
+from puckpilot_env.kernel import inlined_kernel, kernel
 from puckpilot_env.physics.gantry.decay import fade
 from puckpilot_env.physics.gantry.mallet import axis_acceleration, axis_velocity
 
@@ -43,11 +43,11 @@ def _held(lost, speed, gain, size):
     return min(max(lost + speed / gain, -size), size)
 
 
-@kernel
-def left_volts(sizes, motor, volts_x, volts_y, longest):
-    """`(x, y, until)`: volts that are left of a mallet's, and till when [s] if nothing stops before, at most `longest`.
+@inlined_kernel
+def remaining_volts(sizes, motor, volts_x, volts_y, longest):
+    """`(x, y, until)`: volts that remain of a mallet's, and till when [s] if nothing stops before, at most `longest`.
 
-    sizes: the four frictions [V]; motor: a MALLET, whose modes are those of a rest where an axis is at rest.
+    sizes: the four frictions [V]; motor: a MALLET. An axis that friction holds is made to stand.
     """
     x, y = motor.x, motor.y
     vx, vy = axis_velocity(x, x.slow, x.fast), axis_velocity(y, y.slow, y.fast)
@@ -82,24 +82,32 @@ def left_volts(sizes, motor, volts_x, volts_y, longest):
             along_y, w, change = along_y + step, w - gain_y * step, max(change, abs(step))
         if change < ENOUGH:
             break
-    rest_x, rest_y = x_stands and _comes_to_rest(x, vx, u), y_stands and _comes_to_rest(y, vy, w)
+    rest_x, rest_y = x_stands and _is_held(x, vx, u), y_stands and _is_held(y, vy, w)
+    if rest_x:
+        _stand(x)
+    if rest_y:
+        _stand(y)
     starts = (left_stands or right_stands) and not (rest_x and rest_y)
     starts = starts or (x_stands and not rest_x) or (y_stands and not rest_y)
-    left_x = 0.0 if rest_x else volts_x - left + right - along_x
-    left_y = 0.0 if rest_y else volts_y + left + right - along_y
-    return left_x, left_y, held if starts else longest
+    remaining_x = 0.0 if rest_x else volts_x - left + right - along_x
+    remaining_y = 0.0 if rest_y else volts_y + left + right - along_y
+    return remaining_x, remaining_y, held if starts else longest
 
 
 @kernel
-def _comes_to_rest(axis, velocity, later):
-    """Whether an axis is at rest that friction holds, so that it has the velocity `later` [m/s]; then its modes are."""
-    if max(abs(velocity), abs(later)) > 0.01 * STANDING or abs(axis_acceleration(axis, axis.slow, axis.fast)) > QUIET:
+def _is_held(axis, velocity, later):
+    """Whether an axis is at rest, and friction holds it, so that it has the velocity `later` [m/s]."""
+    if max(abs(velocity), abs(later)) > 0.01 * STANDING:
         return False
-    axis.rest, axis.slow, axis.fast = axis.rest + axis.slow + axis.fast, 0.0, 0.0
-    return True
+    return abs(axis_acceleration(axis, axis.slow, axis.fast)) <= QUIET
 
 
 @kernel
+def _stand(axis):
+    axis.rest, axis.slow, axis.fast = axis.rest + axis.slow + axis.fast, 0.0, 0.0
+
+
+@inlined_kernel
 def first_stop(sizes, motor, volts_x, volts_y, end):
     """When [s] the first part that rubs and moves comes to a stop under constant volts, at most `end`."""
     vx, vy = velocity_after(motor.x, volts_x, 0.0), velocity_after(motor.y, volts_y, 0.0)
