@@ -11,6 +11,8 @@ from puckpilot import main
 from puckpilot_env import Tables
 from puckpilot_env.batch.motion import mallet_motion
 from puckpilot_env.options.effects_file import effect_values
+from puckpilot_env.physics.effects import motor_friction
+from puckpilot_env.physics.effects.unlisted_drive import LOSS_BY_PLACE
 from sim2real.diagnose.output.files import write
 from sim2real.diagnose.pipeline import diagnose
 from sim2real.recording.folder import read_recording
@@ -45,22 +47,28 @@ def apart(law: Law, values: dict[str, float]) -> float:
     return float(np.abs(seen - np.array(motion)[:, 0, :2]).max())
 
 
-@pytest.mark.parametrize(
-    "law, switch",
-    [
-        (Law(rough=0.3, rough_length=0.5), {"drive_kind": 0.0}),
-        (Law(motor_friction_left=0.6, motor_friction_right=0.6), dict.fromkeys(
-            ("motor_friction_left", "motor_friction_right", "axis_friction_x", "axis_friction_y"), 0.0)),
-    ],
-)  # fmt: skip
-def test_the_mallet_goes_as_on_the_table_with_the_law(law: Law, switch: dict[str, float], tmp_path: Path) -> None:
-    found = effects_of(law, tmp_path)
-    values = effect_values(found)
-    assert apart(law, values) < 0.15 * apart(law, {**values, **switch})
+ROUGH = Law(rough=0.3, rough_length=0.5)
+DRY = Law(motor_friction_left=0.6, motor_friction_right=0.5, axis_friction_y=0.3)
+FRICTION = {name: getattr(DRY, name) for name in motor_friction.EFFECT.row_names}
 
 
-def test_players_meet_on_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    found = effects_of(Law(cubic_loss=0.2), tmp_path)
-    assert Tables("match-v0", 1, effects=found).params["drive_kind"][0] == 3.0
-    assert main(["match", "goalie", "follower", "--games", "2", "--effects", str(found), "--json"]) == 0
+@pytest.fixture(scope="module")
+def rough(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return effects_of(ROUGH, tmp_path_factory.mktemp("rough"))
+
+
+def test_the_mallet_goes_as_on_the_table_with_an_unlisted_law(rough: Path) -> None:
+    values = effect_values(rough)
+    assert apart(ROUGH, values) < 0.1 * apart(ROUGH, {**values, "drive_kind": 0.0})
+
+
+def test_the_mallet_goes_as_on_the_table_with_friction(tmp_path: Path) -> None:
+    values = effect_values(effects_of(DRY, tmp_path))
+    assert {name: values[name] for name in FRICTION} == pytest.approx(FRICTION, abs=0.01)
+    assert apart(DRY, values) < 0.01 * apart(DRY, {**values, **dict.fromkeys(FRICTION, 0.0)})
+
+
+def test_players_meet_on_it(rough: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert Tables("match-v0", 1, effects=rough).params["drive_kind"][0] == LOSS_BY_PLACE
+    assert main(["match", "goalie", "follower", "--games", "2", "--effects", str(rough), "--json"]) == 0
     assert '"games"' in capsys.readouterr().out

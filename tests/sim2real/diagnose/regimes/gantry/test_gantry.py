@@ -52,7 +52,13 @@ def diagnosed(recording: Recording) -> RegimeResult:
     [
         pytest.param(Law(voltage_sag=0.01), "voltage_sag", "sag", 0.01, marks=pytest.mark.long),
         (replace(OTHER, deadband=0.2), "motor_deadband", "V", 0.2),
-        (Law(motor_friction_left=0.5, motor_friction_right=0.4, axis_friction_y=0.6), "motor_friction", "V_left", 0.5),
+        pytest.param(
+            Law(motor_friction_left=0.5, motor_friction_right=0.4, axis_friction_y=0.6),
+            "motor_friction",
+            "V_left",
+            0.5,
+            marks=pytest.mark.long,
+        ),
         (Law(command_delay=0.012), "command_delay", "delay_s", 0.012),
         (replace(OTHER, belt_hz=16.0, belt_zeta=0.1), "belt_compliance", "hz", 16.0),
         pytest.param(Law(backlash=0.001), "backlash", "gap", 0.001, marks=pytest.mark.long),
