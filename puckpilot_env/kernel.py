@@ -193,5 +193,5 @@ _announced: set[str] = set()
 def announce_compilation(marker: str, what: str = "the simulator", package: str = _ROOT.name) -> None:
     """Say on stderr that `what` will be compiled, once a process, if the kernel named `marker` of a package was not."""
     if what not in _announced and not any(cache_folder_of(package).rglob(f"*{marker}*.nbi")):
-        print(f"puckpilot: compiling {what} (once after each change, under a minute) ...", file=sys.stderr)
+        print(f"puckpilot: compiling {what} (once after each change, a minute or two) ...", file=sys.stderr)
         _announced.add(what)

@@ -14,7 +14,7 @@ import math
 
 from puckpilot_env.kernel import inlined_kernel, kernel
 from puckpilot_env.physics.effects import backlash, belt_compliance
-from puckpilot_env.physics.gantry.mallet import axis_at, axis_velocity
+from puckpilot_env.physics.gantry.mallet import axis_velocity, modes_at
 
 RADIANS = 0.5  # of the belt's ringing, in one piece
 SLOW, FAST = 0.5, 2.0  # rates of a mallet's modes, times the length of a piece
@@ -30,7 +30,7 @@ def end_of_belt(axis, carriage, spring, t):
     `compose.spring`."""
     w, zeta = spring
     if w == 0.0:
-        rest, slow, fast, _ = axis_at(axis, t)
+        rest, slow, fast, _ = modes_at(axis, t)
         return rest + slow + fast, axis_velocity(axis, slow, fast)
     runs = min(t, axis.halt)
     slow_end, fast_end = -axis.slow_gain * axis.volts, axis.fast_gain * axis.volts
@@ -39,8 +39,8 @@ def end_of_belt(axis, carriage, spring, t):
         axis.slow - slow_end, axis.fast_rate, axis.fast - fast_end, runs,
     )  # fmt: skip
     if t > runs:
-        x, v = belt_compliance.ring(w, zeta, x - axis_at(axis, runs)[0], v, t - runs)
-        x += axis_at(axis, t)[0]
+        x, v = belt_compliance.ring(w, zeta, x - modes_at(axis, runs)[0], v, t - runs)
+        x += modes_at(axis, t)[0]
     return x, v
 
 

@@ -12,7 +12,7 @@ import math
 from puckpilot_env.kernel import kernel
 from puckpilot_env.physics import compose
 from puckpilot_env.physics.gantry.decay import decay, fade
-from puckpilot_env.physics.gantry.mallet import axis_at, idle, reach
+from puckpilot_env.physics.gantry.mallet import idle, modes_at, reach
 from puckpilot_env.physics.gantry.plan import ROUNDING, SMALLEST_VOLTAGE
 
 HALVINGS = 50  # of a time span, to find when an axis meets the rail
@@ -139,7 +139,7 @@ def _stop_at_rail(axis, low, high):
 @kernel
 def _turn(axis, begin, volts):
     """When an axis under constant `volts` from `begin` [s] on has no slow mode left; infinite if it always has one."""
-    _, slow, _, _ = axis_at(axis, begin)
+    _, slow, _, _ = modes_at(axis, begin)
     end = -axis.slow_gain * volts
     if slow * end >= 0.0:
         return math.inf
@@ -148,7 +148,7 @@ def _turn(axis, begin, volts):
 
 @kernel
 def _is_outside(axis, t, low, high):
-    rest, slow, fast, _ = axis_at(axis, t)
+    rest, slow, fast, _ = modes_at(axis, t)
     return not low <= rest + slow + fast <= high
 
 

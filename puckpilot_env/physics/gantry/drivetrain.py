@@ -17,7 +17,7 @@ from puckpilot_env.kernel import inlined_kernel, kernel
 from puckpilot_env.physics import compose
 from puckpilot_env.physics.gantry import carriage, dry_friction
 from puckpilot_env.physics.gantry.drive import drive_axis
-from puckpilot_env.physics.gantry.mallet import axis_at, idle, motion_now, settle
+from puckpilot_env.physics.gantry.mallet import idle, modes_at, motion_now, settle
 from puckpilot_env.physics.gantry.plan import SMALLEST_VOLTAGE
 
 LONGEST, SHORTEST = 0.02, 1e-6  # s, of a piece
@@ -144,7 +144,7 @@ def settle_piece(p, motor, mallet, carriages, area, h):
     rigid = is_rigid(p)
     for a in range(2):
         axis, driven = (mallet.x, motor.x) if a == 0 else (mallet.y, motor.y)
-        driven.rest, driven.slow, driven.fast, _ = axis_at(axis, h)
+        driven.rest, driven.slow, driven.fast, _ = modes_at(axis, h)
         driven.t1 -= h
         driven.t2 -= h
         if axis.halt <= h:

@@ -137,6 +137,12 @@ def _running_axis_at(axis, t):
 
 
 @kernel
+def modes_at(axis, t):
+    """`axis_at` as a kernel of its own, for where it is seldom asked: every place of the other is compiled anew."""
+    return axis_at(axis, t)
+
+
+@kernel
 def axis_velocity(axis, slow, fast):
     """Velocity [m/s] of an axis from its modes."""
     return -axis.slow_rate * slow - axis.fast_rate * fast
@@ -165,7 +171,7 @@ def motion_now(mallet):
 @kernel
 def axis_place(axis, t):
     """Where an axis is [m] at time `t` of its plan."""
-    rest, slow, fast, _ = axis_at(axis, t)
+    rest, slow, fast, _ = modes_at(axis, t)
     return rest + slow + fast
 
 
@@ -178,8 +184,8 @@ def place_at(mallet, t):
 @kernel
 def motion_at(mallet, t):
     """`(x, y, vx, vy)` [m, m/s] of a mallet at time `t` of its plan."""
-    rest_x, slow_x, fast_x, _ = axis_at(mallet.x, t)
-    rest_y, slow_y, fast_y, _ = axis_at(mallet.y, t)
+    rest_x, slow_x, fast_x, _ = modes_at(mallet.x, t)
+    rest_y, slow_y, fast_y, _ = modes_at(mallet.y, t)
     return (
         rest_x + slow_x + fast_x,
         rest_y + slow_y + fast_y,
@@ -191,8 +197,8 @@ def motion_at(mallet, t):
 @kernel
 def push_at(mallet, t, nx, ny):
     """Acceleration [m/s^2] of a mallet along the unit vector `n` at time `t` of its plan."""
-    _, slow_x, fast_x, _ = axis_at(mallet.x, t)
-    _, slow_y, fast_y, _ = axis_at(mallet.y, t)
+    _, slow_x, fast_x, _ = modes_at(mallet.x, t)
+    _, slow_y, fast_y, _ = modes_at(mallet.y, t)
     return nx * axis_acceleration(mallet.x, slow_x, fast_x) + ny * axis_acceleration(mallet.y, slow_y, fast_y)
 
 

@@ -10,7 +10,7 @@ import math
 from puckpilot_env.kernel import inlined_kernel, kernel
 from puckpilot_env.physics.contacts import bounce
 from puckpilot_env.physics.contacts.contact import PINCH_SLACK
-from puckpilot_env.physics.gantry.mallet import acceleration_bound, axis_at, axis_velocity, place_at
+from puckpilot_env.physics.gantry.mallet import acceleration_bound, axis_velocity, modes_at, place_at
 from puckpilot_env.physics.sliding.force import push_and_friction
 from puckpilot_env.physics.vector import size
 
@@ -47,7 +47,7 @@ def lean(puck, p, t):
 
 @kernel
 def _axis_stands(axis, t):
-    _, slow, fast, volts = axis_at(axis, t)
+    _, slow, fast, volts = modes_at(axis, t)
     return axis_velocity(axis, slow, fast) == 0.0 and acceleration_bound(axis, slow, fast, volts) == 0.0
 
 
