@@ -24,7 +24,7 @@ An effect's file has the hooks of its regime, every one a kernel; those that it 
 | gantry | `in_pieces(p)` | whether a mallet's path is found piece by piece (see `drivetrain`); goes with the next |
 | gantry | `dry_friction(p)` | volts that the left and the right motor, the x and the y axis lose; of one effect alone |
 | gantry | `spring(p)` | (angular frequency [rad/s], 0 if rigid; damping ratio) of the belt; of one effect alone |
-| gantry | `holds(p)` | how long [s] the next are well told by those half-way, infinite if there are none |
+| gantry | `holds(p)` | how long [s] the next are nearly those half-way, infinite if there are none |
 | gantry | `extra_volts(p, t, x, y, vx, vy, volts_x, volts_y)` | (x, y), which are added to the motors' |
 | gantry | `gap(p)` | gap [m] between what drags the mallet and the mallet; of one effect alone |
 

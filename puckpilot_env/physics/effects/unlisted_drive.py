@@ -75,7 +75,7 @@ def in_pieces(p):
 
 @kernel
 def holds(p):
-    """How long [s] extra volts are well told by those half-way; infinite if there are none."""
+    """How long [s] extra volts are well approximated by those half-way; infinite if there are none."""
     return math.inf if p.drive_kind == 0.0 else STEP
 
 

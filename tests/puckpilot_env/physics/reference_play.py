@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from puckpilot_env import Tables
+from puckpilot_env.batch.motion import mallet_motion
 from tests.puckpilot_env.physics.table_driver import areas, plan_both, record
 
 PERIOD = 0.1
@@ -27,3 +28,15 @@ def asked_for(tables: Tables, actions: np.ndarray) -> list[tuple[float, ...]]:
     requests[1, :2] = (p.length, p.width) - requests[1, :2]
     plan_both(gantries, requests, areas(p), p.max_voltage)
     return [(m.x.volts, m.y.volts, m.x.t1, m.y.t1, m.x.t2, m.y.t2) for m in gantries]
+
+
+def played(tables: Tables, steps: int) -> tuple[np.ndarray, list[list]]:
+    """Gentle steps on a single table: its mallets' motion (steps + 1, 2, 4), and the plans of either mallet."""
+    rng, motion, plans = np.random.default_rng(5), [mallet_motion(tables.states)[0]], [[], []]
+    for step in range(steps):
+        actions = gentle(tables, rng)
+        for k, plan in enumerate(asked_for(tables, actions)):
+            plans[k].append((PERIOD * step, plan))
+        tables.step(actions)
+        motion.append(mallet_motion(tables.states)[0])
+    return np.array(motion), plans

@@ -12,7 +12,7 @@ from puckpilot_env.batch.motion import mallet_motion
 from puckpilot_env.batch.trace import trace
 from puckpilot_env.physics.effects.unlisted_drive import EFFECT, LOSS_BY_PLACE, LOSS_BY_SPEED, NUMBERS
 from sim2real.study.independent_table import Law, run
-from tests.puckpilot_env.physics.reference_play import PERIOD, asked_for, gentle
+from tests.puckpilot_env.physics.reference_play import PERIOD, asked_for, gentle, played
 from tests.puckpilot_env.physics.table_driver import record
 
 STEPS = 14
@@ -37,19 +37,6 @@ CASES = {  # the simulator's numbers, the reference's, and how close places [m] 
 }
 
 
-def played(variant: str, values: dict[str, float]) -> tuple[Tables, np.ndarray, list[list]]:
-    """A table after STEPS; its mallets' motion (steps + 1, 2, 4); its plans, of either mallet."""
-    tables, rng = Tables(variant, 1, seed=3, parameters=values), np.random.default_rng(5)
-    motion, plans = [mallet_motion(tables.states)[0]], [[], []]
-    for step in range(STEPS):
-        actions = gentle(tables, rng)
-        for k, plan in enumerate(asked_for(tables, actions)):
-            plans[k].append((PERIOD * step, plan))
-        tables.step(actions)
-        motion.append(mallet_motion(tables.states)[0])
-    return tables, np.array(motion), plans
-
-
 def at_steps(law: Law, places: np.ndarray, plans: list[list]) -> np.ndarray:
     """The reference's motion of both mallets (steps + 1, 2, 4) at the ends of the steps."""
     times = np.arange(len(plans[0]) + 1) * PERIOD
@@ -63,7 +50,7 @@ def at_steps(law: Law, places: np.ndarray, plans: list[list]) -> np.ndarray:
 @pytest.mark.parametrize("case", CASES)
 def test_mallets_go_where_the_reference_goes(case: str) -> None:
     values, law, close, alike = CASES[case]
-    _, motion, plans = played("match-v0", values)
+    motion, plans = played(Tables("match-v0", 1, seed=3, parameters=values), STEPS)
     seen, without = (at_steps(one, motion[0, :, :2], plans) for one in (law, Law()))
     assert np.abs(seen - motion)[..., :2].max() < close
     assert np.abs(seen - motion)[..., 2:].max() < alike
@@ -117,8 +104,8 @@ def test_pieces_with_nothing_in_them_change_nothing(variant: str, period: float,
         np.testing.assert_array_equal(plain.states["stream"], pieces.states["stream"])
         ended = plain.terminated | plain.truncated
         np.testing.assert_allclose(plain.final_observations[ended], pieces.final_observations[ended], atol=1e-3)
-        apart = np.abs(plain.observations - pieces.observations).max(axis=(1, 2))
-        assert np.quantile(apart, 0.98) < 1e-3  # a puck in a wedge may hang on the last digits
+        change = np.abs(plain.observations - pieces.observations).max(axis=(1, 2))
+        assert np.quantile(change, 0.98) < 1e-3  # a puck in a wedge may hang on the last digits
         ends += int(ended.sum())
     assert ends > 0 or not variant.startswith("defence") or delay
 
@@ -145,7 +132,8 @@ def test_a_table_of_volts_is_the_law_that_it_tells(kind: int, last: float, share
     """A loss of C7 v (1 + share) in the reference takes C7 share v / (R/2) volts; C7 is a3 on both axes."""
     p = record()
     numbers = -2.0 * p.a3 / p.pulley_radius * share(np.linspace(0.0, last, NUMBERS))
-    _, motion, plans = played("match-v0", dict(zip(DRIVE, [kind, 3.0, 0.0, last, *numbers], strict=True)))
+    values = dict(zip(DRIVE, [kind, 3.0, 0.0, last, *numbers], strict=True))
+    motion, plans = played(Tables("match-v0", 1, seed=3, parameters=values), STEPS)
     seen, without = (at_steps(one, motion[0, :, :2], plans) for one in (law, Law()))
     matters = np.abs(without - motion)[:, 0, :2].max()  # of player_0: the other's gantry has the law in its own frame
     assert np.abs(seen - motion)[:, 0, :2].max() < 0.05 * matters and matters > 0.005
@@ -200,7 +188,8 @@ def test_friction_stops_a_mallet_in_the_time_and_way_of_its_closed_form() -> Non
 @pytest.mark.parametrize("values", [FRICTION, {"belt_hz": 25.0}, {"backlash_gap": 0.002}], ids=str)
 def test_the_camera_sees_mallets_where_they_are(values: dict[str, float]) -> None:
     clean = {"camera_noise": 0.0, "camera_error": 0.0, "beam_noise": 0.0, "dropped_frames": 0.0, "held_frames": 0.0}
-    tables, motion, plans = played("match-sensors-v0", {**values, **clean})
+    tables = Tables("match-sensors-v0", 1, seed=3, parameters={**values, **clean})
+    motion, plans = played(tables, STEPS)
     renamed = {"backlash_gap": "backlash"}
     law = Law(belt_zeta=0.1, **{renamed.get(name, name): value for name, value in values.items()})
     reference = run(law, None, motion[0, :, :2], plans, STEPS * PERIOD, 2e-5)

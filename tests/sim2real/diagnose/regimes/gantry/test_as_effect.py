@@ -9,7 +9,6 @@ import pytest
 
 from puckpilot import main
 from puckpilot_env import Tables
-from puckpilot_env.batch.motion import mallet_motion
 from puckpilot_env.options.effects_file import effect_values
 from puckpilot_env.physics.effects import motor_friction
 from puckpilot_env.physics.effects.unlisted_drive import LOSS_BY_PLACE
@@ -18,7 +17,7 @@ from sim2real.diagnose.pipeline import diagnose
 from sim2real.recording.folder import read_recording
 from sim2real.study.independent_table import Law, run
 from sim2real.study.independent_table.recorder.record import make_recording
-from tests.puckpilot_env.physics.reference_play import PERIOD, asked_for, gentle
+from tests.puckpilot_env.physics.reference_play import PERIOD, played
 
 pytestmark = pytest.mark.slow
 STEPS = 12
@@ -31,20 +30,13 @@ def effects_of(law: Law, folder: Path) -> Path:
     return folder / "out" / "effects.toml"
 
 
-def apart(law: Law, values: dict[str, float]) -> float:
+def largest_error(law: Law, values: dict[str, float]) -> float:
     """How far [m], at most, the robot's mallet comes from that of the reference with the law in STEPS steps."""
-    tables, rng = Tables("match-v0", 1, seed=3, parameters=values), np.random.default_rng(5)
-    motion, plans = [mallet_motion(tables.states)[0]], [[], []]
-    for step in range(STEPS):
-        actions = gentle(tables, rng)
-        for k, plan in enumerate(asked_for(tables, actions)):
-            plans[k].append((PERIOD * step, plan))
-        tables.step(actions)
-        motion.append(mallet_motion(tables.states)[0])
+    motion, plans = played(Tables("match-v0", 1, seed=3, parameters=values), STEPS)
     trace = run(law, None, motion[0][:, :2], plans, STEPS * PERIOD, 2e-5)
     times = np.arange(STEPS + 1) * PERIOD
     seen = np.array([np.interp(times, trace.t, trace.mallets[0][:, c]) for c in (0, 3)]).T
-    return float(np.abs(seen - np.array(motion)[:, 0, :2]).max())
+    return float(np.abs(seen - motion[:, 0, :2]).max())
 
 
 ROUGH = Law(rough=0.3, rough_length=0.5)
@@ -59,13 +51,13 @@ def rough(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_the_mallet_goes_as_on_the_table_with_an_unlisted_law(rough: Path) -> None:
     values = effect_values(rough)
-    assert apart(ROUGH, values) < 0.1 * apart(ROUGH, {**values, "drive_kind": 0.0})
+    assert largest_error(ROUGH, values) < 0.1 * largest_error(ROUGH, {**values, "drive_kind": 0.0})
 
 
 def test_the_mallet_goes_as_on_the_table_with_friction(tmp_path: Path) -> None:
     values = effect_values(effects_of(DRY, tmp_path))
     assert {name: values[name] for name in FRICTION} == pytest.approx(FRICTION, abs=0.01)
-    assert apart(DRY, values) < 0.01 * apart(DRY, {**values, **dict.fromkeys(FRICTION, 0.0)})
+    assert largest_error(DRY, values) < 0.01 * largest_error(DRY, {**values, **dict.fromkeys(FRICTION, 0.0)})
 
 
 def test_players_meet_on_it(rough: Path, capsys: pytest.CaptureFixture[str]) -> None:
