@@ -21,6 +21,7 @@ MOST_CROSSINGS = (
 )
 AT_MOST = 1.0 + 1e-6  # times a step: how long late orders are followed
 ROUNDING = 1e-9  # s; less is no time to play
+ALONE, BESET = 0.02, 0.005  # s for which a puck is moved at once past mallets in pieces; till it is tried again
 
 
 @kernel
@@ -120,21 +121,38 @@ def _take_orders(table):
         drivetrain.take(table.motors[k], table.orders[k])
 
 
+@kernel
+def _drift_on(table, p, now, span, film):
+    """Move a puck that meets nothing for `span` [s] whatever the mallets do, from `now` [s] after the decision on, with
+    its places in the shots of `film`; till when it was moved."""
+    last = 0
+    while last < film.shape[0] and film[last, 0] <= now + span:
+        film[last, 0] -= now
+        last += 1
+    moved = drift(table.puck, p, table.mallets, table.orders, table.time + now, span, span, film[:last])
+    for i in range(last):
+        film[i, 0] += now
+    return now + moved
+
+
 @inlined_kernel
 def _play_in_pieces(table, p, rule, until, rewards, log, film):
     """`play_step` of mallets that go piece by piece, see `physics.gantry.drivetrain`."""
     begin = min(compose.delay(p), until)  # of the plans that are on their way
-    alone, over, waits, shots, pieces = 0.0, False, True, 0, 0
-    if begin == 0.0 and drivetrain.is_driven_by_orders(p):
-        for k in range(2):
-            drivetrain.expect(p, table.mallets[k], table.orders[k])
-        alone = drift(table.puck, p, table.mallets, table.orders, table.time, until, until, film)
+    over, waits, shots, pieces = False, True, 0, 0
     now, rest_0, rest_1 = 0.0, 0.0, 0.0  # rest of each mallet's piece
+    alone, asked, span = 0.0, 0.0, until  # till when the puck is moved already; when and how far it may be again
+    driven = drivetrain.is_driven_by_orders(p)
     many = drivetrain.FEW_PIECES + drivetrain.PIECES_A_SECOND * until
     while until - now > ROUNDING:
         if waits and begin - now <= ROUNDING:
             waits, rest_0, rest_1 = False, 0.0, 0.0
             _take_orders(table)
+        while driven and not (waits or over) and alone <= now and asked <= now:
+            alone = _drift_on(table, p, now, min(span, until - now), film[shots:])
+            if alone <= now and span <= ALONE:
+                asked = now + BESET
+            span = ALONE
         least = drivetrain.SHORTEST if pieces < many else drivetrain.LEAST
         longest = (begin if waits else until) - now
         for k in range(2):
@@ -142,15 +160,19 @@ def _play_in_pieces(table, p, rule, until, rewards, log, film):
                 piece = _begin_piece(table, p, k, table.time + now, least, longest)
                 rest_0, rest_1 = (piece, rest_1) if k == 0 else (rest_0, piece)
         h = min(rest_0, rest_1)
+        if alone > now:
+            h = min(h, alone - now)
         last = _shots_until(film, shots, now, h, until)
         if over:
             _rest_in(film[shots:last], table.puck)
-        elif alone == 0.0:
+        elif alone <= now:
             over = _play_piece(table, p, rule, now, h, rewards, log, film[shots:last])
         sensing.shoot_mallets(table.mallets, film[shots:last])
         for k in range(2):
             drivetrain.go_on(table.motors[k], table.mallets[k], table.carriages[k], mirror.area(k, p), h)
         rest_0, rest_1, now, shots, pieces = rest_0 - h, rest_1 - h, now + h, last, pieces + 1
+        if alone - now <= ROUNDING:
+            alone = 0.0
     if waits:  # they came with the end of the step
         _take_orders(table)
     return over

@@ -20,7 +20,7 @@ from puckpilot_env.physics.gantry.drive import drive_axis
 from puckpilot_env.physics.gantry.mallet import idle, modes_at, motion_now, settle
 from puckpilot_env.physics.gantry.plan import SMALLEST_VOLTAGE
 
-LONGEST, SHORTEST = 0.02, 1e-6  # s, of a piece
+LONGEST, SHORTEST = 0.02, 1e-6  # s, of a piece in which something rubs and moves; of any
 FEW_PIECES, PIECES_A_SECOND = 150, 2500.0  # of a step; further ones are at least LEAST
 LEAST = 1e-3  # s
 RAIL = 1e-5  # m; how far before its area's edge a mallet on a belt stops, which is off its path in between by less
@@ -36,14 +36,6 @@ def is_rigid(p):
 def is_driven_by_orders(p):
     """Whether a mallet is where its motors are, and these get nothing but orders, less friction."""
     return is_rigid(p) and compose.holds(p) == math.inf
-
-
-@kernel
-def expect(p, mallet, orders):
-    """Give a mallet between two pieces, as the volts of its axes, the most that these can get for `orders` (2, 3): a
-    motor that rubs adds along one axis what it loses along the other."""
-    rubs = compose.dry_friction(p)
-    mallet.x.volts, mallet.y.volts = abs(orders[0, 0]) + rubs[0] + rubs[1], abs(orders[1, 0]) + rubs[0] + rubs[1]
 
 
 @kernel
@@ -96,6 +88,12 @@ def _extra_volts(p, player, t, ahead, motor, volts_x, volts_y):
     return -more_x, -more_y
 
 
+@kernel
+def _rests(motor, volts_x, volts_y):
+    """Whether motors stand, and get no volts."""
+    return volts_x == 0.0 and volts_y == 0.0 and motor.x.slow == 0.0 == motor.x.fast == motor.y.slow == motor.y.fast
+
+
 @inlined_kernel
 def begin_piece(p, player, t, motor, mallet, carriages, area, least, longest):
     """Let a player's mallet do as its motor does without belt and play, from the time `t` [s] on; how long [s] it may.
@@ -104,7 +102,7 @@ def begin_piece(p, player, t, motor, mallet, carriages, area, least, longest):
     """
     limit = 2.0 * (p.max_voltage - SMALLEST_VOLTAGE)
     (volts_x, until_x), (volts_y, until_y) = _ordered(motor.x), _ordered(motor.y)
-    h = min(min(until_x, until_y), min(longest, LONGEST))
+    h = min(min(until_x, until_y), longest)
     if compose.holds(p) < math.inf:
         h = min(h, compose.holds(p))
         more_x, more_y = _extra_volts(p, player, t + 0.5 * h, 0.5 * h, motor, volts_x, volts_y)
@@ -113,7 +111,8 @@ def begin_piece(p, player, t, motor, mallet, carriages, area, least, longest):
     rubs = compose.dry_friction(p)
     if max(max(rubs[0], rubs[1]), max(rubs[2], rubs[3])) > 0.0:
         volts_x, volts_y, h = dry_friction.remaining_volts(rubs, motor, volts_x, volts_y, h)
-        h = dry_friction.first_stop(rubs, motor, volts_x, volts_y, h)
+        if not _rests(motor, volts_x, volts_y):
+            h = dry_friction.first_stop(rubs, motor, volts_x, volts_y, min(h, LONGEST))
     spring, gap, rigid = compose.spring(p), compose.gap(p), is_rigid(p)
     if spring[0] > 0.0:
         h = min(h, carriage.RADIANS / spring[0])

@@ -14,11 +14,13 @@ from puckpilot_env.kernel import inlined_kernel, kernel
 from puckpilot_env.physics.gantry.decay import fade
 from puckpilot_env.physics.gantry.mallet import axis_acceleration, axis_velocity
 
-STANDING = 1e-4  # m/s; what is slower stands, if friction holds it
-HELD = 1e-3  # s; how long friction is constant of a part that stands but is not at rest
+STANDING = 1e-3  # m/s; what is slower stands, if friction holds it
+HELD = 1e-3  # s; how long friction is constant of a part that stands but is not at rest,
+LONG_HELD = 8e-3  # and where it stirs little meanwhile,
+STIRS = 1e-3  # m/s
 QUIET = 0.05  # m/s^2; an axis that stands, and accelerates less, is at rest
 SWEEPS, ENOUGH = 60, 1e-9  # at most, and the change [V] that ends them
-HALVINGS = 30  # of a span in which something comes to a stop
+NEARLY, TRIES = 0.01 * STANDING, 40  # m/s; a part stops when it is no faster; at most, till that moment is found
 TRANSIENT = 2e-3  # s; after it the fast mode is gone: speeds are monotonic, or nearly
 
 
@@ -44,6 +46,62 @@ def _held(lost, speed, gain, size):
 
 
 @inlined_kernel
+def _found_together(sizes, motor, volts_x, volts_y, held):
+    """`(left, right, x, y, u, w)`: what the four parts take of the volts, such that those that stand do so `held` [s]
+    later, or move against their whole friction; the axes' velocities [m/s] are `u` and `w` then."""
+    x, y = motor.x, motor.y
+    vx, vy = axis_velocity(x, x.slow, x.fast), axis_velocity(y, y.slow, y.fast)
+    left, right = _of_moving(vx - vy, sizes[0]), _of_moving(-vx - vy, sizes[1])
+    along_x, along_y = _of_moving(vx, sizes[2]), _of_moving(vy, sizes[3])
+    gain_x, gain_y = velocity_after(x, 1.0, held), velocity_after(y, 1.0, held)
+    none_x, none_y = velocity_after(x, 0.0, held), velocity_after(y, 0.0, held)
+    gain_x, gain_y = gain_x - none_x, gain_y - none_y
+    u = none_x + gain_x * (volts_x - left + right - along_x)
+    w = none_y + gain_y * (volts_y + left + right - along_y)
+    both = gain_x + gain_y
+    for _ in range(SWEEPS):
+        change = 0.0
+        if abs(vx - vy) <= STANDING:
+            step = _held(left, u - w, both, sizes[0]) - left
+            left, u, w, change = left + step, u - gain_x * step, w + gain_y * step, max(change, abs(step))
+        if abs(vx + vy) <= STANDING:
+            step = _held(right, -u - w, both, sizes[1]) - right
+            right, u, w, change = right + step, u + gain_x * step, w + gain_y * step, max(change, abs(step))
+        if abs(vx) <= STANDING:
+            step = _held(along_x, u, gain_x, sizes[2]) - along_x
+            along_x, u, change = along_x + step, u - gain_x * step, max(change, abs(step))
+        if abs(vy) <= STANDING:
+            step = _held(along_y, w, gain_y, sizes[3]) - along_y
+            along_y, w, change = along_y + step, w - gain_y * step, max(change, abs(step))
+        if change < ENOUGH:
+            break
+    return left, right, along_x, along_y, u, w
+
+
+@kernel
+def _stays(lost, size, now, later):
+    """Whether a part may go on to take `lost` of at most `size` [V]: it moved before, or hardly stirs, or moves against
+    its whole friction. now, later: its speeds [m/s] at the begin and then."""
+    if abs(now) > STANDING or abs(later) <= STIRS:
+        return True
+    return abs(lost) >= size and later * lost > 0.0
+
+
+@kernel
+def _holds(sizes, motor, left, right, along_x, along_y, volts_x, volts_y, t):
+    """Whether what the four parts take is right for each that stands, `t` [s] later."""
+    volts_x, volts_y = volts_x - left + right - along_x, volts_y + left + right - along_y
+    vx, vy = velocity_after(motor.x, volts_x, 0.0), velocity_after(motor.y, volts_y, 0.0)
+    ux, uy = velocity_after(motor.x, volts_x, t), velocity_after(motor.y, volts_y, t)
+    return (
+        _stays(left, sizes[0], vx - vy, ux - uy)
+        and _stays(right, sizes[1], -vx - vy, -ux - uy)
+        and _stays(along_x, sizes[2], vx, ux)
+        and _stays(along_y, sizes[3], vy, uy)
+    )
+
+
+@inlined_kernel
 def remaining_volts(sizes, motor, volts_x, volts_y, longest):
     """`(x, y, until)`: volts that remain of a mallet's, and till when [s] if nothing stops before, at most `longest`.
 
@@ -55,39 +113,21 @@ def remaining_volts(sizes, motor, volts_x, volts_y, longest):
         left, right = math.copysign(sizes[0], vx - vy), math.copysign(sizes[1], -vx - vy)
         along_x, along_y = math.copysign(sizes[2], vx), math.copysign(sizes[3], vy)
         return volts_x - left + right - along_x, volts_y + left + right - along_y, longest
-    left, right = _of_moving(vx - vy, sizes[0]), _of_moving(-vx - vy, sizes[1])
-    along_x, along_y = _of_moving(vx, sizes[2]), _of_moving(vy, sizes[3])
-    left_stands, right_stands = abs(vx - vy) <= STANDING, abs(vx + vy) <= STANDING
+    held = min(LONG_HELD, longest)
+    left, right, along_x, along_y, u, w = _found_together(sizes, motor, volts_x, volts_y, held)
+    if not (
+        _holds(sizes, motor, left, right, along_x, along_y, volts_x, volts_y, 0.5 * held)
+        and _holds(sizes, motor, left, right, along_x, along_y, volts_x, volts_y, 0.125 * held)
+    ):
+        held = min(HELD, longest)
+        left, right, along_x, along_y, u, w = _found_together(sizes, motor, volts_x, volts_y, held)
     x_stands, y_stands = abs(vx) <= STANDING, abs(vy) <= STANDING
-    held = min(HELD, longest)
-    gain_x, gain_y = velocity_after(x, 1.0, held), velocity_after(y, 1.0, held)
-    none_x, none_y = velocity_after(x, 0.0, held), velocity_after(y, 0.0, held)
-    gain_x, gain_y = gain_x - none_x, gain_y - none_y
-    u = none_x + gain_x * (volts_x - left + right - along_x)
-    w = none_y + gain_y * (volts_y + left + right - along_y)
-    both = gain_x + gain_y
-    for _ in range(SWEEPS):
-        change = 0.0
-        if left_stands:
-            step = _held(left, u - w, both, sizes[0]) - left
-            left, u, w, change = left + step, u - gain_x * step, w + gain_y * step, max(change, abs(step))
-        if right_stands:
-            step = _held(right, -u - w, both, sizes[1]) - right
-            right, u, w, change = right + step, u + gain_x * step, w + gain_y * step, max(change, abs(step))
-        if x_stands:
-            step = _held(along_x, u, gain_x, sizes[2]) - along_x
-            along_x, u, change = along_x + step, u - gain_x * step, max(change, abs(step))
-        if y_stands:
-            step = _held(along_y, w, gain_y, sizes[3]) - along_y
-            along_y, w, change = along_y + step, w - gain_y * step, max(change, abs(step))
-        if change < ENOUGH:
-            break
     rest_x, rest_y = x_stands and _is_held(x, vx, u), y_stands and _is_held(y, vy, w)
     if rest_x:
         _stand(x)
     if rest_y:
         _stand(y)
-    starts = (left_stands or right_stands) and not (rest_x and rest_y)
+    starts = (min(abs(vx - vy), abs(vx + vy)) <= STANDING) and not (rest_x and rest_y)
     starts = starts or (x_stands and not rest_x) or (y_stands and not rest_y)
     remaining_x = 0.0 if rest_x else volts_x - left + right - along_x
     remaining_y = 0.0 if rest_y else volts_y + left + right - along_y
@@ -137,12 +177,27 @@ def _stops(speed, later):
 
 @kernel
 def _stop(motor, volts_x, volts_y, of_x, of_y, speed, before, after):
-    """The last time [s] between `before` and `after` at which `of_x x' + of_y y'` has not passed 0, as `speed` has."""
-    for _ in range(HALVINGS):
-        middle = 0.5 * (before + after)
-        now = of_x * velocity_after(motor.x, volts_x, middle) + of_y * velocity_after(motor.y, volts_y, middle)
-        if now * speed > 0.0:
-            before = middle
+    """A time between `before` and `after` at which `of_x x' + of_y y'`, which has the sign of `speed` before, is nearly
+    0 and has not passed it (the method of false position, as the Illinois algorithm); `after` if it does not stop."""
+    side = math.copysign(1.0, speed)
+    low = _beyond(motor, volts_x, volts_y, side * of_x, side * of_y, before)
+    high = _beyond(motor, volts_x, volts_y, side * of_x, side * of_y, after)
+    if low <= 0.0 or high >= 0.0:
+        return before if low <= 0.0 else after
+    kept = 0
+    for _ in range(TRIES):
+        t = before + (after - before) * low / (low - high)
+        now = _beyond(motor, volts_x, volts_y, side * of_x, side * of_y, t)
+        if abs(now) <= 0.5 * NEARLY:
+            return t
+        if now > 0.0:
+            before, low, high, kept = t, now, 0.5 * high if kept > 0 else high, 1
         else:
-            after = middle
+            after, high, low, kept = t, now, 0.5 * low if kept < 0 else low, -1
     return before
+
+
+@kernel
+def _beyond(motor, volts_x, volts_y, of_x, of_y, t):
+    """How much faster [m/s] than half of NEARLY `of_x x' + of_y y'` is at `t` [s]."""
+    return of_x * velocity_after(motor.x, volts_x, t) + of_y * velocity_after(motor.y, volts_y, t) - 0.5 * NEARLY

@@ -17,10 +17,13 @@ SLOW = 1e-2  # m/s; a slower puck that forces drive may lean on something, which
 
 
 @kernel
-def _reach(mallet, orders, duration):
-    """`(x, y)`: bounds [m] on how far a mallet gets in `duration` [s] if it takes up `orders` meanwhile."""
-    x = reach_under(mallet.x, max(abs(mallet.x.volts), abs(orders[0, 0])), duration)
-    return x, reach_under(mallet.y, max(abs(mallet.y.volts), abs(orders[1, 0])), duration)
+def _reach(mallet, p, orders, duration):
+    """`(x, y)`: bounds [m] on how far a mallet gets in `duration` [s] if it takes up `orders` meanwhile. A motor that
+    rubs adds along one axis what it loses along the other."""
+    rubs = compose.dry_friction(p)
+    more = rubs[0] + rubs[1]
+    x = reach_under(mallet.x, max(abs(mallet.x.volts), abs(orders[0, 0])) + more, duration)
+    return x, reach_under(mallet.y, max(abs(mallet.y.volts), abs(orders[1, 0])) + more, duration)
 
 
 @kernel
@@ -29,7 +32,7 @@ def _stays_clear(puck, p, mallets, orders, ux, uy, travel, end):
     distance = p.puck_radius + p.mallet_radius
     for k in range(2):
         home_x, home_y = place_now(mallets[k])
-        reach_x, reach_y = _reach(mallets[k], orders[k], end)
+        reach_x, reach_y = _reach(mallets[k], p, orders[k], end)
         if not stays_clear(puck.x, puck.y, ux, uy, travel, home_x, home_y, reach_x, reach_y, distance):
             return False
     return True
@@ -81,7 +84,7 @@ def _ride(puck, p, mallets, orders, clock, least, end, film):
     room = p.puck_radius + p.mallet_radius + 0.125 * (bend_x + bend_y)
     for k in range(2):
         home_x, home_y = place_now(mallets[k])
-        reach_x, reach_y = _reach(mallets[k], orders[k], h)
+        reach_x, reach_y = _reach(mallets[k], p, orders[k], h)
         if not stays_clear_of_curve(cx[0], cy[0], x - cx[0], y - cy[0], room, home_x, home_y, reach_x, reach_y):
             return 0.0
     if film.shape[0] > 0:
