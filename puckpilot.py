@@ -46,6 +46,7 @@ COMMANDS = {
     "latency": ("sim2real.commands.latency", "the delay of a table's loop, in parts with intervals"),
     "compare": ("sim2real.commands.compare", "where a recording of a table departs from the simulator"),
     "diagnose": ("sim2real.commands.diagnose", "which physics the simulator lacks, with proof on untouched data"),
+    "gap": ("sim2real.commands.gap", "what unmodelled physics costs a player, and how much a diagnosis wins back"),
     "study": ("sim2real.commands.study", "how often a diagnosis is right, on cases with something hidden"),
     "calibrate camera": ("sim2real.commands.calibrate_camera", "a camera's intrinsics, from photographs of a board"),
     "calibrate table": ("sim2real.commands.calibrate_table", "markers and surface of a table, from photographs of it"),

@@ -120,13 +120,14 @@ def _clock_jumping(one: Recording) -> Iterator[tuple[str, str]]:
 
 
 def _paused(one: Recording) -> Iterator[tuple[str, str]]:
-    """Yield streams with a gap while others have rows: their clock may have jumped."""
+    """Yield streams with a gap in which others have rows: their clock may have jumped."""
     streams = {name: stream for name, stream in _rows(one).items() if name != "commands"}
     for name, stream in streams.items():
-        step = np.diff(stream.t)
-        if len(streams) > 1 and len(step) and step.max() > INPUT.pause:
-            at = int(step.argmax())
-            yield (
-                f"{name}.csv has no row for {step[at]:.1f} s from {stream.t[at]:.1f} s: it paused, or its clock jumped",
-                f"cut the recording at {stream.t[at]:.1f} s into two",
-            )
+        others = [other.t for other in streams.values() if other is not stream]
+        for at in np.flatnonzero(np.diff(stream.t) > INPUT.pause):
+            begin, end = stream.t[at : at + 2]
+            if any(((begin + INPUT.pause_edge < t) & (t < end - INPUT.pause_edge)).any() for t in others):
+                yield (
+                    f"{name}.csv has no row for {end - begin:.1f} s from {begin:.1f} s: it paused, or its clock jumped",
+                    f"cut the recording at {begin:.1f} s into two",
+                )

@@ -18,6 +18,7 @@ class InputNumbers:
     )
     stops_by: float = tuned(2.0, "s", "the same, of short recordings", "choice: longer than any rest between plans")
     pause: float = tuned(0.5, "s", "streams whose clocks were reset during a gap", "choice: many rows of any stream")
+    pause_edge: float = tuned(0.1, "s", "recorders that stop one stream after the other", "choice: a fifth of a pause")
 
 
 @dataclass(frozen=True)

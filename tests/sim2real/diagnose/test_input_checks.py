@@ -159,5 +159,14 @@ def test_pauses_are_noted(tilted, tmp_path, capsys):
     assert [one["mechanism"] for one in expected["findings"]] == ["table_tilt"]
 
 
+def test_all_streams_may_pause_together(rally, tmp_path):
+    """As when a table was stopped: no clock can have jumped alone then."""
+    paused = rally
+    for file in ("frames.csv", "mallet.csv", "commands.csv"):
+        without = lambda lines: [*lines[:1], *(one for one in lines[1:] if not 10.0 < float(one.split(",")[0]) < 11.0)]  # noqa: E731
+        paused = _change(paused, tmp_path / file.split(".")[0], file, without)
+    check_usable([read_recording(paused)])
+
+
 def test_the_recordings_as_they_are_can_be_used(tilted, rally):
     check_usable([read_recording(tilted), read_recording(rally)])

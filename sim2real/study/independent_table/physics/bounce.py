@@ -79,17 +79,22 @@ def off_wall(law, t, which, puck, nx, ny):
 
 @njit(error_model="numpy")
 def off_mallet(law, t, k, puck, mallets, nx, ny):
-    """Reflect the velocity relative to the mallet: normal component with e, tangential kept; see `mallet_give`."""
+    """Reflect the velocity relative to the mallet: normal component with e, tangential kept; see `mallet_give`, and
+    `hand` of whose second mallet nothing but the baseline's is true."""
     wx, wy = puck[VX] - mallets[k, 1], puck[VY] - mallets[k, 4]
     closing = -(wx * nx + wy * ny)
-    e = law.mallet_restitution + law.mallet_warming * t - law.mallet_restitution_slope * closing
+    hand = k > 0 and law.hand != 0.0
+    give = 0.0 if hand else law.mallet_give
+    e = law.mallet_restitution
+    if not hand:
+        e = e + law.mallet_warming * t - law.mallet_restitution_slope * closing
     e = max(0.0, e) if closing > RESTING else 0.0
-    j_normal = (1.0 + e) * closing / (1.0 + law.mallet_give)
+    j_normal = (1.0 + e) * closing / (1.0 + give)
     j_along = 0.0
-    if law.mallet_mu > 0.0:
+    if law.mallet_mu > 0.0 and not hand:
         j_along, puck[SPIN] = rub(law, law.mallet_mu, j_normal, -wx * ny + wy * nx, puck[SPIN])
     dvx, dvy = j_normal * nx - j_along * ny, j_normal * ny + j_along * nx
     puck[VX] += dvx
     puck[VY] += dvy
-    mallets[k, 1] -= law.mallet_give * dvx
-    mallets[k, 4] -= law.mallet_give * dvy
+    mallets[k, 1] -= give * dvx
+    mallets[k, 4] -= give * dvy

@@ -15,8 +15,10 @@ MOTOR = 6  # the first column of the motors' state, if that is separate from the
 
 
 @njit(error_model="numpy")
-def loss(law, p, v):
-    """The factor of the speed loss C7 v at position p and speed v: 1 in the baseline."""
+def loss(law, hand, p, v):
+    """The factor of the speed loss C7 v at position p and speed v: 1 in the baseline, and of a hand."""
+    if hand:
+        return 1.0
     factor = 1.0 + law.cubic_loss * v * v
     if law.rough != 0.0:
         factor += law.rough * sin(2.0 * pi * p / law.rough_length)
@@ -24,17 +26,17 @@ def loss(law, p, v):
 
 
 @njit(error_model="numpy")
-def advance_axis(law, c5, c6, c7, force, mallet, first, h, out):
+def advance_axis(law, hand, c5, c6, c7, force, mallet, first, h, out):
     """RK4 for C5 p''' + C6 p'' + C7 p' = force (Eq. 2-3 with their dots restored); state (p, p', p'') from `first`."""
     p, v, a = mallet[first], mallet[first + 1], mallet[first + 2]
     half = 0.5 * h
-    j1 = (force - c6 * a - c7 * v * loss(law, p, v)) / c5
+    j1 = (force - c6 * a - c7 * v * loss(law, hand, p, v)) / c5
     v2, a2 = v + half * a, a + half * j1
-    j2 = (force - c6 * a2 - c7 * v2 * loss(law, p + half * v, v2)) / c5
+    j2 = (force - c6 * a2 - c7 * v2 * loss(law, hand, p + half * v, v2)) / c5
     v3, a3 = v + half * a2, a + half * j2
-    j3 = (force - c6 * a3 - c7 * v3 * loss(law, p + half * v2, v3)) / c5
+    j3 = (force - c6 * a3 - c7 * v3 * loss(law, hand, p + half * v2, v3)) / c5
     v4, a4 = v + h * a3, a + h * j3
-    j4 = (force - c6 * a4 - c7 * v4 * loss(law, p + h * v3, v4)) / c5
+    j4 = (force - c6 * a4 - c7 * v4 * loss(law, hand, p + h * v3, v4)) / c5
     out[first] = p + h * (v + 2.0 * v2 + 2.0 * v3 + v4) / 6.0
     out[first + 1] = v + h * (a + 2.0 * a2 + 2.0 * a3 + a4) / 6.0
     out[first + 2] = a + h * (j1 + 2.0 * j2 + 2.0 * j3 + j4) / 6.0
@@ -92,11 +94,15 @@ def advance_mallets(law, mallets, volts, h, out):
     separate = mallets.shape[1] > MOTOR
     driven = MOTOR if separate else 0
     for k in range(mallets.shape[0]):
-        lost_x, lost_y = rubbing(law, mallets[k, driven + 1], mallets[k, driven + 4])
+        hand = k > 0 and law.hand != 0.0
+        lost_x, lost_y = (0.0, 0.0) if hand else rubbing(law, mallets[k, driven + 1], mallets[k, driven + 4])
         c5, c6, c7 = law.a1 - law.b1, law.a2 - law.b2, law.a3 - law.b3
-        advance_axis(law, c5, c6, c7, half_radius * (volts[k, 0] - lost_x), mallets[k], driven, h, out[k])
+        advance_axis(law, hand, c5, c6, c7, half_radius * (volts[k, 0] - lost_x), mallets[k], driven, h, out[k])
         c5, c6, c7 = law.a1 + law.b1, law.a2 + law.b2, law.a3 + law.b3
-        advance_axis(law, c5, c6, c7, half_radius * (volts[k, 1] - lost_y), mallets[k], driven + 3, h, out[k])
-        if separate:
+        advance_axis(law, hand, c5, c6, c7, half_radius * (volts[k, 1] - lost_y), mallets[k], driven + 3, h, out[k])
+        if separate and hand:
+            for column in range(MOTOR):
+                out[k, column] = out[k, MOTOR + column]
+        elif separate:
             follow(law, mallets[k], 0, h, out[k])
             follow(law, mallets[k], 3, h, out[k])

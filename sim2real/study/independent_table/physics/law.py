@@ -148,6 +148,9 @@ class Law:
     rough_length: float = 0.3  # m
     cubic_loss: float = 0.0  # s^2/m^2, speed loss C7 (1 + c v^2)
 
+    # Who has the second mallet: `gantry.advance_mallets`, `bounce.off_mallet`.
+    hand: bool = False  # a hand, whom nothing hinders that is written of mallets and gantries above
+
     def numbers(self) -> np.record:
         """The same fields as one record of floats, which the compiled functions read by name (None becomes NaN)."""
         values = [getattr(self, field.name) for field in fields(self)]

@@ -1,0 +1,108 @@
+"""What physics that the simulator lacks costs a player on a table, and how much a diagnosis wins back.
+
+The whole circle on a twin whose physics is concealed: the player plays there, some of that play is recorded and
+diagnosed, the player is fine-tuned in the simulator with what was found, and plays again, in games of the same seeds.
+Beside it stand the usual answers, each with as much training: an arm each. Every stage keeps what it made in --out, and
+the same command goes on where it was stopped. Scores are goals a minute, with 95 % intervals."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+MOST_GAMES = 10_000
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of the command."""
+    parser.add_argument("player", nargs="?", default="policy:champion", metavar="PLAYER", help="(policy:champion)")
+    parser.add_argument("--table", default="walls", metavar="NAME", help="the concealed table (walls); --list has all")
+    parser.add_argument("--list", action="store_true", help="list the concealed tables and the arms, and end")
+    parser.add_argument("--arms", nargs="+", metavar="ARM", help="what is compared (all)")
+    parser.add_argument("--opponent", default="interceptor", metavar="PLAYER", help="the hand at the other end")
+    parser.add_argument("--games", type=int, default=40, metavar="N", help="of each player on the table (40)")
+    parser.add_argument("--seconds", type=float, default=60.0, metavar="S", help="of play of a game, at most (60)")
+    parser.add_argument("--recorded", type=int, default=5, metavar="N", help="games that are recorded (5)")
+    parser.add_argument("--minutes", type=float, default=30.0, metavar="M", help="of fine-tuning of each arm (30)")
+    parser.add_argument("--seed", type=int, default=0, help="of the first game, and of learning (0)")
+    parser.add_argument("--processes", type=int, default=2, metavar="N", help="that play at once (2)")
+    parser.add_argument("--out", type=Path, default=Path("out/gap"), metavar="DIR", help="(out/gap)")
+    parser.add_argument("--json", action="store_true", help="print gap.json instead of the summary")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Go round. Returns 0. ValueError, in one line, for what cannot be."""
+    from agents.commands.train import require_torch
+    from baselines import find_player
+    from baselines.commands.options import progress_bar
+    from puckpilot_env.files.toml_file import refuse_unknown
+    from puckpilot_env.options.inputs import seed_number, whole_number
+    from sim2real.gap.arms import ARMS
+    from sim2real.gap.circle import Circle, Conditions
+    from sim2real.gap.concealed import find_table
+
+    if args.list:
+        print("\n".join(_listed()))
+        return 0
+    require_torch()
+    arms = args.arms or list(ARMS)
+    refuse_unknown(arms, ARMS, "arm")
+    find_table(args.table)
+    for name in (args.player, args.opponent):
+        find_player(name)
+    whole_number(args.processes, "--processes", 1, 64)
+    whole_number(args.games, "--games", 2, MOST_GAMES)
+    whole_number(args.recorded, "--recorded", 1, args.games)
+    for name in ("seconds", "minutes"):
+        if not 0.0 < getattr(args, name) <= 1e5:
+            raise ValueError(f"--{name} is {getattr(args, name):g}; expected more than 0, at most 1e5")
+    conditions = Conditions(
+        args.player, args.opponent, args.table, args.games, args.seconds, args.recorded, args.minutes,
+        seed_number(args.seed),
+    )  # fmt: skip
+    report = (lambda line: None) if args.json else lambda line: print(line, flush=True)
+    with progress_bar("games on the table") as progress:
+        result = Circle(args.out, conditions, args.processes, report).run(arms, progress)
+    print(json.dumps(result, indent=1) if args.json else "\n".join(_lines(result)))
+    return 0
+
+
+def _listed() -> list[str]:
+    from sim2real.gap.arms import ARMS
+    from sim2real.gap.concealed import TABLES
+
+    lines = []
+    for title, rows in (("tables", TABLES), ("arms", ARMS)):
+        lines += [title, *(f"  {name:12} {row.words}" for name, row in rows.items())]
+    return lines
+
+
+def _lines(result: dict[str, Any]) -> list[str]:
+    from sim2real.gap.arms import ARMS
+
+    found = ", ".join(result["found"]) or "nothing"
+    simulated, before = result["simulator"], result["before"]
+    lines = [
+        f"the diagnosis of its play found: {found}",
+        f"{'goals a minute':50} {'for':>5} {'against':>8} {'net':>6}  {'95 %':>14}  {'won back':>8}  {'95 %':>14}",
+        f"{'in the simulator, as late':50} {simulated['scored']:5.2f} {simulated['conceded']:8.2f} "
+        f"{simulated['scored'] - simulated['conceded']:6.2f}",
+        f"{'on the table':50} {_rates(before)}",
+    ]
+    for name, arm in result["arms"].items():
+        more = arm["change"]
+        lines.append(
+            f"{f'{name}: {ARMS[name].words}':50} {_rates(arm)}  {more['value']:+8.2f}  "
+            f"{more['low']:+6.2f} {more['high']:+7.2f}"
+        )
+    return lines
+
+
+def _rates(one: dict[str, Any]) -> str:
+    net = one["net"]
+    return (
+        f"{one['scored']['value']:5.2f} {one['conceded']['value']:8.2f} {net['value']:6.2f}  "
+        f"{net['low']:6.2f} {net['high']:7.2f}"
+    )

@@ -1,0 +1,91 @@
+"""What a player is fine-tuned on, from the diagnosis or without it: an arm of the comparison each.
+
+Every arm knows the loop's own delay, AHEAD: it is no secret of the table.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from puckpilot_env.files.toml_file import refuse_unknown
+from puckpilot_env.options.draws_file import read_draws
+from puckpilot_env.options.effects_file import effect_values
+from puckpilot_env.variants import find_variant
+from sim2real.gap.concealed import DELAY, find_table
+from sim2real.table.mallet_driver import AHEAD
+
+SENSORS = ("camera_", "beam_", "frame_", "dropped_", "held_")  # of which a player that is told the state sees nothing
+
+
+@dataclass(frozen=True)
+class Simulator:
+    """A simulator to learn on: parameters of all tables by name, and draws, see `draws_file`."""
+
+    values: Mapping[str, float] = field(default_factory=dict)
+    draws: Mapping[str, Any] | None = None
+
+    def with_delay(self, seconds: float) -> Simulator:
+        """The same with commands later by so much [s]."""
+        return Simulator({**self.values, DELAY: self.values.get(DELAY, 0.0) + seconds}, self.draws)
+
+
+@dataclass(frozen=True)
+class Arm:
+    """words: what it does; simulator: from the folder of the diagnosis and the concealed table's name, or None for a
+    player that stays as it is."""
+
+    words: str
+    simulator: Callable[[Path, str], Simulator] | None
+
+
+def _corrected(diagnosis: Path, table: str) -> Simulator:
+    """All that was found, and the intervals of what was measured. Late frames act as late commands do."""
+    found = Simulator(effect_values(diagnosis / "effects.toml"), _drawn(diagnosis))
+    content = json.loads((diagnosis / "diagnosis.json").read_text(encoding="utf-8"))
+    late = [one for one in content["findings"] if one["mechanism"] == "camera_delay"]
+    return found.with_delay(sum(float(one["parameters"]["delay_s"]["value"]) for one in late))
+
+
+def _drawn(diagnosis: Path) -> dict[str, Any] | None:
+    """The draws of a diagnosis, but for a delay, which is known."""
+    drawn = read_draws(diagnosis / "draws.toml").as_dict()
+    drawn["draws"].pop(DELAY, None)
+    return drawn if drawn["draws"] else None
+
+
+def _constants(diagnosis: Path, table: str) -> Simulator:
+    """The baseline's parameters as refitted, and nothing else."""
+    content = json.loads((diagnosis / "diagnosis.json").read_text(encoding="utf-8"))
+    return Simulator({name: float(one["value"]) for name, one in content["baseline"]["parameters"].items()})
+
+
+def _randomized(diagnosis: Path, table: str) -> Simulator:
+    """The ranges of `match-randomized-v0`, whatever was recorded."""
+    rows = {
+        draw.parameter: {"low": draw.low, "high": draw.high}
+        for draw in find_variant("match-randomized-v0").draws
+        if draw.parameter != DELAY and not draw.parameter.startswith(SENSORS)
+    }
+    return Simulator({}, rows)
+
+
+ARMS = {
+    "nothing": Arm("the player as it is", None),
+    "unchanged": Arm("fine-tuned on the unchanged simulator", lambda diagnosis, table: Simulator()),
+    "randomized": Arm("fine-tuned on randomized tables", _randomized),
+    "constants": Arm("fine-tuned with the baseline's constants refitted", _constants),
+    "corrected": Arm("fine-tuned with what the diagnosis found", _corrected),
+    "truth": Arm("fine-tuned on the concealed truth: the ceiling",
+                 lambda diagnosis, table: Simulator(find_table(table).truth)),
+}  # fmt: skip
+
+
+def simulator_of(arm: str, diagnosis: Path, table: str) -> Simulator | None:
+    """What an arm learns on; None if it does not. ValueError, in one line, for an unknown arm."""
+    refuse_unknown([arm], ARMS, "arm")
+    make = ARMS[arm].simulator
+    return None if make is None else make(diagnosis, table).with_delay(AHEAD)

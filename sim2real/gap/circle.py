@@ -1,0 +1,187 @@
+"""The whole circle in stages, each of which keeps what it made in a folder and is not run again: play, diagnose,
+fine-tune, play again.
+
+```
+DIR/conditions.json           who played, on what, with which seeds: the circle's conditions
+DIR/simulator/games.json      the player in the simulator
+DIR/before/                   games on the table, and DIR/recordings/ of the first of them
+DIR/diagnosis/                of these recordings alone
+DIR/ARM/training/             a run of `puckpilot train` for each arm
+DIR/ARM/games/                its player on the table, in games of the same seeds
+DIR/gap.json                  the result
+```
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import Any
+
+from puckpilot_env.files.whole_file import write_text_whole
+from puckpilot_env.options.effects_file import as_content
+from sim2real.gap.arms import ARMS, simulator_of
+from sim2real.gap.games import Game, Meeting, play_all
+from sim2real.gap.score import change, score
+from sim2real.table.mallet_driver import AHEAD
+
+FORMAT = "puckpilot-gap/1"
+VARIANT = "match-v0"
+PRESET = "fine_tune"
+Report = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """player, opponent: by name; table: a concealed one; games: of each player on the table, each of `seconds` of play
+    at most, of which the first `recorded` are recorded; minutes: of fine-tuning; seed: of the first game and of
+    learning."""
+
+    player: str
+    opponent: str
+    table: str
+    games: int
+    seconds: float
+    recorded: int
+    minutes: float
+    seed: int
+
+
+class Circle:
+    """A circle in its folder. processes: that play at once; report: takes a line for each stage that begins."""
+
+    def __init__(self, folder: Path, conditions: Conditions, processes: int, report: Report) -> None:
+        self.folder, self.conditions, self._processes, self._report = folder, conditions, processes, report
+        _keep_conditions(folder, conditions)
+
+    @property
+    def diagnosis(self) -> Path:
+        """Folder of the diagnosis."""
+        return self.folder / "diagnosis"
+
+    def run(self, arms: list[str], progress: Callable[[int, int], None]) -> dict[str, Any]:
+        """All stages that are not done yet; the result, as it is written to gap.json."""
+        simulated = self._simulated()
+        self._report("playing on the table")
+        before = self._games(self.conditions.player, self.folder / "before", progress)
+        self._diagnose()
+        players = {arm: self._tuned(arm) for arm in arms}
+        after: dict[str, list[Game]] = {}
+        for arm, player in players.items():
+            self._report(f"playing on the table: {ARMS[arm].words}")
+            folder = self.folder / ("before" if player == self.conditions.player else f"{arm}/games")
+            after[arm] = self._games(player, folder, progress)
+        result = self._result(simulated, before, after)
+        write_text_whole(self.folder / "gap.json", json.dumps(result, indent=1) + "\n")
+        return result
+
+    def _simulated(self) -> dict[str, Any]:
+        """The score in the simulator, whose commands are as late as the loop's."""
+        from baselines.matches.match import play
+        from puckpilot_env.variants import find_variant
+
+        path, c = self.folder / "simulator" / "games.json", self.conditions
+        if not path.exists():
+            self._report("playing in the simulator")
+            late = {"command_delay": {"delay_s": AHEAD}}
+            match = play(VARIANT, c.player, c.opponent, 10 * c.games, c.seed, effects=late)
+            minutes = float(match.lengths.sum()) * find_variant(VARIANT).period / 60.0
+            path.parent.mkdir(parents=True, exist_ok=True)
+            content = {"goals": list(match.goals), "minutes": minutes}
+            write_text_whole(path, json.dumps(content, indent=1) + "\n")
+        return json.loads(path.read_text(encoding="utf-8"))
+
+    def _games(self, player: str, folder: Path, progress: Callable[[int, int], None]) -> list[Game]:
+        c = self.conditions
+        meetings = [
+            Meeting(player, c.opponent, c.table, VARIANT, c.seed + game, c.seconds) for game in range(c.games)
+        ]
+        if player != c.player:
+            return play_all(meetings, folder, None, self._processes, progress)
+        first = play_all(meetings[: c.recorded], folder, self.folder / "recordings", self._processes, progress)
+        return first + play_all(meetings[c.recorded :], folder, None, self._processes, progress)
+
+    def _diagnose(self) -> None:
+        from sim2real.diagnose.output.files import write
+        from sim2real.diagnose.pipeline import diagnose
+        from sim2real.diagnose.result.context import ReportContext
+        from sim2real.progress_bar import progress_bar
+        from sim2real.recording.folder import read_recording
+
+        if (self.diagnosis / "diagnosis.json").exists():
+            return
+        self._report("diagnosing what was recorded")
+        recordings = [read_recording(one) for one in sorted((self.folder / "recordings").iterdir())]
+        with progress_bar() as progress:
+            diagnosis = diagnose(recordings, [], {}, progress)
+        write(diagnosis, self.diagnosis, ReportContext(tuple(one.name for one in recordings), {}))
+
+    def _tuned(self, arm: str) -> str:
+        """The name of an arm's player, fine-tuned as long as it should be."""
+        from agents.commands.train import run_training
+        from agents.policy.policy import policy_file
+        from agents.training.preset import find_preset
+        from agents.training.run_folder import RunFolder
+        from agents.training.settings import Settings
+
+        c, simulator = self.conditions, simulator_of(arm, self.diagnosis, self.conditions.table)
+        if simulator is None:
+            return c.player
+        folder = RunFolder(self.folder / arm / "training")
+        done = self.folder / arm / "trained"
+        if not done.exists():
+            self._report(f"{ARMS[arm].words}, {c.minutes:g} minutes")
+            settings = Settings(
+                VARIANT, c.seed, self._processes, find_preset(PRESET), dict(simulator.values), simulator.draws,
+                start=str(policy_file(c.player).resolve()),
+            )  # fmt: skip
+            with folder.locked():
+                if folder.checkpoint.exists():
+                    settings = Settings.from_dict(folder.settings())
+                else:
+                    folder.begin(settings.as_dict())
+                run_training(folder, settings, steps=float("inf"), minutes=c.minutes)
+            write_text_whole(done, "")
+        return f"policy:{folder.policy}"
+
+    def _result(self, simulated: dict[str, Any], before: list[Game], after: dict[str, list[Game]]) -> dict[str, Any]:
+        content = json.loads((self.diagnosis / "diagnosis.json").read_text(encoding="utf-8"))
+        return {
+            "format": FORMAT,
+            "conditions": asdict(self.conditions),
+            "simulator": {
+                name: goals / simulated["minutes"]
+                for name, goals in zip(("scored", "conceded"), simulated["goals"], strict=True)
+            },
+            "before": {name: asdict(rate) for name, rate in score(before).items()},
+            "stops": sum(game.stops for game in before),
+            "found": [one["mechanism"] for one in content["findings"]],
+            "verdict": content["verdict"],
+            "arms": {
+                arm: {
+                    **{name: asdict(rate) for name, rate in score(games).items()},
+                    "change": asdict(change(before, games)),
+                    "stops": sum(game.stops for game in games),
+                }
+                for arm, games in after.items()
+            },
+        }
+
+
+def _keep_conditions(folder: Path, conditions: Conditions) -> None:
+    """Write down the conditions of a new circle. ValueError, in one line, for a folder of another one."""
+    path = folder / "conditions.json"
+    if path.exists():
+        try:
+            kept = Conditions(**json.loads(path.read_text(encoding="utf-8")))
+        except (ValueError, TypeError):
+            raise ValueError(f"{path} says nothing of a circle; name another --out") from None
+        other = [one.name for one in fields(Conditions) if getattr(kept, one.name) != getattr(conditions, one.name)]
+        if other:
+            given = ", ".join(f"{name} {getattr(kept, name)}" for name in other)
+            raise ValueError(f"{folder} has a circle with {given}; give the same, or name another --out")
+        return
+    folder.mkdir(parents=True, exist_ok=True)
+    write_text_whole(path, json.dumps(asdict(conditions), indent=1) + "\n")
