@@ -21,7 +21,6 @@ from pathlib import Path
 from typing import Any
 
 from puckpilot_env.files.whole_file import write_text_whole
-from puckpilot_env.options.effects_file import as_content
 from sim2real.gap.arms import ARMS, simulator_of
 from sim2real.gap.games import Game, Meeting, play_all
 from sim2real.gap.score import change, score
@@ -95,9 +94,7 @@ class Circle:
 
     def _games(self, player: str, folder: Path, progress: Callable[[int, int], None]) -> list[Game]:
         c = self.conditions
-        meetings = [
-            Meeting(player, c.opponent, c.table, VARIANT, c.seed + game, c.seconds) for game in range(c.games)
-        ]
+        meetings = [Meeting(player, c.opponent, c.table, VARIANT, c.seed + game, c.seconds) for game in range(c.games)]
         if player != c.player:
             return play_all(meetings, folder, None, self._processes, progress)
         first = play_all(meetings[: c.recorded], folder, self.folder / "recordings", self._processes, progress)

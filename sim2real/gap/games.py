@@ -55,7 +55,7 @@ def play_all(
 ) -> list[Game]:  # fmt: skip
     """Play the games whose results are not in `folder` yet; all of them, in the order of `meetings`.
 
-    recordings: where each is recorded too, as `game_SEED`. ValueError, in one line, where a result is of something else.
+    recordings: where each is recorded too, as `game_SEED`. ValueError, in one line, for a result of something else.
     """
     folder.mkdir(parents=True, exist_ok=True)
     done = {one: _read(folder, one) for one in meetings}

@@ -39,9 +39,7 @@ def change(before: Sequence[Game], after: Sequence[Game]) -> Rate:
 
 def _drawn(games: int) -> NDArray[np.int64]:
     """Rows of games: all of them first, then as many at random."""
-    return np.concatenate(
-        [np.arange(games)[None], np.random.default_rng(0).integers(0, games, (RESAMPLES, games))]
-    )
+    return np.concatenate([np.arange(games)[None], np.random.default_rng(0).integers(0, games, (RESAMPLES, games))])
 
 
 def _rates(games: Sequence[Game], name: str, drawn: NDArray[np.int64]) -> NDArray[np.float64]:
