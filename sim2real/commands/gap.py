@@ -41,7 +41,7 @@ def run(args: argparse.Namespace) -> int:
     from puckpilot_env.options.inputs import seed_number, whole_number
     from sim2real.gap.arms import ARMS
     from sim2real.gap.circle import Circle, Conditions
-    from sim2real.gap.concealed import find_table
+    from sim2real.table.twin.concealed import find_table
 
     if args.list:
         print("\n".join(_listed()))
@@ -71,7 +71,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _listed() -> list[str]:
     from sim2real.gap.arms import ARMS
-    from sim2real.gap.concealed import TABLES
+    from sim2real.table.twin.concealed import TABLES
 
     lines = []
     for title, rows in (("tables", TABLES), ("arms", ARMS)):

@@ -15,8 +15,8 @@ from puckpilot_env.files.toml_file import refuse_unknown
 from puckpilot_env.options.draws_file import read_draws
 from puckpilot_env.options.effects_file import effect_values
 from puckpilot_env.variants import find_variant
-from sim2real.gap.concealed import DELAY, find_table
 from sim2real.table.mallet_driver import AHEAD
+from sim2real.table.twin.concealed import DELAY, find_table
 
 SENSORS = ("camera_", "beam_", "frame_", "dropped_", "held_")  # of which a player that is told the state sees nothing
 

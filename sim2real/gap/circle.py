@@ -4,7 +4,7 @@ fine-tune, play again.
 ```
 DIR/conditions.json           who played, on what, with which seeds: the circle's conditions
 DIR/simulator/games.json      the player in the simulator
-DIR/before/                   games on the table, and DIR/recordings/ of the first of them
+DIR/before/                   games on the table, and recordings/ of the first of them
 DIR/diagnosis/                of these recordings alone
 DIR/ARM/training/             a run of `puckpilot train` for each arm
 DIR/ARM/games/                its player on the table, in games of the same seeds
@@ -22,9 +22,9 @@ from typing import Any
 
 from puckpilot_env.files.whole_file import write_text_whole
 from sim2real.gap.arms import ARMS, simulator_of
-from sim2real.gap.games import Game, Meeting, play_all
 from sim2real.gap.score import change, score
 from sim2real.table.mallet_driver import AHEAD
+from sim2real.table.twin.fidelity import Meeting, TwinGame, play_all
 
 FORMAT = "puckpilot-gap/1"
 VARIANT = "match-v0"
@@ -67,7 +67,7 @@ class Circle:
         before = self._games(self.conditions.player, self.folder / "before", progress)
         self._diagnose()
         players = {arm: self._tuned(arm) for arm in arms}
-        after: dict[str, list[Game]] = {}
+        after: dict[str, list[TwinGame]] = {}
         for arm, player in players.items():
             self._report(f"playing on the table: {ARMS[arm].words}")
             folder = self.folder / ("before" if player == self.conditions.player else f"{arm}/games")
@@ -92,13 +92,17 @@ class Circle:
             write_text_whole(path, json.dumps(content, indent=1) + "\n")
         return json.loads(path.read_text(encoding="utf-8"))
 
-    def _games(self, player: str, folder: Path, progress: Callable[[int, int], None]) -> list[Game]:
+    def _games(self, player: str, folder: Path, progress: Callable[[int, int], None]) -> list[TwinGame]:
         c = self.conditions
-        meetings = [Meeting(player, c.opponent, c.table, VARIANT, c.seed + game, c.seconds) for game in range(c.games)]
-        if player != c.player:
-            return play_all(meetings, folder, None, self._processes, progress)
-        first = play_all(meetings[: c.recorded], folder, self.folder / "recordings", self._processes, progress)
-        return first + play_all(meetings[c.recorded :], folder, None, self._processes, progress)
+        meetings = [
+            Meeting(
+                player, c.opponent, VARIANT, c.seed + game, c.seconds, concealed=c.table, clears=True,
+                recorded=player == c.player and game < c.recorded,
+            )
+            for game in range(c.games)
+        ]  # fmt: skip
+        folder.mkdir(parents=True, exist_ok=True)
+        return play_all(meetings, folder, self._processes, progress)
 
     def _diagnose(self) -> None:
         from sim2real.diagnose.output.files import write
@@ -110,7 +114,7 @@ class Circle:
         if (self.diagnosis / "diagnosis.json").exists():
             return
         self._report("diagnosing what was recorded")
-        recordings = [read_recording(one) for one in sorted((self.folder / "recordings").iterdir())]
+        recordings = [read_recording(one) for one in sorted((self.folder / "before" / "recordings").iterdir())]
         with progress_bar() as progress:
             diagnosis = diagnose(recordings, [], {}, progress)
         write(diagnosis, self.diagnosis, ReportContext(tuple(one.name for one in recordings), {}))
@@ -143,7 +147,9 @@ class Circle:
             write_text_whole(done, "")
         return f"policy:{folder.policy}"
 
-    def _result(self, simulated: dict[str, Any], before: list[Game], after: dict[str, list[Game]]) -> dict[str, Any]:
+    def _result(
+        self, simulated: dict[str, Any], before: list[TwinGame], after: dict[str, list[TwinGame]]
+    ) -> dict[str, Any]:
         content = json.loads((self.diagnosis / "diagnosis.json").read_text(encoding="utf-8"))
         return {
             "format": FORMAT,

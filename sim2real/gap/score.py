@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sim2real.gap.games import Game
+from sim2real.table.twin.fidelity import TwinGame
 
 RESAMPLES = 4000
 LEVEL = 0.95
@@ -23,16 +23,14 @@ class Rate:
     high: float
 
 
-def score(games: Sequence[Game]) -> dict[str, Rate]:
+def score(games: Sequence[TwinGame]) -> dict[str, Rate]:
     """Goals a minute `scored`, `conceded`, and the difference of both, the `net` score."""
     drawn = _drawn(len(games))
     return {name: _rate(_rates(games, name, drawn)) for name in ("scored", "conceded", "net")}
 
 
-def change(before: Sequence[Game], after: Sequence[Game]) -> Rate:
-    """By how much the net score is higher `after`: in games of the same seeds, one by one. ValueError for others."""
-    if [one.seed for one in before] != [one.seed for one in after]:
-        raise ValueError("the games to be compared have other seeds")
+def change(before: Sequence[TwinGame], after: Sequence[TwinGame]) -> Rate:
+    """By how much the net score is higher `after`: in games of the same seeds, in the same order."""
     drawn = _drawn(len(before))
     return _rate(_rates(after, "net", drawn) - _rates(before, "net", drawn))
 
@@ -42,7 +40,7 @@ def _drawn(games: int) -> NDArray[np.int64]:
     return np.concatenate([np.arange(games)[None], np.random.default_rng(0).integers(0, games, (RESAMPLES, games))])
 
 
-def _rates(games: Sequence[Game], name: str, drawn: NDArray[np.int64]) -> NDArray[np.float64]:
+def _rates(games: Sequence[TwinGame], name: str, drawn: NDArray[np.int64]) -> NDArray[np.float64]:
     """The rate [1/min] of each row of games."""
     scored, conceded = np.array([one.goals for one in games], float).T
     goals = {"scored": scored, "conceded": conceded, "net": scored - conceded}[name]

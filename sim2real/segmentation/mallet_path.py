@@ -144,11 +144,22 @@ def _switches(recording: Recording) -> Switches:
 
 
 def _tune(path: MalletPath) -> MalletPath:
-    """Choose the jerk and the lag of the switches by maximum likelihood over windows in which the mallet moves most."""
-    windows = _busy_times(path)
-    candidates = [NO_SWITCHES]
-    if len(path.switches[0]):
-        candidates += [(path.switches[0] + lag, path.switches[1] + lag) for lag in SEGMENTATION.switch_lags]
+    """Choose the jerk, and whether and how late the voltages' switches act, by maximum likelihood over windows in which
+    the mallet moves most. The lag is found roughly first: one that is wrong by milliseconds is worse than no switches."""
+    windows, lagged = _busy_times(path), _lagged(path.switches, SEGMENTATION.switch_lags)
+    if lagged:
+        rough = _likeliest(path, windows, lagged)
+        lagged = _lagged(rough.switches, SEGMENTATION.switch_lags_between)
+    return _likeliest(path, windows, [NO_SWITCHES, *lagged])
+
+
+def _lagged(switches: Switches, lags: Sequence[float]) -> list[Switches]:
+    """The switches at each of the lags [s]; none if there are no switches."""
+    return [(switches[0] + lag, switches[1] + lag) for lag in lags] if len(switches[0]) else []
+
+
+def _likeliest(path: MalletPath, windows: np.ndarray, candidates: Sequence[Switches]) -> MalletPath:
+    """The path with the jerk and the switches of maximum likelihood."""
     jerks = SEGMENTATION.jerks
     heights = np.stack([path.likelihoods(float(when), np.array(jerks), candidates) for when in windows], axis=3)
     least = heights.max(axis=(1, 2), keepdims=True) - SEGMENTATION.contact_cost

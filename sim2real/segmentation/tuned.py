@@ -170,6 +170,12 @@ class SegmentationNumbers:
     switch_lags: tuple[float, ...] = tuned(
         tuple(0.004 * k for k in range(8)), "s", "switches that act later than any candidate", "choice: up to 28 ms"
     )
+    switch_lags_between: tuple[float, ...] = tuned(
+        tuple(0.0005 * k for k in range(-4, 5)),
+        "s",
+        "velocities of a mallet struck within a millisecond of a switch",
+        "choice: as close as the board's ticks",
+    )
     switch_step: float = tuned(
         80.0,
         "m/s^2",

@@ -1,13 +1,14 @@
-"""Whole games on the twin, in parallel and resumable: how they end, and how fast the twin is."""
+"""Games on the twin, in parallel and resumable: how they end, how fast the twin is, and recordings of them."""
 
 from __future__ import annotations
 
 import functools
 import json
+import shutil
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from contextlib import closing
+from contextlib import closing, nullcontext
 from dataclasses import asdict, dataclass, replace
 from multiprocessing import get_context
 from pathlib import Path
@@ -18,8 +19,11 @@ import sim2real
 from puckpilot_env.files.whole_file import write_text_whole
 from puckpilot_env.variants import find_variant
 from sim2real.study.version import OF_GAMES, code_version
+from sim2real.table.game.game_record import GameRecord
 from sim2real.table.game.play import play_game
 from sim2real.table.game.robot_seat import make_robot_seat
+from sim2real.table.recorder.recorded_game import recorded
+from sim2real.table.twin.concealed import find_table
 
 FORMAT = "puckpilot-twin-game/1"
 WARM = 0.3  # s of a game before the first one that is timed, in which all is compiled
@@ -31,7 +35,9 @@ RESAMPLES = 2000  # of the bootstrap
 class Meeting:
     """Who meets on the twin: `player` at the robot's seat, its `opponent`, the `variant`'s id, and the game's `seed`.
 
-    seconds: of play at most; None for a whole game. camera: the kind of the twin's, see `cameras.CAMERAS`.
+    seconds: of play at most; None for a whole game. camera: the kind of the twin's, see `cameras.CAMERAS`. concealed:
+    the table, see `concealed.TABLES`; "" for the simulator's. clears: whether play goes on after a doubt stopped the
+    table. recorded: whether the game is recorded, as `recordings/game_SEED` beside its result.
     """
 
     player: str
@@ -40,13 +46,17 @@ class Meeting:
     seed: int
     seconds: float | None = None
     camera: str = "places"
+    concealed: str = ""
+    clears: bool = False
+    recorded: bool = False
 
 
 @dataclass(frozen=True)
 class TwinGame:
     """What came of a game: outcome 1, 0, -1 as the player won, drew or lost; goals of both; `seconds` of play.
 
-    virtual: the twin's time from power-on to the end [s]; processor, wall: what it took on this computer [s].
+    virtual: the twin's time from power-on to the end [s]; processor, wall: what it took on this computer [s]; stops:
+    how often a doubt stopped the table.
     """
 
     outcome: int
@@ -55,32 +65,37 @@ class TwinGame:
     virtual: float
     processor: float
     wall: float
+    stops: int = 0
 
 
-def play_on_twin(meeting: Meeting) -> TwinGame:
-    """Play a game. ValueError, in one line, for an unknown name, and where the table stopped."""
+def play_on_twin(meeting: Meeting, recording: Path | None) -> TwinGame:
+    """Play a game, recorded as a new folder if one is given. ValueError, in one line, for an unknown name, and where
+    the table stopped."""
     _warm_up(replace(meeting, seed=0, seconds=WARM))
-    return _play(meeting)
+    return _play(meeting, recording)
 
 
 @functools.cache
 def _warm_up(meeting: Meeting) -> None:
-    _play(meeting)
+    _play(meeting, None)
 
 
-def _play(meeting: Meeting) -> TwinGame:
+def _play(meeting: Meeting, recording: Path | None) -> TwinGame:
     begin = time.process_time(), time.perf_counter()
     variant = find_variant(meeting.variant)
-    with closing(make_robot_seat(variant, "twin", opponent=meeting.opponent, camera=meeting.camera)) as env:
-        log = play_game(
-            env, meeting.player, meeting.seed, meeting.seconds, lambda line: None, lambda fault: False,
-            lambda loop, action, info: None,
-        ).complete  # fmt: skip
-        if log.interrupted:
-            raise KeyboardInterrupt
-        virtual = env.backend.now()
+    options = find_table(meeting.concealed).twin_options(GameRecord(variant).p) if meeting.concealed else {}
+    with closing(make_robot_seat(variant, "twin", opponent=meeting.opponent, camera=meeting.camera, **options)) as env:
+        note = f"{meeting.player} against {meeting.opponent} on the twin, seed {meeting.seed}"
+        with nullcontext() if recording is None else recorded(env, recording, note):
+            log = play_game(
+                env, meeting.player, meeting.seed, meeting.seconds, lambda line: None, lambda fault: meeting.clears,
+                lambda loop, action, info: None,
+            ).complete  # fmt: skip
+            if log.interrupted:
+                raise KeyboardInterrupt
+            virtual = env.backend.now()
     processor, wall = time.process_time() - begin[0], time.perf_counter() - begin[1]
-    return TwinGame(log.outcome, log.score, log.seconds, virtual, processor, wall)
+    return TwinGame(log.outcome, log.score, log.seconds, virtual, processor, wall, len(log.faults))
 
 
 def play_all(
@@ -114,8 +129,17 @@ def _file(folder: Path, meeting: Meeting) -> Path:
     return folder / f"game_{meeting.seed}.json"
 
 
+def _recording(folder: Path, meeting: Meeting) -> Path | None:
+    """Where a game is recorded. What an interrupted one left there is removed."""
+    if not meeting.recorded:
+        return None
+    path = folder / "recordings" / f"game_{meeting.seed}"
+    shutil.rmtree(path, ignore_errors=True)
+    return path
+
+
 def _play_and_write(meeting: Meeting, folder: Path, code: str) -> None:
-    game = asdict(play_on_twin(meeting))
+    game = asdict(play_on_twin(meeting, _recording(folder, meeting)))
     content = {"format": FORMAT, "code": code, "meeting": asdict(meeting), "game": game}
     write_text_whole(_file(folder, meeting), json.dumps(content, indent=1) + "\n")
 

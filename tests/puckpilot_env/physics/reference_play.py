@@ -6,6 +6,7 @@ import numpy as np
 
 from puckpilot_env import Tables
 from puckpilot_env.batch.motion import mallet_motion
+from sim2real.study.independent_table.physics.volts import Plan
 from tests.puckpilot_env.physics.table_driver import areas, plan_both, record
 
 PERIOD = 0.1
@@ -19,7 +20,7 @@ def gentle(tables: Tables, rng: np.random.Generator) -> np.ndarray:
     return actions
 
 
-def asked_for(tables: Tables, actions: np.ndarray) -> list[tuple[float, ...]]:
+def asked_for(tables: Tables, actions: np.ndarray) -> list[Plan]:
     """The plans of the first table's mallets from where their motors are, as the players ask for them."""
     p, state = record(), tables.states.copy().view(np.recarray)[0]
     is_rigid = not (tables.params["belt_hz"][0] or tables.params["backlash_gap"][0])

@@ -39,7 +39,7 @@ def step_axis(law, c5, c6, c7, half_radius, axis, state, t, h):
         for switch in (axis.t1, axis.t2):
             if t < switch < until:
                 until = switch
-        advance_axis(law, c5, c6, c7, half_radius * volts_at(axis, t), state, 0, until - t, state)
+        advance_axis(law, False, c5, c6, c7, half_radius * volts_at(axis, t), state, 0, until - t, state)
         t = until
 
 

@@ -14,14 +14,14 @@ from sim2real.table.twin.fidelity import Meeting, TwinGame, goals_a_minute, play
 MEETINGS = [Meeting("still", "goalie", "puckpilot/match-v0", seed) for seed in (3, 4, 5)]
 
 
-def result(meeting: Meeting) -> TwinGame:
+def result(meeting: Meeting, recording: Path | None = None) -> TwinGame:
     return TwinGame(1, (meeting.seed, 0), 60.0, 62.0, 20.0, 25.0)
 
 
 def test_a_stopped_run_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     played: list[int] = []
 
-    def fails_at_the_second(meeting: Meeting) -> TwinGame:
+    def fails_at_the_second(meeting: Meeting, recording: Path | None) -> TwinGame:
         if meeting.seed == 4 and len(played) == 1:
             raise KeyboardInterrupt
         played.append(meeting.seed)
