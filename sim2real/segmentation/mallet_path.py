@@ -145,7 +145,7 @@ def _switches(recording: Recording) -> Switches:
 
 def _tune(path: MalletPath) -> MalletPath:
     """Choose the jerk, and whether and how late the voltages' switches act, by maximum likelihood over windows in which
-    the mallet moves most. The lag is found roughly first: one that is wrong by milliseconds is worse than no switches."""
+    the mallet moves most. The lag is found roughly first, for one that is wrong by milliseconds is worse than none."""
     windows, lagged = _busy_times(path), _lagged(path.switches, SEGMENTATION.switch_lags)
     if lagged:
         rough = _likeliest(path, windows, lagged)

@@ -168,10 +168,10 @@ class SegmentationNumbers:
         "choice: decades",
     )
     switch_lags: tuple[float, ...] = tuned(
-        tuple(0.004 * k for k in range(8)), "s", "switches that act later than any candidate", "choice: up to 28 ms"
+        tuple(0.002 * k for k in range(15)), "s", "switches that act later than any candidate", "choice: up to 28 ms"
     )
     switch_lags_between: tuple[float, ...] = tuned(
-        tuple(0.0005 * k for k in range(-4, 5)),
+        tuple(0.0005 * k for k in range(-3, 4)),
         "s",
         "velocities of a mallet struck within a millisecond of a switch",
         "choice: as close as the board's ticks",

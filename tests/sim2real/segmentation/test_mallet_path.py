@@ -57,3 +57,43 @@ def test_a_mallet_that_too_few_samples_see_has_no_path_and_a_hole_no_motion() ->
     kept = (t < 5.0) | (t > 5.2)
     path = MalletPath(t[kept], place[kept], NOISE, (1e3, 1e3), (np.zeros(0), np.zeros(0)))
     assert path.motion(5.1) is None and path.motion(4.0) is not None
+
+
+def bang_bang(lag: float, seconds: float = 12.0) -> Recording:
+    """A mallet that goes to and fro along x with 60 m/s^2, turned at the times of its plans and `lag` [s] later."""
+    rate, begins = 500.0, np.arange(0.05, seconds - 0.2, 0.1)
+    half = 0.02 + 0.01 * np.random.default_rng(3).random(len(begins))
+    switches = np.concatenate(
+        [[begin, begin + one, begin + 2.0 * one] for begin, one in zip(begins, half, strict=True)]
+    )
+    pushes = np.tile([60.0, -60.0, 0.0], len(begins)) * np.repeat(np.resize([1.0, -1.0], len(begins)), 3)
+    t = np.arange(int(seconds * rate)) / rate
+    x = np.full(len(t), 0.5)
+    for switch, change in zip(switches + lag, np.diff(pushes, prepend=0.0), strict=True):
+        x += 0.5 * change * np.maximum(t - switch, 0.0) ** 2
+    place = np.stack([x, np.full(len(t), 0.5)], axis=1) + np.random.default_rng(1).normal(0.0, 1e-5, (len(t), 2))
+    zero = np.zeros(len(begins))
+    plans = {"t": begins, "t_x1": half, "t_x2": 2.0 * half, "t_y1": zero, "t_y2": zero}
+    nobody = np.full(len(t), np.nan)
+    frames = Stream({"t": t, "puck_x": nobody, "puck_y": nobody})
+    mallet = Stream({"t": t, "mallet_x": place[:, 0], "mallet_y": place[:, 1]})
+    return Recording("one", META, frames, mallet, Stream(plans))
+
+
+@pytest.mark.parametrize("lag", [0.0, 0.0029, 0.0051, 0.0103, 0.0136, 0.0192])
+def test_switches_act_when_they_do(lag: float) -> None:
+    recording = bang_bang(lag)
+    path, plans = robot_path(recording), recording.commands
+    assert path is not None and plans is not None and len(path.switches[0])
+    assert path.switches[0][0] - plans.t[0] == pytest.approx(lag, abs=3e-4)
+
+
+def test_a_mallet_s_velocity_is_known_right_after_a_switch() -> None:
+    """Where a blow is likely: 2 ms after the mallet was turned, 5.1 ms after it was to turn."""
+    recording = bang_bang(0.0051)
+    path, plans = robot_path(recording), recording.commands
+    assert path is not None and plans is not None
+    for begin, half, sign in zip(plans.t, plans["t_x1"], np.resize([1.0, -1.0], plans.rows), strict=True):
+        motion = path.motion_at_contact(float(begin + half + 0.0071))
+        assert motion is not None
+        assert motion[0][0] == pytest.approx(sign * 60.0 * (half - 0.002), abs=0.03)
