@@ -118,9 +118,10 @@ def _is_unexplained(problem: Problem, found: SearchResult, clusters: np.ndarray)
 
     def is_left(some: np.ndarray) -> bool:
         allowed = CONSISTENCY.unexplained * problem.freedom[some].sum() + CONSISTENCY.harm
-        return _own_loss(problem, found, some) > allowed
+        return bool(_own_loss(problem, found, some) > allowed)
 
-    return is_left(clusters) and all(is_left(clusters[clusters != one]) for one in clusters)
+    others = [clusters[clusters != one] for one in clusters] if len(clusters) > 1 else []
+    return bool(others) and is_left(clusters) and all(map(is_left, others))
 
 
 def _harms(problem: Problem, found: SearchResult, clusters: np.ndarray) -> bool:

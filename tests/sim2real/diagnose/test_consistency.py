@@ -4,11 +4,13 @@ import json
 from contextlib import nullcontext
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from puckpilot import main
+from sim2real.diagnose import consistency
 from sim2real.diagnose.consistency import check_consistency
 from sim2real.diagnose.input_checks import UndeterminedError
 from sim2real.diagnose.pipeline import diagnose
@@ -157,3 +159,14 @@ def test_stated_sizes_of_two_tables_are_refused_in_one_line(recorded, tmp_path, 
     error = capsys.readouterr().err
     assert "plain states table.length_m 2, longer 2.2" in error and error.count("\n") == 1
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("losses", "unexplained"),
+    [([4.0, 200.0, 4.0, 4.0], False), ([4.0, 200.0, 200.0, 4.0], True), ([200.0], False), ([4.0, 4.0], False)],
+    ids=["one disturbed launch", "two", "of one", "none"],
+)
+def test_a_single_disturbed_launch_makes_no_other_table(monkeypatch, losses, unexplained):
+    problem = SimpleNamespace(freedom=np.full(len(losses), 6.0))
+    monkeypatch.setattr(consistency, "_own_loss", lambda problem, found, some: float(np.array(losses)[some].sum()))
+    assert consistency._is_unexplained(problem, None, np.arange(len(losses))) is unexplained

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -60,3 +62,31 @@ def test_a_puck_in_a_goal_is_gone_until_it_is_put_back() -> None:
     made.put_puck(np.array([1.0, 0.5, 0.0, 0.0]))
     made.advance(0.4)
     assert made.puck == pytest.approx([1.0, 0.5, 0.0, 0.0])
+
+
+@pytest.mark.parametrize(
+    "law", [Law(motor_friction_left=1.0, axis_friction_y=1.0), Law(belt_hz=20.0, belt_zeta=0.1), Law(backlash=0.004)]
+)
+def test_a_hand_is_not_hindered_by_what_hinders_a_gantry(law: Law) -> None:
+    """The robot's mallet lags behind that of a plain table, the hand's does not."""
+    plain, gantries, hand = (Plant(one, ROBOT, OPPONENT) for one in (Law(), law, replace(law, hand=True)))
+    for one in (plain, gantries, hand):
+        one.drive(4.0, 1.0)
+        one.play((8.0, -3.0, 0.12, 0.07, 0.2, 0.11))
+        one.advance(0.1)
+    assert hand.mallet(1) == pytest.approx(plain.mallet(1), abs=1e-9)
+    assert hand.mallet(0) == gantries.mallet(0)
+    assert all(np.abs(np.subtract(gantries.mallet(k), plain.mallet(k)))[:2].max() > 1e-4 for k in range(2))
+
+
+def test_a_hand_is_no_mallet_that_gives() -> None:
+    law = Law(mallet_give=0.3, mallet_mu=0.3, mallet_restitution_slope=0.1)
+    after = []
+    for one in (Law(), law, replace(law, hand=True)):
+        made = Plant(one, ROBOT, OPPONENT)
+        made.put_puck(np.array([1.5, 0.53, 3.0, 0.0]))
+        made.advance(0.15)
+        after.append(made.puck)
+    plain, soft, hand = after
+    assert plain[2] < 0.0 and hand == pytest.approx(plain)
+    assert np.abs(soft - plain).max() > 0.1

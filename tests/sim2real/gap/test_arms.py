@@ -1,0 +1,72 @@
+"""What each arm learns on, from the files of a diagnosis."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from puckpilot_env import Tables
+from puckpilot_env.options.effects_file import as_content
+from sim2real.gap.arms import ARMS, simulator_of
+from sim2real.table.mallet_driver import AHEAD
+from sim2real.table.twin.concealed import TABLES
+
+EFFECTS = """format = "puckpilot-effects/1"
+[parameters]
+friction = 0.1
+[effects.table_tilt]
+tilt_x = 0.03
+tilt_y = 0.0
+[effects.command_delay]
+delay_s = 0.004
+"""
+DRAWS = """format = "puckpilot-draws/1"
+[draws.friction]
+low = 0.09
+high = 0.11
+[draws.command_delay]
+low = 0.003
+high = 0.005
+"""
+
+
+@pytest.fixture
+def diagnosis(tmp_path: Path) -> Path:
+    late = {"mechanism": "camera_delay", "parameters": {"delay_s": {"value": 0.01}}}
+    found = {"baseline": {"parameters": {"friction": {"value": 0.1}}}, "findings": [late]}
+    for name, text in (("effects.toml", EFFECTS), ("draws.toml", DRAWS), ("diagnosis.json", json.dumps(found))):
+        (tmp_path / name).write_text(text)
+    return tmp_path
+
+
+def test_the_corrected_arm_has_what_was_found_and_all_delays_together(diagnosis: Path) -> None:
+    one = simulator_of("corrected", diagnosis, "none")
+    assert one is not None and one.draws is not None
+    assert dict(one.values) == pytest.approx(
+        {"friction": 0.1, "tilt_x": 0.03, "tilt_y": 0.0, "command_delay": 0.004 + 0.01 + AHEAD}
+    )
+    assert set(one.draws["draws"]) == {"friction"}
+
+
+def test_others_do_not_see_the_findings(diagnosis: Path) -> None:
+    values = {arm: simulator_of(arm, diagnosis, "warp") for arm in ARMS}
+    assert values["nothing"] is None
+    assert values["unchanged"] is not None and dict(values["unchanged"].values) == {"command_delay": AHEAD}
+    assert values["constants"] is not None
+    assert dict(values["constants"].values) == {"friction": 0.1, "command_delay": AHEAD}
+    assert values["truth"] is not None and values["truth"].values["tilt_x"] == TABLES["warp"].truth["tilt_x"]
+
+
+@pytest.mark.parametrize("table", TABLES)
+def test_every_arm_can_be_learnt_on(diagnosis: Path, table: str) -> None:
+    for arm in ARMS:
+        one = simulator_of(arm, diagnosis, table)
+        if one is not None:
+            Tables("match-v0", 2, effects=as_content(one.values), draws=one.draws)
+
+
+def test_an_unknown_arm_is_refused_in_one_line(diagnosis: Path) -> None:
+    with pytest.raises(ValueError, match="unknown arm 'corected'"):
+        simulator_of("corected", diagnosis, "none")

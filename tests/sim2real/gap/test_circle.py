@@ -1,0 +1,66 @@
+"""The stages of a circle: each is run once, on what those before it made."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
+
+from puckpilot import main
+from sim2real.gap.circle import Circle, Conditions
+from sim2real.table.twin import fidelity
+
+CONDITIONS = Conditions("interceptor", "goalie", "none", 3, 20.0, 2, 1.0, 5)
+
+
+def circle(folder: Path, **other: object) -> Circle:
+    return Circle(folder, replace(CONDITIONS, **other), 1, lambda line: None)
+
+
+@pytest.mark.slow
+def test_a_circle_goes_round_and_is_not_run_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With a player that does not learn: games on the table, of which two are recorded, and their diagnosis."""
+    result = circle(tmp_path).run(["nothing"], lambda done, count: None)
+    assert {one.name for one in (tmp_path / "before" / "recordings").iterdir()} == {"game_5", "game_6"}
+    assert result["found"] == [] and result["arms"]["nothing"]["change"] == {"value": 0.0, "low": 0.0, "high": 0.0}
+    assert result["simulator"].keys() == {"scored", "conceded"}
+
+    def again(*_: object) -> None:
+        raise AssertionError("a game is played again")
+
+    monkeypatch.setattr(fidelity, "play_on_twin", again)
+    assert circle(tmp_path).run(["nothing"], lambda done, count: None) == result
+
+
+def test_a_folder_of_another_circle_is_refused(tmp_path: Path) -> None:
+    circle(tmp_path)
+    with pytest.raises(ValueError, match=r"has a circle with table none; give the same, or name another --out"):
+        circle(tmp_path, table="warp")
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (["--table", "wals"], "did you mean 'walls'"),
+        (["--arms", "truht"], "did you mean 'truth'"),
+        (["--recorded", "50"], "--recorded is 50"),
+        (["--minutes", "0"], "--minutes is 0"),
+        (["nobody"], "nobody"),
+    ],
+)
+def test_what_cannot_be_is_said_in_one_line(
+    given: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["gap", *given, "--out", str(tmp_path / "out")]) == 2
+    error = capsys.readouterr().err
+    assert said in error and error.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_tables_and_arms_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["gap", "--list"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert "  none         nothing: the control" in lines and any(line.startswith("  corrected") for line in lines)

@@ -1,0 +1,35 @@
+"""Scores and their changes, by hand and by drawing games of known rates."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from sim2real.gap.score import change, score
+from sim2real.table.twin.fidelity import TwinGame
+
+
+def game(scored: int, conceded: int, seconds: float = 60.0) -> TwinGame:
+    return TwinGame(1, (scored, conceded), seconds, seconds, 1.0, 1.0)
+
+
+def test_rates_are_all_goals_by_all_minutes() -> None:
+    rates = score([game(7, 1, 30.0), game(5, 2, 90.0)])
+    assert {name: rate.value for name, rate in rates.items()} == {"scored": 6.0, "conceded": 1.5, "net": 4.5}
+    assert (rates["scored"].low, rates["scored"].high) == pytest.approx((5.0 / 1.5, 14.0))
+
+
+def test_a_change_is_of_the_same_games() -> None:
+    """Games that differ much from each other, but each by the same: there is no doubt about the change."""
+    before = [game(k, 0) for k in range(8)]
+    one = change(before, [game(k + 2, 0) for k in range(8)])
+    assert (one.value, one.low, one.high) == (2.0, 2.0, 2.0)
+
+
+def test_intervals_hold_the_truth() -> None:
+    """Of 200 series of 24 games, of 3 and 1 goals a minute."""
+    rng, held = np.random.default_rng(4), 0
+    for _ in range(200):
+        rate = score([game(int(rng.poisson(3.0)), int(rng.poisson(1.0))) for _ in range(24)])["net"]
+        held += rate.low <= 2.0 <= rate.high
+    assert 180 <= held <= 198
