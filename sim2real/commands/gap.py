@@ -65,7 +65,7 @@ def run(args: argparse.Namespace) -> int:
     report = (lambda line: None) if args.json else lambda line: print(line, flush=True)
     with progress_bar("games on the table") as progress:
         result = Circle(args.out, conditions, args.processes, report).run(arms, progress)
-    print(json.dumps(result, indent=1) if args.json else "\n".join(_lines(result)))
+    print(json.dumps(result, indent=1) if args.json else "\n".join([*_lines(result), f"wrote {args.out / 'gap.html'}"]))
     return 0
 
 
@@ -89,7 +89,7 @@ def _lines(result: dict[str, Any]) -> list[str]:
         f"{'goals a minute':50} {'for':>5} {'against':>8} {'net':>6}  {'95 %':>14}  {'won back':>8}  {'95 %':>14}",
         f"{'in the simulator, as late':50} {simulated['scored']:5.2f} {simulated['conceded']:8.2f} "
         f"{simulated['scored'] - simulated['conceded']:6.2f}",
-        f"{'on the table':50} {_rates(before)}",
+        f"{'on the table, as it is':50} {_rates(before)}",
     ]
     for name, arm in result["arms"].items():
         more = arm["change"]

@@ -35,11 +35,11 @@ class Simulator:
 
 @dataclass(frozen=True)
 class Arm:
-    """words: what it does; simulator: from the folder of the diagnosis and the concealed table's name, or None for a
-    player that stays as it is."""
+    """words: what it does; simulator: what is learnt on, from the folder of the diagnosis and the concealed table's
+    name."""
 
     words: str
-    simulator: Callable[[Path, str], Simulator] | None
+    simulator: Callable[[Path, str], Simulator]
 
 
 def _corrected(diagnosis: Path, table: str) -> Simulator:
@@ -74,7 +74,6 @@ def _randomized(diagnosis: Path, table: str) -> Simulator:
 
 
 ARMS = {
-    "nothing": Arm("the player as it is", None),
     "unchanged": Arm("fine-tuned on the unchanged simulator", lambda diagnosis, table: Simulator()),
     "randomized": Arm("fine-tuned on randomized tables", _randomized),
     "constants": Arm("fine-tuned with the baseline's constants refitted", _constants),
@@ -84,8 +83,7 @@ ARMS = {
 }  # fmt: skip
 
 
-def simulator_of(arm: str, diagnosis: Path, table: str) -> Simulator | None:
-    """What an arm learns on; None if it does not. ValueError, in one line, for an unknown arm."""
+def simulator_of(arm: str, diagnosis: Path, table: str) -> Simulator:
+    """What an arm learns on. ValueError, in one line, for an unknown arm."""
     refuse_unknown([arm], ARMS, "arm")
-    make = ARMS[arm].simulator
-    return None if make is None else make(diagnosis, table).with_delay(AHEAD)
+    return ARMS[arm].simulator(diagnosis, table).with_delay(AHEAD)

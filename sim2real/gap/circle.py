@@ -8,7 +8,7 @@ DIR/before/                   games on the table, and recordings/ of the first o
 DIR/diagnosis/                of these recordings alone
 DIR/ARM/training/             a run of `puckpilot train` for each arm
 DIR/ARM/games/                its player on the table, in games of the same seeds
-DIR/gap.json                  the result
+DIR/gap.json, DIR/gap.html    the result
 ```
 """
 
@@ -22,6 +22,7 @@ from typing import Any
 
 from puckpilot_env.files.whole_file import write_text_whole
 from sim2real.gap.arms import ARMS, simulator_of
+from sim2real.gap.page import page
 from sim2real.gap.score import change, score
 from sim2real.table.mallet_driver import AHEAD
 from sim2real.table.twin.fidelity import Meeting, TwinGame, play_all
@@ -70,10 +71,10 @@ class Circle:
         after: dict[str, list[TwinGame]] = {}
         for arm, player in players.items():
             self._report(f"playing on the table: {ARMS[arm].words}")
-            folder = self.folder / ("before" if player == self.conditions.player else f"{arm}/games")
-            after[arm] = self._games(player, folder, progress)
+            after[arm] = self._games(player, self.folder / arm / "games", progress)
         result = self._result(simulated, before, after)
         write_text_whole(self.folder / "gap.json", json.dumps(result, indent=1) + "\n")
+        write_text_whole(self.folder / "gap.html", page(result))
         return result
 
     def _simulated(self) -> dict[str, Any]:
@@ -128,8 +129,6 @@ class Circle:
         from agents.training.settings import Settings
 
         c, simulator = self.conditions, simulator_of(arm, self.diagnosis, self.conditions.table)
-        if simulator is None:
-            return c.player
         folder = RunFolder(self.folder / arm / "training")
         done = self.folder / arm / "trained"
         if not done.exists():
@@ -143,7 +142,8 @@ class Circle:
                     settings = Settings.from_dict(folder.settings())
                 else:
                     folder.begin(settings.as_dict())
-                run_training(folder, settings, steps=float("inf"), minutes=c.minutes)
+                left = max(c.minutes - folder.seconds() / 60.0, 0.0)
+                run_training(folder, settings, steps=float("inf"), minutes=left)
             write_text_whole(done, "")
         return f"policy:{folder.policy}"
 

@@ -9,9 +9,13 @@ import pytest
 
 pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
 
+from agents.training.run_folder import RunFolder
 from puckpilot import main
+from sim2real.gap import circle as circle_module
 from sim2real.gap.circle import Circle, Conditions
+from sim2real.table.mallet_driver import AHEAD
 from sim2real.table.twin import fidelity
+from tests.agents.training.tiny import TINY
 
 CONDITIONS = Conditions("interceptor", "goalie", "none", 3, 20.0, 2, 1.0, 5)
 
@@ -23,16 +27,38 @@ def circle(folder: Path, **other: object) -> Circle:
 @pytest.mark.slow
 def test_a_circle_goes_round_and_is_not_run_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """With a player that does not learn: games on the table, of which two are recorded, and their diagnosis."""
-    result = circle(tmp_path).run(["nothing"], lambda done, count: None)
+    result = circle(tmp_path).run([], lambda done, count: None)
     assert {one.name for one in (tmp_path / "before" / "recordings").iterdir()} == {"game_5", "game_6"}
-    assert result["found"] == [] and result["arms"]["nothing"]["change"] == {"value": 0.0, "low": 0.0, "high": 0.0}
+    assert result["found"] == [] and result["arms"] == {} and result["before"].keys() == {"scored", "conceded", "net"}
     assert result["simulator"].keys() == {"scored", "conceded"}
+    html = (tmp_path / "gap.html").read_text(encoding="utf-8")
+    assert "on a table with nothing: the control" in html and "--games 3 --seconds 20 --recorded 2" in html
 
     def again(*_: object) -> None:
         raise AssertionError("a game is played again")
 
     monkeypatch.setattr(fidelity, "play_on_twin", again)
-    assert circle(tmp_path).run(["nothing"], lambda done, count: None) == result
+    assert circle(tmp_path).run([], lambda done, count: None) == result
+
+
+@pytest.mark.slow
+def test_an_arm_is_fine_tuned_and_plays_games_of_the_same_seeds(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Wide networks of the champion, a round of a dozen tables."""
+    preset = tmp_path / "tiny.toml"
+    preset.write_text(TINY.replace("hidden = [16]", "hidden = [128, 128]"))
+    monkeypatch.setattr(circle_module, "PRESET", str(preset))
+    made = circle(tmp_path / "out", player="policy:champion", games=2, recorded=1, seconds=10.0, minutes=1e-4)
+    result = made.run(["unchanged"], lambda done, count: None)
+    arm = tmp_path / "out" / "unchanged"
+    settings = RunFolder(arm / "training").settings()
+    assert settings["effects"] == {"command_delay": AHEAD} and settings["start"].endswith("champion.npz")
+    assert {one.name for one in (arm / "games").iterdir()} == {"game_5.json", "game_6.json"}
+    assert result["arms"]["unchanged"].keys() == {"scored", "conceded", "net", "change", "stops"}
+    before = (arm / "training" / "policy.npz").read_bytes()
+    assert made.run(["unchanged"], lambda done, count: None) == result
+    assert (arm / "training" / "policy.npz").read_bytes() == before
 
 
 def test_a_folder_of_another_circle_is_refused(tmp_path: Path) -> None:

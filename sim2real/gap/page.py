@@ -1,0 +1,99 @@
+"""The page of a circle: the score from lost to won back, what was found, and how to do it again."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from sim2real.diagnose.report import page as diagnosis_page
+from sim2real.diagnose.report.charts import BLUE, GREY
+from sim2real.diagnose.report.inline_svg import inline_svg
+from sim2real.gap.arms import ARMS
+from sim2real.table.twin.concealed import TABLES
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+TEMPLATES = Path(__file__).parent / "templates"
+WIDTH, ROW, LEFT = 560.0, 26.0, 150.0  # points
+SIMULATED, PLAYED = "in the simulator", "on the table, as it is"
+FILES = (
+    "before/: the games on the table, with the recordings of the first of them",
+    "diagnosis/: what these say, report.html, effects.toml and draws.toml",
+    "ARM/training/: a run of puckpilot train; ARM/games/: its player on the table",
+    "gap.json: all numbers of this page",
+)
+
+
+def page(result: dict[str, Any]) -> str:
+    """The result of a circle, see `circle.Circle.run`, as one self-contained HTML page without scripts."""
+    conditions = result["conditions"]
+    environment = Environment(
+        loader=FileSystemLoader([TEMPLATES, diagnosis_page.TEMPLATES]), autoescape=True, undefined=StrictUndefined,
+        trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True,
+    )  # fmt: skip
+    return environment.get_template("gap.html.j2").render(
+        title=f"{conditions['player']} on a table with {TABLES[conditions['table']].words}",
+        conditions=conditions,
+        words=TABLES[conditions["table"]].words,
+        chart=_chart(result),
+        rows=_rows(result),
+        found=", ".join(result["found"]) + "." if result["found"] else "Nothing is missing, as far as it can tell.",
+        command=_command(conditions, list(result["arms"])),
+        files=FILES,
+    )
+
+
+def _rows(result: dict[str, Any]) -> list[list[str]]:
+    simulated = result["simulator"]
+    net = simulated["scored"] - simulated["conceded"]
+    rows = [[SIMULATED, f"{simulated['scored']:.2f}", f"{simulated['conceded']:.2f}", f"{net:.2f}", "", "", "", ""]]
+    rows.append([PLAYED, *_rates(result["before"]), "", "", str(result["stops"])])
+    for name, arm in result["arms"].items():
+        change = arm["change"]
+        rows.append(
+            [
+                f"{name}: {ARMS[name].words}", *_rates(arm), f"{change['value']:+.2f}",
+                f"{change['low']:+.2f} to {change['high']:+.2f}", str(arm["stops"]),
+            ]
+        )  # fmt: skip
+    return rows
+
+
+def _rates(one: dict[str, Any]) -> list[str]:
+    net = one["net"]
+    return [
+        f"{one['scored']['value']:.2f}", f"{one['conceded']['value']:.2f}", f"{net['value']:.2f}",
+        f"{net['low']:.2f} to {net['high']:.2f}",
+    ]  # fmt: skip
+
+
+def _chart(result: dict[str, Any]) -> str:
+    """The net scores, one below the other, with the simulator's as a line."""
+    simulated = result["simulator"]["scored"] - result["simulator"]["conceded"]
+    bars = {PLAYED: result["before"]["net"], **{name: arm["net"] for name, arm in result["arms"].items()}}
+
+    def draw(axes: Axes) -> None:
+        places = range(len(bars))
+        values = [bar["value"] for bar in bars.values()]
+        errors = [
+            [bar["value"] - bar["low"] for bar in bars.values()],
+            [bar["high"] - bar["value"] for bar in bars.values()],
+        ]
+        axes.axvline(simulated, color=GREY, linestyle="--", label=SIMULATED)
+        axes.errorbar(values, places, xerr=errors, fmt="s", color=BLUE, capsize=3.0)
+        axes.set_yticks(places, list(bars))
+        axes.set_ylim(len(bars) - 0.5, -0.5)
+        axes.set_xlabel("goals for less goals against, a minute")
+
+    return inline_svg("Net score of each player", WIDTH, ROW * len(bars) + 70.0, draw, (LEFT, 24.0, 40.0))
+
+
+def _command(conditions: dict[str, Any], arms: list[str]) -> str:
+    options = " ".join(
+        f"--{name} {conditions[name]:g}" if isinstance(conditions[name], float) else f"--{name} {conditions[name]}"
+        for name in ("table", "opponent", "games", "seconds", "recorded", "minutes", "seed")
+    )
+    return f"puckpilot gap {conditions['player']} {options} --arms {' '.join(arms)}"
