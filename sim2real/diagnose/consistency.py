@@ -111,7 +111,7 @@ def _does_not_transfer(problem: Problem, found: SearchResult, clusters: np.ndarr
 
 
 def _is_unexplained(problem: Problem, found: SearchResult, clusters: np.ndarray) -> bool:
-    """Return whether a model leaves more of `clusters` than noise, and still does without any one of them.
+    """Return whether a model leaves more of `clusters` than noise, and of many still does without any one of them.
 
     One launch may have been disturbed, by a hand near a wall for example; another table shows in more than one.
     """
@@ -120,8 +120,8 @@ def _is_unexplained(problem: Problem, found: SearchResult, clusters: np.ndarray)
         allowed = CONSISTENCY.unexplained * problem.freedom[some].sum() + CONSISTENCY.harm
         return bool(_own_loss(problem, found, some) > allowed)
 
-    others = [clusters[clusters != one] for one in clusters] if len(clusters) > 1 else []
-    return bool(others) and is_left(clusters) and all(map(is_left, others))
+    many = len(clusters) >= CONSISTENCY.fewest_launches
+    return is_left(clusters) and (not many or all(is_left(clusters[clusters != one]) for one in clusters))
 
 
 def _harms(problem: Problem, found: SearchResult, clusters: np.ndarray) -> bool:
