@@ -38,13 +38,6 @@ class RunFolder:
         self.selves.mkdir(parents=True, exist_ok=True)
         write_text_whole(self.run, json.dumps({"format": FORMAT, **settings}, indent=2))
 
-    def seconds(self) -> float:
-        """How long the run has been trained, by its curve [s]; 0 for a new one."""
-        if not self.curve.exists():
-            return 0.0
-        with self.curve.open(encoding="utf-8", newline="") as file:
-            return max((float(row["seconds"]) for row in csv.DictReader(file)), default=0.0)
-
     def settings(self) -> dict[str, Any]:
         """The settings that `begin` wrote. ValueError, in one line, where there is no run."""
         try:

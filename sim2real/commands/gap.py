@@ -34,7 +34,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Go round. Returns 0. ValueError, in one line, for what cannot be."""
-    from agents.commands.train import require_torch
     from baselines import find_player
     from baselines.commands.options import progress_bar
     from puckpilot_env.files.toml_file import refuse_unknown
@@ -46,7 +45,6 @@ def run(args: argparse.Namespace) -> int:
     if args.list:
         print("\n".join(_listed()))
         return 0
-    require_torch()
     arms = args.arms or list(ARMS)
     refuse_unknown(arms, ARMS, "arm")
     find_table(args.table)

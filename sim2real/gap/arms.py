@@ -12,6 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from puckpilot_env.files.toml_file import refuse_unknown
+from puckpilot_env.files.whole_file import write_text_whole
+from puckpilot_env.options import effects_file
 from puckpilot_env.options.draws_file import read_draws
 from puckpilot_env.options.effects_file import effect_values
 from puckpilot_env.variants import find_variant
@@ -81,6 +83,23 @@ ARMS = {
     "truth": Arm("fine-tuned on the concealed truth: the ceiling",
                  lambda diagnosis, table: Simulator(find_table(table).truth)),
 }  # fmt: skip
+
+
+def write_simulator(simulator: Simulator, folder: Path) -> dict[str, Path]:
+    """Write a simulator as the files that `puckpilot train` takes; their paths by its options, effects and draws."""
+    lines = [f'format = "{effects_file.FORMAT}"', "[parameters]"]
+    lines += [f"{name} = {float(value)!r}" for name, value in simulator.values.items()]
+    files = {"effects": "\n".join(lines) + "\n"}
+    if simulator.draws is not None:
+        content = read_draws(simulator.draws).as_dict()
+        lines = [f'format = "{content["format"]}"', "[parameters]"]
+        lines += [f"{name} = {float(value)!r}" for name, value in content["parameters"].items()]
+        for name, row in content["draws"].items():
+            lines += [f"[draws.{name}]", *(f"{key} = {json.dumps(value)}" for key, value in row.items())]
+        files["draws"] = "\n".join(lines) + "\n"
+    for name, text in files.items():
+        write_text_whole(folder / f"{name}.toml", text)
+    return {name: folder / f"{name}.toml" for name in files}
 
 
 def simulator_of(arm: str, diagnosis: Path, table: str) -> Simulator:

@@ -14,14 +14,17 @@ DIR/gap.json, DIR/gap.html    the result
 
 from __future__ import annotations
 
+import csv
 import json
+import subprocess
+import sys
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
 from puckpilot_env.files.whole_file import write_text_whole
-from sim2real.gap.arms import ARMS, simulator_of
+from sim2real.gap.arms import ARMS, simulator_of, write_simulator
 from sim2real.gap.page import page
 from sim2real.gap.score import change, score
 from sim2real.table.mallet_driver import AHEAD
@@ -121,31 +124,29 @@ class Circle:
         write(diagnosis, self.diagnosis, ReportContext(tuple(one.name for one in recordings), {}))
 
     def _tuned(self, arm: str) -> str:
-        """The name of an arm's player, fine-tuned as long as it should be."""
-        from agents.commands.train import run_training
-        from agents.policy.policy import policy_file
-        from agents.training.preset import find_preset
-        from agents.training.run_folder import RunFolder
-        from agents.training.settings import Settings
-
-        c, simulator = self.conditions, simulator_of(arm, self.diagnosis, self.conditions.table)
-        folder = RunFolder(self.folder / arm / "training")
-        done = self.folder / arm / "trained"
+        """The name of an arm's player, fine-tuned as long as it should be. ValueError, in one line, if that fails."""
+        c, folder = self.conditions, self.folder / arm
+        run, done = folder / "training", folder / "trained"
         if not done.exists():
             self._report(f"{ARMS[arm].words}, {c.minutes:g} minutes")
-            settings = Settings(
-                VARIANT, c.seed, self._processes, find_preset(PRESET), dict(simulator.values), simulator.draws,
-                start=str(policy_file(c.player).resolve()),
-            )  # fmt: skip
-            with folder.locked():
-                if folder.checkpoint.exists():
-                    settings = Settings.from_dict(folder.settings())
-                else:
-                    folder.begin(settings.as_dict())
-                left = max(c.minutes - folder.seconds() / 60.0, 0.0)
-                run_training(folder, settings, steps=float("inf"), minutes=left)
+            given = ["--resume"] if (run / "checkpoint.pt").exists() else self._new_run(arm)
+            left = max(c.minutes - _trained_minutes(run), 1e-3)
+            command = ["train", "--out", str(run), "--minutes", f"{left:g}", *given]
+            if subprocess.run([sys.executable, "-m", "puckpilot", *command], check=False).returncode:
+                raise ValueError(f"puckpilot {' '.join(command)} failed, as it says above")
             write_text_whole(done, "")
-        return f"policy:{folder.policy}"
+        return f"policy:{run / 'policy.npz'}"
+
+    def _new_run(self, arm: str) -> list[str]:
+        """The options of `puckpilot train` for an arm, whose simulator is written down."""
+        c, folder = self.conditions, self.folder / arm
+        folder.mkdir(parents=True, exist_ok=True)
+        written = write_simulator(simulator_of(arm, self.diagnosis, c.table), folder)
+        files = [word for name, path in written.items() for word in (f"--{name}", str(path))]
+        return [
+            "--preset", PRESET, "--start", c.player, "--variant", VARIANT, "--seed", str(c.seed),
+            "--threads", str(self._processes), *files,
+        ]  # fmt: skip
 
     def _result(
         self, simulated: dict[str, Any], before: list[TwinGame], after: dict[str, list[TwinGame]]
@@ -171,6 +172,15 @@ class Circle:
                 for arm, games in after.items()
             },
         }
+
+
+def _trained_minutes(run: Path) -> float:
+    """How long a run has been trained, by its curve."""
+    curve = run / "curve.csv"
+    if not curve.exists():
+        return 0.0
+    with curve.open(encoding="utf-8", newline="") as file:
+        return max((float(row["seconds"]) for row in csv.DictReader(file)), default=0.0) / 60.0
 
 
 def _keep_conditions(folder: Path, conditions: Conditions) -> None:

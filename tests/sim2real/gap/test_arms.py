@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 from puckpilot_env import Tables
-from puckpilot_env.options.effects_file import as_content
-from sim2real.gap.arms import ARMS, simulator_of
+from puckpilot_env.options.draws_file import read_draws
+from puckpilot_env.options.effects_file import as_content, effect_values
+from sim2real.gap.arms import ARMS, simulator_of, write_simulator
 from sim2real.table.mallet_driver import AHEAD
 from sim2real.table.twin.concealed import TABLES
 
@@ -62,6 +63,10 @@ def test_every_arm_can_be_learnt_on(diagnosis: Path, table: str) -> None:
     for arm in ARMS:
         one = simulator_of(arm, diagnosis, table)
         Tables("match-v0", 2, effects=as_content(one.values), draws=one.draws)
+        (diagnosis / arm).mkdir()
+        files = write_simulator(one, diagnosis / arm)
+        assert effect_values(files["effects"]) == one.values
+        assert read_draws(files.get("draws")) == read_draws(one.draws)
 
 
 def test_an_unknown_arm_is_refused_in_one_line(diagnosis: Path) -> None:

@@ -54,6 +54,7 @@ def test_an_arm_is_fine_tuned_and_plays_games_of_the_same_seeds(
     arm = tmp_path / "out" / "unchanged"
     settings = RunFolder(arm / "training").settings()
     assert settings["effects"] == {"command_delay": AHEAD} and settings["start"].endswith("champion.npz")
+    assert settings["seed"] == 5 and settings["draws"] is None
     assert {one.name for one in (arm / "games").iterdir()} == {"game_5.json", "game_6.json"}
     assert result["arms"]["unchanged"].keys() == {"scored", "conceded", "net", "change", "stops"}
     before = (arm / "training" / "policy.npz").read_bytes()
