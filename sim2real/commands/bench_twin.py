@@ -106,18 +106,19 @@ def _speed(games: list[TwinGame]) -> dict[str, float]:
 
 def _figures(games: list[TwinGame]) -> dict[str, Any]:
     from baselines.ratings.intervals import share_estimate
-    from sim2real.table.twin.fidelity import goals_a_minute
+    from sim2real.table.twin.score import score
 
     wins = [sum(game.outcome == sign for game in games) for sign in (1, -1)]
-    rates = [goals_a_minute(games, side) for side in range(2)]
+    both = score(games)
+    rates = [both["scored"], both["conceded"]]
     return {
         "wins": wins,
         "goals": [sum(game.goals[side] for game in games) for side in range(2)],
         "minutes": sum(game.seconds for game in games) / 60.0,
         "win_rate": wins[0] / len(games),
         "win_rate_interval": [getattr(share_estimate(wins[0], len(games) - wins[0]), end) for end in ("low", "high")],
-        "goals_a_minute": [rate for rate, _, _ in rates],
-        "goals_a_minute_interval": [[low, high] for _, low, high in rates],
+        "goals_a_minute": [rate.value for rate in rates],
+        "goals_a_minute_interval": [[rate.low, rate.high] for rate in rates],
     }
 
 

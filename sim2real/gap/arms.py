@@ -20,7 +20,7 @@ from puckpilot_env.variants import find_variant
 from sim2real.table.mallet_driver import AHEAD
 from sim2real.table.twin.concealed import DELAY, find_table
 
-SENSORS = ("camera_", "beam_", "frame_", "dropped_", "held_")  # of which a player that is told the state sees nothing
+SENSORS = ("camera_", "beam_", "frame_", "dropped_", "held_")  # without effect where players see the state
 
 
 @dataclass(frozen=True)

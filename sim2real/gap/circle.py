@@ -26,9 +26,9 @@ from typing import Any
 from puckpilot_env.files.whole_file import write_text_whole
 from sim2real.gap.arms import ARMS, simulator_of, write_simulator
 from sim2real.gap.page import page
-from sim2real.gap.score import change, score
 from sim2real.table.mallet_driver import AHEAD
 from sim2real.table.twin.fidelity import Meeting, TwinGame, play_all
+from sim2real.table.twin.score import change, score
 
 FORMAT = "puckpilot-gap/1"
 VARIANT = "match-v0"
@@ -109,19 +109,11 @@ class Circle:
         return play_all(meetings, folder, self._processes, progress)
 
     def _diagnose(self) -> None:
-        from sim2real.diagnose.output.files import write
-        from sim2real.diagnose.pipeline import diagnose
-        from sim2real.diagnose.result.context import ReportContext
-        from sim2real.progress_bar import progress_bar
-        from sim2real.recording.folder import read_recording
-
         if (self.diagnosis / "diagnosis.json").exists():
             return
         self._report("diagnosing what was recorded")
-        recordings = [read_recording(one) for one in sorted((self.folder / "before" / "recordings").iterdir())]
-        with progress_bar() as progress:
-            diagnosis = diagnose(recordings, [], {}, progress)
-        write(diagnosis, self.diagnosis, ReportContext(tuple(one.name for one in recordings), {}))
+        recordings = sorted((self.folder / "before" / "recordings").iterdir())
+        _run("diagnose", *map(str, recordings), "--out", str(self.diagnosis))
 
     def _tuned(self, arm: str) -> str:
         """The name of an arm's player, fine-tuned as long as it should be. ValueError, in one line, if that fails."""
@@ -131,9 +123,7 @@ class Circle:
             self._report(f"{ARMS[arm].words}, {c.minutes:g} minutes")
             given = ["--resume"] if (run / "checkpoint.pt").exists() else self._new_run(arm)
             left = max(c.minutes - _trained_minutes(run), 1e-3)
-            command = ["train", "--out", str(run), "--minutes", f"{left:g}", *given]
-            if subprocess.run([sys.executable, "-m", "puckpilot", *command], check=False).returncode:
-                raise ValueError(f"puckpilot {' '.join(command)} failed, as it says above")
+            _run("train", "--out", str(run), "--minutes", f"{left:g}", *given)
             write_text_whole(done, "")
         return f"policy:{run / 'policy.npz'}"
 
@@ -172,6 +162,12 @@ class Circle:
                 for arm, games in after.items()
             },
         }
+
+
+def _run(*words: str) -> None:
+    """Run a command of puckpilot, which prints to stderr here. ValueError, in one line, if it fails."""
+    if subprocess.run([sys.executable, "-m", "puckpilot", *words], stdout=sys.stderr, check=False).returncode:
+        raise ValueError(f"puckpilot {' '.join(words)} failed, as it says above")
 
 
 def _trained_minutes(run: Path) -> float:

@@ -65,7 +65,7 @@ TABLES = {
     "none": ConcealedTable("nothing: the control"),
     "warp": _alike("a tilt and a warp", _WARP),
     "walls": _alike("walls that spin the puck, and give back less of a fast one", _SPIN),
-    "mallet": _alike("a mallet that gives, and gives back less of a fast blow", _SOFT),
+    "mallet": _alike("a mallet that recoils, and has less restitution at speed", _SOFT),
     "friction": _alike("friction of the motors, and voltage that sags", _FRICTION),
     "late": _alike("commands and a camera that are late", {DELAY: 0.005}, late=0.015),
     "patch": _alike("a patch that brakes the puck", _PATCH, patch_extra=_PATCH["patch_friction"]),

@@ -13,8 +13,6 @@ from dataclasses import asdict, dataclass, replace
 from multiprocessing import get_context
 from pathlib import Path
 
-import numpy as np
-
 import sim2real
 from puckpilot_env.files.whole_file import write_text_whole
 from puckpilot_env.variants import find_variant
@@ -22,13 +20,13 @@ from sim2real.study.version import OF_GAMES, code_version
 from sim2real.table.game.game_record import GameRecord
 from sim2real.table.game.play import play_game
 from sim2real.table.game.robot_seat import make_robot_seat
+from sim2real.table.recorder.draft import draft_of
 from sim2real.table.recorder.recorded_game import recorded
 from sim2real.table.twin.concealed import find_table
 
 FORMAT = "puckpilot-twin-game/1"
 WARM = 0.3  # s of a game before the first one that is timed, in which all is compiled
 ROOT = Path(sim2real.__file__).parents[1]  # of the checkout whose code plays
-RESAMPLES = 2000  # of the bootstrap
 
 
 @dataclass(frozen=True)
@@ -134,7 +132,8 @@ def _recording(folder: Path, meeting: Meeting) -> Path | None:
     if not meeting.recorded:
         return None
     path = folder / "recordings" / f"game_{meeting.seed}"
-    shutil.rmtree(path, ignore_errors=True)
+    for left in (path, draft_of(path)):
+        shutil.rmtree(left, ignore_errors=True)
     return path
 
 
@@ -158,12 +157,3 @@ def _read(folder: Path, meeting: Meeting, code: str) -> TwinGame | None:
     if content.get("code") != code:
         raise ValueError(f"{path}: was played by another version of the code; name another folder, or remove it")
     return game
-
-
-def goals_a_minute(games: list[TwinGame], side: int) -> tuple[float, float, float]:
-    """Goals of the player (0) or its opponent (1) a minute of play, and the ends of the 95 % interval by bootstrap of
-    the games."""
-    goals, minutes = np.array([(game.goals[side], game.seconds / 60.0) for game in games]).T
-    drawn = np.random.default_rng(0).integers(0, len(games), (RESAMPLES, len(games)))
-    low, high = np.percentile(goals[drawn].sum(axis=1) / minutes[drawn].sum(axis=1), [2.5, 97.5])
-    return float(goals.sum() / minutes.sum()), float(low), float(high)

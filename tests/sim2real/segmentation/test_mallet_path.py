@@ -89,7 +89,7 @@ def test_switches_act_when_they_do(lag: float) -> None:
 
 
 def test_a_mallet_s_velocity_is_known_right_after_a_switch() -> None:
-    """Where a blow is likely: 2 ms after the mallet was turned, 5.1 ms after it was to turn."""
+    """A contact there is frequent: 2 ms after the mallet was turned, 5.1 ms after it was to turn."""
     recording = bang_bang(0.0051)
     path, plans = robot_path(recording), recording.commands
     assert path is not None and plans is not None

@@ -8,8 +8,10 @@ import pytest
 
 pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
 
+from sim2real.recording.folder import read_recording
+from sim2real.table.recorder.draft import draft_of
 from sim2real.table.twin import fidelity
-from sim2real.table.twin.fidelity import Meeting, TwinGame, goals_a_minute, play_all
+from sim2real.table.twin.fidelity import Meeting, TwinGame, play_all
 
 MEETINGS = [Meeting("still", "goalie", "puckpilot/match-v0", seed) for seed in (3, 4, 5)]
 
@@ -53,9 +55,12 @@ def test_a_game_of_another_version_is_refused(tmp_path: Path, monkeypatch: pytes
         play_all(MEETINGS, tmp_path, 1, lambda done, count: None)
 
 
-def test_goals_a_minute_are_all_goals_by_all_minutes() -> None:
-    games = [TwinGame(1, (7, 1), 30.0, 31.0, 9.0, 9.0), TwinGame(1, (5, 0), 90.0, 91.0, 9.0, 9.0)]
-    rate, low, high = goals_a_minute(games, 0)
-    assert rate == pytest.approx(6.0)  # 12 in two minutes
-    assert (low, high) == pytest.approx((5.0 / 1.5, 14.0))  # both the long game, both the short one
-    assert goals_a_minute(games, 1)[0] == pytest.approx(0.5)
+def test_a_game_is_recorded_anew_where_a_killed_run_left_half_of_it(tmp_path: Path) -> None:
+    half = draft_of(tmp_path / "recordings" / "game_3")
+    half.mkdir(parents=True)
+    (half / "meta.json").write_text("{}")
+    (half / "frames.csv").write_text("t,puck_x,puck_y\n0.0,1.0,0.5\n")
+    game = Meeting("still", "goalie", "puckpilot/match-v0", 3, 2.5, clears=True, recorded=True)
+    play_all([game], tmp_path, 1, lambda done, count: None)
+    recording = read_recording(tmp_path / "recordings" / "game_3")
+    assert recording.frames is not None and recording.frames.rows > 100 and not half.exists()

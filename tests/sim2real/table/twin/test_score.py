@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sim2real.gap.score import change, score
 from sim2real.table.twin.fidelity import TwinGame
+from sim2real.table.twin.score import change, score
 
 
 def game(scored: int, conceded: int, seconds: float = 60.0) -> TwinGame:
