@@ -7,6 +7,7 @@ that affected one by chance, is therefore not taken for another table.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from itertools import combinations
 
 import numpy as np
@@ -37,18 +38,35 @@ def check_consistency(problem: Problem, defaults: Mapping[str, float], parts: Se
     if len(training_sets) < len(parts):
         together = np.concatenate([part.clusters for part in parts])
         training_sets += [together] if _enough(problem, together) else []
+    fits = _Fits(problem)
     for clusters in training_sets:
         found = search_model(problem, defaults, clusters)
-        for one, other in combinations(parts, 2):
-            compare = _compare_smooth_terms if found.unlisted else _compare_parameters
-            why = compare(problem, found, one, other)
-            if why:
-                raise two_tables(one.name, other.name, why)
+        if found.unlisted:
+            differing = _differ_in_smooth_term(problem, found, parts)
+        else:
+            differing = _differ_in_parameters(fits, found, parts)
+        if differing:
+            raise two_tables(*differing)
         for part in parts:
-            why = _does_not_transfer(problem, found, clusters, part)
+            why = _does_not_transfer(fits, found, clusters, part)
             if why:
                 first = next((one.name for one in parts if np.array_equal(one.clusters, clusters)), "the others")
                 raise two_tables(first, part.name, why)
+
+
+@dataclass(frozen=True)
+class _Fits:
+    """Fits of parameters to parts of a problem, each made once: most recordings support the same parameters."""
+
+    problem: Problem
+    made: dict[tuple[tuple[str, ...], bytes], LeastSquaresFit] = field(default_factory=dict)
+
+    def of(self, values: Mapping[str, float], free: Sequence[str], clusters: np.ndarray) -> LeastSquaresFit:
+        """Return the fit of `free` to `clusters`; `values`: where it starts, the others at their defaults."""
+        key = (tuple(free), clusters.tobytes())
+        if key not in self.made:
+            self.made[key] = fit(self.problem, values, free, clusters)
+        return self.made[key]
 
 
 def _enough(problem: Problem, clusters: np.ndarray) -> bool:
@@ -57,16 +75,29 @@ def _enough(problem: Problem, clusters: np.ndarray) -> bool:
     )
 
 
-def _compare_parameters(problem: Problem, found: SearchResult, one: RecordingPart, other: RecordingPart) -> str | None:
-    """Return how the parameters of a model differ between two recordings, None if not significantly."""
-    free = found.law.free
-    both = fit(problem, found.law.values, free, np.concatenate([one.clusters, other.clusters]))
-    each = [fit(problem, both.values, free, part.clusters) for part in (one, other)]
-    separate = sum(some.loss for some in each)
-    freedom = sum(problem.freedom[part.clusters].sum() for part in (one, other)) - 2 * len(free)
-    if both.loss - separate < CONSISTENCY.harm * max(separate / max(freedom, 1.0), 1.0):
+def _differ_in_parameters(
+    fits: _Fits, found: SearchResult, parts: Sequence[RecordingPart]
+) -> tuple[str, str, str] | None:
+    """Return two recordings between which the parameters of a model differ significantly, and how; None if there are
+    none.
+
+    No two recordings lose more by common parameters than all of them together do.
+    """
+
+    def fitted(*some: RecordingPart) -> LeastSquaresFit:
+        return fits.of(found.law.values, found.law.free, np.concatenate([part.clusters for part in some]))
+
+    if fitted(*parts).loss - sum(fitted(part).loss for part in parts) < CONSISTENCY.harm:
         return None
-    return _largest_difference(*each)
+    for one, other in combinations(parts, 2):
+        separate = fitted(one).loss + fitted(other).loss
+        freedom = sum(fits.problem.freedom[part.clusters].sum() for part in (one, other)) - 2 * len(found.law.free)
+        if fitted(one, other).loss - separate < CONSISTENCY.harm * max(separate / max(freedom, 1.0), 1.0):
+            continue
+        why = _largest_difference(fitted(one), fitted(other))
+        if why:
+            return one.name, other.name, why
+    return None
 
 
 def _largest_difference(one: LeastSquaresFit, other: LeastSquaresFit) -> str | None:
@@ -80,67 +111,69 @@ def _largest_difference(one: LeastSquaresFit, other: LeastSquaresFit) -> str | N
     return reason
 
 
-def _compare_smooth_terms(
-    problem: Problem, found: SearchResult, one: RecordingPart, other: RecordingPart
-) -> str | None:
-    """Return that no common smooth term fits two recordings, None if one does.
+def _differ_in_smooth_term(
+    problem: Problem, found: SearchResult, parts: Sequence[RecordingPart]
+) -> tuple[str, str, str] | None:
+    """Return two recordings that no common smooth term fits, and that as the reason; None if there are none.
 
     It compares losses, since single coefficients of a smooth term have no meaning.
     """
-    both = _losses(problem, found, np.concatenate([one.clusters, other.clusters]))
-    each = _losses(problem, found, one.clusters) + _losses(problem, found, other.clusters)
-    for part in (one, other):
-        shared, own = both[part.clusters].sum(), each[part.clusters].sum()
-        if shared - own > CONSISTENCY.harm * found.dispersion and shared > CONSISTENCY.worse_unlisted * own:
-            return f"no common {problem.regime} correction fits both"
+    own = {part.name: _losses(problem, found, part.clusters) for part in parts}
+    for pair in combinations(parts, 2):
+        both = _losses(problem, found, np.concatenate([part.clusters for part in pair]))
+        for part in pair:
+            shared, alone = both[part.clusters].sum(), own[part.name].sum()
+            if shared - alone > CONSISTENCY.harm * found.dispersion and shared > CONSISTENCY.worse_unlisted * alone:
+                return pair[0].name, pair[1].name, f"no common {problem.regime} correction fits both"
     return None
 
 
-def _does_not_transfer(problem: Problem, found: SearchResult, clusters: np.ndarray, part: RecordingPart) -> str | None:
+def _does_not_transfer(fits: _Fits, found: SearchResult, clusters: np.ndarray, part: RecordingPart) -> str | None:
     """Return why the model of `clusters` is not one of the recording `part`, None if it may be.
 
     It is not if it fits `part` worse than the baseline does, or if it explains `clusters` to the noise and not `part`,
     even with parameters refitted there.
     """
-    if _harms(problem, found, part.clusters):
+    problem = fits.problem
+    if _harms(fits, found, part.clusters):
         return f"the {problem.regime} correction that the first supports increases the residuals of the second"
-    explained = _own_loss(problem, found, clusters) < CONSISTENCY.explained * problem.freedom[clusters].sum()
-    if explained and _is_unexplained(problem, found, part.clusters):
+    explained = _own_loss(fits, found, clusters) < CONSISTENCY.explained * problem.freedom[clusters].sum()
+    if explained and _is_unexplained(fits, found, part.clusters):
         return f"the {problem.regime} model of the first does not fit the second"
     return None
 
 
-def _is_unexplained(problem: Problem, found: SearchResult, clusters: np.ndarray) -> bool:
+def _is_unexplained(fits: _Fits, found: SearchResult, clusters: np.ndarray) -> bool:
     """Return whether a model leaves more of `clusters` than noise, and of many still does without any one of them.
 
     One launch may have been disturbed, by a hand near a wall for example; another table shows in more than one.
     """
 
     def is_left(some: np.ndarray) -> bool:
-        allowed = CONSISTENCY.unexplained * problem.freedom[some].sum() + CONSISTENCY.harm
-        return bool(_own_loss(problem, found, some) > allowed)
+        allowed = CONSISTENCY.unexplained * fits.problem.freedom[some].sum() + CONSISTENCY.harm
+        return bool(_own_loss(fits, found, some) > allowed)
 
     many = len(clusters) >= CONSISTENCY.fewest_launches
     return is_left(clusters) and (not many or all(is_left(clusters[clusters != one]) for one in clusters))
 
 
-def _harms(problem: Problem, found: SearchResult, clusters: np.ndarray) -> bool:
+def _harms(fits: _Fits, found: SearchResult, clusters: np.ndarray) -> bool:
     """Return whether listed laws found elsewhere increase the loss of `clusters`, with the baseline refitted."""
     if not found.listed:
         return False
+    base = fits.problem.base
     without_laws = {**found.law.values, **{row: BY_NAME[row].default for law in found.listed for row in law.rows}}
-    with_them, baseline = (
-        fit(problem, values, problem.base, clusters).loss for values in (found.law.values, without_laws)
-    )
+    with_them = fit(fits.problem, found.law.values, base, clusters).loss  # those of `found`, so no fit of `_Fits`
+    baseline = fits.of(without_laws, base, clusters).loss
     harm = with_them - baseline
     return with_them > CONSISTENCY.worse * baseline and harm > CONSISTENCY.harm * found.dispersion
 
 
-def _own_loss(problem: Problem, found: SearchResult, clusters: np.ndarray) -> float:
+def _own_loss(fits: _Fits, found: SearchResult, clusters: np.ndarray) -> float:
     """Return the robust loss of `clusters` under a model whose parameters are fitted to them."""
     if found.unlisted:
-        return float(_losses(problem, found, clusters).sum())
-    return fit(problem, found.law.values, found.law.free, clusters).loss
+        return float(_losses(fits.problem, found, clusters).sum())
+    return fits.of(found.law.values, found.law.free, clusters).loss
 
 
 def _losses(problem: Problem, found: SearchResult, clusters: np.ndarray) -> np.ndarray:

@@ -173,5 +173,5 @@ def test_stated_sizes_of_two_tables_are_refused_in_one_line(recorded, tmp_path, 
 )
 def test_a_single_disturbed_launch_makes_no_other_table(monkeypatch, losses, unexplained):
     problem = SimpleNamespace(freedom=np.full(len(losses), 6.0))
-    monkeypatch.setattr(consistency, "_own_loss", lambda problem, found, some: float(np.array(losses)[some].sum()))
-    assert consistency._is_unexplained(problem, None, np.arange(len(losses))) is unexplained
+    monkeypatch.setattr(consistency, "_own_loss", lambda fits, found, some: float(np.array(losses)[some].sum()))
+    assert consistency._is_unexplained(consistency._Fits(problem), None, np.arange(len(losses))) is unexplained

@@ -8,7 +8,9 @@ misfit remains.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from itertools import repeat
 
 import numpy as np
 
@@ -75,7 +77,8 @@ def candidates(problem: GantryResiduals, values: Mapping[str, float]) -> list[Ca
     dominant = ""
     while len(chosen) < GANTRY_FIT.most_effects and now.law.loss > GANTRY_FIT.little_left * freedom:
         names = [name for name in STARTS if name not in chosen and ALTERNATIVES.get(name) not in chosen]
-        fits = {name: best_fit(thin, now, name) for name in names}
+        with ThreadPoolExecutor() as pool:
+            fits = dict(zip(names, pool.map(best_fit, repeat(thin), repeat(now), names), strict=True))
         fits = {name: one for name, one in fits.items() if is_supported(thin, now.law, one.law, name)}
         if not fits:
             break

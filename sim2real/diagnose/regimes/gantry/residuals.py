@@ -47,9 +47,14 @@ class GantryResiduals:
         self.noise_m = float(np.sqrt(np.mean(np.concatenate([run.noise for run in runs]) ** 2)))
         self.place_error_m = 0.0  # no camera
         sizes = [len(run.windows.rows) for run in runs]
-        self._sign = np.concatenate([np.repeat((-1.0, 1.0), size) for size in sizes])
-        of_rows = [a + run.cluster_of_rows() for a, run in zip(self.first, runs, strict=False)]
-        self.cluster = np.concatenate([*of_rows, np.repeat(np.arange(self.clusters), len(PRIOR_PARAMETERS))])
+        self._sign = [np.repeat((-1.0, 1.0), size) for size in sizes]
+        self._cluster = [a + run.cluster_of_rows() for a, run in zip(self.first, runs, strict=False)]
+        self._prior_cluster = np.repeat(np.arange(self.clusters), len(PRIOR_PARAMETERS))
+
+    @property
+    def cluster(self) -> np.ndarray:
+        """The cluster of each row of the residuals of all clusters."""
+        return np.concatenate([*self._cluster, self._prior_cluster])
 
     @property
     def clusters_of_runs(self) -> list[np.ndarray]:
@@ -73,14 +78,15 @@ class GantryResiduals:
         the plans are delayed.
         """
         p = self.record(values)
-        friction = [run.friction(p) for run in self.runs]
-        r = self._path(p, friction)
+        of_runs = np.unique(np.searchsorted(self.first, clusters, side="right") - 1).tolist()  # no others are simulated
+        runs = [self.runs[k] for k in of_runs]
+        friction = [run.friction(p) for run in runs]
+        r, sign = _path(runs, p, friction), np.concatenate([self._sign[k] for k in of_runs])
         jacobian = np.empty((len(r), len(free)))
         for k, name in enumerate(free):
             mirror = MIRRORED.get(name)
-            jacobian[:, k] = (
-                self._sign * jacobian[:, free.index(mirror)] if mirror in free else self._slope(p, name, r, friction)
-            )
+            mirrored = mirror in free
+            jacobian[:, k] = sign * jacobian[:, free.index(mirror)] if mirrored else _slope(runs, p, name, r, friction)
         centre = np.array([self.defaults(name) for name in PRIOR_PARAMETERS])
         weight = 1.0 / (GANTRY_FIT.prior_share * np.abs(centre)) / np.sqrt(self.clusters)
         off = np.array([p[name] for name in PRIOR_PARAMETERS]) - centre
@@ -88,21 +94,9 @@ class GantryResiduals:
         is_free = np.array([[one == name for name in free] for one in PRIOR_PARAMETERS]).reshape(len(off), -1)
         slopes = weight[:, None] * is_free
         jacobian = np.concatenate([jacobian, np.tile(slopes, (self.clusters, 1))])
-        here = np.isin(self.cluster, clusters)
-        return Residuals(r[here], jacobian[here], self.cluster[here])
-
-    def _slope(self, p: np.void, name: str, r: np.ndarray, friction: list[np.ndarray]) -> np.ndarray:
-        """Derivative (rows,) of the path's residuals by a parameter; `r` (rows,): the residuals at `p`; `friction`: the
-        displacements at `p`, which are held constant for all parameters but CHANGE_FRICTION."""
-        step = _step(name, float(p[name]))
-        moved, delay = p.copy(), 0.0
-        if name == "command_delay":
-            delay = step  # shifts the changes themselves: with ticks, the effect of the parameter is discontinuous
-        else:
-            moved[name] += step
-        if name in CHANGE_FRICTION:
-            friction = [run.friction(moved, delay) for run in self.runs]
-        return (self._path(moved, friction, delay) - r) / step
+        cluster = np.concatenate([*(self._cluster[k] for k in of_runs), self._prior_cluster])
+        here = np.isin(cluster, clusters)
+        return Residuals(r[here], jacobian[here], cluster[here])
 
     def defaults(self, name: str) -> float:
         """The default value of a parameter."""
@@ -122,11 +116,28 @@ class GantryResiduals:
         """The simulator's parameter record for `values`."""
         return record_of({**self.common, **values})
 
-    def _path(self, p: np.void, friction: list[np.ndarray], delay: float = 0.0) -> np.ndarray:
-        """Whitened residuals (rows,) of the path, run by run."""
-        paths = zip(self.runs, friction, strict=True)
-        r = np.concatenate([run.residuals(p, delay, friction=part)[:, 0] for run, part in paths])
-        return np.where(np.isfinite(r), r, GANTRY_FIT.impossible)
+
+def _path(runs: Sequence[GantryRecording], p: np.void, friction: list[np.ndarray], delay: float = 0.0) -> np.ndarray:
+    """Whitened residuals (rows,) of the path, run by run."""
+    parts = [run.residuals(p, delay, friction=part)[:, 0] for run, part in zip(runs, friction, strict=True)]
+    r = np.concatenate(parts)
+    return np.where(np.isfinite(r), r, GANTRY_FIT.impossible)
+
+
+def _slope(
+    runs: Sequence[GantryRecording], p: np.void, name: str, r: np.ndarray, friction: list[np.ndarray]
+) -> np.ndarray:
+    """Derivative (rows,) of the path's residuals by a parameter; `r` (rows,): the residuals at `p`; `friction`: the
+    displacements at `p`, which are held constant for all parameters but CHANGE_FRICTION."""
+    step = _step(name, float(p[name]))
+    moved, delay = p.copy(), 0.0
+    if name == "command_delay":
+        delay = step  # shifts the changes themselves: with ticks, the effect of the parameter is discontinuous
+    else:
+        moved[name] += step
+    if name in CHANGE_FRICTION:
+        friction = [run.friction(moved, delay) for run in runs]
+    return (_path(runs, moved, friction, delay) - r) / step
 
 
 def _step(name: str, value: float) -> float:

@@ -200,6 +200,20 @@ def test_a_recording_without_a_robot_is_left_out(baseline: Recording) -> None:
 
 
 @pytest.mark.slow
+def test_residuals_of_one_recording_are_those_rows_of_all(baseline: Recording) -> None:
+    problem, _ = gantry_problem([baseline, baseline, baseline], parameters(baseline))
+    values = {**{name: problem.defaults(name) for name in problem.base}, "motor_friction_left": 0.3}
+    free = ("a1", "b1", "b3", "motor_friction_left")
+    every = problem.residuals(values, free, problem.everything)
+    for clusters in (problem.clusters_of_runs[1], np.array([0, problem.clusters - 1])):
+        some, here = problem.residuals(values, free, clusters), np.isin(every.cluster, clusters)
+        assert len(some.r) == here.sum() > 0
+        np.testing.assert_array_equal(some.r, every.r[here])
+        np.testing.assert_array_equal(some.jacobian, every.jacobian[here])
+        np.testing.assert_array_equal(some.cluster, every.cluster[here])
+
+
+@pytest.mark.slow
 def test_two_gantries_are_refused(baseline: Recording, tmp_path: Path) -> None:
     values = parameters(baseline)
     problem, _ = gantry_problem([baseline, recorded(tmp_path, replace(Law(), a2=0.0075), seconds=8.0)], values)
