@@ -18,6 +18,7 @@ from sim2real.diagnose.engine.backward_elimination import (
 )
 from sim2real.diagnose.engine.candidate_models import CandidateModel, best_candidate, identifiable
 from sim2real.diagnose.engine.forward_selection import ForwardSelection, Gain
+from sim2real.diagnose.engine.further_laws import with_further_laws
 from sim2real.diagnose.engine.law import Law, Model
 from sim2real.diagnose.engine.least_squares import LeastSquaresFit, fit, given
 from sim2real.diagnose.engine.linear import normal_equations
@@ -153,6 +154,7 @@ def search_model(
     selection = ForwardSelection(screen.equations, problem.units, use, dispersion, _least_gain(problem))
     grown = selection.add_forward(Model(problem.base), screen.listed, ENGINE.most_listed)
     listed, law = eliminated(problem, baseline, selection.eliminate_backward(grown), screen, use)
+    listed, law = with_further_laws(problem, baseline, listed, law, screen, selection, use)
     best = CandidateModel(listed, law, None, np.inf)
     if clear:
         best = best_candidate(problem, baseline, law, listed, selection, screen, every.families, use)

@@ -76,10 +76,7 @@ def candidates(problem: GantryResiduals, values: Mapping[str, float]) -> list[Ca
     found: list[Candidate] = []
     dominant = ""
     while len(chosen) < GANTRY_FIT.most_effects and now.law.loss > GANTRY_FIT.little_left * freedom:
-        names = [name for name in STARTS if name not in chosen and ALTERNATIVES.get(name) not in chosen]
-        with ThreadPoolExecutor() as pool:
-            fits = dict(zip(names, pool.map(best_fit, repeat(thin), repeat(now), names), strict=True))
-        fits = {name: one for name, one in fits.items() if is_supported(thin, now.law, one.law, name)}
+        fits = _supported_fits(thin, now, chosen)
         if not fits:
             break
         best = min(fits, key=lambda name: fits[name].law.loss)
@@ -88,7 +85,9 @@ def candidates(problem: GantryResiduals, values: Mapping[str, float]) -> list[Ca
             break
         share = GANTRY_FIT.later_share if chosen else GANTRY_FIT.first_share
         if now.law.loss - fits[best].law.loss < share * (now.law.loss - freedom):
-            break
+            best = "" if chosen else _first_of_pair(thin, now, fits)
+            if not best:
+                break
         if not chosen and _stands_out(fits, best, now.law.loss - freedom, freedom):
             dominant = best
         before = _residuals(problem, now.law)
@@ -97,6 +96,26 @@ def candidates(problem: GantryResiduals, values: Mapping[str, float]) -> list[Ca
     before, after = (_mean_square(problem, one.law) for one in (base, now))  # all samples: backlash shows in reversals
     much = after > GANTRY_FIT.much_left and after - 1.0 > (1.0 - GANTRY_FIT.later_share) * (before - 1.0)
     return [one for one in found if one.name == dominant and not one.beside] if much else found
+
+
+def _supported_fits(problem: GantryResiduals, now: StagedFit, chosen: tuple[str, ...]) -> dict[str, StagedFit]:
+    """The fits, by name, of the further effects beside those `chosen`, fitted as `now`, that the data support."""
+    names = [name for name in STARTS if name not in chosen and ALTERNATIVES.get(name) not in chosen]
+    with ThreadPoolExecutor() as pool:
+        fits = dict(zip(names, pool.map(best_fit, repeat(problem), repeat(now), names), strict=True))
+    return {name: one for name, one in fits.items() if is_supported(problem, now.law, one.law, name)}
+
+
+def _first_of_pair(problem: GantryResiduals, now: StagedFit, fits: Mapping[str, StagedFit]) -> str:
+    """The first effect of a pair that explains nearly all of the excess though each alone explains little; "" if there
+    is none."""
+    freedom = float(problem.freedom.sum())
+    little = (1.0 - GANTRY_FIT.later_share) * (now.law.loss - freedom)
+    for first in sorted(fits, key=lambda name: fits[name].law.loss)[: GANTRY_FIT.firsts]:
+        pairs = _supported_fits(problem, fits[first], (first,))
+        if any(one.law.loss - freedom < little for one in pairs.values()):
+            return first
+    return ""
 
 
 def _stands_out(fits: Mapping[str, StagedFit], best: str, excess: float, freedom: float) -> bool:

@@ -183,6 +183,7 @@ class GantryFitNumbers:
     later_share: float = tuned(
         0.9, "1", "share of the excess that a further effect must explain", "choice: nearly all of it"
     )
+    firsts: int = tuned(3, "effects", "fewer miss a pair, more cost time", "choice: of a pair, one is among the best")
     most_share: float = tuned(
         0.7,
         "1",

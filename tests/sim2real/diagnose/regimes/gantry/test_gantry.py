@@ -78,6 +78,7 @@ def test_one_effect_is_named_and_measured(tmp_path: Path, law: Law, name: str, p
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_two_effects_are_both_named(tmp_path: Path) -> None:
     found = diagnosed(recorded(tmp_path, Law(voltage_sag=0.02, backlash=0.0015)))
     assert {one.mechanism for one in found.findings} == {"voltage_sag", "backlash"}
