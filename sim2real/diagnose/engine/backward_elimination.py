@@ -85,6 +85,11 @@ def has_misfit(problem: Problem, baseline: LeastSquaresFit, law: LeastSquaresFit
     return after > ENGINE.misfit_beside_laws and after > min(ENGINE.misfit_left * before, ENGINE.misfit)
 
 
+def fits_typical_launch(problem: Problem, law: LeastSquaresFit, use: np.ndarray) -> bool:
+    """Return whether the residuals of a typical launch are noise."""
+    return _typical(problem, law, use) - 1.0 <= ENGINE.misfit_beside_laws
+
+
 def explains_nearly_all(problem: Problem, baseline: LeastSquaresFit, law: LeastSquaresFit, use: np.ndarray) -> bool:
     """Return whether the remaining residuals of listed laws are too small to require another law.
 

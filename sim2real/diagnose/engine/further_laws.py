@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sim2real.diagnose.engine.backward_elimination import eliminated, explains_nearly_all, has_misfit
+from sim2real.diagnose.engine.backward_elimination import eliminated, fits_typical_launch, has_misfit
 from sim2real.diagnose.engine.forward_selection import ForwardSelection
 from sim2real.diagnose.engine.law import Model
 from sim2real.diagnose.engine.least_squares import LeastSquaresFit
@@ -21,10 +21,11 @@ def with_further_laws(
     selection: ForwardSelection,
     use: np.ndarray,
 ) -> tuple[Model, LeastSquaresFit]:
-    """Return the `listed` laws and their joint fit `law`, with further laws if all of them explain nearly everything.
+    """Return the `listed` laws and their joint fit `law`, or more and other laws that explain a typical launch.
 
-    About the baseline, a large law is far from linear and hides a smaller one; about its own fit it does not. If much
-    remains with the further laws too, they may only approximate a law that is not listed, and none is added.
+    About the baseline, a large law is far from linear and hides a smaller one, or another form of itself; about its
+    own fit it does not. If a typical launch remains unexplained all the same, further laws may only approximate one
+    that is not listed, and none is added.
     """
     if not listed.laws or not has_misfit(problem, baseline, law, use):
         return listed, law
@@ -39,6 +40,6 @@ def with_further_laws(
     for further in grown.laws:
         model = model.plus(further, np.inf)
     model, joint = eliminated(problem, baseline, model, screen, use)
-    if len(model.laws) > len(listed.laws) and explains_nearly_all(problem, baseline, joint, use):
+    if any(one not in listed.laws for one in model.laws) and fits_typical_launch(problem, joint, use):
         return model, joint
     return listed, law

@@ -97,7 +97,7 @@ def fit(
             at, halved = 0.5 * (best + at), halved + 1
             continue
         else:
-            damping, halved = max(damping, 1e-8) * 30.0, 0
+            damping = max(30.0 * damping, 1e-2)
         assert equations is not None
         step = _step(equations, damping, best, low, high, clusters)
         at = np.clip(best + step, low, high)

@@ -24,7 +24,7 @@ from sim2real.diagnose.regimes.gantry.tuned import GANTRY_FIT
 
 # Starting values of an effect; of several, those with the smallest linearised loss are fitted
 STARTS: dict[str, tuple[dict[str, float], ...]] = {
-    "voltage_sag": ({},),
+    "voltage_sag": ({}, {"voltage_sag": 0.02}),
     "motor_deadband": ({},),
     "motor_friction": ({},),
     "command_delay": tuple({"command_delay": late} for late in (0.002, 0.01, 0.03)),
@@ -157,7 +157,10 @@ def _fit_in_stages(problem: GantryResiduals, starts: Sequence[Mapping[str, float
 def _converged(problem: GantryResiduals, one: StagedFit, freedom: float) -> StagedFit:
     """Both fits continued while that reduces their excess over the noise, of `freedom`: friction and
     another effect correlate, so that convergence is slow."""
-    return StagedFit(*(_continued(problem, each, freedom) for each in (one.low_order, one.law)))
+    low_order, law = _continued(problem, one.low_order, freedom), one.law
+    if low_order.loss < law.loss:  # the fit of all parameters had ended elsewhere
+        law = fit(problem, low_order.values, law.free, problem.everything, GANTRY_FIT.rounds)
+    return StagedFit(low_order, _continued(problem, law, freedom))
 
 
 def _continued(problem: GantryResiduals, law: LeastSquaresFit, freedom: float) -> LeastSquaresFit:

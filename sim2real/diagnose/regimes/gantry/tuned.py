@@ -142,7 +142,7 @@ class GantryFitNumbers:
         2, "starts", "fewer miss the best minimum, more cost time", "choice: the most promising by their derivatives"
     )
     rounds: int = tuned(15, "steps", "fewer end a fit before it converges", "choice: fits converge sooner")
-    continued: int = tuned(5, "1", "how often the best effect's fit may be continued", "choice: fits end before")
+    continued: int = tuned(10, "1", "how often the best effect's fit may be continued", "choice: fits end before")
     still_better: float = tuned(
         0.9,
         "1",
