@@ -186,6 +186,6 @@ def find_formula(
     shaped = sorted((one for one in found if len(one.shape)), key=lambda one: one.bic)
     found += [search.fine(one) for one in shaped[: FORMULA.refined]]
     most = max(one.gained for one in found)
-    good = [one for one in found if one.gained >= min(FORMULA.nearly_all * most, most)]  # at worst, none gains anything
+    good = [one for one in found if one.gained >= FORMULA.nearly_all * most]
     best = min(good, key=lambda one: (one.numbers, one.bic))
     return search.formula(search.fine(best))

@@ -9,11 +9,12 @@ import numpy as np
 
 from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.engine.model_search import SearchResult
+from sim2real.diagnose.engine.problem import Residuals
 from sim2real.diagnose.formula.search import Formula, FormulaProblem, find_formula
 from sim2real.diagnose.formula.shapes import Axis, Direction, Form, form, harmonic, profiles
 from sim2real.diagnose.regimes.gantry.basis_library import path_responses, signals
 from sim2real.diagnose.regimes.gantry.problem import GantryProblem
-from sim2real.diagnose.regimes.gantry.tuned import GANTRY_LAW
+from sim2real.diagnose.regimes.gantry.tuned import GANTRY_FIT, GANTRY_LAW
 
 AXES = {"both axes": (0, 1), "x": (0,), "y": (1,)}
 # By the last word of a law's name: the field of `Signals`, its symbol and unit in a formula, and its label
@@ -84,9 +85,8 @@ def _formula_problem(
     problem: GantryProblem, found: SearchResult, use: np.ndarray, moved: Mapping[str, float]
 ) -> FormulaProblem:
     """The residuals with the fitted parameters changed by `moved`, and their response to extra volts."""
-    values = {name: value + moved.get(name, 0.0) for name, value in found.final.values.items()}
+    values, rest = _possible_law(problem, found, moved)
     p = problem.record(values)
-    rest = problem.residuals(values, found.final.free, np.arange(problem.clusters))
     priors = len(rest.r) - sum(2 * len(run.windows.rows) for run in problem.runs)
 
     def respond(laws: np.ndarray) -> np.ndarray:
@@ -94,6 +94,20 @@ def _formula_problem(
         return np.concatenate([columns, np.zeros((priors, columns.shape[1]))])
 
     return FormulaProblem(rest.r, rest.jacobian, rest.cluster, use, float(problem.freedom[use].sum()), respond)
+
+
+def _possible_law(
+    problem: GantryProblem, found: SearchResult, moved: Mapping[str, float]
+) -> tuple[Mapping[str, float], Residuals]:
+    """The fitted parameters changed by `moved`, and the residuals there; without the change, or those about which the
+    smooth term was linearized, if an axis would not be overdamped: a linear step may lead there."""
+    final = found.final.values
+    laws = ({name: value + moved.get(name, 0.0) for name, value in final.items()}, final, found.law.values)
+    for values in laws:
+        rest = problem.residuals(values, found.final.free, problem.everything)
+        if np.abs(rest.r).max() < GANTRY_FIT.impossible:
+            break
+    return values, rest
 
 
 def _refitted(problem: GantryProblem, found: SearchResult, use: np.ndarray, first: Formula) -> Formula:
