@@ -28,7 +28,7 @@ from sim2real.gap.arms import ARMS, simulator_of, write_simulator
 from sim2real.gap.page import page
 from sim2real.table.mallet_driver import AHEAD
 from sim2real.table.twin.fidelity import Meeting, TwinGame, play_all
-from sim2real.table.twin.score import change, score
+from sim2real.table.twin.score import change, score, shots
 
 FORMAT = "puckpilot-gap/1"
 VARIANT = "match-v0"
@@ -149,19 +149,20 @@ class Circle:
                 name: goals / simulated["minutes"]
                 for name, goals in zip(("scored", "conceded"), simulated["goals"], strict=True)
             },
-            "before": {name: asdict(rate) for name, rate in score(before).items()},
-            "stops": sum(game.stops for game in before),
+            "before": _played(before),
             "found": [one["mechanism"] for one in content["findings"]],
             "verdict": content["verdict"],
-            "arms": {
-                arm: {
-                    **{name: asdict(rate) for name, rate in score(games).items()},
-                    "change": asdict(change(before, games)),
-                    "stops": sum(game.stops for game in games),
-                }
-                for arm, games in after.items()
-            },
+            "arms": {arm: {**_played(games), "change": asdict(change(before, games))} for arm, games in after.items()},
         }
+
+
+def _played(games: list[TwinGame]) -> dict[str, Any]:
+    """What came of a player's games: rates a minute, shots, stops of the table."""
+    return {
+        **{name: asdict(rate) for name, rate in score(games).items()},
+        "shots": asdict(shots(games)),
+        "stops": sum(game.stops for game in games),
+    }
 
 
 def _run(*words: str) -> None:

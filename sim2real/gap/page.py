@@ -11,6 +11,7 @@ from sim2real.diagnose.report import page as diagnosis_page
 from sim2real.diagnose.report.charts import BLUE, GREY
 from sim2real.diagnose.report.inline_svg import inline_svg
 from sim2real.gap.arms import ARMS
+from sim2real.table.game.shots import Shots
 from sim2real.table.twin.concealed import TABLES
 
 if TYPE_CHECKING:
@@ -40,6 +41,7 @@ def page(result: dict[str, Any]) -> str:
         words=TABLES[conditions["table"]].words,
         chart=_chart(result),
         rows=_rows(result),
+        shots=_shots(result),
         found=", ".join(result["found"]) + "." if result["found"] else "Nothing is missing, as far as it can tell.",
         command=_command(conditions, list(result["arms"])),
         files=FILES,
@@ -50,7 +52,7 @@ def _rows(result: dict[str, Any]) -> list[list[str]]:
     simulated = result["simulator"]
     net = simulated["scored"] - simulated["conceded"]
     rows = [[SIMULATED, f"{simulated['scored']:.2f}", f"{simulated['conceded']:.2f}", f"{net:.2f}", "", "", "", ""]]
-    rows.append([PLAYED, *_rates(result["before"]), "", "", str(result["stops"])])
+    rows.append([PLAYED, *_rates(result["before"]), "", "", str(result["before"]["stops"])])
     for name, arm in result["arms"].items():
         change = arm["change"]
         rows.append(
@@ -59,6 +61,19 @@ def _rows(result: dict[str, Any]) -> list[list[str]]:
                 f"{change['low']:+.2f} to {change['high']:+.2f}", str(arm["stops"]),
             ]
         )  # fmt: skip
+    return rows
+
+
+def _shots(result: dict[str, Any]) -> list[list[str]]:
+    """How the shots of each player's games ended."""
+    players = {PLAYED: result["before"], **result["arms"]}
+    rows = []
+    for name, one in players.items():
+        shots = Shots(**one["shots"])
+        kept = f"{100.0 * (1.0 - shots.let_in / shots.faced):.0f} %" if shots.faced else ""
+        made = f"{100.0 * shots.scored / shots.made:.0f} %" if shots.made else ""
+        kinds = [str(getattr(shots, kind)) for kind in ("late", "bounce", "straight", "deflected")]
+        rows.append([name, str(shots.faced), kept, *kinds, str(shots.made), made, str(shots.missed)])
     return rows
 
 

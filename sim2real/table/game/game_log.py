@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 from sim2real.table.faults import TableFaultError
 from sim2real.table.game.loop_times import LoopTimes
+from sim2real.table.game.shots import Shots
 
 
 @dataclass
@@ -31,6 +32,7 @@ class GameLog:
     wall_seconds: float = 0.0
     interrupted: bool = False
     fault: TableFaultError | None = None
+    shots: Shots = field(default_factory=Shots)
 
     @property
     def complete(self) -> GameLog:

@@ -48,7 +48,7 @@ def play_game(
                 observation, _, terminated, truncated, info = env.step(action)
                 over = terminated or truncated
                 if env.loop is not None:
-                    log.times = env.loop.times
+                    log.times, log.shots = env.loop.times, env.loop.referee.shots.counts
                     show(env.loop, action, info)
                 _note(log, info, report)
             except TableFaultError as fault:

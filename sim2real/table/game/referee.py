@@ -12,6 +12,7 @@ from puckpilot_env.physics.contacts import bounce
 from sim2real.table.backend import Motion
 from sim2real.table.game.game_record import GameRecord
 from sim2real.table.game.moving_objects import SeenTable
+from sim2real.table.game.shots import ShotCounter
 
 Seen = tuple[float, Motion]  # time of a frame [s], and the motion then
 HIDDEN = 0.02  # s without a sight of the puck, in which the clock does not end a point: it may be in a goal
@@ -23,7 +24,7 @@ TOUCHING = 0.004  # m between puck and mallet below which they are taken for tou
 class Referee:
     """Applies the variant's rules to a game's record as frames come.
 
-    game: the record, whose puck and mallets the referee reads at each frame.
+    game: the record, whose puck and mallets the referee reads at each frame; shots: counted as it watches.
     """
 
     def __init__(self, game: GameRecord) -> None:
@@ -31,10 +32,12 @@ class Referee:
         self._before: Seen | None = None  # the puck, one frame ago
         self._half_since = 0.0
         self.rewards = np.zeros(2, np.float32)
+        self.shots = ShotCounter(game.p)
 
     def begin(self, now: float) -> None:
         """A point begins at `now` [s]."""
         self._before, self._half_since = None, now
+        self.shots.begin()
         self._game.record["ending"] = rules.RUNNING
 
     def begin_step(self) -> None:
@@ -56,9 +59,10 @@ class Referee:
         self._game.put_puck(puck)
         if record["ending"] != rules.RUNNING:
             return
-        for which, mallet in enumerate((robot, opponent)):
-            if mallet and self._touches(before, (time, puck), mallet):
-                record["puck"]["touched"][which] = 1
+        touched = [bool(mallet) and self._touches(before, (time, puck), mallet) for mallet in (robot, opponent)]
+        for which in np.flatnonzero(touched):
+            record["puck"]["touched"][which] = 1
+        self.shots.watch(time, puck, robot, touched[0], touched[1])
         if before is not None and (before[1][0] < middle) != (puck[0] < middle):
             self._half_since = time
             ahead = (puck[0] - before[1][0]) / (time - before[0])
@@ -81,6 +85,7 @@ class Referee:
         record["held"] = now - self._half_since
         again = False
         if side := self._goal(now, seen):
+            self.shots.goal(against=side < 0)
             rules.goal(record, p, rule, self.rewards, bounce.GOAL_X0 if side < 0 else bounce.GOAL_X1)
             again = record["ending"] == rules.RUNNING
         else:

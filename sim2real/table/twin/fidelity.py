@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from contextlib import closing, nullcontext
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -20,6 +20,7 @@ from sim2real.study.version import OF_GAMES, code_version
 from sim2real.table.game.game_record import GameRecord
 from sim2real.table.game.play import play_game
 from sim2real.table.game.robot_seat import make_robot_seat
+from sim2real.table.game.shots import Shots
 from sim2real.table.recorder.draft import draft_of
 from sim2real.table.recorder.recorded_game import recorded
 from sim2real.table.twin.concealed import find_table
@@ -54,7 +55,7 @@ class TwinGame:
     """What came of a game: outcome 1, 0, -1 as the player won, drew or lost; goals of both; `seconds` of play.
 
     virtual: the twin's time from power-on to the end [s]; processor, wall: what it took on this computer [s]; stops:
-    how often a doubt stopped the table.
+    how often a doubt stopped the table; shots: at both goals, as the robot's camera saw them.
     """
 
     outcome: int
@@ -64,6 +65,7 @@ class TwinGame:
     processor: float
     wall: float
     stops: int = 0
+    shots: Shots = field(default_factory=Shots)
 
 
 def play_on_twin(meeting: Meeting, recording: Path | None) -> TwinGame:
@@ -93,7 +95,7 @@ def _play(meeting: Meeting, recording: Path | None) -> TwinGame:
                 raise KeyboardInterrupt
             virtual = env.backend.now()
     processor, wall = time.process_time() - begin[0], time.perf_counter() - begin[1]
-    return TwinGame(log.outcome, log.score, log.seconds, virtual, processor, wall, len(log.faults))
+    return TwinGame(log.outcome, log.score, log.seconds, virtual, processor, wall, len(log.faults), log.shots)
 
 
 def play_all(
@@ -151,7 +153,8 @@ def _read(folder: Path, meeting: Meeting, code: str) -> TwinGame | None:
         content = json.loads(path.read_text(encoding="utf-8"))
         if content["format"] != FORMAT or Meeting(**content["meeting"]) != meeting:
             raise ValueError
-        game = TwinGame(**content["game"] | {"goals": tuple(content["game"]["goals"])})
+        read = {"goals": tuple(content["game"]["goals"]), "shots": Shots(**content["game"]["shots"])}
+        game = TwinGame(**content["game"] | read)
     except (ValueError, KeyError, TypeError):
         raise ValueError(f"{path}: is no result of this meeting; name another folder, or remove it") from None
     if content.get("code") != code:

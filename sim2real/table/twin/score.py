@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sim2real.table.game.shots import Shots
 from sim2real.table.twin.fidelity import TwinGame
 
 RESAMPLES = 4000
@@ -27,6 +28,11 @@ def score(games: Sequence[TwinGame]) -> dict[str, Rate]:
     """Goals a minute `scored`, `conceded`, and the difference of both, the `net` score."""
     drawn = _drawn(len(games))
     return {name: _rate(_rates(games, name, drawn)) for name in ("scored", "conceded", "net")}
+
+
+def shots(games: Sequence[TwinGame]) -> Shots:
+    """The shots of all games."""
+    return sum((one.shots for one in games), Shots())
 
 
 def change(before: Sequence[TwinGame], after: Sequence[TwinGame]) -> Rate:

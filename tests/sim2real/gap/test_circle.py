@@ -17,6 +17,7 @@ from sim2real.table.mallet_driver import AHEAD
 from sim2real.table.twin import fidelity
 from tests.agents.training.tiny import TINY
 
+PLAYED = {"scored", "conceded", "net", "shots", "stops"}
 CONDITIONS = Conditions("interceptor", "goalie", "none", 3, 20.0, 2, 1.0, 5)
 
 
@@ -29,8 +30,12 @@ def test_a_circle_goes_round_and_is_not_run_again(tmp_path: Path, monkeypatch: p
     """With a player that does not learn: games on the table, of which two are recorded, and their diagnosis."""
     result = circle(tmp_path).run([], lambda done, count: None)
     assert {one.name for one in (tmp_path / "before" / "recordings").iterdir()} == {"game_5", "game_6"}
-    assert result["found"] == [] and result["arms"] == {} and result["before"].keys() == {"scored", "conceded", "net"}
+    assert result["found"] == [] and result["arms"] == {} and result["before"].keys() == PLAYED
     assert result["simulator"].keys() == {"scored", "conceded"}
+    shots = result["before"]["shots"]
+    assert shots["faced"] > 3 and shots["made"] >= shots["scored"]
+    goals = sum(game.goals[1] for game in circle(tmp_path)._games("interceptor", tmp_path / "before", lambda *_: None))
+    assert sum(shots[kind] for kind in ("late", "bounce", "straight", "deflected")) == goals
     html = (tmp_path / "gap.html").read_text(encoding="utf-8")
     assert "on a table with nothing: the control" in html and "--games 3 --seconds 20 --recorded 2" in html
 
@@ -56,7 +61,7 @@ def test_an_arm_is_fine_tuned_and_plays_games_of_the_same_seeds(
     assert settings["effects"] == {"command_delay": AHEAD} and settings["start"].endswith("champion.npz")
     assert settings["seed"] == 5 and settings["draws"] is None
     assert {one.name for one in (arm / "games").iterdir()} == {"game_5.json", "game_6.json"}
-    assert result["arms"]["unchanged"].keys() == {"scored", "conceded", "net", "change", "stops"}
+    assert result["arms"]["unchanged"].keys() == {*PLAYED, "change"}
     before = (arm / "training" / "policy.npz").read_bytes()
     assert made.run(["unchanged"], lambda done, count: None) == result
     assert (arm / "training" / "policy.npz").read_bytes() == before

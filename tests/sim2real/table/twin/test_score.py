@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from sim2real.table.game.shots import Shots
 from sim2real.table.twin.fidelity import TwinGame
-from sim2real.table.twin.score import change, score
+from sim2real.table.twin.score import change, score, shots
 
 
 def game(scored: int, conceded: int, seconds: float = 60.0) -> TwinGame:
@@ -17,6 +20,11 @@ def test_rates_are_all_goals_by_all_minutes() -> None:
     rates = score([game(7, 1, 30.0), game(5, 2, 90.0)])
     assert {name: rate.value for name, rate in rates.items()} == {"scored": 6.0, "conceded": 1.5, "net": 4.5}
     assert (rates["scored"].low, rates["scored"].high) == pytest.approx((5.0 / 1.5, 14.0))
+
+
+def test_the_shots_of_all_games_are_added() -> None:
+    one, other = replace(game(1, 2), shots=Shots(3, late=2, made=4)), replace(game(0, 0), shots=Shots(2, bounce=1))
+    assert shots([one, other]) == Shots(faced=5, late=2, bounce=1, made=4) and shots([one, other]).let_in == 3
 
 
 def test_a_change_is_of_the_same_games() -> None:
