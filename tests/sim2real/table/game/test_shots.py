@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from puckpilot_env.tables import Tables
-from sim2real.table.game.shots import Shots, ShotCounter
+from sim2real.table.game.shots import ShotCounter, Shots
 
 FRAME = 1 / 120
 HOME = (0.25, 0.5, 0.0, 0.0)
@@ -68,7 +68,7 @@ def test_a_puck_that_comes_back_from_the_robot_s_wall_alone_is_none_of_its_shots
 )
 def test_a_goal_is_late_where_the_mallet_was_on_its_way(kind: str, mallet: tuple[float, ...]) -> None:
     point = Point()
-    point.fly(-3.0, 0.0, 45, HOME[:2] + (0.0, 0.0))
+    point.fly(-3.0, 0.0, 45)
     point.fly(-3.0, 0.0, 14, mallet)
     point.counter.goal(against=True)
     assert point.counts == replace(Shots(faced=1), **{kind: 1}) and point.counts.let_in == 1
