@@ -97,6 +97,7 @@ OPTIONS = {
         "--minutes",
         "--seed",
         "--processes",
+        "--together",
         "--out",
         "--json",
     ],

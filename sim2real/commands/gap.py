@@ -28,6 +28,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--minutes", type=float, default=30.0, metavar="M", help="of fine-tuning of each arm (30)")
     parser.add_argument("--seed", type=int, default=0, help="of the first game, and of learning (0)")
     parser.add_argument("--processes", type=int, default=2, metavar="N", help="that play at once (2)")
+    parser.add_argument(
+        "--together", nargs="+", type=Path, metavar="DIR", help="go round no more: one page over circles that are done"
+    )
     parser.add_argument("--out", type=Path, default=Path("out/gap"), metavar="DIR", help="(out/gap)")
     parser.add_argument("--json", action="store_true", help="print gap.json instead of the summary")
 
@@ -45,6 +48,8 @@ def run(args: argparse.Namespace) -> int:
     if args.list:
         print("\n".join(_listed()))
         return 0
+    if args.together:
+        return _together(args.together, args.out, args.json)
     arms = args.arms or list(ARMS)
     refuse_unknown(arms, ARMS, "arm")
     find_table(args.table)
@@ -64,6 +69,21 @@ def run(args: argparse.Namespace) -> int:
     with progress_bar("games on the table") as progress:
         result = Circle(args.out, conditions, args.processes, report).run(arms, progress)
     print(json.dumps(result, indent=1) if args.json else "\n".join([*_lines(result), f"wrote {args.out / 'gap.html'}"]))
+    return 0
+
+
+def _together(folders: list[Path], out: Path, as_json: bool) -> int:
+    """Write the page over the circles in `folders`."""
+    from puckpilot_env.files.whole_file import write_text_whole
+    from sim2real.gap.overview import overview, read_circle
+    from sim2real.gap.overview_page import overview_page
+
+    result = overview([read_circle(folder) for folder in folders])
+    out.mkdir(parents=True, exist_ok=True)
+    text = json.dumps(result, indent=1)
+    write_text_whole(out / "overview.json", text + "\n")
+    write_text_whole(out / "overview.html", overview_page(result, [str(one) for one in folders]))
+    print(text if as_json else f"wrote {out / 'overview.json'}, {out / 'overview.html'}")
     return 0
 
 

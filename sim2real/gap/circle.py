@@ -157,11 +157,12 @@ class Circle:
 
 
 def _played(games: list[TwinGame]) -> dict[str, Any]:
-    """What came of a player's games: rates a minute, shots, stops of the table."""
+    """What came of a player's games: rates a minute, shots, stops of the table, and each one's goals and seconds."""
     return {
         **{name: asdict(rate) for name, rate in score(games).items()},
         "shots": asdict(shots(games)),
         "stops": sum(game.stops for game in games),
+        "games": [[*game.goals, game.seconds] for game in games],
     }
 
 

@@ -28,23 +28,31 @@ FILES = (
 )
 
 
-def page(result: dict[str, Any]) -> str:
-    """The result of a circle, see `circle.Circle.run`, as one self-contained HTML page without scripts."""
-    conditions = result["conditions"]
-    environment = Environment(
+def environment() -> Environment:
+    """The templates of the gap's pages, with the parts and the style of a diagnosis' report."""
+    return Environment(
         loader=FileSystemLoader([TEMPLATES, diagnosis_page.TEMPLATES]), autoescape=True, undefined=StrictUndefined,
         trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True,
     )  # fmt: skip
-    return environment.get_template("gap.html.j2").render(
-        title=f"{conditions['player']} on a table with {TABLES[conditions['table']].words}",
-        conditions=conditions,
-        words=TABLES[conditions["table"]].words,
-        chart=_chart(result),
-        rows=_rows(result),
-        shots=_shots(result),
-        found=", ".join(result["found"]) + "." if result["found"] else "Nothing is missing, as far as it can tell.",
-        command=_command(conditions, list(result["arms"])),
-        files=FILES,
+
+
+def page(result: dict[str, Any]) -> str:
+    """The result of a circle, see `circle.Circle.run`, as one self-contained HTML page without scripts."""
+    conditions = result["conditions"]
+    return (
+        environment()
+        .get_template("gap.html.j2")
+        .render(
+            title=f"{conditions['player']} on a table with {TABLES[conditions['table']].words}",
+            conditions=conditions,
+            words=TABLES[conditions["table"]].words,
+            chart=_chart(result),
+            rows=_rows(result),
+            shots=_shots(result),
+            found=", ".join(result["found"]) + "." if result["found"] else "Nothing is missing, as far as it can tell.",
+            command=_command(conditions, list(result["arms"])),
+            files=FILES,
+        )
     )
 
 

@@ -4,12 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sim2real.table.game.shots import Shots
 from sim2real.table.twin.fidelity import TwinGame
+
+
+class Game(Protocol):
+    """What a score is taken of: goals of both, and seconds of play."""
+
+    @property
+    def goals(self) -> tuple[int, int]: ...
+
+    @property
+    def seconds(self) -> float: ...
+
 
 RESAMPLES = 4000
 LEVEL = 0.95
@@ -24,7 +36,7 @@ class Rate:
     high: float
 
 
-def score(games: Sequence[TwinGame]) -> dict[str, Rate]:
+def score(games: Sequence[Game]) -> dict[str, Rate]:
     """Goals a minute `scored`, `conceded`, and the difference of both, the `net` score."""
     drawn = _drawn(len(games))
     return {name: _rate(_rates(games, name, drawn)) for name in ("scored", "conceded", "net")}
@@ -35,18 +47,39 @@ def shots(games: Sequence[TwinGame]) -> Shots:
     return sum((one.shots for one in games), Shots())
 
 
-def change(before: Sequence[TwinGame], after: Sequence[TwinGame]) -> Rate:
+def change(before: Sequence[Game], after: Sequence[Game]) -> Rate:
     """By how much the net score is higher `after`: in games of the same seeds, in the same order."""
-    drawn = _drawn(len(before))
-    return _rate(_rates(after, "net", drawn) - _rates(before, "net", drawn))
+    return mean_change([(before, after)])
 
 
-def _drawn(games: int) -> NDArray[np.int64]:
-    """Rows of games: all of them first, then as many at random."""
-    return np.concatenate([np.arange(games)[None], np.random.default_rng(0).integers(0, games, (RESAMPLES, games))])
+def mean_change(series: Sequence[tuple[Sequence[Game], Sequence[Game]]]) -> Rate:
+    """The mean of such changes over several series of games, each resampled by itself."""
+    return _rate(_mean_changes(series))
 
 
-def _rates(games: Sequence[TwinGame], name: str, drawn: NDArray[np.int64]) -> NDArray[np.float64]:
+def share(series: Sequence[tuple[Sequence[Game], Sequence[Game], Sequence[Game]]]) -> Rate | None:
+    """The mean change of the second games of each series against the first, as a share of that of the third; None if
+    that is not above 0 beyond chance."""
+    whole = _mean_changes([(before, best) for before, _, best in series])
+    if _rate(whole).low <= 0.0:
+        return None
+    return _rate(_mean_changes([(before, after) for before, after, _ in series]) / whole)
+
+
+def _mean_changes(series: Sequence[tuple[Sequence[Game], Sequence[Game]]]) -> NDArray[np.float64]:
+    changes = []
+    for k, (before, after) in enumerate(series):
+        drawn = _drawn(len(before), k)
+        changes.append(_rates(after, "net", drawn) - _rates(before, "net", drawn))
+    return np.mean(changes, axis=0)
+
+
+def _drawn(games: int, seed: int = 0) -> NDArray[np.int64]:
+    """Rows of games: all of them first, then as many at random, the same for the same seed."""
+    return np.concatenate([np.arange(games)[None], np.random.default_rng(seed).integers(0, games, (RESAMPLES, games))])
+
+
+def _rates(games: Sequence[Game], name: str, drawn: NDArray[np.int64]) -> NDArray[np.float64]:
     """The rate [1/min] of each row of games."""
     scored, conceded = np.array([one.goals for one in games], float).T
     goals = {"scored": scored, "conceded": conceded, "net": scored - conceded}[name]

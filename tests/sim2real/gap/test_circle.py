@@ -17,7 +17,7 @@ from sim2real.table.mallet_driver import AHEAD
 from sim2real.table.twin import fidelity
 from tests.agents.training.tiny import TINY
 
-PLAYED = {"scored", "conceded", "net", "shots", "stops"}
+PLAYED = {"scored", "conceded", "net", "shots", "stops", "games"}
 CONDITIONS = Conditions("interceptor", "goalie", "none", 3, 20.0, 2, 1.0, 5)
 
 

@@ -1,0 +1,96 @@
+"""What several circles say together: for each table what was lost, what each arm won back, its share of the ceiling's.
+
+Circles of one table are series of games of different seeds: their means are taken, and each is resampled by itself.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from sim2real.gap.arms import ARMS
+from sim2real.table.twin.concealed import TABLES
+from sim2real.table.twin.score import mean_change, share
+
+FORMAT = "puckpilot-gap-overview/1"
+CEILING, OWN = "truth", "corrected"
+ALIKE = ("player", "opponent", "seconds", "minutes")  # conditions that all circles share
+
+
+@dataclass(frozen=True)
+class PlayedGame:
+    """A game as a circle keeps it: goals of both, seconds of play."""
+
+    goals: tuple[int, int]
+    seconds: float
+
+
+def read_circle(folder: Path) -> dict[str, Any]:
+    """The result of a circle in its folder. ValueError, in one line, if there is none."""
+    from sim2real.gap.circle import FORMAT as CIRCLE
+
+    path = folder / "gap.json"
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except OSError:
+        raise ValueError(f"{folder} has no gap.json: expected the --out of a puckpilot gap that is done") from None
+    except ValueError:
+        content = {}
+    if not isinstance(content, dict) or content.get("format") != CIRCLE:
+        raise ValueError(f"{path} is no result of puckpilot gap: expected the format {CIRCLE}")
+    return content
+
+
+def overview(circles: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """The result of all `circles`. ValueError, in one line, if they cannot be compared."""
+    for name in ALIKE:
+        values = sorted({str(one["conditions"][name]) for one in circles})
+        if len(values) > 1:
+            raise ValueError(f"circles of different {name} cannot be compared: {', '.join(values)}")
+    seen = [(one["conditions"]["table"], one["conditions"]["seed"]) for one in circles]
+    for table, seed in seen:
+        if seen.count((table, seed)) > 1:
+            raise ValueError(f"two circles are of the table {table} and the seed {seed}: give each once")
+    return {
+        "format": FORMAT,
+        "conditions": {name: circles[0]["conditions"][name] for name in ALIKE},
+        "tables": {
+            table: _of_table([one for one in circles if one["conditions"]["table"] == table])
+            for table in TABLES
+            if any(table == one for one, _ in seen)
+        },
+    }
+
+
+def _of_table(circles: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    simulated = [one["simulator"]["scored"] - one["simulator"]["conceded"] for one in circles]
+    before = [one["before"]["net"]["value"] for one in circles]
+    arms = [arm for arm in ARMS if all(arm in one["arms"] for one in circles)]
+    return {
+        "seeds": [one["conditions"]["seed"] for one in circles],
+        "simulator": sum(simulated) / len(circles),
+        "before": sum(before) / len(circles),
+        "found": [sorted(one["found"]) for one in circles],
+        "arms": {arm: _of_arm(circles, arm, arms) for arm in arms},
+    }
+
+
+def _of_arm(circles: Sequence[Mapping[str, Any]], arm: str, arms: Sequence[str]) -> dict[str, Any]:
+    """What an arm won back; that as a share of the ceiling's; and by how much the arm OWN is better than it."""
+    before, after = [_games(one["before"]) for one in circles], [_games(one["arms"][arm]) for one in circles]
+    content: dict[str, Any] = {"change": asdict(mean_change(list(zip(before, after, strict=True))))}
+    if CEILING in arms and arm != CEILING:
+        best = [_games(one["arms"][CEILING]) for one in circles]
+        of_ceiling = share(list(zip(before, after, best, strict=True)))
+        content["share"] = asdict(of_ceiling) if of_ceiling else None
+    if OWN in arms and arm != OWN:
+        own = [_games(one["arms"][OWN]) for one in circles]
+        content["own_better_by"] = asdict(mean_change(list(zip(after, own, strict=True))))
+    return content
+
+
+def _games(played: Mapping[str, Any]) -> list[PlayedGame]:
+    return [PlayedGame((scored, conceded), seconds) for scored, conceded, seconds in played["games"]]

@@ -1,0 +1,110 @@
+"""Several circles together: means over seeds, shares of the ceiling by hand, what cannot be compared is refused."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from puckpilot import main
+from sim2real.gap.overview import overview, read_circle
+
+GAMES, MINUTES = 30, 1.0
+
+
+def played(net: float, spread: float, seed: int) -> dict[str, Any]:
+    """Games of a minute whose net scores have this mean exactly, and differ from game to game."""
+    noise = np.random.default_rng(seed).normal(0.0, spread, GAMES)
+    scores = net + noise - noise.mean()
+    return {"net": {"value": net}, "games": [[float(one), 0, 60.0 * MINUTES] for one in scores]}
+
+
+def circle(table: str, seed: int, before: float, spread: float = 0.3, **arms: float) -> dict[str, Any]:
+    return {
+        "format": "puckpilot-gap/1",
+        "conditions": {
+            "player": "policy:champion", "opponent": "interceptor", "table": table, "games": GAMES, "seconds": 60.0,
+            "recorded": 5, "minutes": 30.0, "seed": seed,
+        },
+        "simulator": {"scored": 5.0, "conceded": 1.0},
+        "before": played(before, spread, seed),
+        "found": ["table_tilt"],
+        "arms": {arm: played(net, spread, seed + 10 * k + 1) for k, (arm, net) in enumerate(arms.items())},
+    }  # fmt: skip
+
+
+def test_changes_and_shares_are_means_over_the_seeds() -> None:
+    """Won back: 1 and 2 of the ceiling's 2 and 2."""
+    one = circle("walls", 0, 1.0, corrected=2.0, truth=3.0)
+    other = circle("walls", 1, 2.0, corrected=4.0, truth=4.0)
+    result = overview([one, other])["tables"]["walls"]
+    assert (result["seeds"], result["simulator"], result["before"]) == ([0, 1], 4.0, 1.5)
+    corrected, truth = result["arms"]["corrected"], result["arms"]["truth"]
+    assert corrected["change"]["value"] == pytest.approx(1.5) and truth["change"]["value"] == pytest.approx(2.0)
+    assert corrected["share"]["value"] == pytest.approx(0.75)
+    assert corrected["share"]["low"] < 0.75 < corrected["share"]["high"]
+    assert truth["own_better_by"]["value"] == pytest.approx(-0.5)
+    assert "share" not in truth and "own_better_by" not in corrected
+
+
+def test_without_a_ceiling_above_chance_there_is_no_share() -> None:
+    row = overview([circle("warp", 0, 1.0, 3.0, corrected=1.4, truth=1.2)])["tables"]["warp"]["arms"]["corrected"]
+    assert row["share"] is None
+
+
+def test_an_interval_over_seeds_is_narrower_and_holds_the_truth() -> None:
+    """Of 60 pairs of series whose true change is 1, nearly all hold it."""
+    held, widths = 0, []
+    for trial in range(60):
+        series = []
+        for seed in (3 * trial, 3 * trial + 1):
+            rng = np.random.default_rng(seed)
+            made = circle("late", seed, 0.0, corrected=0.0)
+            for games, mean in ((made["before"], 1.0), (made["arms"]["corrected"], 2.0)):
+                games["games"] = [[float(one), 0, 60.0] for one in rng.normal(mean, 1.0, GAMES)]
+            series.append(made)
+        both = overview(series)["tables"]["late"]["arms"]["corrected"]["change"]
+        alone = overview(series[:1])["tables"]["late"]["arms"]["corrected"]["change"]
+        held += both["low"] <= 1.0 <= both["high"]
+        widths.append((both["high"] - both["low"]) / (alone["high"] - alone["low"]))
+    assert held >= 52 and np.mean(widths) == pytest.approx(np.sqrt(0.5), abs=0.06)
+
+
+def test_the_command_writes_the_page(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name, made in (("a", circle("walls", 0, 1.0, corrected=2.0, truth=3.0)), ("b", circle("late", 0, 1.0))):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "gap.json").write_text(json.dumps(made))
+    folders = [str(tmp_path / name) for name in "ab"]
+    assert main(["gap", "--together", *folders, "--out", str(tmp_path / "all")]) == 0
+    html = (tmp_path / "all" / "overview.html").read_text(encoding="utf-8")
+    assert "walls, corrected" in html and "50 %" in html and "late: commands and a camera that are late" in html
+    result = json.loads((tmp_path / "all" / "overview.json").read_text())
+    assert list(result["tables"]) == ["walls", "late"]
+    capsys.readouterr()
+    assert main(["gap", "--together", folders[0], folders[0], "--out", str(tmp_path / "all")]) == 2
+    assert capsys.readouterr().err.strip().endswith("two circles are of the table walls and the seed 0: give each once")
+
+
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        (None, "has no gap.json: expected the --out of a puckpilot gap that is done"),
+        ("{", "is no result of puckpilot gap"),
+        ('{"format": "puckpilot-gap/9"}', "is no result of puckpilot gap: expected the format puckpilot-gap/1"),
+    ],
+)
+def test_what_is_no_circle_is_refused(tmp_path: Path, content: str | None, reason: str) -> None:
+    if content is not None:
+        (tmp_path / "gap.json").write_text(content)
+    with pytest.raises(ValueError, match=reason):
+        read_circle(tmp_path)
+
+
+def test_circles_of_other_conditions_are_refused() -> None:
+    other = circle("late", 0, 1.0)
+    other["conditions"]["minutes"] = 5.0
+    with pytest.raises(ValueError, match=r"circles of different minutes cannot be compared: 30\.0, 5\.0"):
+        overview([circle("walls", 0, 1.0), other])
