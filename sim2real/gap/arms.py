@@ -38,18 +38,24 @@ class Simulator:
 @dataclass(frozen=True)
 class Arm:
     """words: what it does; simulator: what is learnt on, from the folder of the diagnosis and the concealed table's
-    name."""
+    name, None if nothing is learnt; allows: whether the loop allows for the delay of the camera that was found."""
 
     words: str
-    simulator: Callable[[Path, str], Simulator]
+    simulator: Callable[[Path, str], Simulator] | None
+    allows: bool = False
 
 
 def _corrected(diagnosis: Path, table: str) -> Simulator:
     """All that was found, and the intervals of what was measured. Late frames act as late commands do."""
     found = Simulator(effect_values(diagnosis / "effects.toml"), _drawn(diagnosis))
+    return found.with_delay(found_camera_delay(diagnosis))
+
+
+def found_camera_delay(diagnosis: Path) -> float:
+    """By how much a diagnosis found stamps later than exposures [s]; 0 if it did not."""
     content = json.loads((diagnosis / "diagnosis.json").read_text(encoding="utf-8"))
     late = [one for one in content["findings"] if one["mechanism"] == "camera_delay"]
-    return found.with_delay(sum(float(one["parameters"]["delay_s"]["value"]) for one in late))
+    return sum(float(one["parameters"]["delay_s"]["value"]) for one in late)
 
 
 def _drawn(diagnosis: Path) -> dict[str, Any] | None:
@@ -76,6 +82,7 @@ def _randomized(diagnosis: Path, table: str) -> Simulator:
 
 
 ARMS = {
+    "allowing": Arm("as it is; the loop allows for the camera's delay", None, allows=True),
     "unchanged": Arm("fine-tuned on the unchanged simulator", lambda diagnosis, table: Simulator()),
     "randomized": Arm("fine-tuned on randomized tables", _randomized),
     "constants": Arm("fine-tuned with the baseline's constants refitted", _constants),
@@ -102,7 +109,8 @@ def write_simulator(simulator: Simulator, folder: Path) -> dict[str, Path]:
     return {name: folder / f"{name}.toml" for name in files}
 
 
-def simulator_of(arm: str, diagnosis: Path, table: str) -> Simulator:
-    """What an arm learns on. ValueError, in one line, for an unknown arm."""
+def simulator_of(arm: str, diagnosis: Path, table: str) -> Simulator | None:
+    """What an arm learns on; None if it learns nothing. ValueError, in one line, for an unknown arm."""
     refuse_unknown([arm], ARMS, "arm")
-    return ARMS[arm].simulator(diagnosis, table).with_delay(AHEAD)
+    simulator = ARMS[arm].simulator
+    return simulator and simulator(diagnosis, table).with_delay(AHEAD)

@@ -6,7 +6,7 @@ DIR/conditions.json           who played, on what, with which seeds: the circle'
 DIR/simulator/games.json      the player in the simulator
 DIR/before/                   games on the table, and recordings/ of the first of them
 DIR/diagnosis/                of these recordings alone
-DIR/ARM/training/             a run of `puckpilot train` for each arm
+DIR/ARM/training/             a run of `puckpilot train` for each arm that learns
 DIR/ARM/games/                its player on the table, in games of the same seeds
 DIR/gap.json, DIR/gap.html    the result
 ```
@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import Any
 
 from puckpilot_env.files.whole_file import write_text_whole
-from sim2real.gap.arms import ARMS, simulator_of, write_simulator
+from sim2real.gap.arms import ARMS, Simulator, found_camera_delay, simulator_of, write_simulator
 from sim2real.gap.page import page
 from sim2real.table.mallet_driver import AHEAD
 from sim2real.table.twin.fidelity import Meeting, TwinGame, play_all
@@ -68,13 +68,14 @@ class Circle:
         """All stages that are not done yet; the result, as it is written to gap.json."""
         simulated = self._simulated()
         self._report("playing on the table")
-        before = self._games(self.conditions.player, self.folder / "before", progress)
+        before = self._games(self.conditions.player, self.folder / "before", progress, self.conditions.recorded)
         self._diagnose()
         players = {arm: self._tuned(arm) for arm in arms}
         after: dict[str, list[TwinGame]] = {}
         for arm, player in players.items():
             self._report(f"playing on the table: {ARMS[arm].words}")
-            after[arm] = self._games(player, self.folder / arm / "games", progress)
+            delay = found_camera_delay(self.diagnosis) if ARMS[arm].allows else 0.0
+            after[arm] = self._games(player, self.folder / arm / "games", progress, camera_delay=delay)
         result = self._result(simulated, before, after)
         write_text_whole(self.folder / "gap.json", json.dumps(result, indent=1) + "\n")
         write_text_whole(self.folder / "gap.html", page(result))
@@ -96,12 +97,16 @@ class Circle:
             write_text_whole(path, json.dumps(content, indent=1) + "\n")
         return json.loads(path.read_text(encoding="utf-8"))
 
-    def _games(self, player: str, folder: Path, progress: Callable[[int, int], None]) -> list[TwinGame]:
+    def _games(
+        self, player: str, folder: Path, progress: Callable[[int, int], None], recorded: int = 0,
+        camera_delay: float = 0.0,
+    ) -> list[TwinGame]:  # fmt: skip
+        """A player's games on the table, of which the first are recorded, with a delay [s] that its loop allows for."""
         c = self.conditions
         meetings = [
             Meeting(
                 player, c.opponent, VARIANT, c.seed + game, c.seconds, concealed=c.table, clears=True,
-                recorded=player == c.player and game < c.recorded,
+                recorded=game < recorded, camera_delay=camera_delay,
             )
             for game in range(c.games)
         ]  # fmt: skip
@@ -119,19 +124,22 @@ class Circle:
         """The name of an arm's player, fine-tuned as long as it should be. ValueError, in one line, if that fails."""
         c, folder = self.conditions, self.folder / arm
         run, done = folder / "training", folder / "trained"
+        simulator = simulator_of(arm, self.diagnosis, c.table)
+        if simulator is None:
+            return c.player
         if not done.exists():
             self._report(f"{ARMS[arm].words}, {c.minutes:g} minutes")
-            given = ["--resume"] if (run / "checkpoint.pt").exists() else self._new_run(arm)
+            given = ["--resume"] if (run / "checkpoint.pt").exists() else self._new_run(arm, simulator)
             left = max(c.minutes - _trained_minutes(run), 1e-3)
             _run("train", "--out", str(run), "--minutes", f"{left:g}", *given)
             write_text_whole(done, "")
         return f"policy:{run / 'policy.npz'}"
 
-    def _new_run(self, arm: str) -> list[str]:
+    def _new_run(self, arm: str, simulator: Simulator) -> list[str]:
         """The options of `puckpilot train` for an arm, whose simulator is written down."""
         c, folder = self.conditions, self.folder / arm
         folder.mkdir(parents=True, exist_ok=True)
-        written = write_simulator(simulator_of(arm, self.diagnosis, c.table), folder)
+        written = write_simulator(simulator, folder)
         files = [word for name, path in written.items() for word in (f"--{name}", str(path))]
         return [
             "--preset", PRESET, "--start", c.player, "--variant", VARIANT, "--seed", str(c.seed),

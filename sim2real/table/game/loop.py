@@ -32,13 +32,14 @@ def home_of(p: np.void) -> Place:
 class Loop:
     """A backend, what is known of its game, and the mallet's plans; `record`'s clock goes on with each `step`.
 
+    camera_delay: by how much the frames' stamps are later than the exposures [s]; it is allowed for.
     times: of the decisions; plans: number of plans sent; missed: of these, those that came too late; parked:
     seconds in which the mallet was parked because the puck was lost. TableFaultError, in one line, from every method in
     which time passes; the mallet is stopped then.
     """
 
-    def __init__(self, backend: Backend, game: GameRecord) -> None:
-        self.backend, self.game = backend, game
+    def __init__(self, backend: Backend, game: GameRecord, camera_delay: float = 0.0) -> None:
+        self.backend, self.game, self._camera_delay = backend, game, camera_delay
         self.referee, self.seen = Referee(game), SeenTable(game.p)
         self.times, self.plans, self.parked = LoopTimes(), 0, 0.0
         self.off_path = 0.0  # m, the farthest since it was taken
@@ -114,9 +115,9 @@ class Loop:
         [s]."""
         acts_at = self.backend.now() + AHEAD
         self.game.put_mallet(0, self.motion(acts_at))
-        if puck := self.seen.puck_at(acts_at):
+        if puck := self.seen.puck_at(acts_at + self._camera_delay):
             self.game.put_puck(puck)
-        if opponent := self.seen.opponent_at(acts_at):
+        if opponent := self.seen.opponent_at(acts_at + self._camera_delay):
             self.game.put_mallet(1, opponent)
         return self.game.observe(), acts_at
 
@@ -146,7 +147,8 @@ class Loop:
             self.seen.opponent.update(frame.time, frame.opponent, frame.opponent_covariance)
             puck = self.seen.puck.motion()
             if frame.puck is not None and puck is not None:
-                self.referee.watch(frame.time, puck, self.motion(frame.time), self.seen.opponent.motion())
+                robot = self.motion(frame.time - self._camera_delay)
+                self.referee.watch(frame.time, puck, robot, self.seen.opponent.motion())
 
     def _read(self) -> Reading:
         """What came since the last time; after a plan that came too late the one before goes on."""

@@ -39,8 +39,9 @@ class RobotSeat(gymnasium.Env[NDArray[Any], NDArray[Any]]):
 
     metadata = {"render_modes": []}  # noqa: RUF012 - upstream looks for it on the class
 
-    def __init__(self, backend: Backend, game: GameRecord) -> None:
-        self.backend, self.game = backend, game
+    def __init__(self, backend: Backend, game: GameRecord, camera_delay: float = 0.0) -> None:
+        """camera_delay: by how much stamps are later than exposures [s], which the loop allows for."""
+        self.backend, self.game, self._camera_delay = backend, game, camera_delay
         self.tables = game.tables
         self.observation_space, self.action_space = seat_spaces(self.tables)
         low, high = self.tables.action_bounds
@@ -63,7 +64,7 @@ class RobotSeat(gymnasium.Env[NDArray[Any], NDArray[Any]]):
             self.backend.seed(int(seed))
         self._ended = False
         with self._stopped_by_errors():
-            loop = self.loop or Loop(self.backend, self.game)
+            loop = self.loop or Loop(self.backend, self.game, self._camera_delay)
             if self.loop is None:
                 warm_up(self.game)
                 loop.connect()
@@ -186,12 +187,13 @@ def make_robot_seat(
     parameters: Mapping[str, float] | None = None,
     period: float | None = None,
     seed: int = 0,
+    camera_delay: float = 0.0,
     **options: Any,
 ) -> RobotSeat:
     """The robot's seat at a backend by name, with its own `options`; without `parameters`, those that its file or
-    recording states. ValueError, in one line, for what cannot be."""
+    recording states; `camera_delay`: see `RobotSeat`. ValueError, in one line, for what cannot be."""
     parameters = stated_parameters(backend, options) if parameters is None else parameters
     game = GameRecord(variant, parameters, seed, period=period)
     made = make_backend(backend, game, **options)
     made.seed(seed)
-    return RobotSeat(made, game)
+    return RobotSeat(made, game, camera_delay)

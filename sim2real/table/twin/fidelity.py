@@ -37,6 +37,7 @@ class Meeting:
     seconds: of play at most; None for a whole game. camera: the kind of the twin's, see `cameras.CAMERAS`. concealed:
     the table, see `concealed.TABLES`; "" for the simulator's. clears: whether play goes on after a doubt stopped the
     table. recorded: whether the game is recorded, as `recordings/game_SEED` beside its result.
+    camera_delay: that the loop allows for [s].
     """
 
     player: str
@@ -48,6 +49,7 @@ class Meeting:
     concealed: str = ""
     clears: bool = False
     recorded: bool = False
+    camera_delay: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -84,7 +86,8 @@ def _play(meeting: Meeting, recording: Path | None) -> TwinGame:
     begin = time.process_time(), time.perf_counter()
     variant = find_variant(meeting.variant)
     options = find_table(meeting.concealed).twin_options(GameRecord(variant).p) if meeting.concealed else {}
-    with closing(make_robot_seat(variant, "twin", opponent=meeting.opponent, camera=meeting.camera, **options)) as env:
+    options |= {"opponent": meeting.opponent, "camera": meeting.camera}
+    with closing(make_robot_seat(variant, "twin", camera_delay=meeting.camera_delay, **options)) as env:
         note = f"{meeting.player} against {meeting.opponent} on the twin, seed {meeting.seed}"
         with nullcontext() if recording is None else recorded(env, recording, note):
             log = play_game(

@@ -17,10 +17,14 @@ class Game(Protocol):
     """What a score is taken of: goals of both, and seconds of play."""
 
     @property
-    def goals(self) -> tuple[int, int]: ...
+    def goals(self) -> tuple[int, int]:
+        """For and against."""
+        ...
 
     @property
-    def seconds(self) -> float: ...
+    def seconds(self) -> float:
+        """Of play."""
+        ...
 
 
 RESAMPLES = 4000

@@ -44,7 +44,7 @@ def diagnosis(tmp_path: Path) -> Path:
 
 def test_the_corrected_arm_has_what_was_found_and_all_delays_together(diagnosis: Path) -> None:
     one = simulator_of("corrected", diagnosis, "none")
-    assert one.draws is not None
+    assert one is not None and one.draws is not None
     assert dict(one.values) == pytest.approx(
         {"friction": 0.1, "tilt_x": 0.03, "tilt_y": 0.0, "command_delay": 0.004 + 0.01 + AHEAD}
     )
@@ -52,16 +52,20 @@ def test_the_corrected_arm_has_what_was_found_and_all_delays_together(diagnosis:
 
 
 def test_others_do_not_see_the_findings(diagnosis: Path) -> None:
-    values = {arm: simulator_of(arm, diagnosis, "warp") for arm in ARMS}
-    assert dict(values["unchanged"].values) == {"command_delay": AHEAD}
-    assert dict(values["constants"].values) == {"friction": 0.1, "command_delay": AHEAD}
-    assert values["truth"].values["tilt_x"] == TABLES["warp"].truth["tilt_x"]
+    made = {arm: simulator_of(arm, diagnosis, "warp") for arm in ARMS}
+    values = {arm: dict(one.values) for arm, one in made.items() if one}
+    assert made.keys() - values.keys() == {"allowing"}
+    assert values["unchanged"] == {"command_delay": AHEAD}
+    assert values["constants"] == {"friction": 0.1, "command_delay": AHEAD}
+    assert values["truth"]["tilt_x"] == TABLES["warp"].truth["tilt_x"]
 
 
 @pytest.mark.parametrize("table", TABLES)
 def test_every_arm_can_be_learnt_on(diagnosis: Path, table: str) -> None:
     for arm in ARMS:
         one = simulator_of(arm, diagnosis, table)
+        if one is None:
+            continue
         Tables("match-v0", 2, effects=as_content(one.values), draws=one.draws)
         (diagnosis / arm).mkdir()
         files = write_simulator(one, diagnosis / arm)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -34,10 +35,20 @@ def test_a_circle_goes_round_and_is_not_run_again(tmp_path: Path, monkeypatch: p
     assert result["simulator"].keys() == {"scored", "conceded"}
     shots = result["before"]["shots"]
     assert shots["faced"] > 3 and shots["made"] >= shots["scored"]
-    goals = sum(game.goals[1] for game in circle(tmp_path)._games("interceptor", tmp_path / "before", lambda *_: None))
-    assert sum(shots[kind] for kind in ("late", "bounce", "straight", "deflected")) == goals
+    assert sum(shots[kind] for kind in ("late", "bounce", "straight", "deflected")) == sum(
+        conceded for _, conceded, _ in result["before"]["games"]
+    )
     html = (tmp_path / "gap.html").read_text(encoding="utf-8")
     assert "on a table with nothing: the control" in html and "--games 3 --seconds 20 --recorded 2" in html
+
+    late = {"mechanism": "camera_delay", "parameters": {"delay_s": {"value": 0.002}}}
+    content = json.loads((tmp_path / "diagnosis" / "diagnosis.json").read_text())
+    (tmp_path / "diagnosis" / "diagnosis.json").write_text(json.dumps(content | {"findings": [late]}))
+    with_arm = circle(tmp_path).run(["allowing"], lambda done, count: None)
+    assert with_arm["before"] == result["before"] and with_arm["arms"]["allowing"]["shots"] != shots
+    kept = json.loads((tmp_path / "allowing" / "games" / "game_5.json").read_text())
+    assert kept["meeting"]["camera_delay"] == 0.002 and not (tmp_path / "allowing" / "training").exists()
+    (tmp_path / "diagnosis" / "diagnosis.json").write_text(json.dumps(content))
 
     def again(*_: object) -> None:
         raise AssertionError("a game is played again")
