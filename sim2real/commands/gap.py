@@ -2,8 +2,8 @@
 
 The whole circle on a twin whose physics is concealed: the player plays there, some of that play is recorded and
 diagnosed, the player is fine-tuned in the simulator with what was found, and plays again, in games of the same seeds.
-Beside it stand the usual answers, each with as much training: an arm each. Every stage keeps what it made in --out, and
-the same command goes on where it was stopped. Scores are goals a minute, with 95 % intervals."""
+Beside it stand the usual answers, with as much training where they learn: an arm each. Every stage keeps what it made
+in --out, and the same command goes on where it was stopped. Scores are goals a minute, with 95 % intervals."""
 
 from __future__ import annotations
 

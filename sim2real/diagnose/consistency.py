@@ -81,13 +81,15 @@ def _differ_in_parameters(
     """Return two recordings between which the parameters of a model differ significantly, and how; None if there are
     none.
 
-    No two recordings lose more by common parameters than all of them together do.
+    No two recordings lose more by common parameters than all of them together do: each fit starts from the common one.
     """
+    every = np.concatenate([part.clusters for part in parts])
+    common = fits.of(found.law.values, found.law.free, every)
 
     def fitted(*some: RecordingPart) -> LeastSquaresFit:
-        return fits.of(found.law.values, found.law.free, np.concatenate([part.clusters for part in some]))
+        return fits.of(common.values, found.law.free, np.concatenate([part.clusters for part in some]))
 
-    if fitted(*parts).loss - sum(fitted(part).loss for part in parts) < CONSISTENCY.harm:
+    if common.loss - sum(fitted(part).loss for part in parts) < CONSISTENCY.harm:
         return None
     for one, other in combinations(parts, 2):
         separate = fitted(one).loss + fitted(other).loss
@@ -118,11 +120,11 @@ def _differ_in_smooth_term(
 
     It compares losses, since single coefficients of a smooth term have no meaning.
     """
-    own = {part.name: _losses(problem, found, part.clusters) for part in parts}
+    own = sum(_losses(problem, found, part.clusters) for part in parts)
     for pair in combinations(parts, 2):
         both = _losses(problem, found, np.concatenate([part.clusters for part in pair]))
         for part in pair:
-            shared, alone = both[part.clusters].sum(), own[part.name].sum()
+            shared, alone = both[part.clusters].sum(), own[part.clusters].sum()
             if shared - alone > CONSISTENCY.harm * found.dispersion and shared > CONSISTENCY.worse_unlisted * alone:
                 return pair[0].name, pair[1].name, f"no common {problem.regime} correction fits both"
     return None

@@ -1,6 +1,6 @@
 """What a player is fine-tuned on, from the diagnosis or without it: an arm of the comparison each.
 
-Every arm knows the loop's own delay, AHEAD: it is no secret of the table.
+Every arm that learns knows the loop's own delay, AHEAD: it is no secret of the table.
 """
 
 from __future__ import annotations

@@ -30,7 +30,7 @@ from sim2real.table.mallet_driver import AHEAD
 from sim2real.table.twin.fidelity import Meeting, TwinGame, play_all
 from sim2real.table.twin.score import change, score, shots
 
-FORMAT = "puckpilot-gap/1"
+FORMAT = "puckpilot-gap/2"
 VARIANT = "match-v0"
 PRESET = "fine_tune"
 Report = Callable[[str], None]

@@ -1,6 +1,8 @@
 """What several circles say together: for each table what was lost, what each arm won back, its share of the ceiling's.
 
 Circles of one table are series of games of different seeds: their means are taken, and each is resampled by itself.
+The intervals are of these trained players: how much another training would differ is not in them, so the change of each
+circle stands beside their mean.
 """
 
 from __future__ import annotations
@@ -8,11 +10,12 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
 from sim2real.gap.arms import ARMS
-from sim2real.table.twin.concealed import TABLES
+from sim2real.table.twin.concealed import TABLES, find_table
 from sim2real.table.twin.score import mean_change, share
 
 FORMAT = "puckpilot-gap-overview/1"
@@ -50,25 +53,38 @@ def overview(circles: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         values = sorted({str(one["conditions"][name]) for one in circles})
         if len(values) > 1:
             raise ValueError(f"circles of different {name} cannot be compared: {', '.join(values)}")
-    seen = [(one["conditions"]["table"], one["conditions"]["seed"]) for one in circles]
-    for table, seed in seen:
-        if seen.count((table, seed)) > 1:
-            raise ValueError(f"two circles are of the table {table} and the seed {seed}: give each once")
+    for one in circles:
+        find_table(one["conditions"]["table"])
+    seen = {one["conditions"]["table"] for one in circles}
+    for one, other in combinations(circles, 2):
+        _refuse_same_games(one["conditions"], other["conditions"])
     return {
         "format": FORMAT,
         "conditions": {name: circles[0]["conditions"][name] for name in ALIKE},
         "tables": {
             table: _of_table([one for one in circles if one["conditions"]["table"] == table])
             for table in TABLES
-            if any(table == one for one, _ in seen)
+            if table in seen
         },
     }
+
+
+def _refuse_same_games(one: Mapping[str, Any], other: Mapping[str, Any]) -> None:
+    """ValueError, in one line, if two circles share games: the n-th game of a circle is of its seed plus n."""
+    first, second = sorted((one, other), key=lambda each: each["seed"])
+    if one["table"] == other["table"] and second["seed"] < first["seed"] + first["games"]:
+        raise ValueError(
+            f"circles of the table {one['table']} with the seeds {first['seed']} and {second['seed']} share games: "
+            f"{first['games']} games need seeds as far from each other"
+        )
 
 
 def _of_table(circles: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     simulated = [one["simulator"]["scored"] - one["simulator"]["conceded"] for one in circles]
     before = [one["before"]["net"]["value"] for one in circles]
-    arms = [arm for arm in ARMS if all(arm in one["arms"] for one in circles)]
+    arms = [arm for arm in ARMS if arm in circles[0]["arms"]]
+    if any(one["arms"].keys() != set(arms) for one in circles):
+        raise ValueError(f"circles of the table {circles[0]['conditions']['table']} have different arms")
     return {
         "seeds": [one["conditions"]["seed"] for one in circles],
         "simulator": sum(simulated) / len(circles),
@@ -81,7 +97,11 @@ def _of_table(circles: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
 def _of_arm(circles: Sequence[Mapping[str, Any]], arm: str, arms: Sequence[str]) -> dict[str, Any]:
     """What an arm won back; that as a share of the ceiling's; and by how much the arm OWN is better than it."""
     before, after = [_games(one["before"]) for one in circles], [_games(one["arms"][arm]) for one in circles]
-    content: dict[str, Any] = {"change": asdict(mean_change(list(zip(before, after, strict=True))))}
+    series = list(zip(before, after, strict=True))
+    content: dict[str, Any] = {
+        "change": asdict(mean_change(series)),
+        "of_seeds": [mean_change([one]).value for one in series],
+    }
     if CEILING in arms and arm != CEILING:
         best = [_games(one["arms"][CEILING]) for one in circles]
         of_ceiling = share(list(zip(before, after, best, strict=True)))

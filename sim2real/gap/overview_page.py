@@ -55,7 +55,8 @@ def _arm_row(table: str, arm: str, row: dict[str, Any]) -> list[str]:
     of_ceiling = row.get("share")
     in_percent = of_ceiling and {name: 100.0 * value for name, value in of_ceiling.items()}
     return [
-        f"{table}, {arm}", *_interval(row["change"], "{:+.2f}"), *_interval(in_percent, "{:.0f} %"),
+        f"{table}, {arm}", *_interval(row["change"], "{:+.2f}"), ", ".join(f"{one:+.2f}" for one in row["of_seeds"]),
+        *_interval(in_percent, "{:.0f} %"),
         *_interval(row.get("own_better_by"), "{:+.2f}"),
     ]  # fmt: skip
 

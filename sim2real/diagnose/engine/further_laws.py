@@ -26,13 +26,19 @@ def with_further_laws(
     About the baseline, a large law is far from linear and hides a smaller one, or another form of itself; about its
     own fit it does not. If a typical launch remains unexplained all the same, further laws may only approximate one
     that is not listed, and none is added.
+
+    `screen`: the design matrix about the baseline, from which `selection` chose the listed laws; `use` (k,): the
+    fitted clusters.
     """
     if not listed.laws or not has_misfit(problem, baseline, law, use):
         return listed, law
     columns = problem.columns(law.values, law.free, use)
     about = ForwardSelection(columns.equations, problem.units, use, selection.dispersion, selection.least)
     here = Model(law.free)
-    others = [one for one in columns.listed if not set(one.rows) & set(law.free)]
+    others = [
+        one for one in columns.listed
+        if not set(one.rows) & set(law.free) and (not one.start or one in screen.listed)  # which fits start from
+    ]  # fmt: skip
     grown = about.eliminate_backward(about.grow(here, others, ENGINE.most_listed - len(listed.laws)))
     if not grown.laws:
         return listed, law

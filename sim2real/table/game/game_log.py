@@ -16,7 +16,7 @@ class GameLog:
     plans: sent to the board; parked [s]: with the puck lost; off_path [m]: the farthest that the encoders had the
     mallet from its path; faults: causes of stops; times: of the decisions; table_seconds, wall_seconds: that passed at
     the table, and here, since the first decision; interrupted: whether Ctrl-C ended it; fault: that ended it, if
-    one did.
+    one did; shots: at both goals.
     """
 
     score: tuple[int, int] = (0, 0)

@@ -141,7 +141,7 @@ class Loop:
         reading = self._read()
         self._frame_age = reading.late_s if reading.frames else self._frame_age
         for frame in reading.frames:
-            if frame.time <= self._placed:  # of the point before
+            if frame.time - self._camera_delay <= self._placed:  # of the point before
                 continue
             self.seen.puck.update(frame.time, frame.puck, frame.puck_covariance)
             self.seen.opponent.update(frame.time, frame.opponent, frame.opponent_covariance)

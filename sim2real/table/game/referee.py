@@ -62,7 +62,7 @@ class Referee:
         touched = [bool(mallet) and self._touches(before, (time, puck), mallet) for mallet in (robot, opponent)]
         for which in np.flatnonzero(touched):
             record["puck"]["touched"][which] = 1
-        self.shots.watch(time, puck, robot, touched[0], touched[1])
+        self.shots.watch(time, puck, robot, touched[0])
         if before is not None and (before[1][0] < middle) != (puck[0] < middle):
             self._half_since = time
             ahead = (puck[0] - before[1][0]) / (time - before[0])

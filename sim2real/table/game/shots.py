@@ -19,10 +19,11 @@ AT_WALL = 0.03  # m between the puck's rim and a side wall at which it turns the
 
 @dataclass
 class Shots:
-    """Counts of a game. `faced`: shots at the robot's goal; of the goals against it: `late`, its mallet was under way
-    to the puck's line; `bounce`, it was elsewhere after a bounce off a side wall; `straight`, without one; `deflected`,
-    its own mallet touched the puck. `made`: shots of the robot, `scored`: those that were goals; `missed`: swings of
-    its mallet past a puck."""
+    """Counts of a game. `faced`: pucks that came fast over the middle line; of the goals against it: `late`, its mallet
+    was under way to the puck's line; `bounce`, it was elsewhere after a bounce off a side wall; `straight`, without
+    one; `deflected`,
+    its own mallet touched the puck. `made`: pucks that the robot sent fast over the middle line, and all its goals;
+    `scored`: those that were goals, off the other mallet too; `missed`: swings of its mallet past a puck."""
 
     faced: int = 0
     late: int = 0
@@ -74,20 +75,19 @@ class ShotCounter:
         self._before: _Seen | None = None
         self._approach = math.inf  # the distance, one frame before `_before`
         self._incoming: _Incoming | None = None
-        self._robots = False  # whether the robot touched the puck last
+        self._robot_touched = False  # whether the robot touched the puck since it came into its half
         self._shot = False  # whether the puck is on its way from a shot of the robot
         self._touched_at, self._swung_at = -math.inf, -math.inf
 
-    def watch(self, time: float, puck: Motion, robot: Motion, touched: bool, other_touched: bool) -> None:
-        """Take a frame's motions, and whether the robot's and the other mallet touched the puck since the last."""
+    def watch(self, time: float, puck: Motion, robot: Motion, touched: bool) -> None:
+        """Take a frame's motions, and whether the robot's mallet touched the puck since the last."""
         now = _Seen(time, puck, robot, math.hypot(puck[0] - robot[0], puck[1] - robot[1]))
-        if touched:
-            self._robots, self._touched_at = True, time
-        elif other_touched:
-            self._robots, self._shot = False, False
         before = self._before
         if before is not None:
             self._cross(before, now)
+        if touched:
+            self._robot_touched, self._touched_at = True, time
+        if before is not None:
             self._follow(before, now, touched)
             self._look_for_miss(before, now)
             self._approach = before.distance
@@ -95,6 +95,8 @@ class ShotCounter:
 
     def goal(self, against: bool) -> None:
         """Count a goal against the robot, or for it."""
+        if not self._touched_at > self._swung_at and math.isfinite(self._swung_at):
+            self.counts.missed += 1  # that cost the goal
         if not against:
             self.counts.made += not self._shot  # one that was too slow for a shot
             self.counts.scored += 1
@@ -102,7 +104,7 @@ class ShotCounter:
         shot = self._incoming
         if shot is None:
             self.counts.faced += 1
-            shot = _Incoming(touched=self._robots)
+            shot = _Incoming(touched=self._robot_touched)
         if shot.late is None and self._before is not None:
             shot.late = self._is_late(self._before)
         kind = "deflected" if shot.touched else "late" if shot.late else "bounce" if shot.bounced else "straight"
@@ -116,8 +118,9 @@ class ShotCounter:
         speed = (now.puck[0] - before.puck[0]) / (now.time - before.time)
         self._incoming = _Incoming() if is_now and speed < -FAST else None
         self.counts.faced += self._incoming is not None
-        self._shot = not is_now and self._robots and speed > FAST
+        self._shot = not is_now and self._robot_touched and speed > FAST
         self.counts.made += self._shot
+        self._robot_touched = False
 
     def _follow(self, before: _Seen, now: _Seen, touched: bool) -> None:
         """Note what happens to an incoming puck."""

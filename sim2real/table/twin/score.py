@@ -29,6 +29,7 @@ class Game(Protocol):
 
 RESAMPLES = 4000
 LEVEL = 0.95
+SHARES = np.linspace(-5.0, 5.0, 1001)  # tested one by one
 
 
 @dataclass(frozen=True)
@@ -63,11 +64,15 @@ def mean_change(series: Sequence[tuple[Sequence[Game], Sequence[Game]]]) -> Rate
 
 def share(series: Sequence[tuple[Sequence[Game], Sequence[Game], Sequence[Game]]]) -> Rate | None:
     """The mean change of the second games of each series against the first, as a share of that of the third; None if
-    that is not above 0 beyond chance."""
+    that is not above 0 beyond chance. The interval has all shares, of -5 to 5, of which the third change is not
+    significantly different from the second."""
     whole = _mean_changes([(before, best) for before, _, best in series])
     if _rate(whole).low <= 0.0:
         return None
-    return _rate(_mean_changes([(before, after) for before, after, _ in series]) / whole)
+    part = _mean_changes([(before, after) for before, after, _ in series])
+    left = [_rate(part - one * whole) for one in SHARES]
+    possible = SHARES[[rate.low <= 0.0 <= rate.high for rate in left]]
+    return Rate(float(part[0] / whole[0]), float(possible.min()), float(possible.max()))
 
 
 def _mean_changes(series: Sequence[tuple[Sequence[Game], Sequence[Game]]]) -> NDArray[np.float64]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +25,7 @@ def played(net: float, spread: float, seed: int) -> dict[str, Any]:
 
 def circle(table: str, seed: int, before: float, spread: float = 0.3, **arms: float) -> dict[str, Any]:
     return {
-        "format": "puckpilot-gap/1",
+        "format": "puckpilot-gap/2",
         "conditions": {
             "player": "policy:champion", "opponent": "interceptor", "table": table, "games": GAMES, "seconds": 60.0,
             "recorded": 5, "minutes": 30.0, "seed": seed,
@@ -39,14 +40,15 @@ def circle(table: str, seed: int, before: float, spread: float = 0.3, **arms: fl
 def test_changes_and_shares_are_means_over_the_seeds() -> None:
     """Won back: 1 and 2 of the ceiling's 2 and 2."""
     one = circle("walls", 0, 1.0, corrected=2.0, truth=3.0)
-    other = circle("walls", 1, 2.0, corrected=4.0, truth=4.0)
+    other = circle("walls", 1000, 2.0, corrected=4.0, truth=4.0)
     result = overview([one, other])["tables"]["walls"]
-    assert (result["seeds"], result["simulator"], result["before"]) == ([0, 1], 4.0, 1.5)
+    assert (result["seeds"], result["simulator"], result["before"]) == ([0, 1000], 4.0, 1.5)
     corrected, truth = result["arms"]["corrected"], result["arms"]["truth"]
     assert corrected["change"]["value"] == pytest.approx(1.5) and truth["change"]["value"] == pytest.approx(2.0)
     assert corrected["share"]["value"] == pytest.approx(0.75)
     assert corrected["share"]["low"] < 0.75 < corrected["share"]["high"]
     assert truth["own_better_by"]["value"] == pytest.approx(-0.5)
+    assert corrected["of_seeds"] == pytest.approx([1.0, 2.0])
     assert "share" not in truth and "own_better_by" not in corrected
 
 
@@ -60,7 +62,7 @@ def test_an_interval_over_seeds_is_narrower_and_holds_the_truth() -> None:
     held, widths = 0, []
     for trial in range(60):
         series = []
-        for seed in (3 * trial, 3 * trial + 1):
+        for seed in (3 * trial, 1000 + 3 * trial):
             rng = np.random.default_rng(seed)
             made = circle("late", seed, 0.0, corrected=0.0)
             for games, mean in ((made["before"], 1.0), (made["arms"]["corrected"], 2.0)):
@@ -85,7 +87,7 @@ def test_the_command_writes_the_page(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert list(result["tables"]) == ["walls", "late"]
     capsys.readouterr()
     assert main(["gap", "--together", folders[0], folders[0], "--out", str(tmp_path / "all")]) == 2
-    assert capsys.readouterr().err.strip().endswith("two circles are of the table walls and the seed 0: give each once")
+    assert capsys.readouterr().err.strip().endswith("share games: 30 games need seeds as far from each other")
 
 
 @pytest.mark.parametrize(
@@ -93,7 +95,7 @@ def test_the_command_writes_the_page(tmp_path: Path, capsys: pytest.CaptureFixtu
     [
         (None, "has no gap.json: expected the --out of a puckpilot gap that is done"),
         ("{", "is no result of puckpilot gap"),
-        ('{"format": "puckpilot-gap/9"}', "is no result of puckpilot gap: expected the format puckpilot-gap/1"),
+        ('{"format": "puckpilot-gap/9"}', "is no result of puckpilot gap: expected the format puckpilot-gap/2"),
     ],
 )
 def test_what_is_no_circle_is_refused(tmp_path: Path, content: str | None, reason: str) -> None:
@@ -101,6 +103,33 @@ def test_what_is_no_circle_is_refused(tmp_path: Path, content: str | None, reaso
         (tmp_path / "gap.json").write_text(content)
     with pytest.raises(ValueError, match=reason):
         read_circle(tmp_path)
+
+
+def test_a_share_of_a_ceiling_that_is_hardly_above_chance_is_a_number() -> None:
+    """Goals of games of a minute: of some of the resamples the ceiling's change is 0 exactly, or less."""
+    rng = np.random.default_rng(2)
+    known = 0
+    for seed in range(40):
+        made = circle("late", 100 * seed, 0.0, corrected=0.0, truth=0.0)
+        for games, mean in ((made["before"], 2.0), (made["arms"]["corrected"], 2.4), (made["arms"]["truth"], 3.0)):
+            games["games"] = [[int(one), 0, 60.0] for one in rng.poisson(mean, GAMES)]
+        row = overview([made])["tables"]["late"]["arms"]["corrected"]["share"]
+        if row is not None:
+            known += 1
+            assert -5.0 <= row["low"] <= row["value"] <= row["high"] <= 5.0
+    assert 10 < known < 40
+
+
+@pytest.mark.parametrize(
+    ("seed", "arms", "reason"),
+    [(29, {"corrected": 2.0}, "share games"), (30, {"corrected": 2.0}, None), (30, {"truth": 2.0}, "different arms")],
+)
+def test_circles_of_one_table_have_the_same_arms_and_no_games_in_common(
+    seed: int, arms: dict[str, float], reason: str | None
+) -> None:
+    both = [circle("late", 0, 1.0, corrected=2.0), circle("late", seed, 1.0, **arms)]
+    with nullcontext() if reason is None else pytest.raises(ValueError, match=reason):
+        overview(both)
 
 
 def test_circles_of_other_conditions_are_refused() -> None:

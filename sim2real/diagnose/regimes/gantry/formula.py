@@ -9,7 +9,6 @@ import numpy as np
 
 from sim2real.diagnose.engine.law import Law
 from sim2real.diagnose.engine.model_search import SearchResult
-from sim2real.diagnose.engine.problem import Residuals
 from sim2real.diagnose.formula.search import Formula, FormulaProblem, find_formula
 from sim2real.diagnose.formula.shapes import Axis, Direction, Form, form, harmonic, profiles
 from sim2real.diagnose.regimes.gantry.basis_library import path_responses, signals
@@ -76,17 +75,18 @@ def readable_formula(
             direction = Direction("extra volts", "", words, (view.driver * here)[:, None])
             made = [form(one, axis, [direction], unit) for one in shapes or profiles(axis, unit)]
             forms |= {one.name: (one, view) for one in made}
-    formula_problem = _formula_problem(problem, found, use, {})
-    best = find_formula(formula_problem, [one for one, _ in forms.values()])
-    return _refitted(problem, found, use, best), forms[best.form.name][1]
+    final = found.final.values
+    begin = final if _is_possible(problem, final) else found.law.values  # about which the smooth term was linearized
+    best = find_formula(_formula_problem(problem, found, use, begin), [one for one, _ in forms.values()])
+    return _refitted(problem, found, use, best, begin), forms[best.form.name][1]
 
 
 def _formula_problem(
-    problem: GantryProblem, found: SearchResult, use: np.ndarray, moved: Mapping[str, float]
+    problem: GantryProblem, found: SearchResult, use: np.ndarray, values: Mapping[str, float]
 ) -> FormulaProblem:
-    """The residuals with the fitted parameters changed by `moved`, and their response to extra volts."""
-    values, rest = _possible_law(problem, found, moved)
+    """The residuals at the parameters `values`, and their response to extra volts there."""
     p = problem.record(values)
+    rest = problem.residuals(values, found.final.free, problem.everything)
     priors = len(rest.r) - sum(2 * len(run.windows.rows) for run in problem.runs)
 
     def respond(laws: np.ndarray) -> np.ndarray:
@@ -96,27 +96,27 @@ def _formula_problem(
     return FormulaProblem(rest.r, rest.jacobian, rest.cluster, use, float(problem.freedom[use].sum()), respond)
 
 
-def _possible_law(
-    problem: GantryProblem, found: SearchResult, moved: Mapping[str, float]
-) -> tuple[Mapping[str, float], Residuals]:
-    """The fitted parameters changed by `moved`, and the residuals there; without the change, or those about which the
-    smooth term was linearized, if an axis would not be overdamped: a linear step may lead there."""
-    final = found.final.values
-    laws = ({name: value + moved.get(name, 0.0) for name, value in final.items()}, final, found.law.values)
-    for values in laws:
-        rest = problem.residuals(values, found.final.free, problem.everything)
-        if np.abs(rest.r).max() < GANTRY_FIT.impossible:
-            break
-    return values, rest
+def _is_possible(problem: GantryProblem, values: Mapping[str, float]) -> bool:
+    """Whether no axis rings at the parameters `values`; a linear step may lead to such that do."""
+    return bool(np.abs(problem.residuals(values, (), problem.everything).r).max() < GANTRY_FIT.impossible)
 
 
-def _refitted(problem: GantryProblem, found: SearchResult, use: np.ndarray, first: Formula) -> Formula:
-    """Refit the same form, linearised about the baseline's parameters that were fitted together with it."""
-    best, moved = first, dict.fromkeys(found.final.free, 0.0)
+def _refitted(
+    problem: GantryProblem, found: SearchResult, use: np.ndarray, first: Formula, begin: Mapping[str, float]
+) -> Formula:
+    """Refit the same form, linearised about the baseline's parameters that were fitted together with it, from `begin`
+    on, as long as no step leads to an axis that rings."""
+    free, final = found.final.free, found.final.values
+    best, values, step = first, begin, first.moved
     for _ in range(GANTRY_LAW.formula_rounds):
-        moved = {name: moved[name] + float(by) for (name, by) in zip(moved, best.moved, strict=True)}
-        best = find_formula(_formula_problem(problem, found, use, moved), [best.form])
-    total = np.array(list(moved.values())) + best.moved
+        stepped = {**values, **{name: values[name] + float(by) for name, by in zip(free, step, strict=True)}}
+        if not _is_possible(problem, stepped):
+            step = np.zeros(len(free))
+            break
+        values = stepped
+        best = find_formula(_formula_problem(problem, found, use, values), [best.form])
+        step = best.moved
+    total = np.array([values[name] - final[name] for name in free]) + step
     return replace(best, moved=total, gained=first.gained)
 
 

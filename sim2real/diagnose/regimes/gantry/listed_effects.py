@@ -85,7 +85,7 @@ def candidates(problem: GantryResiduals, values: Mapping[str, float]) -> list[Ca
             break
         share = GANTRY_FIT.later_share if chosen else GANTRY_FIT.first_share
         if now.law.loss - fits[best].law.loss < share * (now.law.loss - freedom):
-            best = "" if chosen else _first_of_pair(thin, now, fits)
+            best = "" if chosen else _first_of_pair(thin, fits)
             if not best:
                 break
         if not chosen and _stands_out(fits, best, now.law.loss - freedom, freedom):
@@ -106,13 +106,13 @@ def _supported_fits(problem: GantryResiduals, now: StagedFit, chosen: tuple[str,
     return {name: one for name, one in fits.items() if is_supported(problem, now.law, one.law, name)}
 
 
-def _first_of_pair(problem: GantryResiduals, now: StagedFit, fits: Mapping[str, StagedFit]) -> str:
+def _first_of_pair(problem: GantryResiduals, fits: Mapping[str, StagedFit]) -> str:
     """The first effect of a pair that explains nearly all of the excess though each alone explains little; "" if there
     is none."""
     freedom = float(problem.freedom.sum())
-    little = (1.0 - GANTRY_FIT.later_share) * (now.law.loss - freedom)
     for first in sorted(fits, key=lambda name: fits[name].law.loss)[: GANTRY_FIT.firsts]:
         pairs = _supported_fits(problem, fits[first], (first,))
+        little = (1.0 - GANTRY_FIT.later_share) * (fits[first].law.loss - freedom)  # as a further effect has to leave
         if any(one.law.loss - freedom < little for one in pairs.values()):
             return first
     return ""

@@ -52,9 +52,10 @@ class MalletProblem(ContactProblem[MalletContacts]):
     each = 3
     unit_name = "mallet contacts"
 
-    def __init__(self, data: MalletContacts, clusters: int, common: Mapping[str, float]) -> None:
-        """See `ContactProblem`."""
+    def __init__(self, data: MalletContacts, clusters: int, common: Mapping[str, float], left_out: int = 0) -> None:
+        """See `ContactProblem`; `left_out`: number of contacts whose measurement went wrong."""
         super().__init__(data, clusters, common)
+        self.left_out = left_out
         record = self._record({})
         self._set_noise(*self._noise(record))
         clocks = self.whitened(self._clock_errors(record))
@@ -62,6 +63,16 @@ class MalletProblem(ContactProblem[MalletContacts]):
         covariance = data.velocity_covariance.sum(axis=1)
         noise = np.trace(covariance, axis1=1, axis2=2)
         self.noise_m = CONTACT.flight_time * float(np.sqrt(noise.mean() / 2)) if len(data) else 0.0
+
+    def with_contacts(self, data: MalletContacts, left_out: int) -> MalletProblem:
+        """The same for these contacts alone."""
+        return MalletProblem(data, self.clusters, self._common, left_out)
+
+    @property
+    def common_errors(self) -> np.ndarray:
+        """Changes (3 n, k) of the residuals, in units of their noise, by each standard normal error that contacts
+        share: of the law of the glides, the map, and each recording's clocks."""
+        return self._common_errors
 
     @property
     def observed(self) -> np.ndarray:

@@ -16,6 +16,7 @@ from sim2real.diagnose.regimes.formula_words import mismatch_by_launch, with_for
 from sim2real.diagnose.regimes.mallet import figures
 from sim2real.diagnose.regimes.mallet.data import MalletContacts, mallet_contacts
 from sim2real.diagnose.regimes.mallet.formula import readable_formula
+from sim2real.diagnose.regimes.mallet.gross_errors import without_gross_errors
 from sim2real.diagnose.regimes.mallet.problem import MalletProblem
 from sim2real.diagnose.result.result import Finding, Mismatch
 from sim2real.recording.folder import Recording
@@ -38,7 +39,9 @@ class Mallet(ContactRegime):
             return None
         contacts = _contacts(evidence.recordings, motions(evidence, known))
         law = self.parameters(evidence, known)
-        return None if contacts is None else MalletProblem(contacts, glides_of(known).clusters, law)
+        if contacts is None:
+            return None
+        return without_gross_errors(MalletProblem(contacts, glides_of(known).clusters, law))
 
     def holdout_problem(self, evidence: Evidence, known: Known) -> MalletProblem | None:
         """See `Regime.holdout_problem`."""
@@ -46,6 +49,12 @@ class Mallet(ContactRegime):
         contacts = _contacts(evidence.recordings, found) if launches else None
         law = self.parameters(evidence, known)
         return None if contacts is None else MalletProblem(contacts, launches, law)
+
+    def note(self, problem: Problem) -> str:
+        """See `Regime.note`: the contacts that were left out."""
+        assert isinstance(problem, MalletProblem)
+        number = problem.left_out
+        return f"{number} contact{'s' if number > 1 else ''} far from all others left out" if number else ""
 
     def mismatch(self, problem: Problem, found: SearchResult) -> Mismatch:
         """See `Regime.mismatch`."""

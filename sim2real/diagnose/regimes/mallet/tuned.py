@@ -31,6 +31,13 @@ class MalletNumbers:
         "for those of the mallet",
         "choice: as far as a wall may be off its place (`segmentation.causes.NEAR`)",
     )
+    gross_error: float = tuned(
+        30.0,
+        "times a typical contact's residual",
+        "less leaves out contacts of a law that few of them meet, more lets a wrong one spoil the clock of all",
+        "choice: far beyond what laws differ by between contacts",
+    )
+    gross_share: float = tuned(0.1, "of contacts", "contacts left out until a law fits", "choice: outliers are few")
     clock_error: float = tuned(
         0.0005,
         "s",

@@ -20,11 +20,11 @@ class Point:
     def __init__(self, y: float = 0.5) -> None:
         self.counter = ShotCounter(Tables("puckpilot/match-v0", 1).params[0])
         self.time, self.puck = 0.0, [1.5, y, 0.0, 0.0]
-        self.watch(HOME, other_touched=True)
+        self.watch(HOME)
 
-    def watch(self, robot: tuple[float, ...], touched: bool = False, other_touched: bool = False) -> None:
+    def watch(self, robot: tuple[float, ...], touched: bool = False) -> None:
         self.time += FRAME
-        self.counter.watch(self.time, tuple(self.puck), robot, touched, other_touched)
+        self.counter.watch(self.time, tuple(self.puck), robot, touched)
 
     def fly(self, vx: float, vy: float, frames: int, robot: tuple[float, ...] = HOME) -> Point:
         """Go on with a velocity; the robot's mallet goes straight on too, and touches nothing."""
@@ -98,6 +98,32 @@ def test_a_goal_of_the_robot_s_shot_and_of_a_slow_puck() -> None:
         point.fly(speed, 0.0, frames)
         point.counter.goal(against=False)
         assert point.counts == Shots(made=1, scored=1)
+
+
+def test_a_shot_of_the_robot_counts_once_however_often_it_comes_back() -> None:
+    point = Point()
+    point.counter.begin()
+    point.puck[0] = 0.35
+    point.watch(HOME, touched=True)
+    point.fly(2.0, 0.0, 80).fly(-1.5, 0.0, 100).fly(1.0, 0.0, 110)  # off both end walls
+    assert point.counts == Shots(faced=1, made=1)
+
+
+def test_a_puck_that_rolls_in_after_it_came_back_is_not_off_the_robot_s_mallet() -> None:
+    point = Point()
+    point.counter.begin()
+    point.puck[0] = 0.35
+    point.watch(HOME, touched=True)
+    point.fly(2.0, 0.0, 80).fly(-0.4, 0.0, 400)
+    point.counter.goal(against=True)
+    assert point.counts.deflected == 0 and point.counts.let_in == 1
+
+
+def test_a_swing_past_the_puck_right_before_a_goal_is_missed_too() -> None:
+    point = Point().fly(-3.0, 0.0, 40)  # at 0.5
+    point.fly(-3.0, 0.0, 14, (0.2, 0.5 - REACH - 0.02, 1.5, 0.0))
+    point.counter.goal(against=True)
+    assert point.counts == Shots(faced=1, straight=1, missed=1)
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,10 +16,9 @@ from sim2real.diagnose.engine.model_search import search_model
 from sim2real.diagnose.input_checks import UndeterminedError
 from sim2real.diagnose.regimes.base import RecordingPart, UnusableError
 from sim2real.diagnose.regimes.gantry import data
-from sim2real.diagnose.regimes.gantry.formula import _possible_law
 from sim2real.diagnose.regimes.gantry.problem import gantry_problem
 from sim2real.diagnose.regimes.gantry.regime import REGIME as GANTRY
-from sim2real.diagnose.regimes.gantry.tuned import GANTRY_DATA, GANTRY_FIT
+from sim2real.diagnose.regimes.gantry.tuned import GANTRY_DATA
 from sim2real.diagnose.result.regime_result import regime_result
 from sim2real.diagnose.result.result import RegimeResult
 from sim2real.recording.folder import Recording, Stream, read_recording
@@ -214,23 +212,6 @@ def test_residuals_of_one_recording_are_those_rows_of_all(baseline: Recording) -
         np.testing.assert_array_equal(some.r, every.r[here])
         np.testing.assert_array_equal(some.jacobian, every.jacobian[here])
         np.testing.assert_array_equal(some.cluster, every.cluster[here])
-
-
-@pytest.mark.slow
-def test_a_step_to_an_axis_that_rings_is_not_taken(baseline: Recording) -> None:
-    problem, _ = gantry_problem([baseline], parameters(baseline))
-    defaults = {name: problem.defaults(name) for name in problem.base}
-    ringing = {**defaults, "a1": 50.0 * defaults["a1"], "b1": 50.0 * defaults["b1"]}
-
-    def chosen(final: dict[str, float], moved: dict[str, float]) -> dict[str, float]:
-        found = SimpleNamespace(final=SimpleNamespace(values=final, free=()), law=SimpleNamespace(values=defaults))
-        values, rest = _possible_law(problem, found, moved)  # pyright: ignore[reportArgumentType]
-        assert np.abs(rest.r).max() < GANTRY_FIT.impossible
-        return dict(values)
-
-    assert chosen(defaults, {"a3": 1e-4}) == {**defaults, "a3": defaults["a3"] + 1e-4}
-    assert chosen(defaults, {"a1": ringing["a1"], "b1": ringing["b1"]}) == defaults
-    assert chosen(ringing, {}) == defaults
 
 
 @pytest.mark.slow

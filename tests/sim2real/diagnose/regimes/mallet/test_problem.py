@@ -9,6 +9,7 @@ from sim2real.diagnose.engine.least_squares import fit
 from sim2real.diagnose.engine.model_search import search_model
 from sim2real.diagnose.regimes.contact.motion import find_contact_motions
 from sim2real.diagnose.regimes.mallet.data import MalletContacts, mallet_contacts
+from sim2real.diagnose.regimes.mallet.gross_errors import without_gross_errors
 from sim2real.diagnose.regimes.mallet.problem import MalletProblem
 from sim2real.diagnose.regimes.sliding.data import glide_data
 from sim2real.diagnose.regimes.sliding.problem import GlideProblem
@@ -106,3 +107,27 @@ def test_an_offset_of_the_mallets_clock_is_no_misfit_of_contacts(late):
         for each in (contacts, blind, steady, struck(np.zeros(1)))
     ]
     assert rms[0] < 1.2 and min(rms[1:3]) > 3.0 and 0.7 < rms[3] < 1.1
+
+
+@pytest.mark.parametrize("restitution", [0.7, 0.45])
+def test_a_contact_that_was_measured_wrongly_does_not_spoil_the_clock_of_all(restitution):
+    """One of 40 is off by 3 m/s, a thousand times the noise: with it the clock's error is wrong for all others."""
+    contacts = struck(np.array([0.0003]))
+    slower = (restitution - 0.7) * 2.0 * contacts.normal
+    wrong = contacts.velocity_after + slower
+    wrong[7] += 3.0 * contacts.axes[7, 1]
+    spoilt = MalletProblem(replace(contacts, velocity_after=wrong), 2, {})
+    mended = without_gross_errors(spoilt)
+    values, others = {"mallet_restitution": restitution}, np.arange(40) != 7
+    with_it = spoilt.residuals(values, (), np.arange(2)).r.reshape(40, 3)[others]
+    assert mended.left_out == 1 and len(mended.data) == 39
+    assert np.sqrt((with_it**2).mean()) > 3.0
+    assert np.sqrt((mended.residuals(values, (), np.arange(2)).r ** 2).mean()) < 1.5
+
+
+def test_contacts_that_scatter_alike_are_all_kept():
+    contacts = struck(np.array([0.0004, -0.0002]))
+    for scatter in (0.0, 0.3):
+        noise = np.random.default_rng(5).normal(0.0, 1.0, contacts.velocity_after.shape) * scatter
+        problem = MalletProblem(replace(contacts, velocity_after=contacts.velocity_after + noise), 2, {})
+        assert without_gross_errors(problem) is problem
