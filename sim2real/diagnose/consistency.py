@@ -120,7 +120,7 @@ def _differ_in_smooth_term(
 
     It compares losses, since single coefficients of a smooth term have no meaning.
     """
-    own = sum(_losses(problem, found, part.clusters) for part in parts)
+    own = np.sum([_losses(problem, found, part.clusters) for part in parts], axis=0)
     for pair in combinations(parts, 2):
         both = _losses(problem, found, np.concatenate([part.clusters for part in pair]))
         for part in pair:
