@@ -41,6 +41,15 @@ class Point:
         return self.counter.counts
 
 
+def struck_by_the_robot() -> Point:
+    """A point that begins with the robot's touch, before its mallet."""
+    point = Point()
+    point.counter.begin()
+    point.puck[0] = 0.35
+    point.watch(HOME, touched=True)
+    return point
+
+
 def test_a_shot_that_comes_back_was_kept_out() -> None:
     point = Point().fly(-3.0, 0.0, 40)
     point.watch(HOME, touched=True)
@@ -91,29 +100,20 @@ def test_a_goal_off_the_robot_s_own_mallet() -> None:
 
 def test_a_goal_of_the_robot_s_shot_and_of_a_slow_puck() -> None:
     for speed, frames in ((2.0, 130), (0.3, 400)):
-        point = Point()
-        point.counter.begin()
-        point.puck[0] = 0.35
-        point.watch(HOME, touched=True)
+        point = struck_by_the_robot()
         point.fly(speed, 0.0, frames)
         point.counter.goal(against=False)
         assert point.counts == Shots(made=1, scored=1)
 
 
 def test_a_shot_of_the_robot_counts_once_however_often_it_comes_back() -> None:
-    point = Point()
-    point.counter.begin()
-    point.puck[0] = 0.35
-    point.watch(HOME, touched=True)
+    point = struck_by_the_robot()
     point.fly(2.0, 0.0, 80).fly(-1.5, 0.0, 100).fly(1.0, 0.0, 110)  # off both end walls
     assert point.counts == Shots(faced=1, made=1)
 
 
 def test_a_puck_that_rolls_in_after_it_came_back_is_not_off_the_robot_s_mallet() -> None:
-    point = Point()
-    point.counter.begin()
-    point.puck[0] = 0.35
-    point.watch(HOME, touched=True)
+    point = struck_by_the_robot()
     point.fly(2.0, 0.0, 80).fly(-0.4, 0.0, 400)
     point.counter.goal(against=True)
     assert point.counts.deflected == 0 and point.counts.let_in == 1
