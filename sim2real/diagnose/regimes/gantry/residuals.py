@@ -8,16 +8,13 @@ from itertools import pairwise
 import numpy as np
 
 from puckpilot_env.parameters import BY_NAME
-from puckpilot_env.physics.effects import belt_compliance, motor_friction
 from sim2real.diagnose.engine.problem import Residuals, Units, record_of
 from sim2real.diagnose.regimes.gantry.data import GantryRecording
 from sim2real.diagnose.regimes.gantry.tuned import GANTRY_FIT
 
 PRIOR_PARAMETERS = ("a1", "b1")  # coefficients of the jerk: almost equivalent to a delay, so they have a prior
 LOW_ORDER = ("a2", "a3", "b2", "b3")  # the baseline's other parameters
-# Those on which friction's displacement depends strongly
-CHANGE_FRICTION = (*motor_friction.EFFECT.row_names, *belt_compliance.EFFECT.row_names, "command_delay")
-MIRRORED = {"b1": "a1", "b2": "a2", "b3": "a3"}  # x depends on the difference a - b, y on the sum a + b
+MIRRORED = {"b1": "a1", "b2": "a2", "b3": "a3"}  # x depends on a - b, y on a + b, unless friction couples the axes
 
 
 class GantryResiduals:
@@ -82,11 +79,11 @@ class GantryResiduals:
         runs = [self.runs[k] for k in of_runs]
         friction = [run.friction(p) for run in runs]
         r, sign = _path(runs, p, friction), np.concatenate([self._sign[k] for k in of_runs])
+        coupled = any(part.any() for part in friction)
         jacobian = np.empty((len(r), len(free)))
         for k, name in enumerate(free):
-            mirror = MIRRORED.get(name)
-            mirrored = mirror in free
-            jacobian[:, k] = sign * jacobian[:, free.index(mirror)] if mirrored else _slope(runs, p, name, r, friction)
+            mirror = None if coupled else MIRRORED.get(name)
+            jacobian[:, k] = sign * jacobian[:, free.index(mirror)] if mirror in free else _slope(runs, p, name, r)
         centre = np.array([self.defaults(name) for name in PRIOR_PARAMETERS])
         weight = 1.0 / (GANTRY_FIT.prior_share * np.abs(centre)) / np.sqrt(self.clusters)
         off = np.array([p[name] for name in PRIOR_PARAMETERS]) - centre
@@ -124,19 +121,18 @@ def _path(runs: Sequence[GantryRecording], p: np.void, friction: list[np.ndarray
     return np.where(np.isfinite(r), r, GANTRY_FIT.impossible)
 
 
-def _slope(
-    runs: Sequence[GantryRecording], p: np.void, name: str, r: np.ndarray, friction: list[np.ndarray]
-) -> np.ndarray:
-    """Derivative (rows,) of the path's residuals by a parameter; `r` (rows,): the residuals at `p`; `friction`: the
-    displacements at `p`, which are held constant for all parameters but CHANGE_FRICTION."""
+def _slope(runs: Sequence[GantryRecording], p: np.void, name: str, r: np.ndarray) -> np.ndarray:
+    """Derivative (rows,) of the path's residuals by a parameter; `r` (rows,): the residuals at `p`.
+
+    Friction's displacement depends on the parameters of the axes about as much as on those of friction.
+    """
     step = _step(name, float(p[name]))
     moved, delay = p.copy(), 0.0
     if name == "command_delay":
         delay = step  # shifts the changes themselves: with ticks, the effect of the parameter is discontinuous
     else:
         moved[name] += step
-    if name in CHANGE_FRICTION:
-        friction = [run.friction(moved, delay) for run in runs]
+    friction = [run.friction(moved, delay) for run in runs]
     return (_path(runs, moved, friction, delay) - r) / step
 
 

@@ -15,6 +15,7 @@ from sim2real.diagnose.engine.least_squares import LeastSquaresFit
 from sim2real.diagnose.regimes.gantry import listed_effects
 from sim2real.diagnose.regimes.gantry.data import GantryRecording, read_gantry
 from sim2real.diagnose.regimes.gantry.listed_effects import StagedFit, _stands_out
+from sim2real.diagnose.regimes.gantry.residuals import GantryResiduals
 from sim2real.recording.folder import Recording, Stream, read_recording
 from sim2real.study.independent_table.physics.law import Law
 from sim2real.study.independent_table.recorder.record import make_recording
@@ -53,6 +54,22 @@ def test_with_the_friction_that_there_was_nothing_is_left_but_noise(recording: R
     assert left_over(run) > 10.0
     for name, size in SIZES.items():
         assert left_over(run, **{**SIZES, name: size + 0.05}) > 1.3, name
+
+
+def test_a_small_step_of_all_parameters_does_what_their_derivatives_promise(recording: Recording) -> None:
+    """From the table's own constants, by least squares: friction couples the axes and depends on their constants."""
+    run = read_gantry(recording, SUPPLY, np.zeros(0))
+    problem = GantryResiduals([run], {"max_voltage": SUPPLY})
+    free = (*problem.base, *EFFECT.row_names)
+    values = {name: SIZES.get(name, problem.defaults(name)) for name in free}
+    found = problem.residuals(values, free, problem.everything)
+    scale = np.linalg.norm(found.jacobian, axis=0)
+    step = np.linalg.lstsq(found.jacobian / scale, -found.r)[0] / scale
+    promised = np.sum((found.r + found.jacobian @ step) ** 2) - np.sum(found.r**2)
+    moved = {name: values[name] + by for name, by in zip(free, step, strict=True)}
+    gained = np.sum(problem.residuals(moved, (), problem.everything).r ** 2) - np.sum(found.r**2)
+    assert promised < -1.0
+    assert gained == pytest.approx(promised, rel=0.2)
 
 
 def test_a_path_that_begins_in_a_move_is_run_in_by_the_volts_before_it(recording: Recording) -> None:
