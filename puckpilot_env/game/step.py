@@ -9,6 +9,7 @@ from puckpilot_env.kernel import inlined_kernel, kernel
 from puckpilot_env.physics import compose
 from puckpilot_env.physics.contacts import bounce
 from puckpilot_env.physics.gantry import drive, drivetrain
+from puckpilot_env.physics.gantry.brakeable import brakeable_volts
 from puckpilot_env.physics.gantry.mallet import place_now
 from puckpilot_env.physics.gantry.plan import plan_mallet, plan_orders
 
@@ -33,12 +34,14 @@ def plan_both(table, p, nominal, actions, rewards):
             vx *= 1.0 + p.action_noise * dx
             vy *= 1.0 + p.action_noise * dy
         area = mirror.area(k, p)
+        planned = table.motors[k] if table.in_pieces else mallet
         if table.in_pieces:
-            motor = table.motors[k]
-            drivetrain.join(p, motor, mallet)
-            drive.send(p, plan_orders(motor, x_f, y_f, vx, vy, area, p.max_voltage), table.orders[k])
-        elif late:
-            drive.send(p, plan_orders(mallet, x_f, y_f, vx, vy, area, p.max_voltage), table.orders[k])
+            drivetrain.join(p, planned, mallet)
+        if p.braking_time > 0.0:
+            limit = p.max_voltage
+            vx, vy = brakeable_volts(planned, x_f, y_f, vx, vy, area, limit, limit, p.braking_time)
+        if table.in_pieces or late:
+            drive.send(p, plan_orders(planned, x_f, y_f, vx, vy, area, p.max_voltage), table.orders[k])
         else:
             plan_mallet(mallet, x_f, y_f, vx, vy, area, p.max_voltage)
             if compose.loses(p):

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from puckpilot_env.game import mirror
 from puckpilot_env.kernel import kernel
+from puckpilot_env.physics.gantry.brakeable import brakeable_volts
 from puckpilot_env.physics.gantry.mallet import (
     MALLET,
     axis_coefficients,
@@ -18,12 +19,15 @@ from puckpilot_env.physics.gantry.mallet import (
     set_constants,
     settle,
 )
-from sim2real.table.brakeable_plan import plan_brakeable
+from puckpilot_env.physics.gantry.plan import plan_mallet, plan_orders
 
 OPERATING_VOLTS = 15.0  # V that a motor ever gets on a table (report)
 FEEDBACK_VOLTS = 1.0  # V of these that plans leave to the board's feedback
 MARGIN = 0.002  # m inside the mallet's area that plans stay, for it errs by up to 1 mm on its path
 AHEAD = 0.014  # s from sending a plan until it acts: the board looks at it for 10 ms
+BRAKING_TIME = 0.034  # s that braking may take by the closed form; the board needs up to 3 ms more
+ENDLESS = 60.0  # s that no plan takes, but one whose volts all go to the other axis
+ROOM = 0.0005  # m about such a mallet, that belong to its area: `plan_mallet` keeps clear of the edge
 LEAST_LIFE, AFTER = 0.2, 0.1  # s of a plan, and from its end until the motors are off: it always brakes by itself
 LONGEST_LIFE = 5.0  # s, the protocol's; only plans of a volt or so are longer
 
@@ -129,4 +133,9 @@ def _plan(mallets, params, since, x, y, vx, vy, limit, most):
     settle(mallet, since)
     x_low, x_high, y_low, y_high = mirror.area(0, p)
     area = x_low + MARGIN, x_high - MARGIN, y_low + MARGIN, y_high - MARGIN
-    plan_brakeable(mallet, x, y, vx, vy, area, limit, most)
+    (_, _, x2), (_, _, y2) = plan_orders(mallet, x, y, vx, vy, area, limit)
+    if max(x2, y2) > ENDLESS:  # a stop left it at the edge: all volts for that axis, none for the other
+        x0, y0, _, _ = motion_at(mallet, 0.0)
+        area = (min(area[0], x0 - ROOM), max(area[1], x0 + ROOM), min(area[2], y0 - ROOM), max(area[3], y0 + ROOM))
+    vx, vy = brakeable_volts(mallet, x, y, vx, vy, area, limit, most, BRAKING_TIME)
+    plan_mallet(mallet, x, y, vx, vy, area, limit)

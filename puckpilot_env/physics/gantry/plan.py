@@ -124,7 +124,7 @@ def _least_voltage(axis, low, high):
 
 
 @kernel
-def _settle_voltages(mallet, x_f, y_f, vx, vy, area, max_voltage):
+def settle_voltages(mallet, x_f, y_f, vx, vy, area, max_voltage):
     """`(target, volts)` of x and of y for a request as in `plan_mallet`."""
     x, y = mallet.x, mallet.y
     limit = 2.0 * (max_voltage - SMALLEST_VOLTAGE)
@@ -147,13 +147,14 @@ def plan_mallet(mallet, x_f, y_f, vx, vy, area, max_voltage):
     y_high) [m] in which the mallet's centre must stay. The rest position keeps clear of the area's edge by twice the
     largest fast mode, so that the mallet itself never crosses it.
     """
-    to_x, volts_x, to_y, volts_y = _settle_voltages(mallet, x_f, y_f, vx, vy, area, max_voltage)
+    to_x, volts_x, to_y, volts_y = settle_voltages(mallet, x_f, y_f, vx, vy, area, max_voltage)
     plan_axis(mallet.x, to_x, volts_x)
     plan_axis(mallet.y, to_y, volts_y)
 
 
 @kernel
-def _axis_orders(axis, target, volts):
+def axis_orders(axis, target, volts):
+    """What `plan_axis` would plan, and nothing changed: (signed volts, t1, t2)."""
     sign, t1, t2, _ = switching_times(
         axis.rest, axis.slow, target, axis.rest_gain, axis.slow_gain, axis.slow_rate, volts
     )
@@ -163,5 +164,5 @@ def _axis_orders(axis, target, volts):
 @kernel
 def plan_orders(mallet, x_f, y_f, vx, vy, area, max_voltage):
     """What `plan_mallet` would plan, and nothing changed: (signed volts, t1, t2) of x and of y."""
-    to_x, volts_x, to_y, volts_y = _settle_voltages(mallet, x_f, y_f, vx, vy, area, max_voltage)
-    return _axis_orders(mallet.x, to_x, volts_x), _axis_orders(mallet.y, to_y, volts_y)
+    to_x, volts_x, to_y, volts_y = settle_voltages(mallet, x_f, y_f, vx, vy, area, max_voltage)
+    return axis_orders(mallet.x, to_x, volts_x), axis_orders(mallet.y, to_y, volts_y)
