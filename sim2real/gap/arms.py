@@ -1,6 +1,7 @@
 """What a player is fine-tuned on, from the diagnosis or without it: an arm of the comparison each.
 
-Every arm that learns knows the loop's own delay, AHEAD: it is no secret of the table.
+Every arm that learns knows what the loop asks of plans, LOOP: it is no secret of the table. The loop's own delay is not
+among it, since players are shown what will be when they act.
 """
 
 from __future__ import annotations
@@ -17,9 +18,10 @@ from puckpilot_env.options import effects_file
 from puckpilot_env.options.draws_file import read_draws
 from puckpilot_env.options.effects_file import effect_values
 from puckpilot_env.variants import find_variant
-from sim2real.table.mallet_driver import AHEAD
+from sim2real.table.mallet_driver import BRAKING_TIME, OPERATING_VOLTS
 from sim2real.table.twin.concealed import DELAY, find_table
 
+LOOP: Mapping[str, float] = {"max_voltage": OPERATING_VOLTS, "braking_time": BRAKING_TIME}
 SENSORS = ("camera_", "beam_", "frame_", "dropped_", "held_")  # without effect where players see the state
 
 
@@ -30,29 +32,28 @@ class Simulator:
     values: Mapping[str, float] = field(default_factory=dict)
     draws: Mapping[str, Any] | None = None
 
-    def with_delay(self, seconds: float) -> Simulator:
-        """The same with commands later by so much [s]."""
-        return Simulator({**self.values, DELAY: self.values.get(DELAY, 0.0) + seconds}, self.draws)
+    def with_loop(self) -> Simulator:
+        """The same with what the loop asks of plans."""
+        return Simulator({**self.values, **LOOP}, self.draws)
 
 
 @dataclass(frozen=True)
 class Arm:
-    """words: what it does; simulator: what is learnt on, from the folder of the diagnosis and the concealed table's
-    name, None if nothing is learnt; allows: whether the loop allows for the delay of the camera that was found."""
+    """words: what it does; simulator: what is learnt on, None if nothing is learnt; camera_delay: that the loop allows
+    for [s]. Both are made from the folder of the diagnosis and the concealed table's name."""
 
     words: str
     simulator: Callable[[Path, str], Simulator] | None
-    allows: bool = False
+    camera_delay: Callable[[Path, str], float] = lambda diagnosis, table: 0.0
 
 
 def _corrected(diagnosis: Path, table: str) -> Simulator:
-    """All that was found, and the intervals of what was measured. Late frames act as late commands do."""
-    found = Simulator(effect_values(diagnosis / "effects.toml"), _drawn(diagnosis))
-    return found.with_delay(found_camera_delay(diagnosis))
+    """All that was found, and the intervals of what was measured."""
+    return Simulator(effect_values(diagnosis / "effects.toml"), _drawn(diagnosis))
 
 
-def found_camera_delay(diagnosis: Path) -> float:
-    """By how much a diagnosis found stamps later than exposures [s]; 0 if it did not."""
+def _found_camera_delay(diagnosis: Path, table: str) -> float:
+    """By how much a diagnosis found stamps later than exposures; 0 if it did not."""
     content = json.loads((diagnosis / "diagnosis.json").read_text(encoding="utf-8"))
     late = [one for one in content["findings"] if one["mechanism"] == "camera_delay"]
     return sum(float(one["parameters"]["delay_s"]["value"]) for one in late)
@@ -82,13 +83,14 @@ def _randomized(diagnosis: Path, table: str) -> Simulator:
 
 
 ARMS = {
-    "allowing": Arm("as it is; the loop allows for the camera's delay", None, allows=True),
+    "allowing": Arm("as it is; the loop allows for the camera's delay", None, _found_camera_delay),
     "unchanged": Arm("fine-tuned on the unchanged simulator", lambda diagnosis, table: Simulator()),
     "randomized": Arm("fine-tuned on randomized tables", _randomized),
     "constants": Arm("fine-tuned with the baseline's constants refitted", _constants),
-    "corrected": Arm("fine-tuned with what the diagnosis found", _corrected),
+    "corrected": Arm("fine-tuned with what the diagnosis found", _corrected, _found_camera_delay),
     "truth": Arm("fine-tuned on the concealed truth: the ceiling",
-                 lambda diagnosis, table: Simulator(find_table(table).truth)),
+                 lambda diagnosis, table: Simulator(find_table(table).truth),
+                 lambda diagnosis, table: find_table(table).errors.stamp_late),
 }  # fmt: skip
 
 
@@ -113,4 +115,4 @@ def simulator_of(arm: str, diagnosis: Path, table: str) -> Simulator | None:
     """What an arm learns on; None if it learns nothing. ValueError, in one line, for an unknown arm."""
     refuse_unknown([arm], ARMS, "arm")
     simulator = ARMS[arm].simulator
-    return simulator and simulator(diagnosis, table).with_delay(AHEAD)
+    return simulator and simulator(diagnosis, table).with_loop()

@@ -24,13 +24,12 @@ from pathlib import Path
 from typing import Any
 
 from puckpilot_env.files.whole_file import write_text_whole
-from sim2real.gap.arms import ARMS, Simulator, found_camera_delay, simulator_of, write_simulator
+from sim2real.gap.arms import ARMS, LOOP, Simulator, simulator_of, write_simulator
 from sim2real.gap.page import page
-from sim2real.table.mallet_driver import AHEAD
 from sim2real.table.twin.fidelity import Meeting, TwinGame, play_all
 from sim2real.table.twin.score import change, score, shots
 
-FORMAT = "puckpilot-gap/2"
+FORMAT = "puckpilot-gap/3"
 VARIANT = "match-v0"
 PRESET = "fine_tune"
 Report = Callable[[str], None]
@@ -74,7 +73,7 @@ class Circle:
         after: dict[str, list[TwinGame]] = {}
         for arm, player in players.items():
             self._report(f"playing on the table: {ARMS[arm].words}")
-            delay = found_camera_delay(self.diagnosis) if ARMS[arm].allows else 0.0
+            delay = ARMS[arm].camera_delay(self.diagnosis, self.conditions.table)
             after[arm] = self._games(player, self.folder / arm / "games", progress, camera_delay=delay)
         result = self._result(simulated, before, after)
         write_text_whole(self.folder / "gap.json", json.dumps(result, indent=1) + "\n")
@@ -82,15 +81,14 @@ class Circle:
         return result
 
     def _simulated(self) -> dict[str, Any]:
-        """The score in the simulator, whose commands are as late as the loop's."""
+        """The score in the simulator, with what the loop asks of plans."""
         from baselines.matches.match import play
         from puckpilot_env.variants import find_variant
 
         path, c = self.folder / "simulator" / "games.json", self.conditions
         if not path.exists():
             self._report("playing in the simulator")
-            late = {"command_delay": {"delay_s": AHEAD}}
-            match = play(VARIANT, c.player, c.opponent, 10 * c.games, c.seed, effects=late)
+            match = play(VARIANT, c.player, c.opponent, 10 * c.games, c.seed, parameters=LOOP)
             minutes = float(match.lengths.sum()) * find_variant(VARIANT).period / 60.0
             path.parent.mkdir(parents=True, exist_ok=True)
             content = {"goals": list(match.goals), "minutes": minutes}

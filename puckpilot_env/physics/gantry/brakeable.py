@@ -1,9 +1,9 @@
 """Volts of plans that a braking stop could end at any moment: soon enough, and inside the mallet's area.
 
-A table's board brakes (`firmware/core/brake.c`) with at most `most` volts at a motor, 2 `most` on both axes together, of
-which each axis gets half if it needs it. Under volts V against its speed v an axis (rates and gains as in `mallet.py`,
-without the fast mode) rests after `log(1 + v/(rest_gain V))/slow_rate`. A player that learns with the same limit learns
-how fast the mallet of a table may be.
+A table's board brakes (`firmware/core/brake.c`) with at most `most` volts at a motor, 2 `most` on both axes together,
+of which each axis gets half if it needs it. Under volts V against its speed v an axis (rates and gains as in
+`mallet.py`, without the fast mode) rests after `log(1 + v/(rest_gain V))/slow_rate`. A player that learns with the same
+limit learns how fast the mallet of a table may be.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ def speed_under(axis, volts, t1, t2, t):
         begin = end
         if end == t:
             break
-    return axis.rest_gain * u - axis.slow_rate * (slow + axis.slow_gain * u) - axis.fast_rate * (
-        fast - axis.fast_gain * u
+    return (
+        axis.rest_gain * u - axis.slow_rate * (slow + axis.slow_gain * u) - axis.fast_rate * (fast - axis.fast_gain * u)
     )
 
 

@@ -37,7 +37,6 @@ def _alike(words: str, law: Mapping[str, Any], late: float = 0.0, **others: floa
     """A table of effects that have the same names in law and simulator, but for the `others`: the simulator's; and a
     camera whose stamps are `late` [s]."""
     truth = {name: value for name, value in law.items() if name in BY_NAME} | others
-    truth[DELAY] = truth.get(DELAY, 0.0) + late
     return ConcealedTable(words, law, CameraErrors(stamp_late=late), truth)
 
 

@@ -10,8 +10,7 @@ import pytest
 from puckpilot_env import Tables
 from puckpilot_env.options.draws_file import read_draws
 from puckpilot_env.options.effects_file import as_content, effect_values
-from sim2real.gap.arms import ARMS, simulator_of, write_simulator
-from sim2real.table.mallet_driver import AHEAD
+from sim2real.gap.arms import ARMS, LOOP, simulator_of, write_simulator
 from sim2real.table.twin.concealed import TABLES
 
 EFFECTS = """format = "puckpilot-effects/1"
@@ -42,21 +41,23 @@ def diagnosis(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_the_corrected_arm_has_what_was_found_and_all_delays_together(diagnosis: Path) -> None:
+def test_the_corrected_arm_has_what_was_found_and_its_loop_allows_for_the_camera_s_delay(diagnosis: Path) -> None:
     one = simulator_of("corrected", diagnosis, "none")
     assert one is not None and one.draws is not None
-    assert dict(one.values) == pytest.approx(
-        {"friction": 0.1, "tilt_x": 0.03, "tilt_y": 0.0, "command_delay": 0.004 + 0.01 + AHEAD}
-    )
+    assert dict(one.values) == {"friction": 0.1, "tilt_x": 0.03, "tilt_y": 0.0, "command_delay": 0.004, **LOOP}
     assert set(one.draws["draws"]) == {"friction"}
+    allowed = {arm: row.camera_delay(diagnosis, "late") for arm, row in ARMS.items()}
+    assert {arm: delay for arm, delay in allowed.items() if delay} == {
+        "allowing": 0.01, "corrected": 0.01, "truth": TABLES["late"].errors.stamp_late,
+    }  # fmt: skip
 
 
 def test_others_do_not_see_the_findings(diagnosis: Path) -> None:
     made = {arm: simulator_of(arm, diagnosis, "warp") for arm in ARMS}
     values = {arm: dict(one.values) for arm, one in made.items() if one}
     assert made.keys() - values.keys() == {"allowing"}
-    assert values["unchanged"] == {"command_delay": AHEAD}
-    assert values["constants"] == {"friction": 0.1, "command_delay": AHEAD}
+    assert values["unchanged"] == LOOP == {"max_voltage": 15.0, "braking_time": 0.034}
+    assert values["constants"] == {"friction": 0.1, **LOOP}
     assert values["truth"]["tilt_x"] == TABLES["warp"].truth["tilt_x"]
 
 

@@ -13,8 +13,8 @@ pytest.importorskip("unicorn", reason="unicorn is not installed: the program can
 from agents.training.run_folder import RunFolder
 from puckpilot import main
 from sim2real.gap import circle as circle_module
+from sim2real.gap.arms import LOOP
 from sim2real.gap.circle import Circle, Conditions
-from sim2real.table.mallet_driver import AHEAD
 from sim2real.table.twin import fidelity
 from tests.agents.training.tiny import TINY
 
@@ -69,7 +69,7 @@ def test_an_arm_is_fine_tuned_and_plays_games_of_the_same_seeds(
     result = made.run(["unchanged"], lambda done, count: None)
     arm = tmp_path / "out" / "unchanged"
     settings = RunFolder(arm / "training").settings()
-    assert settings["effects"] == {"command_delay": AHEAD} and settings["start"].endswith("champion.npz")
+    assert settings["effects"] == LOOP and settings["start"].endswith("champion.npz")
     assert settings["seed"] == 5 and settings["draws"] is None
     assert {one.name for one in (arm / "games").iterdir()} == {"game_5.json", "game_6.json"}
     assert result["arms"]["unchanged"].keys() == {*PLAYED, "change"}
