@@ -33,8 +33,9 @@ class Simulator:
     draws: Mapping[str, Any] | None = None
 
     def with_loop(self) -> Simulator:
-        """The same with what the loop asks of plans."""
-        return Simulator({**self.values, **LOOP}, self.draws)
+        """The same with what the loop asks of plans, and without late commands, of which the board's feedback leaves
+        no more than a wobble."""
+        return Simulator({**{name: value for name, value in self.values.items() if name != DELAY}, **LOOP}, self.draws)
 
 
 @dataclass(frozen=True)

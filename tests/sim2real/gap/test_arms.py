@@ -44,7 +44,7 @@ def diagnosis(tmp_path: Path) -> Path:
 def test_the_corrected_arm_has_what_was_found_and_its_loop_allows_for_the_camera_s_delay(diagnosis: Path) -> None:
     one = simulator_of("corrected", diagnosis, "none")
     assert one is not None and one.draws is not None
-    assert dict(one.values) == {"friction": 0.1, "tilt_x": 0.03, "tilt_y": 0.0, "command_delay": 0.004, **LOOP}
+    assert dict(one.values) == {"friction": 0.1, "tilt_x": 0.03, "tilt_y": 0.0, **LOOP}
     assert set(one.draws["draws"]) == {"friction"}
     allowed = {arm: row.camera_delay(diagnosis, "late") for arm, row in ARMS.items()}
     assert {arm: delay for arm, delay in allowed.items() if delay} == {
