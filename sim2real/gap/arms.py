@@ -35,7 +35,11 @@ class Simulator:
     def with_loop(self) -> Simulator:
         """The same with what the loop asks of plans, and without late commands, of which the board's feedback leaves
         no more than a wobble."""
-        return Simulator({**{name: value for name, value in self.values.items() if name != DELAY}, **LOOP}, self.draws)
+        values = {name: value for name, value in self.values.items() if name != DELAY}
+        draws = read_draws(self.draws).as_dict() if self.draws else None
+        for part in ("parameters", "draws") if draws else ():
+            draws[part].pop(DELAY, None)
+        return Simulator({**values, **LOOP}, draws)
 
 
 @dataclass(frozen=True)
@@ -61,9 +65,7 @@ def _found_camera_delay(diagnosis: Path, table: str) -> float:
 
 
 def _drawn(diagnosis: Path) -> dict[str, Any] | None:
-    """The draws of a diagnosis, but for a delay, which is known."""
     drawn = read_draws(diagnosis / "draws.toml").as_dict()
-    drawn["draws"].pop(DELAY, None)
     return drawn if drawn["draws"] else None
 
 
@@ -78,7 +80,7 @@ def _randomized(diagnosis: Path, table: str) -> Simulator:
     rows = {
         draw.parameter: {"low": draw.low, "high": draw.high}
         for draw in find_variant("match-randomized-v0").draws
-        if draw.parameter != DELAY and not draw.parameter.startswith(SENSORS)
+        if not draw.parameter.startswith(SENSORS)
     }
     return Simulator({}, rows)
 

@@ -20,7 +20,7 @@ PARTS = 4  # of the top speed at which the way is looked at
 
 
 @kernel
-def speed_under(axis, volts, t1, t2, t):
+def _speed_under(axis, volts, t1, t2, t):
     """The speed [m/s] of an axis at `t` [s] of a plan from its present modes: signed `volts` until `t1`, the opposite
     until `t2`, then none."""
     slow, fast, u, begin = axis.slow, axis.fast, volts, 0.0
@@ -76,12 +76,12 @@ def _is_brakeable(mallet, to_x, volts_x, to_y, volts_y, area, most, longest):
     """Whether the mallet stays brakeable on its way to a target [m] with these volts."""
     signed_x, x1, x2 = axis_orders(mallet.x, to_x, volts_x)
     signed_y, y1, y2 = axis_orders(mallet.y, to_y, volts_y)
-    vx, vy = speed_under(mallet.x, signed_x, x1, x2, 0.0), speed_under(mallet.y, signed_y, y1, y2, 0.0)
+    vx, vy = _speed_under(mallet.x, signed_x, x1, x2, 0.0), _speed_under(mallet.y, signed_y, y1, y2, 0.0)
     limit = max(longest, _time_to_rest(mallet, vx, vy, most))
-    vx, vy = speed_under(mallet.x, signed_x, x1, x2, x1), speed_under(mallet.y, signed_y, y1, y2, y1)
-    if _time_to_rest(mallet, vx, speed_under(mallet.y, signed_y, y1, y2, x1), most) > limit:
+    vx, vy = _speed_under(mallet.x, signed_x, x1, x2, x1), _speed_under(mallet.y, signed_y, y1, y2, y1)
+    if _time_to_rest(mallet, vx, _speed_under(mallet.y, signed_y, y1, y2, x1), most) > limit:
         return False
-    if _time_to_rest(mallet, speed_under(mallet.x, signed_x, x1, x2, y1), vy, most) > limit:
+    if _time_to_rest(mallet, _speed_under(mallet.x, signed_x, x1, x2, y1), vy, most) > limit:
         return False
     return _stays_inside(mallet.x, to_x, signed_x, vx, area[0], area[1], most) and _stays_inside(
         mallet.y, to_y, signed_y, vy, area[2], area[3], most
@@ -91,13 +91,13 @@ def _is_brakeable(mallet, to_x, volts_x, to_y, volts_y, area, most, longest):
 @kernel
 def brakeable_volts(mallet, x_f, y_f, vx, vy, area, limit, most, longest):
     """The volts of x and of y for a request as in `plan_mallet` within `limit` [V]: as large a share of them as leaves
-    the mallet brakeable within `longest` [s] with `most` [V] at a motor; all, where no share does."""
+    the mallet brakeable within `longest` [s] with `most` [V] at a motor; the LEAST share, where none does."""
     if _request_is_brakeable(mallet, x_f, y_f, vx, vy, area, limit, most, longest):
         return vx, vy
     _, all_x, _, all_y = settle_voltages(mallet, x_f, y_f, vx, vy, area, limit)
     good, bad = LEAST, 1.0
     if not _request_is_brakeable(mallet, x_f, y_f, good * all_x, good * all_y, area, limit, most, longest):
-        return vx, vy
+        return good * all_x, good * all_y
     for _ in range(HALVINGS):
         share = 0.5 * (good + bad)
         if _request_is_brakeable(mallet, x_f, y_f, share * all_x, share * all_y, area, limit, most, longest):

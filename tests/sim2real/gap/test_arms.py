@@ -23,6 +23,9 @@ tilt_y = 0.0
 delay_s = 0.004
 """
 DRAWS = """format = "puckpilot-draws/1"
+[parameters]
+command_delay = 0.004
+tilt_x = 0.03
 [draws.friction]
 low = 0.09
 high = 0.11
@@ -67,7 +70,8 @@ def test_every_arm_can_be_learnt_on(diagnosis: Path, table: str) -> None:
         one = simulator_of(arm, diagnosis, table)
         if one is None:
             continue
-        Tables("match-v0", 2, effects=as_content(one.values), draws=one.draws)
+        tables = Tables("match-v0", 2, effects=as_content(one.values), draws=one.draws)
+        assert not tables.params["command_delay"].any() and (tables.params["max_voltage"] == 15.0).all()
         (diagnosis / arm).mkdir()
         files = write_simulator(one, diagnosis / arm)
         assert effect_values(files["effects"]) == one.values

@@ -23,7 +23,7 @@ from puckpilot_env.physics.gantry.plan import plan_mallet
 P = make_records(1)[0]
 VOLTS, TIME = 15.0, 0.034
 AREA = (0.05, 0.95, 0.05, 0.95)
-MODE = 0.003  # s: the closed form leaves the fast mode out
+MODE = 0.005  # s: the closed form leaves the fast mode out, and looks at both switches alone
 
 
 def seconds_to_rest(speed: float, axis: int) -> float:
@@ -42,14 +42,14 @@ def seconds_to_rest(speed: float, axis: int) -> float:
 
 
 def slowest_brake(longest: float) -> float:
-    """The longest time to rest [s] of a mallet that follows 200 wild plans, each for a while, at moments of each."""
+    """The longest time to rest [s] of a mallet that follows 600 wild plans, each for a while, at moments of each."""
     mallet, rng, slowest = np.zeros(1, MALLET)[0], np.random.default_rng(2), 0.0
     for number, axis in enumerate((mallet["x"], mallet["y"])):
         set_constants(axis, *axis_coefficients(P, number), P["pulley_radius"])
         place_axis(axis, 0.5, 0.0, 0.0)
         idle(axis)
-    for _ in range(200):
-        request = (*rng.uniform(0.0, 1.0, 2), *rng.uniform(0.3, 10.0, 2))
+    for _ in range(600):
+        request = (*rng.uniform(0.0, 1.0, 2), *rng.uniform(0.3, 24.0, 2))
         volts = brakeable_volts(mallet, *request, AREA, VOLTS, VOLTS, longest) if longest else request[2:]
         plan_mallet(mallet, *request[:2], *volts, AREA, VOLTS)
         seconds = rng.uniform(0.02, 0.2)
@@ -63,7 +63,8 @@ def slowest_brake(longest: float) -> float:
 @pytest.mark.slow
 def test_a_mallet_could_be_braked_to_rest_in_time_at_any_moment_of_its_plans() -> None:
     assert slowest_brake(TIME) < TIME + MODE
-    assert slowest_brake(0.0) > 0.042  # so it says something
+    assert slowest_brake(0.5 * TIME) < TIME  # a stricter limit never makes it faster
+    assert slowest_brake(0.0) > 0.06  # so it says something
 
 
 @pytest.mark.slow
