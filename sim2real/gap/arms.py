@@ -36,8 +36,10 @@ class Simulator:
         """The same with what the loop asks of plans, and without late commands, of which the board's feedback leaves
         no more than a wobble."""
         values = {name: value for name, value in self.values.items() if name != DELAY}
-        draws = read_draws(self.draws).as_dict() if self.draws else None
-        for part in ("parameters", "draws") if draws else ():
+        if self.draws is None:
+            return Simulator({**values, **LOOP})
+        draws = read_draws(self.draws).as_dict()
+        for part in ("parameters", "draws"):
             draws[part].pop(DELAY, None)
         return Simulator({**values, **LOOP}, draws)
 
