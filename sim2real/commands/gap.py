@@ -105,7 +105,7 @@ def _lines(result: dict[str, Any]) -> list[str]:
     lines = [
         f"the diagnosis of its play found: {found}",
         f"{'goals a minute':50} {'for':>5} {'against':>8} {'net':>6}  {'95 %':>14}  {'won back':>8}  {'95 %':>14}",
-        f"{'in the simulator, as braked':50} {simulated['scored']:5.2f} {simulated['conceded']:8.2f} "
+        f"{'in the simulator':50} {simulated['scored']:5.2f} {simulated['conceded']:8.2f} "
         f"{simulated['scored'] - simulated['conceded']:6.2f}",
         f"{'on the table, as it is':50} {_rates(before)}",
     ]

@@ -42,7 +42,7 @@ def seconds_to_rest(speed: float, axis: int) -> float:
 
 
 def slowest_brake(longest: float) -> float:
-    """The longest time to rest [s] of a mallet that follows 600 wild plans, each for a while, at moments of each."""
+    """The longest time to rest [s] of a mallet that follows 600 random plans, each for a while, at moments of each."""
     mallet, rng, slowest = np.zeros(1, MALLET)[0], np.random.default_rng(2), 0.0
     for number, axis in enumerate((mallet["x"], mallet["y"])):
         set_constants(axis, *axis_coefficients(P, number), P["pulley_radius"])
