@@ -20,18 +20,18 @@ Rows = NDArray[np.int64]
 class Block:
     """The tables from `first` to before `last`, at which the learner plays one opponent.
 
-    The opponent is player 1 of even tables and player 0 of odd ones. In a drill (`drill`) it is always player 1, since
-    player 0 is the one that is tested.
+    The opponent is player 1 of even tables and player 0 of odd ones. With `one_seat` it is always player 1: where only
+    player 0 is tested, or only its mallet is a robot's.
     """
 
     first: int
     last: int
-    drill: bool = False
+    one_seat: bool = False
 
     @property
     def learner_seats(self) -> Rows:
         """(tables,) which player, 0 or 1, the learner is at each table."""
-        return np.zeros(self.last - self.first, np.int64) if self.drill else np.arange(self.first, self.last) % 2
+        return np.zeros(self.last - self.first, np.int64) if self.one_seat else np.arange(self.first, self.last) % 2
 
     @property
     def opponent_rows(self) -> Rows:
@@ -52,8 +52,8 @@ class Matchmaking:
     learner_rows: Rows
 
     @classmethod
-    def from_block_sizes(cls, tables: int, sizes: Sequence[int], drill: bool = False) -> Matchmaking:
-        """Blocks of these sizes at the end, self-play before them; in a `drill` the learner is the tested player.
+    def from_block_sizes(cls, tables: int, sizes: Sequence[int], one_seat: bool = False) -> Matchmaking:
+        """Blocks of these sizes at the end, self-play before them; with `one_seat` the learner is player 0 in blocks.
 
         ValueError if the blocks need more than `tables` tables, or one has none.
         """
@@ -61,7 +61,7 @@ class Matchmaking:
         if self_play < 0 or min(sizes, default=1) < 1:
             raise ValueError(f"blocks of {list(sizes)} tables do not fit on {tables} tables, each at least one")
         ends = self_play + np.cumsum([0, *sizes])
-        blocks = tuple(Block(int(a), int(b), drill) for a, b in itertools.pairwise(ends))
+        blocks = tuple(Block(int(a), int(b), one_seat) for a, b in itertools.pairwise(ends))
         in_blocks = [2 * np.arange(block.first, block.last) + block.learner_seats for block in blocks]
         return cls(tables, blocks, np.concatenate([np.arange(2 * self_play), *in_blocks]))
 

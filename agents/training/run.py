@@ -202,12 +202,23 @@ def _make_env(preset: Preset, settings: Settings, seed: int) -> tuple[MultiVaria
     mappings, columns = input_mappings(batches)
     envs = [
         LearnerEnv(
-            tables, Matchmaking.from_block_sizes(count, blocks, drill=tables.variant.game != MATCH), mapping,
+            tables, _matchmaking(tables, blocks), mapping,
             preset.rewards, gamma=preset.ppo["gamma"], mirror=preset.flip == "rows", critic=preset.critic,
         )
-        for tables, mapping, (_, count, blocks) in zip(batches, mappings, sizes, strict=True)
+        for tables, mapping, (_, _, blocks) in zip(batches, mappings, sizes, strict=True)
     ]  # fmt: skip
     return MultiVariantVectorEnv(envs), columns
+
+
+def _matchmaking(tables: Tables, blocks: list[int]) -> Matchmaking:
+    """The seats of a batch. Where player 1 has its mallet in a hand the learner plays the other one alone, and in place
+    of self-play the last block is larger. ValueError, in one line, if there is none."""
+    count, by_hand = len(tables), bool(tables.nominal["hand"][0])
+    if by_hand:
+        if not blocks:
+            raise ValueError("a table with a hand has no self-play; expected a preset with anchors or earlier selves")
+        blocks = [*blocks[:-1], count - sum(blocks[:-1])]
+    return Matchmaking.from_block_sizes(count, blocks, one_seat=by_hand or tables.variant.game != MATCH)
 
 
 def _short_id(variant: str) -> str:

@@ -97,8 +97,9 @@ def play(
     progress: Progress | None = None,
     threads: int = 1,
     watch: Watch | None = None,
+    exchange: bool = True,
 ) -> MatchResult:
-    """Play `games` episodes of `variant` (or its id), half of them with the seats exchanged.
+    """Play `games` episodes of `variant` (or its id), half of them with the seats exchanged, or none if not `exchange`.
 
     Pair i uses random stream i of `seed` in both halves; of an odd number, the last pair is half. `parameters`,
     `effects`, `draws` and `threads` are those of `Tables`. `watch` is called at every step of the games with `first` in
@@ -107,7 +108,8 @@ def play(
     games = whole_number(games, "games", 1, MOST_GAMES)
     halves = []
     done = 0
-    for seats, count in (((first, second), (games + 1) // 2), ((second, first), games // 2)):
+    exchanged = games // 2 if exchange else 0
+    for seats, count in (((first, second), games - exchanged), ((second, first), exchanged)):
         if count == 0:
             break
         tables = Tables(

@@ -14,6 +14,7 @@ from puckpilot_env.physics.contacts import bounce
 from puckpilot_env.physics.exposures import of_glide
 from puckpilot_env.physics.gantry import drive, drivetrain
 from puckpilot_env.physics.gantry.mallet import halt, place_at, settle
+from puckpilot_env.physics.hand import is_by_hand
 from puckpilot_env.physics.sliding.drift import drift
 
 MOST_CROSSINGS = (
@@ -50,7 +51,7 @@ def play(table, p, rule, now, until, rewards, log, film):
 def _play_late(table, p, rule, until, delay, rewards, log, film):
     """`play_step` where the plans of this step begin `delay` [s] late, and the mallets are on those before till then.
 
-    From then on the new plans' time counts.
+    From then on the new plans' time counts. A mallet in a hand is on its new plan all along.
     """
     first = 0
     while first < film.shape[0] and film[first, 0] <= delay:
@@ -62,7 +63,10 @@ def _play_late(table, p, rule, until, delay, rewards, log, film):
         film[i, 0] -= delay
     for k in range(2):
         settle(table.mallets[k], delay)
-        drive.follow(table.mallets[k], table.orders[k], mirror.area(k, p), p.max_voltage, AT_MOST * until)
+        if is_by_hand(table.puck, p, k):
+            drive.carry_on(table.mallets[k], delay)
+        else:
+            drive.follow(table.mallets[k], table.orders[k], mirror.area(k, p), p.max_voltage, AT_MOST * until)
     table.time += delay
     table.held += delay
     if not over:
@@ -78,11 +82,23 @@ def _play_late(table, p, rule, until, delay, rewards, log, film):
 
 @kernel
 def _begin_piece(table, p, k, t, least, longest):
-    """Begin a piece of the motion of mallet `k` at the time `t` [s]; how long it is [s]."""
+    """Begin a piece of the motion of mallet `k` at the time `t` [s]; how long it is [s]: `longest` in a hand."""
+    if is_by_hand(table.puck, p, k):
+        return longest
     motor, mallet, carriages, area = table.motors[k], table.mallets[k], table.carriages[k], mirror.area(k, p)
     h = drivetrain.begin_piece(p, k, t, motor, mallet, carriages, area, min(least, longest), longest)
     drivetrain.settle_piece(p, motor, mallet, carriages, area, h)
     return h
+
+
+@kernel
+def _end_piece(table, p, k, h):
+    """Let mallet `k` be where it is `h` [s] on in its piece."""
+    if is_by_hand(table.puck, p, k):
+        settle(table.mallets[k], h)
+        drive.carry_on(table.mallets[k], h)
+    else:
+        drivetrain.go_on(table.motors[k], table.mallets[k], table.carriages[k], mirror.area(k, p), h)
 
 
 @inlined_kernel
@@ -169,7 +185,7 @@ def _play_in_pieces(table, p, rule, until, rewards, log, film):
             over = _play_piece(table, p, rule, now, h, rewards, log, film[shots:last])
         sensing.shoot_mallets(table.mallets, film[shots:last])
         for k in range(2):
-            drivetrain.go_on(table.motors[k], table.mallets[k], table.carriages[k], mirror.area(k, p), h)
+            _end_piece(table, p, k, h)
         rest_0, rest_1, now, shots, pieces = rest_0 - h, rest_1 - h, now + h, last, pieces + 1
         if alone - now <= ROUNDING:
             alone = 0.0

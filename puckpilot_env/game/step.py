@@ -12,6 +12,7 @@ from puckpilot_env.physics.gantry import drive, drivetrain
 from puckpilot_env.physics.gantry.brakeable import brakeable_volts
 from puckpilot_env.physics.gantry.mallet import place_now
 from puckpilot_env.physics.gantry.plan import plan_mallet, plan_orders
+from puckpilot_env.physics.hand import is_by_hand
 
 
 @kernel
@@ -19,7 +20,8 @@ def plan_both(table, p, nominal, actions, rewards):
     """Both players' plans, and what J.3 charges for them. actions: float32 (2, 4) in each player's own frame.
 
     Where orders are late, the mallets go on with those before, and the table keeps what is on its way. The table also
-    keeps the orders of mallets that go in pieces, which are planned from where their motors are.
+    keeps the orders of mallets that go in pieces, which are planned from where their motors are. A mallet in a hand
+    begins its plan at once.
     """
     table.in_pieces = compose.in_pieces(p)
     late = compose.delay(p) > 0.0
@@ -34,6 +36,9 @@ def plan_both(table, p, nominal, actions, rewards):
             vx *= 1.0 + p.action_noise * dx
             vy *= 1.0 + p.action_noise * dy
         area = mirror.area(k, p)
+        if is_by_hand(table.puck, p, k):
+            plan_mallet(mallet, x_f, y_f, vx, vy, area, p.max_voltage)
+            continue
         planned = table.motors[k] if table.in_pieces else mallet
         if table.in_pieces:
             drivetrain.join(p, planned, mallet)

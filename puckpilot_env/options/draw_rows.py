@@ -8,7 +8,7 @@ from typing import Any
 from puckpilot_env.files.toml_file import refuse_unknown, section
 from puckpilot_env.options.inputs import in_short
 from puckpilot_env.options.randomization import Draw, as_rows
-from puckpilot_env.parameters import checked
+from puckpilot_env.parameters import BY_NAME, checked
 
 KEYS = ("distribution", "low", "high", "source")
 
@@ -25,6 +25,8 @@ def _draw(name: str, row: Mapping[str, Any]) -> Draw:
     for key in ("low", "high"):
         if key not in row:
             raise ValueError(f"draws.{name} has no {key}; expected numbers low and high")
+    if name in BY_NAME and BY_NAME[name].whole:
+        raise ValueError(f"{name} cannot be drawn, for it has whole numbers alone; give it as a parameter")
     words = {"distribution": "uniform", "source": "", **{k: row[k] for k in ("distribution", "source") if k in row}}
     for key, value in words.items():
         if not isinstance(value, str):

@@ -1,7 +1,6 @@
 """What a player is fine-tuned on, from the diagnosis or without it: an arm of the comparison each.
 
-Every arm that learns knows what the loop asks of plans, LOOP: it is no secret of the table. The loop's own delay is not
-among it, since players are shown what will be when they act.
+Every arm that learns knows what is true of every table, LOOP: it is no secret of this one.
 """
 
 from __future__ import annotations
@@ -18,10 +17,9 @@ from puckpilot_env.options import effects_file
 from puckpilot_env.options.draws_file import read_draws
 from puckpilot_env.options.effects_file import effect_values
 from puckpilot_env.variants import find_variant
-from sim2real.table.mallet_driver import BRAKING_TIME, OPERATING_VOLTS
+from sim2real.table.simulated import LOOP
 from sim2real.table.twin.concealed import DELAY, find_table
 
-LOOP: Mapping[str, float] = {"max_voltage": OPERATING_VOLTS, "braking_time": BRAKING_TIME}
 SENSORS = ("camera_", "beam_", "frame_", "dropped_", "held_")  # without effect where players see the state
 
 
@@ -33,7 +31,7 @@ class Simulator:
     draws: Mapping[str, Any] | None = None
 
     def with_loop(self) -> Simulator:
-        """The same with what the loop asks of plans, and without late commands, of which the board's feedback leaves
+        """The same with what is true of every table, and without late commands, of which the board's feedback leaves
         no more than a wobble."""
         values = {name: value for name, value in self.values.items() if name != DELAY}
         if self.draws is None:

@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import Any
 
 from puckpilot_env.files.whole_file import write_text_whole
-from sim2real.gap.arms import ARMS, LOOP, Simulator, simulator_of, write_simulator
+from sim2real.gap.arms import ARMS, Simulator, simulator_of, write_simulator
 from sim2real.gap.page import page
 from sim2real.table.twin.fidelity import Meeting, TwinGame, play_all
 from sim2real.table.twin.score import change, score, shots
@@ -81,14 +81,14 @@ class Circle:
         return result
 
     def _simulated(self) -> dict[str, Any]:
-        """The score in the simulator, with what the loop asks of plans."""
-        from baselines.matches.match import play
+        """The score in the simulator, with what is true of every table."""
         from puckpilot_env.variants import find_variant
+        from sim2real.table.simulated import play_simulated
 
         path, c = self.folder / "simulator" / "games.json", self.conditions
         if not path.exists():
             self._report("playing in the simulator")
-            match = play(VARIANT, c.player, c.opponent, 10 * c.games, c.seed, parameters=LOOP)
+            match = play_simulated(VARIANT, c.player, c.opponent, 10 * c.games, c.seed)
             minutes = float(match.lengths.sum()) * find_variant(VARIANT).period / 60.0
             path.parent.mkdir(parents=True, exist_ok=True)
             content = {"goals": list(match.goals), "minutes": minutes}

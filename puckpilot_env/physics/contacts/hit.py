@@ -5,6 +5,7 @@ from __future__ import annotations
 from puckpilot_env.kernel import kernel
 from puckpilot_env.physics.contacts import bounce, contact, rebound
 from puckpilot_env.physics.gantry.mallet import halt, motion_at, push_at
+from puckpilot_env.physics.hand import is_by_hand
 from puckpilot_env.physics.sliding.support import stands
 from puckpilot_env.physics.vector import size
 
@@ -54,7 +55,10 @@ def hit(puck, p, mallets, k, clock, t, ax, ay):
     nx, ny = dx / apart, dy / apart
     push = push_at(mallets[k], t, nx, ny) + max(-(ax * nx + ay * ny), 0.0)
     before_x, before_y = puck.vx, puck.vy
-    rebound.strike(puck, p, clock + t, mvx, mvy, nx, ny)
+    if is_by_hand(puck, p, k):
+        puck.vx, puck.vy = contact.reflect(puck.vx, puck.vy, mvx, mvy, nx, ny, p.mallet_restitution)
+    else:
+        rebound.strike(puck, p, clock + t, mvx, mvy, nx, ny)
     vx, vy = contact.part(puck.vx, puck.vy, mvx, mvy, nx, ny, push, p.friction, p.drag)
     other, wx, wy, ox, oy = _other_obstacle(puck, p, mallets, k, t, nx, ny)
     if _leans(mallets[k], t, before_x * nx + before_y * ny, ax * nx + ay * ny):

@@ -41,7 +41,7 @@ def test_games_are_counted_only_where_one_ended() -> None:
 
 
 def test_in_a_drill_the_learner_is_always_player_0() -> None:
-    results = BlockResults(Matchmaking.from_block_sizes(4, [2, 2], drill=True))
+    results = BlockResults(Matchmaking.from_block_sizes(4, [2, 2], one_seat=True))
     scored = np.array([[1, 0], [1, 0], [0, 1], [1, 0]])
     results.add(scored, np.ones(4, np.bool_), np.array([0, 0, 1, -1]))
     assert results.points.tolist() == [[2.0, 0.0], [1.0, 1.0]]

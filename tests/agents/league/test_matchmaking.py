@@ -42,7 +42,7 @@ def test_blocks_that_do_not_fit_are_refused(tables: int, sizes: list[int]) -> No
 
 
 def test_in_a_drill_the_learner_is_the_tested_player() -> None:
-    matchmaking = Matchmaking.from_block_sizes(5, [2, 2], drill=True)
+    matchmaking = Matchmaking.from_block_sizes(5, [2, 2], one_seat=True)
     assert matchmaking.learner_rows.tolist() == [0, 1, 2, 4, 6, 8]
     assert [block.opponent_rows.tolist() for block in matchmaking.blocks] == [[3, 5], [7, 9]]
 

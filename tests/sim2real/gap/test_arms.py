@@ -10,7 +10,8 @@ import pytest
 from puckpilot_env import Tables
 from puckpilot_env.options.draws_file import read_draws
 from puckpilot_env.options.effects_file import as_content, effect_values
-from sim2real.gap.arms import ARMS, LOOP, simulator_of, write_simulator
+from sim2real.gap.arms import ARMS, simulator_of, write_simulator
+from sim2real.table.simulated import LOOP
 from sim2real.table.twin.concealed import TABLES
 
 EFFECTS = """format = "puckpilot-effects/1"
@@ -59,7 +60,7 @@ def test_others_do_not_see_the_findings(diagnosis: Path) -> None:
     made = {arm: simulator_of(arm, diagnosis, "warp") for arm in ARMS}
     values = {arm: dict(one.values) for arm, one in made.items() if one}
     assert made.keys() - values.keys() == {"allowing"}
-    assert values["unchanged"] == LOOP == {"max_voltage": 15.0, "braking_time": 0.034}
+    assert values["unchanged"] == LOOP == {"max_voltage": 15.0, "braking_time": 0.034, "hand": 1.0}
     assert values["constants"] == {"friction": 0.1, **LOOP}
     assert values["truth"]["tilt_x"] == TABLES["warp"].truth["tilt_x"]
 
