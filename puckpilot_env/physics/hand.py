@@ -1,7 +1,7 @@
-"""A mallet in a hand: what hinders a robot's mallet, effects of mallet and gantry and the limit of plans, is none of it.
+"""A mallet in a hand: effects of mallet and gantry, and the limit of plans, do not hinder it.
 
-With the parameter `hand` player 1 has one, so that what the robot's side of a table costs a player is not taken from its
-opponent as well.
+With the parameter `hand` player 1 has one, so that what the robot's side of a table costs a player is not taken from
+its opponent as well.
 """
 
 from __future__ import annotations

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tests.puckpilot_env.game.hand import LENGTH, WIDTH, put_mallet, put_puck
 
 from puckpilot_env import Tables
+from tests.puckpilot_env.game.hand import LENGTH, WIDTH, put_mallet, put_puck
 
 HINDERED = (
     {"braking_time": 0.01},
@@ -70,5 +70,5 @@ def test_a_hand_strikes_as_the_baseline_says_and_the_robot_with_the_effects() ->
 
 
 def test_half_a_hand_is_refused() -> None:
-    with pytest.raises(ValueError, match="parameter 'hand' is 0.5; expected a whole number"):
+    with pytest.raises(ValueError, match=r"parameter .hand. is 0\.5; expected a whole number"):
         Tables("match-v0", 1, parameters={"hand": 0.5})

@@ -13,8 +13,8 @@ pytest.importorskip("unicorn", reason="unicorn is not installed: the program can
 from agents.training.run_folder import RunFolder
 from puckpilot import main
 from sim2real.gap import circle as circle_module
-from sim2real.table.simulated import LOOP
 from sim2real.gap.circle import Circle, Conditions
+from sim2real.table.simulated import LOOP
 from sim2real.table.twin import fidelity
 from tests.agents.training.tiny import TINY
 
