@@ -32,6 +32,7 @@ OPTIONS = {
         "--device",
         "--effects",
         "--draws",
+        "--residual",
         "--seed",
         "--threads",
     ],

@@ -61,6 +61,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="what differs from game to game, as `diagnose` writes it (turns the use of mirror symmetry off)",
     )
+    parser.add_argument(
+        "--residual",
+        metavar="FILE",
+        help="a network that corrects the simulator's steps, as `gap` writes it (turns the use of mirror symmetry off)",
+    )
 
 
 def run(args: argparse.Namespace) -> int:

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 
 DEFAULTS = {
     "variant": "match-v0", "preset": "fast", "seed": 0, "threads": 1, "device": "cpu", "effects": None, "draws": None,
+    "residual": None,
 }  # fmt: skip
 MOST_EFFECTS_LISTED = 8  # in a message; more are summed up
 
@@ -36,9 +37,24 @@ def new_settings(args: argparse.Namespace) -> Settings:
     draws = read_draws(given["draws"]).as_dict() if given["draws"] else None
     start = str(_start(args.start)) if args.start else None
     variant, preset = find_variant(given["variant"]).id, find_preset(given["preset"])
+    variants = [variant, *(one.variant for one in preset.beside)]
+    residual = _residual(given["residual"], variants) if given["residual"] else None
     return Settings(
-        variant, given["seed"], given["threads"], preset, effects, draws, start=start, device=_device(given["device"])
-    )
+        variant, given["seed"], given["threads"], preset, effects, draws, start=start, device=_device(given["device"]),
+        residual=residual,
+    )  # fmt: skip
+
+
+def _residual(name: str, variants: list[str]) -> str:
+    """Absolute path of a network of residuals that can be read, and can correct the variants."""
+    from puckpilot_env.residual.network import load_residual
+    from puckpilot_env.residual.tables import refuse_uncorrectable
+    from puckpilot_env.variants import find_variant
+
+    load_residual(Path(name))
+    for variant in variants:
+        refuse_uncorrectable(find_variant(variant))
+    return str(Path(name).resolve())
 
 
 def _device(name: str) -> str:
@@ -101,6 +117,8 @@ def _contradictions(args: argparse.Namespace, settings: Settings) -> dict[str, s
         )
     if args.draws is not None and read_draws(args.draws) != read_draws(settings.draws):
         found["draws"] = "others, in run.json" if settings.draws else "none"
+    if args.residual is not None and str(Path(args.residual).resolve()) != settings.residual:
+        found["residual"] = settings.residual or "none"
     return found
 
 

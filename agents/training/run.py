@@ -9,6 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +32,8 @@ from baselines import make_player
 from baselines.player import Player, Seat
 from puckpilot_env.game.start import MATCH
 from puckpilot_env.options.effects_file import as_content
+from puckpilot_env.residual.network import load_residual
+from puckpilot_env.residual.tables import ResidualTables
 from puckpilot_env.tables import Tables
 
 PROCESS_SEED_STEP = 2**32  # between the seeds of processes that train together
@@ -48,7 +51,7 @@ class Training:
     def __init__(self, folder: RunFolder, settings: Settings) -> None:
         """ValueError, in one line, for settings that cannot be trained or that contradict the checkpoint."""
         preset = settings.preset.against(settings.against) if settings.against else settings.preset
-        if settings.effects or settings.draws:  # such a table may lean to a side, which breaks the mirror symmetry
+        if settings.effects or settings.draws or settings.residual:  # such a table may be no mirror image of itself
             preset = replace(preset, flip="none")
         self.preset = preset
         torch.set_num_threads(settings.threads)
@@ -190,8 +193,9 @@ def _make_env(preset: Preset, settings: Settings, seed: int) -> tuple[MultiVaria
     """The environment with the tables of all variants, and the names of the network's inputs."""
     sizes = [(settings.variant, preset.tables, [*preset.anchors.values(), *preset.earlier])]
     sizes += [(one.variant, one.tables, [*one.anchors.values(), *one.earlier]) for one in preset.beside]
+    make = partial(ResidualTables, residual=load_residual(Path(settings.residual))) if settings.residual else Tables
     batches = [
-        Tables(
+        make(
             variant, count, seed=seed + VARIANT_SEED_STEP * number, effects=as_content(settings.effects or {}),
             draws=settings.draws, threads=settings.threads,
         )

@@ -1,6 +1,6 @@
 """The folder of a training run: its files, and a lock that lets only one process work in it.
 
-run.json        the settings: variant, seed, threads, effects, draws, preset (its whole text)
+run.json        the settings: variant, seed, threads, effects, draws, residual, preset (its whole text)
 checkpoint.pt   the state from which the run is resumed; replaced after each round
 curve.csv       a row for each round
 selves/*.npz    the league's snapshots of the learner

@@ -18,6 +18,7 @@ class Settings:
     - `against`: the only opponent, of a best response; None for a league.
     - `start`: a run's folder or a policy's file whose networks it starts with; None for untrained ones.
     - `device`: torch's name for where the networks are.
+    - `residual`: a file of a network that corrects the simulator's steps, see `residual.network`; None for none.
     """
 
     variant: str
@@ -29,6 +30,7 @@ class Settings:
     against: str | None = None
     start: str | None = None
     device: str = "cpu"
+    residual: str | None = None
 
     def as_dict(self) -> dict[str, Any]:
         """The settings as JSON can hold them; the preset as its text."""

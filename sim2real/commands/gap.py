@@ -43,6 +43,7 @@ def run(args: argparse.Namespace) -> int:
     from puckpilot_env.options.inputs import seed_number, whole_number
     from sim2real.gap.arms import ARMS
     from sim2real.gap.circle import Circle, Conditions
+    from sim2real.gap.residual_fit import require_sklearn
     from sim2real.table.twin.concealed import find_table
 
     if args.list:
@@ -53,6 +54,8 @@ def run(args: argparse.Namespace) -> int:
     arms = args.arms or list(ARMS)
     refuse_unknown(arms, ARMS, "arm")
     find_table(args.table)
+    if "residual" in arms:
+        require_sklearn()
     for name in (args.player, args.opponent):
         find_player(name)
     whole_number(args.processes, "--processes", 1, 64)

@@ -1,4 +1,4 @@
-"""What a player is fine-tuned on, from the diagnosis or without it: an arm of the comparison each.
+"""What a player is fine-tuned on, from the diagnosis, from the recordings alone or from neither: an arm each.
 
 Every arm that learns knows what is true of every table, LOOP: it is no secret of this one.
 """
@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,65 +17,70 @@ from puckpilot_env.options import effects_file
 from puckpilot_env.options.draws_file import read_draws
 from puckpilot_env.options.effects_file import effect_values
 from puckpilot_env.variants import find_variant
+from sim2real.gap.residual_fit import write_residual
 from sim2real.table.simulated import LOOP
 from sim2real.table.twin.concealed import DELAY, find_table
 
+DIAGNOSIS = "diagnosis"  # its folder in the circle's
 SENSORS = ("camera_", "beam_", "frame_", "dropped_", "held_")  # without effect where players see the state
 
 
 @dataclass(frozen=True)
 class Simulator:
-    """A simulator to learn on: parameters of all tables by name, and draws, see `draws_file`."""
+    """A simulator to learn on: parameters of all tables by name; draws, see `draws_file`; and recordings to whose
+    residuals a network is fitted that corrects its steps, none for no network."""
 
     values: Mapping[str, float] = field(default_factory=dict)
     draws: Mapping[str, Any] | None = None
+    residual_of: tuple[Path, ...] = ()
 
     def with_loop(self) -> Simulator:
         """The same with what is true of every table, and without late commands, of which the board's feedback leaves
         no more than a wobble."""
         values = {name: value for name, value in self.values.items() if name != DELAY}
         if self.draws is None:
-            return Simulator({**values, **LOOP})
+            return replace(self, values={**values, **LOOP})
         draws = read_draws(self.draws).as_dict()
         for part in ("parameters", "draws"):
             draws[part].pop(DELAY, None)
-        return Simulator({**values, **LOOP}, draws)
+        return replace(self, values={**values, **LOOP}, draws=draws)
 
 
 @dataclass(frozen=True)
 class Arm:
     """words: what it does; simulator: what is learnt on, None if nothing is learnt; camera_delay: that the loop allows
-    for [s]. Both are made from the folder of the diagnosis and the concealed table's name."""
+    for [s]. Both are made from the circle's folder, with before/recordings and diagnosis, and the table's name."""
 
     words: str
     simulator: Callable[[Path, str], Simulator] | None
-    camera_delay: Callable[[Path, str], float] = lambda diagnosis, table: 0.0
+    camera_delay: Callable[[Path, str], float] = lambda circle, table: 0.0
 
 
-def _corrected(diagnosis: Path, table: str) -> Simulator:
+def recordings_of(circle: Path) -> tuple[Path, ...]:
+    """The recordings of a circle, in order of their names."""
+    return tuple(sorted((circle / "before" / "recordings").iterdir()))
+
+
+def _corrected(circle: Path, table: str) -> Simulator:
     """All that was found, and the intervals of what was measured."""
-    return Simulator(effect_values(diagnosis / "effects.toml"), _drawn(diagnosis))
+    drawn = read_draws(circle / DIAGNOSIS / "draws.toml").as_dict()
+    return Simulator(effect_values(circle / DIAGNOSIS / "effects.toml"), drawn if drawn["draws"] else None)
 
 
-def _found_camera_delay(diagnosis: Path, table: str) -> float:
+def _found_camera_delay(circle: Path, table: str) -> float:
     """By how much a diagnosis found stamps later than exposures; 0 if it did not."""
-    content = json.loads((diagnosis / "diagnosis.json").read_text(encoding="utf-8"))
+    content = json.loads((circle / DIAGNOSIS / "diagnosis.json").read_text(encoding="utf-8"))
     late = [one for one in content["findings"] if one["mechanism"] == "camera_delay"]
     return sum(float(one["parameters"]["delay_s"]["value"]) for one in late)
 
 
-def _drawn(diagnosis: Path) -> dict[str, Any] | None:
-    drawn = read_draws(diagnosis / "draws.toml").as_dict()
-    return drawn if drawn["draws"] else None
-
-
-def _constants(diagnosis: Path, table: str) -> Simulator:
+def _constants(circle: Path, table: str) -> Simulator:
     """The baseline's parameters as refitted, and nothing else."""
-    content = json.loads((diagnosis / "diagnosis.json").read_text(encoding="utf-8"))
+    content = json.loads((circle / DIAGNOSIS / "diagnosis.json").read_text(encoding="utf-8"))
     return Simulator({name: float(one["value"]) for name, one in content["baseline"]["parameters"].items()})
 
 
-def _randomized(diagnosis: Path, table: str) -> Simulator:
+def _randomized(circle: Path, table: str) -> Simulator:
     """The ranges of `match-randomized-v0`, whatever was recorded."""
     rows = {
         draw.parameter: {"low": draw.low, "high": draw.high}
@@ -87,18 +92,21 @@ def _randomized(diagnosis: Path, table: str) -> Simulator:
 
 ARMS = {
     "allowing": Arm("as it is; the loop allows for the camera's delay", None, _found_camera_delay),
-    "unchanged": Arm("fine-tuned on the unchanged simulator", lambda diagnosis, table: Simulator()),
+    "unchanged": Arm("fine-tuned on the unchanged simulator", lambda circle, table: Simulator()),
     "randomized": Arm("fine-tuned on randomized tables", _randomized),
     "constants": Arm("fine-tuned with the baseline's constants refitted", _constants),
+    "residual": Arm("fine-tuned on the simulator with a black-box network of its residuals",
+                    lambda circle, table: Simulator(residual_of=recordings_of(circle))),
     "corrected": Arm("fine-tuned with what the diagnosis found", _corrected, _found_camera_delay),
     "truth": Arm("fine-tuned on the concealed truth: the ceiling",
-                 lambda diagnosis, table: Simulator(find_table(table).truth),
-                 lambda diagnosis, table: find_table(table).errors.stamp_late),
+                 lambda circle, table: Simulator(find_table(table).truth),
+                 lambda circle, table: find_table(table).errors.stamp_late),
 }  # fmt: skip
 
 
 def write_simulator(simulator: Simulator, folder: Path) -> dict[str, Path]:
-    """Write a simulator as the files that `puckpilot train` takes; their paths by its options, effects and draws."""
+    """Write a simulator as the files that `puckpilot train` takes; their paths by its options: effects, draws,
+    residual. ValueError, in one line, where no network can be fitted."""
     lines = [f'format = "{effects_file.FORMAT}"', "[parameters]"]
     lines += [f"{name} = {float(value)!r}" for name, value in simulator.values.items()]
     files = {"effects": "\n".join(lines) + "\n"}
@@ -111,11 +119,15 @@ def write_simulator(simulator: Simulator, folder: Path) -> dict[str, Path]:
         files["draws"] = "\n".join(lines) + "\n"
     for name, text in files.items():
         write_text_whole(folder / f"{name}.toml", text)
-    return {name: folder / f"{name}.toml" for name in files}
+    paths = {name: folder / f"{name}.toml" for name in files}
+    if simulator.residual_of:
+        paths["residual"] = write_residual(simulator.residual_of, folder / "residual.npz")
+    return paths
 
 
-def simulator_of(arm: str, diagnosis: Path, table: str) -> Simulator | None:
-    """What an arm learns on; None if it learns nothing. ValueError, in one line, for an unknown arm."""
+def simulator_of(arm: str, circle: Path, table: str) -> Simulator | None:
+    """What an arm learns on, by the circle's folder; None if it learns nothing. ValueError, in one line, for an unknown
+    arm."""
     refuse_unknown([arm], ARMS, "arm")
     simulator = ARMS[arm].simulator
-    return simulator and simulator(diagnosis, table).with_loop()
+    return simulator and simulator(circle, table).with_loop()

@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import Any
 
 from puckpilot_env.files.whole_file import write_text_whole
-from sim2real.gap.arms import ARMS, Simulator, simulator_of, write_simulator
+from sim2real.gap.arms import ARMS, DIAGNOSIS, Simulator, recordings_of, simulator_of, write_simulator
 from sim2real.gap.page import page
 from sim2real.table.twin.fidelity import Meeting, TwinGame, play_all
 from sim2real.table.twin.score import change, score, shots
@@ -61,7 +61,7 @@ class Circle:
     @property
     def diagnosis(self) -> Path:
         """Folder of the diagnosis."""
-        return self.folder / "diagnosis"
+        return self.folder / DIAGNOSIS
 
     def run(self, arms: list[str], progress: Callable[[int, int], None]) -> dict[str, Any]:
         """All stages that are not done yet; the result, as it is written to gap.json."""
@@ -73,7 +73,7 @@ class Circle:
         after: dict[str, list[TwinGame]] = {}
         for arm, player in players.items():
             self._report(f"playing on the table: {ARMS[arm].words}")
-            delay = ARMS[arm].camera_delay(self.diagnosis, self.conditions.table)
+            delay = ARMS[arm].camera_delay(self.folder, self.conditions.table)
             after[arm] = self._games(player, self.folder / arm / "games", progress, camera_delay=delay)
         result = self._result(simulated, before, after)
         write_text_whole(self.folder / "gap.json", json.dumps(result, indent=1) + "\n")
@@ -115,14 +115,13 @@ class Circle:
         if (self.diagnosis / "diagnosis.json").exists():
             return
         self._report("diagnosing what was recorded")
-        recordings = sorted((self.folder / "before" / "recordings").iterdir())
-        _run("diagnose", *map(str, recordings), "--out", str(self.diagnosis))
+        _run("diagnose", *map(str, recordings_of(self.folder)), "--out", str(self.diagnosis))
 
     def _tuned(self, arm: str) -> str:
         """The name of an arm's player, fine-tuned as long as it should be. ValueError, in one line, if that fails."""
         c, folder = self.conditions, self.folder / arm
         run, done = folder / "training", folder / "trained"
-        simulator = simulator_of(arm, self.diagnosis, c.table)
+        simulator = simulator_of(arm, self.folder, c.table)
         if simulator is None:
             return c.player
         if not done.exists():

@@ -11,6 +11,7 @@ import pytest
 from agents.training.checkpoint import load_checkpoint, save_checkpoint
 from agents.training.preset import find_preset, read_preset
 from puckpilot import main
+from puckpilot_env.residual.network import no_residual
 
 TINY = """
 tables = 4
@@ -211,6 +212,25 @@ def test_messages_name_a_shipped_preset_and_say_none_for_no_effects(
     assert "--draws is drawn.toml where the run has none;" in said
 
 
+def test_a_run_on_corrected_tables_resumes_with_its_network_alone(
+    preset: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name in ("net", "other"):
+        no_residual().save(tmp_path / f"{name}.npz")
+    words = ["--out", "run", "--preset", str(preset), "--residual", "net.npz"]
+    said = refused(capsys, *words, "--variant", "match-randomized-v0")
+    assert "cannot correct puckpilot/match-randomized-v0" in said and not (tmp_path / "run").exists()
+    assert main(["train", *words, "--steps", "1"]) == 0
+    assert json.loads((tmp_path / "run" / "run.json").read_text())["residual"] == str(tmp_path / "net.npz")
+    again = ["--resume", "--out", "run", "--steps", str(2 * EACH)]
+    said = refused(capsys, *again, "--residual", "other.npz")
+    assert f"--residual is other.npz where the run has {tmp_path / 'net.npz'};" in said
+    assert main(["train", *again, "--residual", "./net.npz"]) == 0
+    (tmp_path / "net.npz").write_bytes(b"PK")
+    assert f"{tmp_path / 'net.npz'}: is no network of residuals" in refused(capsys, *again)
+
+
 OPTIONS = {
     "steps 0": ["--steps", "0"],
     "steps no number": ["--steps", "nan"],
@@ -224,6 +244,7 @@ OPTIONS = {
     "a GPU that is not there": ["--device", "cuda:99"],
     "no such effects": ["--effects", "no/such/file.toml"],
     "no such draws": ["--draws", "no/such/file.toml"],
+    "no such network": ["--residual", "no/such/file.npz"],
 }
 
 
