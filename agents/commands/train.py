@@ -52,6 +52,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--threads", type=int, metavar="K", help="threads to learn on (default 1)")
     parser.add_argument("--device", metavar="NAME", help="where the networks are: cpu, cuda (default cpu)")
     parser.add_argument(
+        "--at-table",
+        action="store_true",
+        help="with what is true of every physical table: plans that a board can brake, an opponent with its mallet in "
+        "a hand; the player learns the robot's seat alone",
+    )
+    parser.add_argument(
         "--effects",
         metavar="FILE",
         help="physics beyond the baseline, as `diagnose` writes it (turns the use of mirror symmetry off)",

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from puckpilot_env.options.at_table import AT_TABLE
 
 if TYPE_CHECKING:
     from agents.training.run_folder import RunFolder
@@ -33,15 +36,16 @@ def new_settings(args: argparse.Namespace) -> Settings:
     }
     if given["seed"] < 0:
         raise ValueError(f"--seed is {given['seed']}; expected a whole number from 0 on")
-    effects = effect_values(given["effects"]) if given["effects"] else None
+    effects = effect_values(given["effects"]) if given["effects"] else {}
+    effects |= AT_TABLE if args.at_table else {}
     draws = read_draws(given["draws"]).as_dict() if given["draws"] else None
     start = str(_start(args.start)) if args.start else None
     variant, preset = find_variant(given["variant"]).id, find_preset(given["preset"])
     variants = [variant, *(one.variant for one in preset.beside)]
     residual = _residual(given["residual"], variants) if given["residual"] else None
     return Settings(
-        variant, given["seed"], given["threads"], preset, effects, draws, start=start, device=_device(given["device"]),
-        residual=residual,
+        variant, given["seed"], given["threads"], preset, effects or None, draws, start=start,
+        device=_device(given["device"]), residual=residual,
     )  # fmt: skip
 
 
@@ -84,7 +88,7 @@ def saved_settings(args: argparse.Namespace, folder: RunFolder) -> Settings:
     if args.start:
         raise ValueError(f"--resume goes on with the run in {folder.path} as it is; --start is for a new one")
     wrong = [
-        f"--{name} is {getattr(args, name)} where the run has {has}"
+        f"--{name} is {'given' if name == 'at-table' else getattr(args, name)} where the run has {has}"
         for name, has in _contradictions(args, settings).items()
     ]
     if wrong:
@@ -110,8 +114,11 @@ def _contradictions(args: argparse.Namespace, settings: Settings) -> dict[str, s
     for name in ("seed", "threads", "device"):
         if getattr(args, name) is not None and getattr(args, name) != getattr(settings, name):
             found[name] = str(getattr(settings, name))
-    if args.effects is not None and effect_values(args.effects) != (settings.effects or {}):
-        values = [f"{name} {value:.4g}" for name, value in (settings.effects or {}).items()]
+    saved = settings.effects or {}
+    if args.at_table and not saved.items() >= AT_TABLE.items():
+        found["at-table"] = "another limit of plans, or no hand"
+    if args.effects is not None and _beyond_tables(effect_values(args.effects)) != _beyond_tables(saved):
+        values = [f"{name} {value:.4g}" for name, value in saved.items()]
         found["effects"] = (
             "none" if not values else " ".join(values) if len(values) <= MOST_EFFECTS_LISTED else "others, in run.json"
         )
@@ -120,6 +127,11 @@ def _contradictions(args: argparse.Namespace, settings: Settings) -> dict[str, s
     if args.residual is not None and str(Path(args.residual).resolve()) != settings.residual:
         found["residual"] = settings.residual or "none"
     return found
+
+
+def _beyond_tables(effects: Mapping[str, float]) -> dict[str, float]:
+    """The parameters that `--at-table` does not give."""
+    return {name: value for name, value in effects.items() if name not in AT_TABLE}
 
 
 def _preset_name(text: str) -> str:

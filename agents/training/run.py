@@ -32,6 +32,7 @@ from baselines import make_player
 from baselines.player import Player, Seat
 from puckpilot_env.game.start import MATCH
 from puckpilot_env.options.effects_file import as_content
+from puckpilot_env.parameters import EFFECT_ROWS, TABLE
 from puckpilot_env.residual.network import load_residual
 from puckpilot_env.residual.tables import ResidualTables
 from puckpilot_env.tables import Tables
@@ -39,6 +40,7 @@ from puckpilot_env.tables import Tables
 PROCESS_SEED_STEP = 2**32  # between the seeds of processes that train together
 VARIANT_SEED_STEP = 2**48  # between the seeds of the variants of one run
 DESYNCHRONIZED_STEPS = 200  # shorter episodes get out of step by themselves
+BASELINE = {row.name for row in TABLE} - {row.name for row in EFFECT_ROWS}
 Row = dict[str, Any]
 
 
@@ -51,7 +53,7 @@ class Training:
     def __init__(self, folder: RunFolder, settings: Settings) -> None:
         """ValueError, in one line, for settings that cannot be trained or that contradict the checkpoint."""
         preset = settings.preset.against(settings.against) if settings.against else settings.preset
-        if settings.effects or settings.draws or settings.residual:  # such a table may be no mirror image of itself
+        if _may_lean(settings):
             preset = replace(preset, flip="none")
         self.preset = preset
         torch.set_num_threads(settings.threads)
@@ -223,6 +225,12 @@ def _matchmaking(tables: Tables, blocks: list[int]) -> Matchmaking:
             raise ValueError("a table with a hand has no self-play; expected a preset with anchors or earlier selves")
         blocks = [*blocks[:-1], count - sum(blocks[:-1])]
     return Matchmaking.from_block_sizes(count, blocks, one_seat=by_hand or tables.variant.game != MATCH)
+
+
+def _may_lean(settings: Settings) -> bool:
+    """Whether the table may be no mirror image of itself, left for right: only the baseline and what is true of every
+    table always are."""
+    return bool(settings.draws or settings.residual or set(settings.effects or {}) - BASELINE)
 
 
 def _short_id(variant: str) -> str:

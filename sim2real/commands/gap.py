@@ -3,7 +3,8 @@
 The whole circle on a twin whose physics is concealed: the player plays there, some of that play is recorded and
 diagnosed, the player is fine-tuned in the simulator with what was found, and plays again, in games of the same seeds.
 Beside it stand the usual answers, with as much training where they learn: an arm each. Every stage keeps what it made
-in --out, and the same command goes on where it was stopped. Scores are goals a minute, with 95 % intervals."""
+in --out, and the same command goes on where it was stopped; --stage runs one alone. Scores are goals a minute, with
+95 % intervals."""
 
 from __future__ import annotations
 
@@ -19,7 +20,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
     parser.add_argument("player", nargs="?", default="policy:champion", metavar="PLAYER", help="(policy:champion)")
     parser.add_argument("--table", default="walls", metavar="NAME", help="the concealed table (walls); --list has all")
-    parser.add_argument("--list", action="store_true", help="list the concealed tables and the arms, and end")
+    parser.add_argument("--list", action="store_true", help="list the concealed tables, arms and stages, and end")
     parser.add_argument("--arms", nargs="+", metavar="ARM", help="what is compared (all)")
     parser.add_argument("--opponent", default="interceptor", metavar="PLAYER", help="the hand at the other end")
     parser.add_argument("--games", type=int, default=40, metavar="N", help="of each player on the table (40)")
@@ -27,6 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--recorded", type=int, default=5, metavar="N", help="games that are recorded (5)")
     parser.add_argument("--minutes", type=float, default=30.0, metavar="M", help="of fine-tuning of each arm (30)")
     parser.add_argument("--seed", type=int, default=0, help="of the first game, and of learning (0)")
+    parser.add_argument("--stage", metavar="NAME", help="run it alone, on what those before it left (all)")
     parser.add_argument("--processes", type=int, default=2, metavar="N", help="that play at once (2)")
     parser.add_argument(
         "--together", nargs="+", type=Path, metavar="DIR", help="go round no more: one page over circles that are done"
@@ -42,8 +44,10 @@ def run(args: argparse.Namespace) -> int:
     from puckpilot_env.files.toml_file import refuse_unknown
     from puckpilot_env.options.inputs import seed_number, whole_number
     from sim2real.gap.arms import ARMS
-    from sim2real.gap.circle import Circle, Conditions
+    from sim2real.gap.circle import Circle
+    from sim2real.gap.circle_folder import Conditions
     from sim2real.gap.residual_fit import require_sklearn
+    from sim2real.gap.stages import LAST, STAGES
     from sim2real.table.twin.concealed import find_table
 
     if args.list:
@@ -53,6 +57,8 @@ def run(args: argparse.Namespace) -> int:
         return _together(args.together, args.out, args.json)
     arms = args.arms or list(ARMS)
     refuse_unknown(arms, ARMS, "arm")
+    stages = [args.stage] if args.stage else list(STAGES)
+    refuse_unknown(stages, STAGES, "stage")
     find_table(args.table)
     if "residual" in arms:
         require_sklearn()
@@ -69,8 +75,14 @@ def run(args: argparse.Namespace) -> int:
         seed_number(args.seed),
     )  # fmt: skip
     report = (lambda line: None) if args.json else lambda line: print(line, flush=True)
+    circle = Circle(args.out, conditions, args.processes, report)
     with progress_bar("games on the table") as progress:
-        result = Circle(args.out, conditions, args.processes, report).run(arms, progress)
+        for stage in stages:
+            circle.run_stage(stage, arms, progress)
+    if stages[-1] != LAST:
+        print(json.dumps({"stage": args.stage}) if args.json else f"the stage {args.stage} is done in {args.out}")
+        return 0
+    result = circle.kept()
     print(json.dumps(result, indent=1) if args.json else "\n".join([*_lines(result), f"wrote {args.out / 'gap.html'}"]))
     return 0
 
@@ -92,21 +104,23 @@ def _together(folders: list[Path], out: Path, as_json: bool) -> int:
 
 def _listed() -> list[str]:
     from sim2real.gap.arms import ARMS
+    from sim2real.gap.stages import STAGES
     from sim2real.table.twin.concealed import TABLES
 
     lines = []
     for title, rows in (("tables", TABLES), ("arms", ARMS)):
         lines += [title, *(f"  {name:12} {row.words}" for name, row in rows.items())]
-    return lines
+    return [*lines, "stages", *(f"  {name:12} {stage.__doc__}" for name, stage in STAGES.items())]
 
 
 def _lines(result: dict[str, Any]) -> list[str]:
     from sim2real.gap.arms import ARMS
+    from sim2real.gap.found_words import against_line, found_words
 
-    found = ", ".join(result["found"]) or "nothing"
     simulated, before = result["simulator"], result["before"]
     lines = [
-        f"the diagnosis of its play found: {found}",
+        f"the diagnosis of its play found: {found_words(result)}",
+        f"beside the truth: {against_line(result['against_truth'])}",
         f"{'goals a minute':50} {'for':>5} {'against':>8} {'net':>6}  {'95 %':>14}  {'won back':>8}  {'95 %':>14}",
         f"{'in the simulator':50} {simulated['scored']:5.2f} {simulated['conceded']:8.2f} "
         f"{simulated['scored'] - simulated['conceded']:6.2f}",

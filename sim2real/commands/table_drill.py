@@ -70,8 +70,8 @@ def run(args: argparse.Namespace) -> int:
 def _result(parts: list[Part]) -> dict[str, Any]:
     import numpy as np
 
+    from puckpilot_env.options.at_table import OPERATING_VOLTS
     from sim2real.table.drills.known_faults import BY_NAME
-    from sim2real.table.mallet_driver import OPERATING_VOLTS
 
     stops = [stop for part in parts for stop in part.stops]
     rows = {}

@@ -1,6 +1,6 @@
 """What a player is fine-tuned on, from the diagnosis, from the recordings alone or from neither: an arm each.
 
-Every arm that learns knows what is true of every table, LOOP: it is no secret of this one.
+Every arm that learns knows what is true of every table, AT_TABLE: it is no secret of this one.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from typing import Any
 from puckpilot_env.files.toml_file import refuse_unknown
 from puckpilot_env.files.whole_file import write_text_whole
 from puckpilot_env.options import effects_file
+from puckpilot_env.options.at_table import AT_TABLE
 from puckpilot_env.options.draws_file import read_draws
 from puckpilot_env.options.effects_file import effect_values
 from puckpilot_env.variants import find_variant
 from sim2real.gap.residual_fit import write_residual
-from sim2real.table.simulated import LOOP
 from sim2real.table.twin.concealed import DELAY, find_table
 
 DIAGNOSIS = "diagnosis"  # its folder in the circle's
@@ -39,11 +39,11 @@ class Simulator:
         no more than a wobble."""
         values = {name: value for name, value in self.values.items() if name != DELAY}
         if self.draws is None:
-            return replace(self, values={**values, **LOOP})
+            return replace(self, values={**values, **AT_TABLE})
         draws = read_draws(self.draws).as_dict()
         for part in ("parameters", "draws"):
             draws[part].pop(DELAY, None)
-        return replace(self, values={**values, **LOOP}, draws=draws)
+        return replace(self, values={**values, **AT_TABLE}, draws=draws)
 
 
 @dataclass(frozen=True)

@@ -33,7 +33,7 @@ class PlayedGame:
 
 def read_circle(folder: Path) -> dict[str, Any]:
     """The result of a circle in its folder. ValueError, in one line, if there is none."""
-    from sim2real.gap.circle import FORMAT as CIRCLE
+    from sim2real.gap.result import FORMAT as CIRCLE
 
     path = folder / "gap.json"
     try:

@@ -11,6 +11,7 @@ from sim2real.diagnose.report import page as diagnosis_page
 from sim2real.diagnose.report.charts import BLUE, GREY
 from sim2real.diagnose.report.inline_svg import inline_svg
 from sim2real.gap.arms import ARMS
+from sim2real.gap.found_words import against_rows, found_words, learnt_words
 from sim2real.table.game.shots import Shots
 from sim2real.table.twin.concealed import TABLES
 
@@ -21,9 +22,9 @@ TEMPLATES = Path(__file__).parent / "templates"
 WIDTH, ROW, LEFT = 560.0, 26.0, 150.0  # points
 SIMULATED, PLAYED = "in the simulator", "on the table, as it is"
 FILES = (
-    "before/: the games on the table, with the recordings of the first of them",
+    "before/: the games on the table, with the recordings of the first of them, and a film",
     "diagnosis/: what these say, report.html, effects.toml and draws.toml",
-    "ARM/training/: a run of puckpilot train; ARM/games/: its player on the table",
+    "ARM/training/: a run of puckpilot train; ARM/games/: its player on the table; ARM/film.gif: the first of them",
     "gap.json: all numbers of this page",
 )
 
@@ -37,7 +38,7 @@ def environment() -> Environment:
 
 
 def page(result: dict[str, Any]) -> str:
-    """The result of a circle, see `circle.Circle.run`, as one self-contained HTML page without scripts."""
+    """The result of a circle, see `result.result`, as one HTML page without scripts, self-contained but for films."""
     conditions = result["conditions"]
     return (
         environment()
@@ -49,7 +50,10 @@ def page(result: dict[str, Any]) -> str:
             chart=_chart(result),
             rows=_rows(result),
             shots=_shots(result),
-            found=", ".join(result["found"]) + "." if result["found"] else "Nothing is missing, as far as it can tell.",
+            films=_films(result),
+            found=found_words(result),
+            learnt=learnt_words(result["learnt"]),
+            against=against_rows(result["against_truth"]),
             command=_command(conditions, list(result["arms"])),
             files=FILES,
         )
@@ -83,6 +87,13 @@ def _shots(result: dict[str, Any]) -> list[list[str]]:
         kinds = [str(getattr(shots, kind)) for kind in ("late", "bounce", "straight", "deflected")]
         rows.append([name, str(shots.faced), kept, *kinds, str(shots.made), made, str(shots.missed)])
     return rows
+
+
+def _films(result: dict[str, Any]) -> list[tuple[str, str]]:
+    """The path of each film, and its caption."""
+    return [
+        (path, PLAYED if name == "before" else f"{name}: {ARMS[name].words}") for name, path in result["films"].items()
+    ]
 
 
 def _rates(one: dict[str, Any]) -> list[str]:

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from puckpilot_env.options.at_table import AT_TABLE
 from puckpilot_env.parameters import BY_NAME
 from puckpilot_env.residual.kernels import NEAR, put_range
 from puckpilot_env.residual.network import OUTPUTS, PERIOD, no_residual
@@ -22,7 +23,6 @@ from sim2real.recording.table_parameters import stated_sizes
 from sim2real.segmentation.local_motion import local_motion
 from sim2real.segmentation.mallet_path import NO_SWITCHES, MalletPath, robot_path
 from sim2real.segmentation.segments import Glide, Segments, segment
-from sim2real.table.simulated import LOOP
 
 VARIANT = "match-v0"
 OFF_STEP = 0.005  # s by which the next command may come sooner or later than a step after
@@ -151,7 +151,7 @@ def _simulated(steps: list[_Step]) -> Samples:
     """The samples of steps in which play simply goes on in the simulator, too."""
     if not steps:
         return Samples(np.zeros((0, 18), np.float32), np.zeros((0, len(OUTPUTS))), np.zeros(0, np.int64))
-    tables = ResidualTables(VARIANT, len(steps), no_residual(), autoreset=False, parameters=LOOP)
+    tables = ResidualTables(VARIANT, len(steps), no_residual(), autoreset=False, parameters=AT_TABLE)
     p = tables.nominal[0]
     begins = np.array([one.begin for one in steps])
     radius = p["mallet_radius"]

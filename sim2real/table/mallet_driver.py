@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from puckpilot_env.game import mirror
 from puckpilot_env.kernel import kernel
+from puckpilot_env.options.at_table import BRAKING_TIME, OPERATING_VOLTS
 from puckpilot_env.physics.gantry.brakeable import brakeable_volts
 from puckpilot_env.physics.gantry.mallet import (
     MALLET,
@@ -21,11 +22,9 @@ from puckpilot_env.physics.gantry.mallet import (
 )
 from puckpilot_env.physics.gantry.plan import plan_mallet, plan_orders
 
-OPERATING_VOLTS = 15.0  # V that a motor ever gets on a table (report)
 FEEDBACK_VOLTS = 1.0  # V of these that plans leave to the board's feedback
 MARGIN = 0.002  # m inside the mallet's area that plans stay, for it errs by up to 1 mm on its path
 AHEAD = 0.014  # s from sending a plan until it acts: the board looks at it for 10 ms
-BRAKING_TIME = 0.034  # s that braking may take by the closed form; the board needs up to 3 ms more
 ENDLESS = 60.0  # s that no plan takes, but one whose volts all go to the other axis
 ROOM = 0.0005  # m about such a mallet, that belong to its area: `plan_mallet` keeps clear of the edge
 LEAST_LIFE, AFTER = 0.2, 0.1  # s of a plan, and from its end until the motors are off: it always brakes by itself

@@ -1,6 +1,7 @@
 """Tables of the twin whose physics is concealed from all that plays, diagnoses and learns: a row each.
 
-Each is sized by what it costs the champion: a quarter of its score or more, against a hand that it does not hinder.
+Each is sized by what it costs a player that learnt with what is true of every table: a quarter of its score or more,
+against a hand that it does not hinder.
 """
 
 from __future__ import annotations
@@ -51,13 +52,13 @@ def _braking(law: Mapping[str, Any]) -> dict[str, float]:
 
 DELAY = "command_delay"
 _FRICTION = {
-    "motor_friction_left": 0.7, "motor_friction_right": 0.6, "axis_friction_x": 0.2, "axis_friction_y": 0.8,
-    "voltage_sag": 0.01,
+    "motor_friction_left": 0.42, "motor_friction_right": 0.36, "axis_friction_x": 0.12, "axis_friction_y": 0.48,
+    "voltage_sag": 0.005,
 }  # fmt: skip
 _SPIN = {"wall_spin": True, "wall_mu": 0.3, "restitution_slope": 0.1}
-_WARP = {"tilt_x": -0.2, "tilt_y": 0.1, "warp_xx": 0.4, "warp_yy": -0.2}
-_PATCH = {"patch_x": 0.55, "patch_y": 0.5, "patch_radius": 0.3, "patch_friction": 1.5}
-_SOFT = {"mallet_give": 0.1, "mallet_restitution_slope": 0.06}
+_WARP = {"tilt_x": -0.2, "tilt_y": 0.1, "warp_xx": 0.5, "warp_yy": -0.25}
+_PATCH = {"patch_x": 1.4, "patch_y": 0.5, "patch_radius": 0.5, "patch_friction": 2.0}
+_SOFT = {"mallet_give": 0.03, "mallet_restitution_slope": 0.02}
 _CUBIC = {"cubic_drag": 0.06}
 
 TABLES = {
@@ -71,7 +72,11 @@ TABLES = {
     "unlisted": _alike("a drag that grows with the cube of speed, which is not listed", _CUBIC, **_braking(_CUBIC)),
     "everything": _alike(
         "a warp, spinning walls, a soft mallet, friction, a late camera",
-        {**_SPIN, **_FRICTION, **_SOFT, "tilt_x": -0.1, "warp_xx": 0.2}, late=0.01,
+        {
+            **_FRICTION, "wall_spin": True, "wall_mu": 0.2, "restitution_slope": 0.05, "mallet_give": 0.015,
+            "mallet_restitution_slope": 0.01, "tilt_x": -0.1, "warp_xx": 0.2,
+        },
+        late=0.01,
     ),
 }  # fmt: skip
 

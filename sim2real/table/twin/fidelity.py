@@ -13,6 +13,8 @@ from dataclasses import asdict, dataclass, field, replace
 from multiprocessing import get_context
 from pathlib import Path
 
+import numpy as np
+
 import sim2real
 from puckpilot_env.files.whole_file import write_text_whole
 from puckpilot_env.variants import find_variant
@@ -24,9 +26,12 @@ from sim2real.table.game.shots import Shots
 from sim2real.table.recorder.draft import draft_of
 from sim2real.table.recorder.recorded_game import recorded
 from sim2real.table.twin.concealed import find_table
+from sim2real.table.twin.plant import Plant
+from sim2real.table.twin.twin import Twin
 
 FORMAT = "puckpilot-twin-game/1"
 WARM = 0.3  # s of a game before the first one that is timed, in which all is compiled
+Onlooker = Callable[[Plant, np.void], None]
 ROOT = Path(sim2real.__file__).parents[1]  # of the checkout whose code plays
 
 
@@ -70,11 +75,13 @@ class TwinGame:
     shots: Shots = field(default_factory=Shots)
 
 
-def play_on_twin(meeting: Meeting, recording: Path | None) -> TwinGame:
+def play_on_twin(meeting: Meeting, recording: Path | None, onlooker: Onlooker | None = None) -> TwinGame:
     """Play a game, recorded as a new folder if one is given. ValueError, in one line, for an unknown name, and where
-    the table stopped."""
+    the table stopped.
+
+    onlooker: takes the plant as it is, and the game's record, at each frame of the camera."""
     _warm_up(replace(meeting, seed=0, seconds=WARM))
-    return _play(meeting, recording)
+    return _play(meeting, recording, onlooker)
 
 
 @functools.cache
@@ -82,12 +89,15 @@ def _warm_up(meeting: Meeting) -> None:
     _play(meeting, None)
 
 
-def _play(meeting: Meeting, recording: Path | None) -> TwinGame:
+def _play(meeting: Meeting, recording: Path | None, onlooker: Onlooker | None = None) -> TwinGame:
     begin = time.process_time(), time.perf_counter()
     variant = find_variant(meeting.variant)
     options = find_table(meeting.concealed).twin_options(GameRecord(variant).p) if meeting.concealed else {}
     options |= {"opponent": meeting.opponent, "camera": meeting.camera}
     with closing(make_robot_seat(variant, "twin", camera_delay=meeting.camera_delay, **options)) as env:
+        if onlooker:
+            assert isinstance(env.backend, Twin)
+            env.backend.onlooker = lambda plant: onlooker(plant, env.game.record)
         note = f"{meeting.player} against {meeting.opponent} on the twin, seed {meeting.seed}"
         with nullcontext() if recording is None else recorded(env, recording, note):
             log = play_game(
@@ -113,6 +123,12 @@ def play_all(
     missing = [one for one in meetings if _read(folder, one, code) is None]
     for done, _ in enumerate(_results(missing, folder, code, processes), len(meetings) - len(missing) + 1):
         progress(done, len(meetings))
+    return kept_games(meetings, folder)
+
+
+def kept_games(meetings: list[Meeting], folder: Path) -> list[TwinGame]:
+    """The games of `meetings` whose results are in `folder`, in their order. ValueError as of `play_all`."""
+    code = code_version(ROOT, OF_GAMES)
     return [game for one in meetings if (game := _read(folder, one, code)) is not None]
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import fields, replace
 
 import numpy as np
@@ -34,7 +34,10 @@ class Twin(LiveTable):
     game: whose table it is; opponent: a player, by name or itself; law: physics of the plant, as the game's parameters
     say by default; errors: of the camera; camera: "places" or "pictures"; board_errors: of the board's clock and
     line. ValueError, in one line, for an unknown name.
+    onlooker: takes the plant as it is, whenever the camera exposes a frame; it may be set at any time.
     """
+
+    onlooker: Callable[[Plant], None] | None = None
 
     def __init__(
         self,
@@ -89,6 +92,8 @@ class Twin(LiveTable):
             board.run(due)
             if due == self.camera.next_exposure:
                 self.camera.expose(self.plant)
+                if self.onlooker:
+                    self.onlooker(self.plant)
             elif self._decision:
                 (_, game), self._decision = self._decision, None
                 self.plant.play(self.hand.decide(self.plant, game))

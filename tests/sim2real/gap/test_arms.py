@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from puckpilot_env import Tables
+from puckpilot_env.options.at_table import AT_TABLE
 from puckpilot_env.options.draws_file import read_draws
 from puckpilot_env.options.effects_file import as_content, effect_values
 from sim2real.gap.arms import ARMS, simulator_of, write_simulator
-from sim2real.table.simulated import LOOP
 from sim2real.table.twin.concealed import TABLES
 
 EFFECTS = """format = "puckpilot-effects/1"
@@ -50,7 +50,7 @@ def circle(tmp_path: Path) -> Path:
 def test_the_corrected_arm_has_what_was_found_and_its_loop_allows_for_the_camera_s_delay(circle: Path) -> None:
     one = simulator_of("corrected", circle, "none")
     assert one is not None and one.draws is not None
-    assert dict(one.values) == {"friction": 0.1, "tilt_x": 0.03, "tilt_y": 0.0, **LOOP}
+    assert dict(one.values) == {"friction": 0.1, "tilt_x": 0.03, "tilt_y": 0.0, **AT_TABLE}
     assert set(one.draws["draws"]) == {"friction"}
     allowed = {arm: row.camera_delay(circle, "late") for arm, row in ARMS.items()}
     assert {arm: delay for arm, delay in allowed.items() if delay} == {
@@ -63,9 +63,9 @@ def test_others_do_not_see_the_findings(circle: Path) -> None:
     values = {arm: dict(one.values) for arm, one in made.items() if one}
     assert made.keys() - values.keys() == {"allowing"}
     networks = {arm: one.residual_of for arm, one in made.items() if one and one.residual_of}
-    assert networks == {"residual": (circle / "before" / "recordings" / "game_0",)} and values["residual"] == LOOP
-    assert values["unchanged"] == LOOP == {"max_voltage": 15.0, "braking_time": 0.034, "hand": 1.0}
-    assert values["constants"] == {"friction": 0.1, **LOOP}
+    assert networks == {"residual": (circle / "before" / "recordings" / "game_0",)} and values["residual"] == AT_TABLE
+    assert values["unchanged"] == AT_TABLE == {"max_voltage": 15.0, "braking_time": 0.034, "hand": 1.0}
+    assert values["constants"] == {"friction": 0.1, **AT_TABLE}
     assert values["truth"]["tilt_x"] == TABLES["warp"].truth["tilt_x"]
 
 

@@ -12,11 +12,13 @@ pytest.importorskip("unicorn", reason="unicorn is not installed: the program can
 
 from agents.training.run_folder import RunFolder
 from puckpilot import main
-from sim2real.gap import circle as circle_module
-from sim2real.gap.circle import Circle, Conditions
-from sim2real.table.simulated import LOOP
+from puckpilot_env.options.at_table import AT_TABLE
+from sim2real.gap import stages
+from sim2real.gap.circle import Circle
+from sim2real.gap.circle_folder import Conditions
 from sim2real.table.twin import fidelity
 from tests.agents.training.tiny import TINY
+from tests.sim2real.gap.test_against_truth import finding
 
 PLAYED = {"scored", "conceded", "net", "shots", "stops", "games"}
 CONDITIONS = Conditions("interceptor", "goalie", "none", 3, 20.0, 2, 1.0, 5)
@@ -31,6 +33,7 @@ def test_a_circle_goes_round_and_is_not_run_again(tmp_path: Path, monkeypatch: p
     """With a player that does not learn: games on the table, of which two are recorded, and their diagnosis."""
     result = circle(tmp_path).run([], lambda done, count: None)
     assert {one.name for one in (tmp_path / "before" / "recordings").iterdir()} == {"game_5", "game_6"}
+    assert result["films"] == {"before": "before/film.gif"} and (tmp_path / "before" / "film.gif").stat().st_size > 1e5
     assert result["found"] == [] and result["arms"] == {} and result["before"].keys() == PLAYED
     assert result["simulator"].keys() == {"scored", "conceded"}
     shots = result["before"]["shots"]
@@ -41,7 +44,7 @@ def test_a_circle_goes_round_and_is_not_run_again(tmp_path: Path, monkeypatch: p
     html = (tmp_path / "gap.html").read_text(encoding="utf-8")
     assert "on a table with nothing: the control" in html and "--games 3 --seconds 20 --recorded 2" in html
 
-    late = {"mechanism": "camera_delay", "parameters": {"delay_s": {"value": 0.002}}}
+    late = finding("camera_delay", "sensing", delay_s=0.002)
     content = json.loads((tmp_path / "diagnosis" / "diagnosis.json").read_text())
     (tmp_path / "diagnosis" / "diagnosis.json").write_text(json.dumps(content | {"findings": [late]}))
     with_arm = circle(tmp_path).run(["allowing"], lambda done, count: None)
@@ -64,14 +67,15 @@ def test_an_arm_is_fine_tuned_and_plays_games_of_the_same_seeds(
     """Wide networks of the champion, a round of a dozen tables."""
     preset = tmp_path / "tiny.toml"
     preset.write_text(TINY.replace("hidden = [16]", "hidden = [128, 128]"))
-    monkeypatch.setattr(circle_module, "PRESET", str(preset))
+    monkeypatch.setattr(stages, "PRESET", str(preset))
     made = circle(tmp_path / "out", player="policy:champion", games=2, recorded=1, seconds=10.0, minutes=1e-4)
     result = made.run(["unchanged"], lambda done, count: None)
     arm = tmp_path / "out" / "unchanged"
     settings = RunFolder(arm / "training").settings()
-    assert settings["effects"] == LOOP and settings["start"].endswith("champion.npz")
+    assert settings["effects"] == AT_TABLE and settings["start"].endswith("champion.npz")
     assert settings["seed"] == 5 and settings["draws"] is None
     assert {one.name for one in (arm / "games").iterdir()} == {"game_5.json", "game_6.json"}
+    assert result["films"].keys() == {"before", "unchanged"} and (arm / "film.gif").exists()
     assert result["arms"]["unchanged"].keys() == {*PLAYED, "change"}
     before = (arm / "training" / "policy.npz").read_bytes()
     assert made.run(["unchanged"], lambda done, count: None) == result

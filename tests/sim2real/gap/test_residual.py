@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from puckpilot_env import Tables
+from puckpilot_env.options.at_table import AT_TABLE
 from puckpilot_env.residual.network import load_residual
 from puckpilot_env.residual.tables import ResidualTables
 from sim2real.gap import residual_fit
@@ -20,7 +21,6 @@ from sim2real.gap.residual_fit import fit_residual
 from sim2real.study.independent_table import Law
 from sim2real.study.independent_table.recorder.camera import Camera
 from sim2real.study.independent_table.recorder.record import make_recording
-from sim2real.table.simulated import LOOP
 
 pytestmark = pytest.mark.slow
 
@@ -69,9 +69,9 @@ def test_the_arm_s_simulator_plays_nearer_to_the_leaning_table(recordings: list[
     files = write_simulator(Simulator(residual_of=tuple(recordings)).with_loop(), tmp_path)
     assert files["residual"] == tmp_path / "residual.npz"
     assert json.loads((tmp_path / "residual.json").read_text())["format"] == "puckpilot-residual-fit/1"
-    plain = Tables("match-v0", 200, seed=1, parameters=LOOP)
-    corrected = ResidualTables("match-v0", 200, load_residual(files["residual"]), seed=1, parameters=LOOP)
-    true = Tables("match-v0", 200, seed=1, parameters={**LOOP, "tilt_x": TILT[0], "tilt_y": TILT[1]})
+    plain = Tables("match-v0", 200, seed=1, parameters=AT_TABLE)
+    corrected = ResidualTables("match-v0", 200, load_residual(files["residual"]), seed=1, parameters=AT_TABLE)
+    true = Tables("match-v0", 200, seed=1, parameters={**AT_TABLE, "tilt_x": TILT[0], "tilt_y": TILT[1]})
     rng, (low, high) = np.random.default_rng(0), plain.action_bounds
     off = {"plain": [], "corrected": []}
     for step in range(20):

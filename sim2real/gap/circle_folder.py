@@ -1,0 +1,126 @@
+"""A circle's folder: where each stage keeps what it makes, and the conditions under which it is made.
+
+```
+DIR/conditions.json               who played, on what, with which seeds: the circle's conditions
+DIR/simulator/games.json          the player in the simulator
+DIR/before/                       games on the table, recordings/ of the first of them, and film.gif of the first
+DIR/diagnosis/                    of these recordings alone, not of those of any arm
+DIR/ARM/training/                 a run of `puckpilot train` for each arm that learns
+DIR/ARM/games/, DIR/ARM/film.gif  its player on the table, in games of the same seeds
+DIR/gap.json, DIR/gap.html        the result
+```
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import Any
+
+from puckpilot_env.files.whole_file import write_text_whole
+from sim2real.gap.arms import ARMS, DIAGNOSIS, simulator_of
+from sim2real.table.twin.fidelity import Meeting
+
+VARIANT = "match-v0"
+FILM = "film.gif"
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """player, opponent: by name; table: a concealed one; games: of each player on the table, each of `seconds` of play
+    at most, of which the first `recorded` are recorded; minutes: of fine-tuning; seed: of the first game and of
+    learning."""
+
+    player: str
+    opponent: str
+    table: str
+    games: int
+    seconds: float
+    recorded: int
+    minutes: float
+    seed: int
+
+
+@dataclass(frozen=True)
+class CircleFolder:
+    """The folder `path` of the circle of these conditions."""
+
+    path: Path
+    conditions: Conditions
+
+    @property
+    def simulated(self) -> Path:
+        """Goals and minutes in the simulator."""
+        return self.path / "simulator" / "games.json"
+
+    @property
+    def before(self) -> Path:
+        """Folder of the games of the player as it is."""
+        return self.path / "before"
+
+    @property
+    def diagnosis(self) -> Path:
+        """Folder of the diagnosis."""
+        return self.path / DIAGNOSIS
+
+    def diagnosed(self) -> dict[str, Any]:
+        """What diagnosis.json says. ValueError, in one line, if there is none."""
+        path = self.diagnosis / "diagnosis.json"
+        if not path.exists():
+            raise missing(self.diagnosis, "diagnosis", "diagnose")
+        return json.loads(path.read_text(encoding="utf-8"))
+
+    def trained(self, arm: str) -> Path:
+        """The file that is there once an arm has learnt as long as it should."""
+        return self.path / arm / "trained"
+
+    def player(self, arm: str) -> str:
+        """The name of an arm's player. ValueError, in one line, if it has not learnt yet."""
+        if simulator_of(arm, self.path, self.conditions.table) is None:
+            return self.conditions.player
+        if not self.trained(arm).exists():
+            raise missing(self.path / arm, "trained player", "tune")
+        return f"policy:{self.path / arm / 'training' / 'policy.npz'}"
+
+    def meetings_before(self) -> list[Meeting]:
+        """The games on the table of the player as it is."""
+        return self._meetings(self.conditions.player)
+
+    def meetings_after(self, arm: str) -> list[Meeting]:
+        """Those of an arm's player. ValueError, in one line, if it has not learnt yet."""
+        return self._meetings(self.player(arm), ARMS[arm].camera_delay(self.path, self.conditions.table))
+
+    def _meetings(self, player: str, camera_delay: float = 0.0) -> list[Meeting]:
+        """A player's games, with a delay [s] that its loop allows for. The first are recorded, of every player: what
+        records takes time at a face-off, so that games of a seed would else differ in more than the player."""
+        c = self.conditions
+        return [
+            Meeting(
+                player, c.opponent, VARIANT, c.seed + game, c.seconds, concealed=c.table, clears=True,
+                recorded=game < c.recorded, camera_delay=camera_delay,
+            )
+            for game in range(c.games)
+        ]  # fmt: skip
+
+
+def missing(folder: Path, what: str, stage: str) -> ValueError:
+    """The error, in one line, of a stage that needs what an earlier one would have left in a folder."""
+    return ValueError(f"{folder} has no {what} yet; run the stage '{stage}' first")
+
+
+def keep_conditions(folder: Path, conditions: Conditions) -> None:
+    """Write down the conditions of a new circle. ValueError, in one line, for a folder of another one."""
+    path = folder / "conditions.json"
+    if path.exists():
+        try:
+            kept = Conditions(**json.loads(path.read_text(encoding="utf-8")))
+        except (ValueError, TypeError):
+            raise ValueError(f"{path} says nothing of a circle; name another --out") from None
+        other = [one.name for one in fields(Conditions) if getattr(kept, one.name) != getattr(conditions, one.name)]
+        if other:
+            given = ", ".join(f"{name} {getattr(kept, name)}" for name in other)
+            raise ValueError(f"{folder} has a circle with {given}; give the same, or name another --out")
+        return
+    folder.mkdir(parents=True, exist_ok=True)
+    write_text_whole(path, json.dumps(asdict(conditions), indent=1) + "\n")

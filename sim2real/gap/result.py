@@ -1,0 +1,68 @@
+"""The result of a circle, of what its stages left in its folder."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from sim2real.gap.against_truth import against_truth, learnt
+from sim2real.gap.circle_folder import FILM, CircleFolder, missing
+from sim2real.table.twin.fidelity import Meeting, TwinGame, kept_games
+from sim2real.table.twin.score import change, score, shots
+
+FORMAT = "puckpilot-gap/3"
+
+
+def result(folder: CircleFolder, arms: list[str]) -> dict[str, Any]:
+    """What gap.json holds. ValueError, in one line, if a stage has to be run first.
+
+    Rates are goals a minute. `films`: paths from the folder, of the player as it is under "before" and of each arm;
+    `against_truth`, `learnt`: see there; `open`: why the diagnosis says nothing of a regime, by its name, and under
+    "all" why it says nothing at all.
+    """
+    if not folder.simulated.exists():
+        raise missing(folder.simulated.parent, "games", "play")
+    simulated = json.loads(folder.simulated.read_text(encoding="utf-8"))
+    before = _kept(folder.meetings_before(), folder.before, "play")
+    content = folder.diagnosed()
+    after = {arm: _kept(folder.meetings_after(arm), folder.path / arm / "games", "replay") for arm in arms}
+    return {
+        "format": FORMAT,
+        "conditions": asdict(folder.conditions),
+        "simulator": {
+            name: goals / simulated["minutes"]
+            for name, goals in zip(("scored", "conceded"), simulated["goals"], strict=True)
+        },
+        "before": _played(before),
+        "found": [one["mechanism"] for one in content["findings"]],
+        "verdict": content["verdict"],
+        "open": _open(content),
+        "against_truth": against_truth(content["findings"], folder.conditions.table),
+        "learnt": learnt(folder.path, folder.conditions.table),
+        "arms": {arm: {**_played(games), "change": asdict(change(before, games))} for arm, games in after.items()},
+        "films": {name: f"{name}/{FILM}" for name in ("before", *arms) if (folder.path / name / FILM).exists()},
+    }
+
+
+def _kept(meetings: list[Meeting], folder: Path, stage: str) -> list[TwinGame]:
+    games = kept_games(meetings, folder)
+    if len(games) < len(meetings):
+        raise missing(folder, f"{len(meetings)} games", stage)
+    return games
+
+
+def _open(diagnosis: dict[str, Any]) -> dict[str, str]:
+    reasons = {one["regime"]: one["reason"] for one in diagnosis["regimes"] if one.get("reason")}
+    return reasons | ({"all": diagnosis["reason"]} if diagnosis.get("reason") else {})
+
+
+def _played(games: list[TwinGame]) -> dict[str, Any]:
+    """What came of a player's games: rates a minute, shots, stops of the table, and each one's goals and seconds."""
+    return {
+        **{name: asdict(rate) for name, rate in score(games).items()},
+        "shots": asdict(shots(games)),
+        "stops": sum(game.stops for game in games),
+        "games": [[*game.goals, game.seconds] for game in games],
+    }

@@ -1,0 +1,96 @@
+"""A stage alone: what it says that it needs, and the result of what the others left."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
+
+from puckpilot import main
+from sim2real.gap import result as result_module
+from sim2real.gap.circle import Circle
+from sim2real.gap.circle_folder import Conditions
+from sim2real.gap.stages import STAGES
+from sim2real.table.twin.fidelity import Meeting, TwinGame
+from tests.sim2real.gap.test_against_truth import SILENT_DRAWS, SILENT_EFFECTS
+
+CONDITIONS = Conditions("interceptor", "goalie", "late", 3, 20.0, 2, 1.0, 5)
+DIAGNOSIS = {
+    "verdict": "parameters_only", "findings": [], "baseline": {"parameters": {"friction": {"value": 0.11}}},
+    "regimes": [{"regime": "glide", "verdict": "parameters_only"}, {"regime": "wall", "reason": "too few hits"}],
+}  # fmt: skip
+
+
+def run(folder: Path, stage: str, arms: list[str]) -> None:
+    Circle(folder, CONDITIONS, 1, lambda line: None).run_stage(stage, arms, lambda done, count: None)
+
+
+@pytest.fixture
+def diagnosed(tmp_path: Path) -> Path:
+    """A circle's folder with a silent diagnosis."""
+    texts = {"diagnosis.json": json.dumps(DIAGNOSIS), "effects.toml": SILENT_EFFECTS, "draws.toml": SILENT_DRAWS}
+    (tmp_path / "diagnosis").mkdir()
+    for name, text in texts.items():
+        (tmp_path / "diagnosis" / name).write_text(text)
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("stage", "said"),
+    [
+        ("diagnose", "before has no recordings of 2 games yet; run the stage 'play' first"),
+        ("tune", "diagnosis has no diagnosis yet; run the stage 'diagnose' first"),
+        ("replay", "diagnosis has no diagnosis yet; run the stage 'diagnose' first"),
+        ("report", "simulator has no games yet; run the stage 'play' first"),
+    ],
+)
+def test_a_stage_alone_says_which_has_to_be_run_first(stage: str, said: str, tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=said):
+        run(tmp_path, stage, ["corrected"])
+
+
+def test_an_arm_is_not_played_before_it_has_learnt(diagnosed: Path) -> None:
+    with pytest.raises(ValueError, match="corrected has no trained player yet; run the stage 'tune' first"):
+        run(diagnosed, "replay", ["corrected"])
+
+
+def test_the_report_alone_is_of_what_is_there(diagnosed: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing was named, though the table is late: the page says so, and shows the films that there are."""
+
+    def kept(meetings: list[Meeting], folder: Path) -> list[TwinGame]:
+        assert folder in (diagnosed / "before", diagnosed / "allowing" / "games")
+        return [TwinGame(1, (k, 1), 20.0, 22.0, 2.0, 2.0) for k in range(len(meetings))]
+
+    monkeypatch.setattr(result_module, "kept_games", kept)
+    for name in ("simulator", "before", "allowing"):
+        (diagnosed / name).mkdir()
+    (diagnosed / "simulator" / "games.json").write_text('{"goals": [10, 2], "minutes": 2.0}')
+    (diagnosed / "before" / "film.gif").touch()
+    run(diagnosed, "report", ["allowing"])
+    result = json.loads((diagnosed / "gap.json").read_text())
+    assert result["simulator"] == {"scored": 5.0, "conceded": 1.0} and result["films"] == {"before": "before/film.gif"}
+    assert [one["outcome"] for one in result["against_truth"]] == ["missed", "missed"]
+    assert result["learnt"]["draws"] == {"friction": [0.1, 0.12]}
+    html = (diagnosed / "gap.html").read_text(encoding="utf-8")
+    assert '<img src="before/film.gif"' in html and "allowing/film.gif" not in html
+    assert (
+        "Nothing: the simulator&#39;s laws explain that play" in html
+        and "Undetermined: wall: too few hits." in html
+        and "friction 0.1 to 0.12" in html
+    )
+    monkeypatch.setattr(result_module, "kept_games", lambda meetings, folder: kept(meetings[1:], folder))
+    with pytest.raises(ValueError, match="before has no 3 games yet; run the stage 'play' first"):
+        run(diagnosed, "report", ["allowing"])
+
+
+def test_the_command_runs_a_stage_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["gap", "--stage", "diagnos", "--out", str(tmp_path / "out")]) == 2
+    assert "did you mean 'diagnose'" in capsys.readouterr().err and not (tmp_path / "out").exists()
+    assert main(["gap", "interceptor", "--stage", "tune", "--out", str(tmp_path / "out")]) == 2
+    error = capsys.readouterr().err
+    assert "run the stage 'diagnose' first" in error and error.count("\n") == 1
+    assert main(["gap", "--list"]) == 0
+    assert capsys.readouterr().out.splitlines()[-len(STAGES) - 1] == "stages"
