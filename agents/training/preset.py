@@ -63,6 +63,8 @@ class Preset:
       in every round.
     - `gate`: share of points against the snapshots played that makes a new snapshot; `cap`: rounds after which one is
       made in any case; `most`: snapshots kept. They are `League`'s snapshot_threshold, max_rounds and max_snapshots.
+    - `average`: updates over which the player's weights are averaged, each counting for less the longer ago; 0 for the
+      last ones.
     - `later`: values that change during training; `beside`: tables of other variants.
     """
 
@@ -84,6 +86,7 @@ class Preset:
     later: tuple[ScheduledChange, ...] = ()
     beside: tuple[ExtraVariant, ...] = ()
     init_scale: float | None = None
+    average: int = 0
 
     def against(self, player: str) -> Preset:
         """This preset for a best response to `player`, who is the only opponent, at every table.
@@ -202,7 +205,7 @@ def _check_counts(preset: Preset, name: str) -> None:
     named = [(count, getattr(preset, count)) for count in COUNTS]
     named += [(part, size) for part in ("hidden", "earlier") for size in getattr(preset, part)]
     named += [(part, preset.ppo[part]) for part in ("num_learning_epochs", "num_mini_batches") if part in preset.ppo]
-    named += list(preset.anchors.items())
+    named += list(preset.anchors.items()) + ([("average", preset.average)] if preset.average != 0 else [])
     for one in preset.beside:
         named += [(f"[[beside]] {one.variant}", size) for size in (one.tables, *one.anchors.values(), *one.earlier)]
     named += [("[[later]] from_steps", change.from_steps) for change in preset.later]

@@ -48,7 +48,7 @@ def save_run(training: TrainingState) -> None:
     save_checkpoint(
         folder.checkpoint,
         {
-            "learner": training.runner.alg.save(),
+            "learner": training.runner.learner_state(),
             "random": json.dumps(training.rng.bit_generator.state),
             **processes[0],
             "others": processes[1:],
@@ -82,7 +82,7 @@ def _process_state(training: TrainingState) -> dict[str, Any]:
 
 
 def _restore(training: TrainingState, saved: Mapping[str, Any]) -> None:
-    training.runner.alg.load(saved["learner"], None, True)
+    training.runner.restore_learner(saved["learner"])
     training.rng.bit_generator.state = json.loads(saved["random"])
     processes = [saved, *saved.get("others", [])]
     if len(processes) != distributed.world_size():

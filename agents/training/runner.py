@@ -16,6 +16,7 @@ from rsl_rl.algorithms import PPO
 from rsl_rl.models import MLPModel
 from rsl_rl.runners import OnPolicyRunner
 from torch import nn
+from torch.optim.swa_utils import AveragedModel, get_ema_multi_avg_fn
 
 from agents.env.learner_env import POLICY, PRIVILEGED
 from agents.env.multi_variant_env import MultiVariantVectorEnv
@@ -58,6 +59,7 @@ class SelfPlayRunner(OnPolicyRunner):
         with contextlib.redirect_stdout(io.StringIO()):  # rsl-rl prints its networks
             super().__init__(env, _config(preset), log_dir=None, device=device)
         self._distribution = preset.distribution
+        self._average = _average_of(self.alg.get_policy(), preset.average) if preset.average else None
         self.alg.train_mode()
         if self.is_distributed:
             self.alg.broadcast_parameters()
@@ -83,6 +85,8 @@ class SelfPlayRunner(OnPolicyRunner):
             collected = time.perf_counter()
             self.alg.compute_returns(obs)
         losses = self.alg.update()
+        if self._average:
+            self._average.update_parameters(self.alg.get_policy())
         self.current_learning_iteration += 1
         if not all(math.isfinite(loss) for loss in losses.values()):
             raise DivergedError(f"update {self.current_learning_iteration}: {losses}")
@@ -98,14 +102,35 @@ class SelfPlayRunner(OnPolicyRunner):
             if not all(torch.isfinite(part).all() for part in network.parameters()):
                 raise DivergedError(f"update {self.current_learning_iteration}: weights of the {name}")
 
+    def learner_state(self) -> dict[str, Any]:
+        """What `restore_learner` takes."""
+        average = {"average": self._average.state_dict()} if self._average else {}
+        return {**self.alg.save(), **average}
+
+    def restore_learner(self, saved: dict[str, Any]) -> None:
+        """Go on from what `learner_state` gave. KeyError or RuntimeError where it does not fit."""
+        self.alg.load(saved, None, True)
+        if self._average:
+            self._average.load_state_dict(saved["average"])
+
     def policy(self, columns: Sequence[str], about: dict[str, Any]) -> Policy:
-        """The present policy, with `columns` as its inputs; `about` says how it was made."""
-        layers = [layer for layer in self.alg.get_policy().mlp.modules() if isinstance(layer, nn.Linear)]
+        """The present policy, averaged if the preset says so, with `columns` as its inputs; `about` says how it was
+        made."""
+        actor: Any = self.alg.get_policy()
+        if self._average and int(self._average.n_averaged) > 0:
+            actor = self._average.module
+        layers = [layer for layer in actor.mlp.modules() if isinstance(layer, nn.Linear)]
         weights = [layer.weight.detach().cpu().numpy().copy() for layer in layers]
         biases = [layer.bias.detach().cpu().numpy().copy() for layer in layers]
         weights[-1], biases[-1] = weights[-1][:OUTPUTS], biases[-1][:OUTPUTS]
         *_, squash = DISTRIBUTIONS[self._distribution]
         return Policy(Network(weights, biases), self.env.scaling, tuple(columns), about, squash)
+
+
+def _average_of(actor: nn.Module, updates: int) -> AveragedModel:
+    """An exponential moving average of weights: the last ones of PPO wander about a mean that plays better
+    (Izmailov and others, "Averaging weights leads to wider optima", UAI 2018)."""
+    return AveragedModel(actor, multi_avg_fn=get_ema_multi_avg_fn(1.0 - 1.0 / updates))
 
 
 def _config(preset: Preset) -> dict[str, Any]:

@@ -14,11 +14,12 @@ from pathlib import Path
 from typing import Any
 
 MOST_GAMES = 10_000
+PLAYER = "policy:table_champion"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
-    parser.add_argument("player", nargs="?", default="policy:champion", metavar="PLAYER", help="(policy:champion)")
+    parser.add_argument("player", nargs="?", default=PLAYER, metavar="PLAYER", help=f"({PLAYER})")
     parser.add_argument("--table", default="walls", metavar="NAME", help="the concealed table (walls); --list has all")
     parser.add_argument("--list", action="store_true", help="list the concealed tables, arms and stages, and end")
     parser.add_argument("--arms", nargs="+", metavar="ARM", help="what is compared (all)")
