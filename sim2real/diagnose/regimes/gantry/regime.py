@@ -17,6 +17,7 @@ from sim2real.diagnose.regimes.gantry.formula import is_readable, readable_formu
 from sim2real.diagnose.regimes.gantry.problem import GantryProblem, gantry_problem
 from sim2real.diagnose.result.result import Finding, Mismatch
 from sim2real.segmentation.segments import Segments
+from sim2real.segmentation.unseen_touches import unseen_touches
 
 
 class Gantry(Regime):
@@ -32,7 +33,7 @@ class Gantry(Regime):
         """See `Regime.problem`."""
         if all(one.mallet is None for one in evidence.paths):
             return None
-        return gantry_problem(evidence.paths, evidence.values, _contact_times(evidence.segments))[0].with_found_tick()
+        return gantry_problem(evidence.paths, evidence.values, _disturbed_times(evidence))[0].with_found_tick()
 
     def holdout_problem(self, evidence: Evidence, known: Known) -> GantryProblem | None:
         """See `Regime.holdout_problem`."""
@@ -40,7 +41,7 @@ class Gantry(Regime):
         if not isinstance(fitted, GantryProblem):
             return None
         try:
-            problem, _ = gantry_problem(evidence.paths, evidence.values, _contact_times(evidence.segments))
+            problem, _ = gantry_problem(evidence.paths, evidence.values, _disturbed_times(evidence))
         except UnusableError:
             return None
         return fitted.for_holdout(problem.runs)
@@ -74,6 +75,13 @@ class Gantry(Regime):
 def _contact_times(segments: Sequence[Segments]) -> list[np.ndarray]:
     """Times [s] of the contacts with the robot's mallet, for each recording."""
     return [np.array([contact.t for contact in part.contacts if contact.where == "robot"]) for part in segments]
+
+
+def _disturbed_times(evidence: Evidence) -> list[np.ndarray]:
+    """Times [s] at which the puck pushed the robot's mallet, or may have, for each recording."""
+    contacts = _contact_times(evidence.segments)
+    unseen = [unseen_touches(*one) for one in zip(evidence.paths, evidence.segments, strict=True)]
+    return [np.union1d(*one) for one in zip(contacts, unseen, strict=True)]
 
 
 REGIME = Gantry()

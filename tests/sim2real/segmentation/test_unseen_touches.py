@@ -1,0 +1,51 @@
+"""Touches of the robot's mallet that no known contact explains: of a puck that passes, by hand."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sim2real.recording.folder import Recording, Stream
+from sim2real.segmentation.events import ContactEvent
+from sim2real.segmentation.segments import segment
+from sim2real.segmentation.unseen_touches import unseen_touches
+
+RADII = 0.0309 + 0.0505  # m
+META = {"puck": {"radius_m": 0.0309}, "mallet": {"radius_m": 0.0505}, "table": {"length_m": 2.0, "width_m": 1.0}}
+
+
+def recording(gap: float, speed: float) -> Recording:
+    """A mallet at rest at (0.5, 0.5) and a puck that passes it along x in a second, `gap` [m] away when it is
+    nearest, half-way between two of the frames."""
+    t = np.arange(120) / 120.0
+    x, y = 0.5 + speed * (t - 0.5 - 1.0 / 240.0), np.full(120, 0.5 + RADII + gap)
+    blank, still = np.full(120, np.nan), np.full(120, 0.5)
+    frames = {"t": t, "puck_x": x, "puck_y": y, "opponent_x": blank, "opponent_y": blank}
+    return Recording("passing", META, Stream(frames), Stream({"t": t, "mallet_x": still, "mallet_y": still.copy()}))
+
+
+def test_a_puck_that_stays_clear_touches_nothing() -> None:
+    one = recording(0.05, 1.0)
+    assert len(unseen_touches(one, segment(one))) == 0
+
+
+@pytest.mark.parametrize("speed", [0.4, 1.0])
+def test_a_touch_that_no_contact_explains_is_given_with_what_is_around_it(speed: float) -> None:
+    one = recording(0.0, speed)
+    found = unseen_touches(one, replace(segment(one), contacts=()))
+    nearest = 0.5 + 1.0 / 240.0
+    assert found[0] < nearest - 0.01 and found[-1] > nearest + 0.01
+    assert np.diff(found).max() < 0.003  # so that no window of the mallet's path is left in between
+    away = np.hypot(speed * (found - nearest), RADII) - RADII
+    assert away.max() < 0.02  # m; the puck was near at all of them
+
+
+def test_a_known_contact_explains_the_puck_beside_the_mallet() -> None:
+    one = recording(0.0, 1.0)
+    found = unseen_touches(one, replace(segment(one), contacts=()))
+    still = np.zeros(2)
+    hit = ContactEvent("mallet", "robot", 0.5, 0.5, 0.58, still, still, 0.01, (60, 61), 0.0, True)
+    left = unseen_touches(one, replace(segment(one), contacts=(hit,)))
+    assert 0 < len(left) < len(found) and np.abs(left - 0.5).min() > 0.01
