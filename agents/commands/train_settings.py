@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -37,7 +36,11 @@ def new_settings(args: argparse.Namespace) -> Settings:
     if given["seed"] < 0:
         raise ValueError(f"--seed is {given['seed']}; expected a whole number from 0 on")
     effects = effect_values(given["effects"]) if given["effects"] else {}
-    effects |= AT_TABLE if args.at_table else {}
+    if args.at_table:
+        other = [name for name, value in AT_TABLE.items() if effects.get(name, value) != value]
+        if other:
+            raise ValueError(f"--effects gives another {', '.join(other)} than --at-table; leave one of the two out")
+        effects |= AT_TABLE
     draws = read_draws(given["draws"]).as_dict() if given["draws"] else None
     start = str(_start(args.start)) if args.start else None
     variant, preset = find_variant(given["variant"]).id, find_preset(given["preset"])
@@ -116,8 +119,8 @@ def _contradictions(args: argparse.Namespace, settings: Settings) -> dict[str, s
             found[name] = str(getattr(settings, name))
     saved = settings.effects or {}
     if args.at_table and not saved.items() >= AT_TABLE.items():
-        found["at-table"] = "another limit of plans, or no hand"
-    if args.effects is not None and _beyond_tables(effect_values(args.effects)) != _beyond_tables(saved):
+        found["at-table"] = f"another {', '.join(name for name in AT_TABLE if saved.get(name) != AT_TABLE[name])}"
+    if args.effects is not None and {**(AT_TABLE if args.at_table else {}), **effect_values(args.effects)} != saved:
         values = [f"{name} {value:.4g}" for name, value in saved.items()]
         found["effects"] = (
             "none" if not values else " ".join(values) if len(values) <= MOST_EFFECTS_LISTED else "others, in run.json"
@@ -127,11 +130,6 @@ def _contradictions(args: argparse.Namespace, settings: Settings) -> dict[str, s
     if args.residual is not None and str(Path(args.residual).resolve()) != settings.residual:
         found["residual"] = settings.residual or "none"
     return found
-
-
-def _beyond_tables(effects: Mapping[str, float]) -> dict[str, float]:
-    """The parameters that `--at-table` does not give."""
-    return {name: value for name, value in effects.items() if name not in AT_TABLE}
 
 
 def _preset_name(text: str) -> str:

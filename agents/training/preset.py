@@ -63,8 +63,8 @@ class Preset:
       in every round.
     - `gate`: share of points against the snapshots played that makes a new snapshot; `cap`: rounds after which one is
       made in any case; `most`: snapshots kept. They are `League`'s snapshot_threshold, max_rounds and max_snapshots.
-    - `average`: updates over which the player's weights are averaged, each counting for less the longer ago; 0 for the
-      last ones.
+    - `average`: updates over which the weights of the player and of snapshots are averaged, evenly at first, then with
+      those of longer ago counting for less; 0 for the last weights.
     - `later`: values that change during training; `beside`: tables of other variants.
     """
 

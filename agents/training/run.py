@@ -223,7 +223,7 @@ def _matchmaking(tables: Tables, blocks: list[int]) -> Matchmaking:
     if by_hand:
         if not blocks:
             raise ValueError("a table with a hand has no self-play; expected a preset with anchors or earlier selves")
-        blocks = [*blocks[:-1], count - sum(blocks[:-1])]
+        blocks = [*blocks[:-1], max(count - sum(blocks[:-1]), blocks[-1])]
     return Matchmaking.from_block_sizes(count, blocks, one_seat=by_hand or tables.variant.game != MATCH)
 
 

@@ -16,7 +16,7 @@ from rsl_rl.algorithms import PPO
 from rsl_rl.models import MLPModel
 from rsl_rl.runners import OnPolicyRunner
 from torch import nn
-from torch.optim.swa_utils import AveragedModel, get_ema_multi_avg_fn
+from torch.optim.swa_utils import AveragedModel
 
 from agents.env.learner_env import POLICY, PRIVILEGED
 from agents.env.multi_variant_env import MultiVariantVectorEnv
@@ -128,9 +128,14 @@ class SelfPlayRunner(OnPolicyRunner):
 
 
 def _average_of(actor: nn.Module, updates: int) -> AveragedModel:
-    """An exponential moving average of weights: the last ones of PPO wander about a mean that plays better
-    (Izmailov and others, "Averaging weights leads to wider optima", UAI 2018)."""
-    return AveragedModel(actor, multi_avg_fn=get_ema_multi_avg_fn(1.0 - 1.0 / updates))
+    """The mean of the weights after each update, from so many updates on an exponential moving one: the last weights of
+    PPO wander about a mean that plays better (Izmailov and others, "Averaging weights leads to wider optima", UAI
+    2018)."""
+
+    def mean(so_far: torch.Tensor, now: torch.Tensor, count: torch.Tensor | int) -> torch.Tensor:
+        return so_far + (now - so_far) / min(int(count) + 1, updates)
+
+    return AveragedModel(actor, avg_fn=mean)
 
 
 def _config(preset: Preset) -> dict[str, Any]:

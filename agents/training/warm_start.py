@@ -77,6 +77,9 @@ def widen_layers(weights: Mapping[str, Tensor], fresh: Mapping[str, Tensor]) -> 
 
 def _load_networks(training: TrainingState, start: Path, learner: dict[str, Any]) -> None:
     columns, alg = _load_compatible(training, RunFolder(start).policy).columns, training.runner.alg
+    averaged = learner.get("average", {})  # the run's player, where its weights are averaged
+    for name in learner["actor_state_dict"]:
+        learner["actor_state_dict"][name] = averaged.get(f"module.{name}", learner["actor_state_dict"][name])
     for entry, network in (("actor_state_dict", alg.actor), ("critic_state_dict", alg.critic)):
         fresh = network.state_dict()
         remapped = remap_inputs(learner[entry], columns, training.columns, fresh[FIRST_LAYER].shape[1])

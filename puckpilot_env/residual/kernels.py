@@ -78,16 +78,17 @@ def _is_near(x, y, mallet_x, mallet_y, p):
 def _may_be_struck(table, p, row, touched):
     """Whether the opponent's mallet may have struck the puck in the step, as it never did where a network was fitted.
 
-    Its first touch is known. Of another one it was near at one end of the step, or the puck came over the middle line
-    faster than it was.
+    Its first touch is known. Of another one it was near at one end of the step, or the puck is faster than it was, and
+    was beyond the middle line.
     """
     k = table.puck.turned
     if table.puck.touched[1 - k] == 1:
         x, y = mirror.place(k, *place_now(table.mallets[1 - k]), p)
         near = _is_near(row[BEFORE], row[BEFORE + 1], row[BEFORE + 8], row[BEFORE + 9], p)
-        return touched == 0 or near or _is_near(row[THEN], row[THEN + 1], x, y, p)
-    crossed = row[BEFORE] >= 0.5 * p.length and row[THEN] < 0.5 * p.length
-    return crossed and size(row[THEN + 2], row[THEN + 3]) > size(row[BEFORE + 2], row[BEFORE + 3]) + GAINED
+        if touched == 0 or near or _is_near(row[THEN], row[THEN + 1], x, y, p):
+            return True
+    beyond = row[BEFORE] >= 0.5 * p.length
+    return beyond and size(row[THEN + 2], row[THEN + 3]) > size(row[BEFORE + 2], row[BEFORE + 3]) + GAINED
 
 
 @kernel

@@ -26,8 +26,8 @@ INPUTS = (
     "puck_x", "puck_y", "puck_vx", "puck_vy", "mallet_x", "mallet_y", "mallet_vx", "mallet_vy", "opponent_x",
     "opponent_y", "target_x", "target_y", "volts_x", "volts_y", "then_x", "then_y", "then_vx", "then_vy",
 )  # fmt: skip
-"""Numbers of the robot's frame [m, m/s, V]: when the step begins, of the robot's action (volts as they are planned),
-and `then`: the puck at the step's end as the simulator has it."""
+"""Numbers of the robot's frame [m, m/s, V]: when the step begins, of the robot's action (volts as they are planned,
+less what a table's effects take), and `then`: the puck at the step's end as the simulator has it."""
 OUTPUTS = ("x", "y", "vx", "vy")  # what is added to `then`
 MOST_BYTES = 1 << 24  # of all arrays
 MOST_LAYERS = 8

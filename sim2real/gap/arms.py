@@ -34,7 +34,7 @@ class Simulator:
     draws: Mapping[str, Any] | None = None
     residual_of: tuple[Path, ...] = ()
 
-    def with_loop(self) -> Simulator:
+    def at_table(self) -> Simulator:
         """The same with what is true of every table, and without late commands, of which the board's feedback leaves
         no more than a wobble."""
         values = {name: value for name, value in self.values.items() if name != DELAY}
@@ -57,8 +57,8 @@ class Arm:
 
 
 def recordings_of(circle: Path) -> tuple[Path, ...]:
-    """The recordings of a circle, in order of their names."""
-    return tuple(sorted((circle / "before" / "recordings").iterdir()))
+    """The recordings of a circle, in order of their names; none where none are."""
+    return tuple(sorted((circle / "before" / "recordings").glob("game_*")))
 
 
 def _corrected(circle: Path, table: str) -> Simulator:
@@ -130,4 +130,4 @@ def simulator_of(arm: str, circle: Path, table: str) -> Simulator | None:
     arm."""
     refuse_unknown([arm], ARMS, "arm")
     simulator = ARMS[arm].simulator
-    return simulator and simulator(circle, table).with_loop()
+    return simulator and simulator(circle, table).at_table()

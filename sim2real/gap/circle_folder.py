@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from puckpilot_env.files.whole_file import write_text_whole
-from sim2real.gap.arms import ARMS, DIAGNOSIS, simulator_of
+from sim2real.gap.arms import ARMS, DIAGNOSIS
 from sim2real.table.twin.fidelity import Meeting
 
 VARIANT = "match-v0"
@@ -77,7 +77,7 @@ class CircleFolder:
 
     def player(self, arm: str) -> str:
         """The name of an arm's player. ValueError, in one line, if it has not learnt yet."""
-        if simulator_of(arm, self.path, self.conditions.table) is None:
+        if ARMS[arm].simulator is None:
             return self.conditions.player
         if not self.trained(arm).exists():
             raise missing(self.path / arm, "trained player", "tune")

@@ -27,7 +27,7 @@ def learnt_words(learnt: dict[str, Any]) -> str:
         f"refitted constants in place of the simulator's: {constants or 'none'}",
         f"drawn from their intervals: {draws or 'nothing'}",
     ]
-    return f"The arm corrected learns on what follows from it; {'; '.join(parts)}."
+    return f"The arm corrected learns, or would learn, on what follows from it; {'; '.join(parts)}."
 
 
 def against_rows(against_truth: list[dict[str, Any]]) -> list[list[str]]:

@@ -12,7 +12,7 @@ from sim2real.gap.circle_folder import FILM, CircleFolder, missing
 from sim2real.table.twin.fidelity import Meeting, TwinGame, kept_games
 from sim2real.table.twin.score import change, score, shots
 
-FORMAT = "puckpilot-gap/3"
+FORMAT = "puckpilot-gap/4"
 
 
 def result(folder: CircleFolder, arms: list[str]) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from puckpilot_env.files.whole_file import write_text_whole
-from sim2real.gap.arms import ARMS, simulator_of, write_simulator
+from sim2real.gap.arms import ARMS, recordings_of, simulator_of, write_simulator
 from sim2real.gap.circle_folder import FILM, VARIANT, CircleFolder, missing
 from sim2real.gap.film import film
 from sim2real.gap.page import page
@@ -73,8 +73,8 @@ def diagnose(work: Work) -> None:
     if (folder / "diagnosis.json").exists():
         return
     c = work.folder.conditions
-    recordings = [work.folder.before / "recordings" / f"game_{seed}" for seed in range(c.seed, c.seed + c.recorded)]
-    if not all(one.exists() for one in recordings):
+    recordings = recordings_of(work.folder.path)
+    if len(recordings) < c.recorded:
         raise missing(work.folder.before, f"recordings of {c.recorded} games", "play")
     work.report("diagnosing what was recorded")
     _run("diagnose", *map(str, recordings), "--out", str(folder))

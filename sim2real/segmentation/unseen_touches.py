@@ -10,8 +10,8 @@ from sim2real.segmentation.causes import geometry, mallet_tracks
 from sim2real.segmentation.segments import Segments
 from sim2real.segmentation.tuned import SEGMENTATION
 
-KNOWN = 0.025  # s about a contact whose time is known: three frames of a camera, in which the puck is still near
-AROUND = 0.01  # s before and after a frame that shows it: more than a frame's period
+KNOWN = 3.0  # frames' periods about a contact whose time is known, in which the puck is still near
+AROUND = 1.2  # of a frame's period before and after a frame that shows it
 CLOSE = 0.002  # s between the times that are given: no window of the mallet's path lies between two of them
 
 
@@ -26,12 +26,14 @@ def unseen_touches(recording: Recording, segments: Segments) -> np.ndarray:
         return np.zeros(0)
     g, period = geometry(recording), float(np.median(np.diff(frames.t)))
     puck = np.stack([frames["puck_x"], frames["puck_y"]], axis=1)
+    puck[segments.held | segments.wild] = np.nan
     offset = puck - robot.place
     moved = np.linalg.norm(np.diff(offset, axis=0), axis=1) / np.diff(frames.t) * period  # m in a frame's period
-    moved = np.fmax(np.append(moved, 0.0), np.append(0.0, moved))
+    moved = np.fmax(np.fmax(np.append(moved, 0.0), np.append(0.0, moved)), 0.0)
     reach = g.puck_radius + g.mallet_radius + SEGMENTATION.place_slack + 0.5 * moved
     near = np.linalg.norm(offset, axis=1) < reach  # of a place that was not seen: no
     known = np.array([contact.t for contact in segments.contacts if contact.where == "robot"])
-    near &= np.all(np.abs(frames.t[:, None] - known) > KNOWN, axis=1)
-    around = np.arange(-AROUND, AROUND + 0.5 * CLOSE, CLOSE)
+    near &= np.all(np.abs(frames.t[:, None] - known) > KNOWN * period, axis=1)
+    side = AROUND * period
+    around = np.arange(-side, side + 0.5 * CLOSE, CLOSE)
     return np.unique((frames.t[near][:, None] + around).ravel())

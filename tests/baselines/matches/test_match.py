@@ -63,3 +63,11 @@ def test_parameters_and_progress_are_passed_on() -> None:
 def test_no_games_are_refused_in_one_line() -> None:
     with pytest.raises(ValueError, match="games is 0; expected"):
         _match("still", "random", games=0)
+
+
+def test_without_exchange_the_first_player_keeps_its_seat() -> None:
+    seen: list[int] = []
+    result = play(SHORT, "follower", "still", 5, 3, exchange=False, watch=lambda tables, _: seen.append(len(tables)))
+    assert set(seen) == {5} and result.results.shape == (5, 2)
+    assert np.isfinite(result.results[:, 0]).all() and np.isnan(result.results[:, 1]).all()
+    assert result.goals[0] > result.goals[1] and len(result.lengths) == 5

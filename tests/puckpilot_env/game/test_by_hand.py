@@ -49,12 +49,14 @@ def test_a_hand_moves_as_on_a_table_without_what_hinders_the_robot(hindrance: di
     assert np.abs(both - free).max() > 1e-3  # so it says something
 
 
-def speed_after_strike(player: int, parameters: dict[str, float]) -> float:
-    """The speed [m/s] of a puck that ran at 2 m/s into the resting mallet of `player`."""
+def speed_after_strike(player: int, parameters: dict[str, float], turned: bool = False) -> float:
+    """The speed [m/s] of a puck that ran at 2 m/s into the resting mallet of `player`, on a table turned since."""
     tables = Tables("match-v0", 1, seed=0, parameters={"friction": 0.0, "drag": 0.0, **parameters})
     for each in range(2):
         put_mallet(tables, each, 0.3, 0.5)
     put_puck(tables, 0.5, 0.5, -2.0, 0.0, player=player)
+    if turned:
+        tables.turn()
     stay = np.tile(np.float32([0.3, 0.5, 1.0, 1.0]), (1, 2, 1))
     tables.step(stay)
     tables.step(stay)
@@ -66,6 +68,8 @@ def test_a_hand_strikes_as_the_baseline_says_and_the_robot_with_the_effects() ->
     hindered = 1.6 * 2.0 / 1.25 - 2.0  # e = 0.7 - 0.05 * 2 m/s, and 1/(1 + give) of the impulse
     assert speed_after_strike(1, {**soft, "hand": 1.0}) == pytest.approx(0.7 * 2.0, rel=1e-6)
     assert speed_after_strike(0, {**soft, "hand": 1.0}) == pytest.approx(hindered, rel=1e-6)
+    assert speed_after_strike(1, {**soft, "hand": 1.0}, turned=True) == pytest.approx(0.7 * 2.0, rel=1e-6)
+    assert speed_after_strike(0, {**soft, "hand": 1.0}, turned=True) == pytest.approx(hindered, rel=1e-6)
     assert speed_after_strike(1, soft) == pytest.approx(hindered, rel=1e-6)
 
 

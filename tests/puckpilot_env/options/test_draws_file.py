@@ -228,3 +228,8 @@ def test_every_drawn_table_is_one_that_could_be_given() -> None:
     for row in drawn.params:
         Tables("match-v0", 1, parameters={name: float(row[name]) for name in names})
     assert np.ptp(drawn.params["length"]) > 0.004
+
+
+def test_a_number_that_is_whole_cannot_be_drawn() -> None:
+    with pytest.raises(ValueError, match="hand cannot be drawn, for it has whole numbers alone; give it"):
+        read_draws({"hand": {"low": 0.0, "high": 1.0}})

@@ -25,7 +25,7 @@ def played(net: float, spread: float, seed: int) -> dict[str, Any]:
 
 def circle(table: str, seed: int, before: float, spread: float = 0.3, **arms: float) -> dict[str, Any]:
     return {
-        "format": "puckpilot-gap/3",
+        "format": "puckpilot-gap/4",
         "conditions": {
             "player": "policy:champion", "opponent": "interceptor", "table": table, "games": GAMES, "seconds": 60.0,
             "recorded": 5, "minutes": 30.0, "seed": seed,
@@ -95,7 +95,7 @@ def test_the_command_writes_the_page(tmp_path: Path, capsys: pytest.CaptureFixtu
     [
         (None, "has no gap.json: expected the --out of a puckpilot gap that is done"),
         ("{", "is no result of puckpilot gap"),
-        ('{"format": "puckpilot-gap/9"}', "is no result of puckpilot gap: expected the format puckpilot-gap/3"),
+        ('{"format": "puckpilot-gap/9"}', "is no result of puckpilot gap: expected the format puckpilot-gap/4"),
     ],
 )
 def test_what_is_no_circle_is_refused(tmp_path: Path, content: str | None, reason: str) -> None:

@@ -7,6 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from sim2real.diagnose.regimes.base import Evidence
+from sim2real.diagnose.regimes.gantry.regime import _disturbed_times
 from sim2real.recording.folder import Recording, Stream
 from sim2real.segmentation.events import ContactEvent
 from sim2real.segmentation.segments import segment
@@ -49,3 +51,23 @@ def test_a_known_contact_explains_the_puck_beside_the_mallet() -> None:
     hit = ContactEvent("mallet", "robot", 0.5, 0.5, 0.58, still, still, 0.01, (60, 61), 0.0, True)
     left = unseen_touches(one, replace(segment(one), contacts=(hit,)))
     assert 0 < len(left) < len(found) and np.abs(left - 0.5).min() > 0.01
+
+
+def test_the_gantry_takes_them_from_frames_on_the_encoders_clock() -> None:
+    """Its paths come with the frames as they were recorded, here 15 ms late; the segments are of corrected ones."""
+    one = recording(0.0, 1.0)
+    assert one.frames is not None
+    late = replace(one, frames=Stream({**one.frames.columns, "t": one.frames.t + 0.015}))
+    segments = replace(segment(one), contacts=())
+    evidence = Evidence([one], [segments], [], [late], {})
+    (found,) = _disturbed_times(evidence)
+    np.testing.assert_array_equal(found, unseen_touches(one, segments))
+    assert abs(0.5 * (found[0] + found[-1]) - 0.5 - 1.0 / 240.0) < 0.002
+
+
+def test_a_wrong_place_does_not_make_its_neighbours_touches() -> None:
+    one = recording(0.3, 1.0)
+    assert one.frames is not None
+    one.frames["puck_x"][60] += 1.0
+    wild = np.arange(120) == 60
+    assert len(unseen_touches(one, replace(segment(one), contacts=(), wild=wild))) == 0

@@ -80,7 +80,7 @@ def _contact_times(segments: Sequence[Segments]) -> list[np.ndarray]:
 def _disturbed_times(evidence: Evidence) -> list[np.ndarray]:
     """Times [s] at which the puck pushed the robot's mallet, or may have, for each recording."""
     contacts = _contact_times(evidence.segments)
-    unseen = [unseen_touches(*one) for one in zip(evidence.paths, evidence.segments, strict=True)]
+    unseen = [unseen_touches(*one) for one in zip(evidence.recordings, evidence.segments, strict=True)]
     return [np.union1d(*one) for one in zip(contacts, unseen, strict=True)]
 
 
