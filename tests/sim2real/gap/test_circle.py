@@ -74,7 +74,7 @@ def test_an_arm_is_fine_tuned_and_plays_games_of_the_same_seeds(
     settings = RunFolder(arm / "training").settings()
     assert settings["effects"] == AT_TABLE and settings["start"].endswith("champion.npz")
     assert settings["seed"] == 5 and settings["draws"] is None
-    assert {one.name for one in (arm / "games").iterdir()} == {"game_5.json", "game_6.json"}
+    assert {one.name for one in (arm / "games").iterdir()} == {"game_5.json", "game_6.json", "recordings"}
     assert result["films"].keys() == {"before", "unchanged"} and (arm / "film.gif").exists()
     assert result["arms"]["unchanged"].keys() == {*PLAYED, "change"}
     before = (arm / "training" / "policy.npz").read_bytes()
