@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 import os
-import zipfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -23,6 +22,7 @@ from agents.policy.scaling import InputMapping, Scaling
 from agents.training.run_folder import RunFolder
 from baselines.player import Player, Seat
 from puckpilot_env.files import small_file
+from puckpilot_env.files.npz_file import read_arrays
 from puckpilot_env.files.whole_file import write_whole
 from puckpilot_env.options.inputs import in_short
 
@@ -65,8 +65,7 @@ def load_policy(path: Path) -> Policy:
     if path.suffix == ".onnx":
         raise ValueError(f"{path} is for other programs; here the .npz of `puckpilot train` or `export` plays")
     try:
-        small_file.check_regular(path, MOST_BYTES)
-        arrays = _arrays(path)
+        arrays = read_arrays(path, MOST_BYTES)
         head = small_file.parse_json(str(arrays["head"]))
     except FileNotFoundError:
         raise ValueError(f"no policy at {path}") from None
@@ -79,15 +78,6 @@ def load_policy(path: Path) -> Policy:
         return _policy_from(arrays, head)
     except (KeyError, TypeError, ValueError) as error:
         raise ValueError(f"{path} does not fit together: {error}") from None
-
-
-def _arrays(path: Path) -> dict[str, NDArray[Any]]:
-    """The arrays of an npz by name. A file that would decompress to more than MOST_BYTES is refused first."""
-    with zipfile.ZipFile(path) as members:
-        if sum(member.file_size for member in members.infolist()) > MOST_BYTES:
-            raise ValueError(f"it unfolds to more than {MOST_BYTES} bytes")
-    with np.load(path, allow_pickle=False) as file:
-        return {name: file[name] for name in file.files}
 
 
 def _policy_from(arrays: dict[str, NDArray[Any]], head: dict[str, Any]) -> Policy:

@@ -6,7 +6,6 @@ The file holds arrays and a JSON text alone: nothing in it is executed when it i
 from __future__ import annotations
 
 import json
-import zipfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from puckpilot_env.files import small_file
+from puckpilot_env.files.npz_file import read_arrays
 from puckpilot_env.files.whole_file import write_whole
 
 Array = NDArray[np.float32]
@@ -96,8 +96,7 @@ def no_residual() -> Residual:
 def load_residual(path: Path) -> Residual:
     """Read a network. ValueError, in one line that begins with the path, for a file that is none, or is broken."""
     try:
-        small_file.check_regular(path, MOST_BYTES)
-        arrays = _arrays(path)
+        arrays = read_arrays(path, MOST_BYTES)
         head = small_file.parse_json(str(arrays.pop("head")))
     except FileNotFoundError:
         raise ValueError(f"{path}: is not there; expected an .npz file with a network of residuals") from None
@@ -118,15 +117,6 @@ def load_residual(path: Path) -> Residual:
         return Residual(weights, biases, *(arrays[name] for name in SCALES))
     except ValueError as error:
         raise ValueError(f"{path}: does not fit together: {error}") from None
-
-
-def _arrays(path: Path) -> dict[str, NDArray[Any]]:
-    """The arrays of an npz by name. A file that would decompress to more than MOST_BYTES is refused first."""
-    with zipfile.ZipFile(path) as members:
-        if sum(member.file_size for member in members.infolist()) > MOST_BYTES:
-            raise ValueError(f"it unfolds to more than {MOST_BYTES} bytes")
-    with np.load(path, allow_pickle=False) as file:
-        return {name: file[name] for name in file.files}
 
 
 def _check_layers(weights: Sequence[Array], biases: Sequence[Array]) -> None:
