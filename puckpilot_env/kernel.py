@@ -31,7 +31,9 @@ _KEEP_DAYS = 30
 
 def _simulator_sources() -> list[Path]:
     """Every file that defines kernels of the simulator and its players, or what they are compiled against."""
-    sources = [path for folder in ("physics", "game", "batch") for path in sorted((_ROOT / folder).rglob("*.py"))]
+    sources = [
+        path for folder in ("physics", "game", "batch", "residual") for path in sorted((_ROOT / folder).rglob("*.py"))
+    ]
     sources += [_ROOT / f"{name}.py" for name in ("effect", "kernel", "parameters")]
     return sources + _package_sources("baselines")
 

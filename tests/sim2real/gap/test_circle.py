@@ -13,7 +13,7 @@ pytest.importorskip("unicorn", reason="unicorn is not installed: the program can
 from agents.training.run_folder import RunFolder
 from puckpilot import main
 from puckpilot_env.options.at_table import AT_TABLE
-from sim2real.gap import stages
+from sim2real.gap import film, stages
 from sim2real.gap.circle import Circle
 from sim2real.gap.circle_folder import Conditions
 from sim2real.table.twin import fidelity
@@ -28,12 +28,17 @@ def circle(folder: Path, **other: object) -> Circle:
     return Circle(folder, replace(CONDITIONS, **other), 1, lambda line: None)
 
 
+@pytest.fixture(autouse=True)
+def short_films(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(film, "SECONDS", 2.0)
+
+
 @pytest.mark.slow
 def test_a_circle_goes_round_and_is_not_run_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """With a player that does not learn: games on the table, of which two are recorded, and their diagnosis."""
     result = circle(tmp_path).run([], lambda done, count: None)
     assert {one.name for one in (tmp_path / "before" / "recordings").iterdir()} == {"game_5", "game_6"}
-    assert result["films"] == {"before": "before/film.gif"} and (tmp_path / "before" / "film.gif").stat().st_size > 1e5
+    assert result["films"] == {"before": "before/film.gif"} and (tmp_path / "before" / "film.gif").stat().st_size > 1e4
     assert result["found"] == [] and result["arms"] == {} and result["before"].keys() == PLAYED
     assert result["simulator"].keys() == {"scored", "conceded"}
     shots = result["before"]["shots"]

@@ -73,7 +73,7 @@ def test_a_game_that_was_recorded_is_filmed_as_it_was(tmp_path: Path, monkeypatc
     assert [one.name for one in tmp_path.iterdir()] == ["film.gif"]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_film_is_the_beginning_of_the_game_at_its_own_speed(tmp_path: Path) -> None:
     """A longer game goes as a shorter one, a recorded one has the same face-off; 2 s of play are 2 s of film."""
     games = []

@@ -35,7 +35,7 @@ def recordings(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     folder = tmp_path_factory.mktemp("tilted")
     law = Law(tilt_x=TILT[0], tilt_y=TILT[1])
     for seed in range(2):
-        make_recording(folder / f"game_{seed}", law, "match", seed, 60.0, SHARP, dt=1e-4)
+        make_recording(folder / f"game_{seed}", law, "match", seed, 40.0, SHARP, dt=1e-4)
     return sorted(folder.iterdir())
 
 
@@ -46,7 +46,7 @@ def samples(recordings: list[Path]) -> Samples:
 
 def test_what_a_step_lacks_on_a_leaning_table_is_the_tilt(samples: Samples) -> None:
     """Most steps are glides: half the tilt times the step squared, and the tilt times the step."""
-    assert len(samples) > 500 and samples.inputs.shape == (len(samples), 18)
+    assert len(samples) > 350 and samples.inputs.shape == (len(samples), 18)
     place, velocity = np.median(samples.missed, axis=0).reshape(2, 2)
     assert place == pytest.approx(TILT * STEP**2 / 2, rel=0.05)
     assert velocity == pytest.approx(TILT * STEP, rel=0.05)
@@ -57,7 +57,7 @@ def test_the_network_takes_most_of_it_from_steps_that_it_never_saw(samples: Samp
     for name in ("x", "y", "vx", "vy"):
         assert report["median"][name]["after"] < 0.3 * report["median"][name]["before"]
     assert report["rms"]["x"]["after"] < 0.5 * report["rms"]["x"]["before"]
-    assert report["samples"] + report["held_out"] == len(samples) and report["held_out"] > 100
+    assert report["samples"] + report["held_out"] == len(samples) and report["held_out"] > 60
     corrections = np.median(residual(samples.inputs), axis=0)
     assert corrections[2:] == pytest.approx(TILT * STEP, rel=0.15)
     again, _ = fit_residual(samples)
