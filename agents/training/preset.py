@@ -65,6 +65,8 @@ class Preset:
       made in any case; `most`: snapshots kept. They are `League`'s snapshot_threshold, max_rounds and max_snapshots.
     - `average`: updates over which the weights of the player and of snapshots are averaged, evenly at first, then with
       those of longer ago counting for less; 0 for the last weights.
+    - `critic_rounds`: rounds at the start in which the critic alone learns, for a player that begins with a trained
+      actor and no critic; 0 for none.
     - `later`: values that change during training; `beside`: tables of other variants.
     """
 
@@ -87,6 +89,7 @@ class Preset:
     beside: tuple[ExtraVariant, ...] = ()
     init_scale: float | None = None
     average: int = 0
+    critic_rounds: int = 0
 
     def against(self, player: str) -> Preset:
         """This preset for a best response to `player`, who is the only opponent, at every table.
@@ -205,7 +208,8 @@ def _check_counts(preset: Preset, name: str) -> None:
     named = [(count, getattr(preset, count)) for count in COUNTS]
     named += [(part, size) for part in ("hidden", "earlier") for size in getattr(preset, part)]
     named += [(part, preset.ppo[part]) for part in ("num_learning_epochs", "num_mini_batches") if part in preset.ppo]
-    named += list(preset.anchors.items()) + ([("average", preset.average)] if preset.average != 0 else [])
+    named += list(preset.anchors.items())
+    named += [(part, getattr(preset, part)) for part in ("average", "critic_rounds") if getattr(preset, part) != 0]
     for one in preset.beside:
         named += [(f"[[beside]] {one.variant}", size) for size in (one.tables, *one.anchors.values(), *one.earlier)]
     named += [("[[later]] from_steps", change.from_steps) for change in preset.later]

@@ -91,7 +91,8 @@ class Training:
         """Play one round and save the run; returns the round's row of the learning curve."""
         variants = ["", *(_short_id(extra.variant) for extra in self.preset.beside)]
         opponents = [self._set_opponents(env, extra) for env, extra in zip(self.env.envs, variants, strict=True)]
-        iterations = [self.runner.iterate() for _ in range(self.preset.round)]
+        critic_alone = len(self.rows) < self.preset.critic_rounds
+        iterations = [self.runner.iterate(critic_alone) for _ in range(self.preset.round)]
         self._update_league([member for members in opponents for member in members])
         self.runner.check_finite()
         drawn = opponents[0][len(self.preset.anchors) :]

@@ -70,8 +70,12 @@ class SelfPlayRunner(OnPolicyRunner):
         self.is_distributed = distributed.world_size() > 1
         self.gpu_world_size, self.gpu_global_rank = distributed.world_size(), distributed.rank()
 
-    def iterate(self) -> Iteration:
-        """Play the preset's `steps` on every table and learn from them. DivergedError where a loss is not finite."""
+    def iterate(self, critic_alone: bool = False) -> Iteration:
+        """Play the preset's `steps` on every table and learn from them. DivergedError where a loss is not finite.
+
+        critic_alone: whether the actor stays as it is.
+        """
+        self.alg.actor.requires_grad_(not critic_alone)
         begun, played = time.perf_counter(), 0.0
         with torch.inference_mode():
             obs = self.env.get_observations().to(self.device)
@@ -85,7 +89,7 @@ class SelfPlayRunner(OnPolicyRunner):
             collected = time.perf_counter()
             self.alg.compute_returns(obs)
         losses = self.alg.update()
-        if self._average:
+        if self._average and not critic_alone:
             self._average.update_parameters(self.alg.get_policy())
         self.current_learning_iteration += 1
         if not all(math.isfinite(loss) for loss in losses.values()):

@@ -3,8 +3,9 @@
 The whole circle on a twin whose physics is concealed: the player plays there, some of that play is recorded and
 diagnosed, the player is fine-tuned in the simulator with what was found, and plays again, in games of the same seeds.
 Beside it stand the usual answers, with as much training where they learn: an arm each. Every stage keeps what it made
-in --out, and the same command goes on where it was stopped; --stage runs one alone. Scores are goals a minute, with
-95 % intervals."""
+in --out, and the same command goes on where it was stopped; --stage runs one alone. Each of several tables has a folder
+there, beside a page over all; what is learnt the same for each of them is learnt once. Scores are goals a minute, over
+opponents the mean, with 95 % intervals."""
 
 from __future__ import annotations
 
@@ -15,22 +16,28 @@ from typing import Any
 
 MOST_GAMES = 10_000
 PLAYER = "policy:table_champion"
+OPPONENTS = ("interceptor", "follower", "bank_shot")  # against which goals are scored and conceded
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
     parser.add_argument("player", nargs="?", default=PLAYER, metavar="PLAYER", help=f"({PLAYER})")
-    parser.add_argument("--table", default="walls", metavar="NAME", help="the concealed table (walls); --list has all")
+    parser.add_argument(
+        "--table", nargs="+", default=["walls"], metavar="NAME", help="the concealed table, or several (walls)"
+    )
     parser.add_argument("--list", action="store_true", help="list the concealed tables, arms and stages, and end")
     parser.add_argument("--arms", nargs="+", metavar="ARM", help="what is compared (all)")
-    parser.add_argument("--opponent", default="interceptor", metavar="PLAYER", help="the hand at the other end")
+    parser.add_argument(
+        "--opponent", nargs="+", default=list(OPPONENTS), metavar="PLAYER",
+        help=f"the hand at the other end, of several each in turn ({' '.join(OPPONENTS)})",
+    )  # fmt: skip
     parser.add_argument("--games", type=int, default=40, metavar="N", help="of each player on the table (40)")
     parser.add_argument("--seconds", type=float, default=60.0, metavar="S", help="of play of a game, at most (60)")
     parser.add_argument("--recorded", type=int, default=5, metavar="N", help="games that are recorded (5)")
     parser.add_argument("--minutes", type=float, default=30.0, metavar="M", help="of fine-tuning of each arm (30)")
     parser.add_argument("--seed", type=int, default=0, help="of the first game, and of learning (0)")
     parser.add_argument("--stage", metavar="NAME", help="run it alone, on what those before it left (all)")
-    parser.add_argument("--processes", type=int, default=2, metavar="N", help="that play at once (2)")
+    parser.add_argument("--processes", type=int, default=2, metavar="N", help="that play or learn at once (2)")
     parser.add_argument(
         "--together", nargs="+", type=Path, metavar="DIR", help="go round no more: one page over circles that are done"
     )
@@ -46,7 +53,7 @@ def run(args: argparse.Namespace) -> int:
     from puckpilot_env.options.inputs import seed_number, whole_number
     from sim2real.gap.arms import ARMS
     from sim2real.gap.circle import Circle
-    from sim2real.gap.circle_folder import Conditions
+    from sim2real.gap.circle_folder import SHARED, Conditions
     from sim2real.gap.residual_fit import require_sklearn
     from sim2real.gap.stages import LAST, STAGES
     from sim2real.table.twin.concealed import find_table
@@ -60,31 +67,40 @@ def run(args: argparse.Namespace) -> int:
     refuse_unknown(arms, ARMS, "arm")
     stages = [args.stage] if args.stage else list(STAGES)
     refuse_unknown(stages, STAGES, "stage")
-    find_table(args.table)
+    for name in args.table:
+        find_table(name)
     if "residual" in arms:
         require_sklearn()
-    for name in (args.player, args.opponent):
+    for name in (args.player, *args.opponent):
         find_player(name)
     whole_number(args.processes, "--processes", 1, 64)
-    whole_number(args.games, "--games", 2, MOST_GAMES)
+    whole_number(args.games, "--games", 2 * len(args.opponent), MOST_GAMES)
     whole_number(args.recorded, "--recorded", 1, args.games)
     for name in ("seconds", "minutes"):
         if not 0.0 < getattr(args, name) <= 1e5:
             raise ValueError(f"--{name} is {getattr(args, name):g}; expected more than 0, at most 1e5")
-    conditions = Conditions(
-        args.player, args.opponent, args.table, args.games, args.seconds, args.recorded, args.minutes,
-        seed_number(args.seed),
-    )  # fmt: skip
+    several = len(args.table) > 1
     report = (lambda line: None) if args.json else lambda line: print(line, flush=True)
-    circle = Circle(args.out, conditions, args.processes, report)
-    with progress_bar("games on the table") as progress:
-        for stage in stages:
-            circle.run_stage(stage, arms, progress)
+    folders = [args.out / table if several else args.out for table in args.table]
+    for table, folder in zip(args.table, folders, strict=True):
+        conditions = Conditions(
+            args.player, tuple(args.opponent), table, args.games, args.seconds, args.recorded, args.minutes,
+            seed_number(args.seed),
+        )  # fmt: skip
+        circle = Circle(folder, conditions, args.processes, report, args.out / SHARED if several else None)
+        if several:
+            report(f"{table}: {find_table(table).words}")
+        with progress_bar("games on the table") as progress:
+            for stage in stages:
+                circle.run_stage(stage, arms, progress)
+        if stages[-1] == LAST and not args.json:
+            print("\n".join([*_lines(circle.kept()), f"wrote {folder / 'gap.html'}"]))
     if stages[-1] != LAST:
         print(json.dumps({"stage": args.stage}) if args.json else f"the stage {args.stage} is done in {args.out}")
-        return 0
-    result = circle.kept()
-    print(json.dumps(result, indent=1) if args.json else "\n".join([*_lines(result), f"wrote {args.out / 'gap.html'}"]))
+    elif several:
+        _together(folders, args.out, args.json)
+    elif args.json:
+        print(json.dumps(circle.kept(), indent=1))
     return 0
 
 
@@ -92,7 +108,7 @@ def _together(folders: list[Path], out: Path, as_json: bool) -> int:
     """Write the page over the circles in `folders`."""
     from puckpilot_env.files.whole_file import write_text_whole
     from sim2real.gap.overview import overview, read_circle
-    from sim2real.gap.overview_page import overview_page
+    from sim2real.gap.report.overview_page import overview_page
 
     result = overview([read_circle(folder) for folder in folders])
     out.mkdir(parents=True, exist_ok=True)
@@ -116,7 +132,7 @@ def _listed() -> list[str]:
 
 def _lines(result: dict[str, Any]) -> list[str]:
     from sim2real.gap.arms import ARMS
-    from sim2real.gap.found_words import against_line, found_words
+    from sim2real.gap.report.found_words import against_line, found_words
 
     simulated, before = result["simulator"], result["before"]
     lines = [

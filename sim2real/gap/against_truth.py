@@ -9,13 +9,12 @@ from typing import Any
 from puckpilot_env.options.at_table import AT_TABLE
 from puckpilot_env.parameters import BY_NAME, EFFECT_ROWS
 from puckpilot_env.physics.effects import EFFECTS
-from sim2real.gap.arms import simulator_of
+from sim2real.gap.arms import OWN, simulator_of
 from sim2real.table.twin.concealed import find_table
 
 NAMED, POSSIBLE, MISSED, NOT_THERE = "named", "named as another possibility", "missed", "not there"
 CAMERA_DELAY = "camera_delay"
 UNLISTED = "unlisted"  # mechanism of all laws without a name
-OWN = "corrected"
 
 
 def against_truth(findings: Sequence[Mapping[str, Any]], table: str) -> list[dict[str, Any]]:

@@ -21,6 +21,7 @@ from puckpilot_env.variants import find_variant
 from sim2real.gap.residual_fit import write_residual
 from sim2real.table.twin.concealed import DELAY, find_table
 
+CEILING, OWN = "truth", "corrected"  # names of arms
 DIAGNOSIS = "diagnosis"  # its folder in the circle's
 SENSORS = ("camera_", "beam_", "frame_", "dropped_", "held_")  # without effect where players see the state
 
@@ -49,11 +50,13 @@ class Simulator:
 @dataclass(frozen=True)
 class Arm:
     """words: what it does; simulator: what is learnt on, None if nothing is learnt; camera_delay: that the loop allows
-    for [s]. Both are made from the circle's folder, with before/recordings and diagnosis, and the table's name."""
+    for [s]. Both are made from the circle's folder, with before/recordings and diagnosis, and the table's name.
+    of_any_table: whether it learns the same whatever the table."""
 
     words: str
     simulator: Callable[[Path, str], Simulator] | None
     camera_delay: Callable[[Path, str], float] = lambda circle, table: 0.0
+    of_any_table: bool = False
 
 
 def recordings_of(circle: Path) -> tuple[Path, ...]:
@@ -92,8 +95,8 @@ def _randomized(circle: Path, table: str) -> Simulator:
 
 ARMS = {
     "allowing": Arm("as it is; the loop allows for the camera's delay", None, _found_camera_delay),
-    "unchanged": Arm("fine-tuned on the unchanged simulator", lambda circle, table: Simulator()),
-    "randomized": Arm("fine-tuned on randomized tables", _randomized),
+    "unchanged": Arm("fine-tuned on the unchanged simulator", lambda circle, table: Simulator(), of_any_table=True),
+    "randomized": Arm("fine-tuned on randomized tables", _randomized, of_any_table=True),
     "constants": Arm("fine-tuned with the baseline's constants refitted", _constants),
     "residual": Arm("fine-tuned on the simulator with a black-box network of its residuals",
                     lambda circle, table: Simulator(residual_of=recordings_of(circle))),

@@ -12,10 +12,13 @@ from sim2real.gap.stages import STAGES, Progress, Report, Work
 
 
 class Circle:
-    """A circle in its folder. processes: that play at once; report: takes a line for each stage that begins."""
+    """A circle in its folder. processes: that play or learn at once; report: takes a line for each stage that begins;
+    shared: folder of arms that learn the same for every table, None for the circle's."""
 
-    def __init__(self, folder: Path, conditions: Conditions, processes: int, report: Report) -> None:
-        self.folder, self._processes, self._report = CircleFolder(folder, conditions), processes, report
+    def __init__(
+        self, folder: Path, conditions: Conditions, processes: int, report: Report, shared: Path | None = None
+    ) -> None:
+        self.folder, self._processes, self._report = CircleFolder(folder, conditions, shared), processes, report
         keep_conditions(folder, conditions)
 
     def run(self, arms: list[str], progress: Progress) -> dict[str, Any]:

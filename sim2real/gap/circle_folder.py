@@ -2,10 +2,11 @@
 
 ```
 DIR/conditions.json               who played, on what, with which seeds: the circle's conditions
-DIR/simulator/games.json          the player in the simulator
+DIR/simulator/NAME.json           the player as it is ("before"), and that of each arm, in the simulator
 DIR/before/                       games on the table, recordings/ of the first of them, and film.gif of the first
 DIR/diagnosis/                    of these recordings alone, not of those of any arm
-DIR/ARM/training/                 a run of `puckpilot train` for each arm that learns
+DIR/ARM/training/                 a run of `puckpilot train` for each arm that learns; or, of one that learns the same
+                                  for every table, in the folder that circles of several tables share
 DIR/ARM/games/, DIR/ARM/film.gif  its player on the table, in games of the same seeds
 DIR/gap.json, DIR/gap.html        the result
 ```
@@ -24,16 +25,18 @@ from sim2real.table.twin.fidelity import Meeting
 
 VARIANT = "match-v0"
 FILM = "film.gif"
+SHARED = "of_any_table"  # folder that circles of several tables share
+BEFORE = "before"  # name of the player as it is
 
 
 @dataclass(frozen=True)
 class Conditions:
-    """player, opponent: by name; table: a concealed one; games: of each player on the table, each of `seconds` of play
-    at most, of which the first `recorded` are recorded; minutes: of fine-tuning; seed: of the first game and of
-    learning."""
+    """player, opponents: by name; table: a concealed one; games: of each player on the table, against each opponent in
+    turn, each of `seconds` of play at most, of which the first `recorded` are recorded; minutes: of fine-tuning; seed:
+    of the first game and of learning."""
 
     player: str
-    opponent: str
+    opponents: tuple[str, ...]
     table: str
     games: int
     seconds: float
@@ -44,20 +47,21 @@ class Conditions:
 
 @dataclass(frozen=True)
 class CircleFolder:
-    """The folder `path` of the circle of these conditions."""
+    """The folder `path` of the circle of these conditions. shared: of arms that learn the same for every table, None
+    for this one."""
 
     path: Path
     conditions: Conditions
+    shared: Path | None = None
 
-    @property
-    def simulated(self) -> Path:
-        """Goals and minutes in the simulator."""
-        return self.path / "simulator" / "games.json"
+    def simulated(self, name: str) -> Path:
+        """Goals and minutes in the simulator of the player as it is, BEFORE, or of an arm's."""
+        return self.path / "simulator" / f"{name}.json"
 
     @property
     def before(self) -> Path:
         """Folder of the games of the player as it is."""
-        return self.path / "before"
+        return self.path / BEFORE
 
     @property
     def diagnosis(self) -> Path:
@@ -73,15 +77,18 @@ class CircleFolder:
 
     def trained(self, arm: str) -> Path:
         """The file that is there once an arm has learnt as long as it should."""
-        return self.path / arm / "trained"
+        return self._learnt(arm) / "trained"
+
+    def _learnt(self, arm: str) -> Path:
+        return (self.shared if self.shared and ARMS[arm].of_any_table else self.path) / arm
 
     def player(self, arm: str) -> str:
         """The name of an arm's player. ValueError, in one line, if it has not learnt yet."""
         if ARMS[arm].simulator is None:
             return self.conditions.player
         if not self.trained(arm).exists():
-            raise missing(self.path / arm, "trained player", "tune")
-        return f"policy:{self.path / arm / 'training' / 'policy.npz'}"
+            raise missing(self._learnt(arm), "trained player", "tune")
+        return f"policy:{self._learnt(arm) / 'training' / 'policy.npz'}"
 
     def meetings_before(self) -> list[Meeting]:
         """The games on the table of the player as it is."""
@@ -97,11 +104,18 @@ class CircleFolder:
         c = self.conditions
         return [
             Meeting(
-                player, c.opponent, VARIANT, c.seed + game, c.seconds, concealed=c.table, clears=True,
-                recorded=game < c.recorded, camera_delay=camera_delay,
+                player,
+                c.opponents[game % len(c.opponents)],
+                VARIANT,
+                c.seed + game,
+                c.seconds,
+                concealed=c.table,
+                clears=True,
+                recorded=game < c.recorded,
+                camera_delay=camera_delay,
             )
             for game in range(c.games)
-        ]  # fmt: skip
+        ]
 
 
 def missing(folder: Path, what: str, stage: str) -> ValueError:
@@ -114,8 +128,9 @@ def keep_conditions(folder: Path, conditions: Conditions) -> None:
     path = folder / "conditions.json"
     if path.exists():
         try:
-            kept = Conditions(**json.loads(path.read_text(encoding="utf-8")))
-        except (ValueError, TypeError):
+            content = json.loads(path.read_text(encoding="utf-8"))
+            kept = Conditions(**content | {"opponents": tuple(content["opponents"])})
+        except (ValueError, TypeError, KeyError):
             raise ValueError(f"{path} says nothing of a circle; name another --out") from None
         other = [one.name for one in fields(Conditions) if getattr(kept, one.name) != getattr(conditions, one.name)]
         if other:

@@ -14,21 +14,24 @@ from itertools import combinations
 from pathlib import Path
 from typing import Any
 
-from sim2real.gap.arms import ARMS
+from sim2real.gap.arms import ARMS, CEILING, OWN
+from sim2real.gap.circle_folder import BEFORE
+from sim2real.gap.in_simulator import TRUTH
 from sim2real.table.twin.concealed import TABLES, find_table
 from sim2real.table.twin.score import mean_change, share
 
-FORMAT = "puckpilot-gap-overview/1"
-CEILING, OWN = "truth", "corrected"
-ALIKE = ("player", "opponent", "seconds", "minutes")  # conditions that all circles share
+FORMAT = "puckpilot-gap-overview/2"
+CONTROL = "none"  # the table without an effect, of which nothing is won back
+ALIKE = ("player", "opponents", "seconds", "minutes")  # conditions that all circles share
 
 
 @dataclass(frozen=True)
 class PlayedGame:
-    """A game as a circle keeps it: goals of both, seconds of play."""
+    """A game as a circle keeps it: goals of both, seconds of play, who it was against."""
 
     goals: tuple[int, int]
     seconds: float
+    opponent: str
 
 
 def read_circle(folder: Path) -> dict[str, Any]:
@@ -50,11 +53,12 @@ def read_circle(folder: Path) -> dict[str, Any]:
 def overview(circles: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     """The result of all `circles`. ValueError, in one line, if they cannot be compared."""
     for name in ALIKE:
-        values = sorted({str(one["conditions"][name]) for one in circles})
+        values = sorted({_in_words(one["conditions"][name]) for one in circles})
         if len(values) > 1:
             raise ValueError(f"circles of different {name} cannot be compared: {', '.join(values)}")
     for one in circles:
         find_table(one["conditions"]["table"])
+    concealed = [one for one in circles if one["conditions"]["table"] != CONTROL]
     seen = {one["conditions"]["table"] for one in circles}
     for one, other in combinations(circles, 2):
         _refuse_same_games(one["conditions"], other["conditions"])
@@ -66,7 +70,12 @@ def overview(circles: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
             for table in TABLES
             if table in seen
         },
+        "all": _of_arms(concealed) if concealed else {},
     }
+
+
+def _in_words(condition: Any) -> str:
+    return " ".join(condition) if isinstance(condition, list) else str(condition)
 
 
 def _refuse_same_games(one: Mapping[str, Any], other: Mapping[str, Any]) -> None:
@@ -82,25 +91,32 @@ def _refuse_same_games(one: Mapping[str, Any], other: Mapping[str, Any]) -> None
 def _of_table(circles: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     simulated = [one["simulator"]["scored"] - one["simulator"]["conceded"] for one in circles]
     before = [one["before"]["net"]["value"] for one in circles]
-    arms = [arm for arm in ARMS if arm in circles[0]["arms"]]
-    if any(one["arms"].keys() != set(arms) for one in circles):
+    if any(one["arms"].keys() != circles[0]["arms"].keys() for one in circles):
         raise ValueError(f"circles of the table {circles[0]['conditions']['table']} have different arms")
     return {
         "seeds": [one["conditions"]["seed"] for one in circles],
         "simulator": sum(simulated) / len(circles),
         "before": sum(before) / len(circles),
         "found": [sorted(one["found"]) for one in circles],
-        "arms": {arm: _of_arm(circles, arm, arms) for arm in arms},
+        "arms": _of_arms(circles),
     }
 
 
+def _of_arms(circles: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """By the name of each arm that all these circles have, see `_of_arm`."""
+    arms = [arm for arm in ARMS if all(arm in one["arms"] for one in circles)]
+    return {arm: _of_arm(circles, arm, arms) for arm in arms}
+
+
 def _of_arm(circles: Sequence[Mapping[str, Any]], arm: str, arms: Sequence[str]) -> dict[str, Any]:
-    """What an arm won back; that as a share of the ceiling's; and by how much the arm OWN is better than it."""
+    """What an arm won back, over all circles and of each; the same in the simulator with what is concealed; that on the
+    tables as a share of the ceiling's; and by how much the arm OWN is better than it."""
     before, after = [_games(one["before"]) for one in circles], [_games(one["arms"][arm]) for one in circles]
     series = list(zip(before, after, strict=True))
     content: dict[str, Any] = {
         "change": asdict(mean_change(series)),
         "of_seeds": [mean_change([one]).value for one in series],
+        "simulated": sum(_net(one, arm) - _net(one, BEFORE) for one in circles) / len(circles),
     }
     if CEILING in arms and arm != CEILING:
         best = [_games(one["arms"][CEILING]) for one in circles]
@@ -112,5 +128,10 @@ def _of_arm(circles: Sequence[Mapping[str, Any]], arm: str, arms: Sequence[str])
     return content
 
 
+def _net(circle: Mapping[str, Any], name: str) -> float:
+    rates = circle["in_simulator"][name][TRUTH]
+    return rates["scored"] - rates["conceded"]
+
+
 def _games(played: Mapping[str, Any]) -> list[PlayedGame]:
-    return [PlayedGame((scored, conceded), seconds) for scored, conceded, seconds in played["games"]]
+    return [PlayedGame((scored, conceded), *others) for scored, conceded, *others in played["games"]]

@@ -2,39 +2,38 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from sim2real.gap.against_truth import against_truth, learnt
-from sim2real.gap.circle_folder import FILM, CircleFolder, missing
+from sim2real.gap.circle_folder import BEFORE, FILM, CircleFolder, missing
+from sim2real.gap.in_simulator import UNCHANGED, simulated_rates
 from sim2real.table.twin.fidelity import Meeting, TwinGame, kept_games
 from sim2real.table.twin.score import change, score, shots
 
-FORMAT = "puckpilot-gap/4"
+FORMAT = "puckpilot-gap/5"
 
 
 def result(folder: CircleFolder, arms: list[str]) -> dict[str, Any]:
     """What gap.json holds. ValueError, in one line, if a stage has to be run first.
 
-    Rates are goals a minute. `films`: paths from the folder, of the player as it is under "before" and of each arm;
-    `against_truth`, `learnt`: see there; `open`: why the diagnosis says nothing of a regime, by its name, and under
-    "all" why it says nothing at all.
+    Rates are goals a minute, over opponents the mean; `simulator`: of the player as it is, on tables without an effect;
+    `in_simulator`: of each player there and with what is concealed, see `in_simulator.simulated_rates`. `films`: paths
+    from the folder, of the player as it is under "before" and of each arm; `against_truth`, `learnt`: see there;
+    `open`: why the diagnosis says nothing of a regime, by its name, and under "all" why it says nothing at all.
     """
-    if not folder.simulated.exists():
-        raise missing(folder.simulated.parent, "games", "play")
-    simulated = json.loads(folder.simulated.read_text(encoding="utf-8"))
+    if not folder.simulated(BEFORE).exists():
+        raise missing(folder.simulated(BEFORE).parent, "games", "play")
     before = _kept(folder.meetings_before(), folder.before, "play")
     content = folder.diagnosed()
     after = {arm: _kept(folder.meetings_after(arm), folder.path / arm / "games", "replay") for arm in arms}
+    simulated = {name: simulated_rates(folder.simulated(name)) for name in (BEFORE, *arms)}
     return {
         "format": FORMAT,
         "conditions": asdict(folder.conditions),
-        "simulator": {
-            name: goals / simulated["minutes"]
-            for name, goals in zip(("scored", "conceded"), simulated["goals"], strict=True)
-        },
+        "simulator": simulated[BEFORE][UNCHANGED],
+        "in_simulator": simulated,
         "before": _played(before),
         "found": [one["mechanism"] for one in content["findings"]],
         "verdict": content["verdict"],
@@ -42,7 +41,7 @@ def result(folder: CircleFolder, arms: list[str]) -> dict[str, Any]:
         "against_truth": against_truth(content["findings"], folder.conditions.table),
         "learnt": learnt(folder.path, folder.conditions.table),
         "arms": {arm: {**_played(games), "change": asdict(change(before, games))} for arm, games in after.items()},
-        "films": {name: f"{name}/{FILM}" for name in ("before", *arms) if (folder.path / name / FILM).exists()},
+        "films": {name: f"{name}/{FILM}" for name in (BEFORE, *arms) if (folder.path / name / FILM).exists()},
     }
 
 
@@ -59,10 +58,15 @@ def _open(diagnosis: dict[str, Any]) -> dict[str, str]:
 
 
 def _played(games: list[TwinGame]) -> dict[str, Any]:
-    """What came of a player's games: rates a minute, shots, stops of the table, and each one's goals and seconds."""
+    """What came of a player's games: rates a minute, also against each opponent alone, shots, stops of the table, and
+    goals, seconds and opponent of each game."""
     return {
         **{name: asdict(rate) for name, rate in score(games).items()},
+        "against": {
+            one: {name: asdict(rate) for name, rate in score([game for game in games if game.opponent == one]).items()}
+            for one in dict.fromkeys(game.opponent for game in games)
+        },
         "shots": asdict(shots(games)),
         "stops": sum(game.stops for game in games),
-        "games": [[*game.goals, game.seconds] for game in games],
+        "games": [[*game.goals, game.seconds, game.opponent] for game in games],
     }

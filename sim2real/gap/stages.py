@@ -3,7 +3,6 @@ before it left; ValueError, in one line, says what they did not."""
 
 from __future__ import annotations
 
-import csv
 import json
 import subprocess
 import sys
@@ -12,22 +11,23 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from puckpilot_env.files.whole_file import write_text_whole
-from sim2real.gap.arms import ARMS, recordings_of, simulator_of, write_simulator
-from sim2real.gap.circle_folder import FILM, VARIANT, CircleFolder, missing
+from sim2real.gap.arms import ARMS, CEILING, recordings_of, simulator_of
+from sim2real.gap.circle_folder import BEFORE, FILM, VARIANT, CircleFolder, missing
 from sim2real.gap.film import film
-from sim2real.gap.page import page
+from sim2real.gap.in_simulator import simulate
+from sim2real.gap.report.page import page
 from sim2real.gap.result import result
+from sim2real.gap.tuning import fine_tune, untrained
 from sim2real.table.twin.fidelity import Meeting, play_all
 
-PRESET = "fine_tune"
 Progress = Callable[[int, int], None]
 Report = Callable[[str], None]
 
 
 @dataclass(frozen=True)
 class Work:
-    """What a stage works on: a circle's folder, for these arms. processes: that play at once; report: takes a line for
-    each thing that begins; progress: games done, and of how many."""
+    """What a stage works on: a circle's folder, for these arms. processes: that play or learn at once; report: takes a
+    line for each thing that begins; progress: games done, and of how many."""
 
     folder: CircleFolder
     arms: list[str]
@@ -38,24 +38,17 @@ class Work:
 
 def play(work: Work) -> None:
     """The player as it is: games in the simulator, and on the table, where the first of them are recorded."""
-    _simulate(work)
-    work.report("playing on the table")
-    _games(work, work.folder.meetings_before(), work.folder.before, "before")
+    work.report("playing in the simulator, and on the table")
+    _simulate(work, BEFORE, work.folder.conditions.player)
+    _games(work, work.folder.meetings_before(), work.folder.before, BEFORE)
 
 
-def _simulate(work: Work) -> None:
-    """The score in the simulator, with what is true of every table."""
-    from puckpilot_env.variants import find_variant
-    from sim2real.table.simulated import play_simulated
-
-    path, c = work.folder.simulated, work.folder.conditions
-    if path.exists():
-        return
-    work.report("playing in the simulator")
-    match = play_simulated(VARIANT, c.player, c.opponent, 10 * c.games, c.seed)
-    minutes = float(match.lengths.sum()) * find_variant(VARIANT).period / 60.0
-    path.parent.mkdir(parents=True, exist_ok=True)
-    write_text_whole(path, json.dumps({"goals": list(match.goals), "minutes": minutes}, indent=1) + "\n")
+def _simulate(work: Work, name: str, player: str) -> None:
+    """The score in the simulator, with what is true of every table, without and with what is concealed."""
+    c = work.folder.conditions
+    truth = simulator_of(CEILING, work.folder.path, c.table)
+    assert truth is not None
+    simulate(work.folder.simulated(name), VARIANT, player, c.opponents, 10 * c.games, c.seed, truth.values)
 
 
 def _games(work: Work, meetings: list[Meeting], folder: Path, name: str) -> None:
@@ -64,7 +57,7 @@ def _games(work: Work, meetings: list[Meeting], folder: Path, name: str) -> None
     folder.mkdir(parents=True, exist_ok=True)
     play_all(meetings, folder, work.processes, work.progress)
     if not filmed.exists():
-        film(meetings[0], filmed, work.folder.conditions.player if name == "before" else name)
+        film(meetings[0], filmed, work.folder.conditions.player if name == BEFORE else name)
 
 
 def diagnose(work: Work) -> None:
@@ -83,29 +76,10 @@ def diagnose(work: Work) -> None:
 def tune(work: Work) -> None:
     """The player of each arm that learns, fine-tuned as long as it should be."""
     work.folder.diagnosed()
-    for arm in work.arms:
-        _tune(work, arm)
-
-
-def _tune(work: Work, arm: str) -> None:
-    c, done = work.folder.conditions, work.folder.trained(arm)
-    simulator = simulator_of(arm, work.folder.path, c.table)
-    if simulator is None or done.exists():
-        return
-    work.report(f"{ARMS[arm].words}, {c.minutes:g} minutes")
-    run = done.parent / "training"
-    given = ["--resume"]
-    if not (run / "checkpoint.pt").exists():
-        done.parent.mkdir(parents=True, exist_ok=True)
-        written = write_simulator(simulator, done.parent)
-        files = [word for name, path in written.items() for word in (f"--{name}", str(path))]
-        given = [
-            "--preset", PRESET, "--start", c.player, "--variant", VARIANT, "--seed", str(c.seed),
-            "--threads", str(work.processes), *files,
-        ]  # fmt: skip
-    left = max(c.minutes - _trained_minutes(run), 1e-3)
-    _run("train", "--out", str(run), "--minutes", f"{left:g}", *given)
-    write_text_whole(done, "")
+    arms = untrained(work.folder, work.arms)
+    if arms:
+        work.report(f"{work.folder.conditions.minutes:g} minutes of training each: {', '.join(arms)}")
+        fine_tune(work.folder, arms, work.processes)
 
 
 def replay(work: Work) -> None:
@@ -114,6 +88,7 @@ def replay(work: Work) -> None:
     players = {arm: work.folder.meetings_after(arm) for arm in work.arms}
     for arm, meetings in players.items():
         work.report(f"playing on the table: {ARMS[arm].words}")
+        _simulate(work, arm, meetings[0].player)
         _games(work, meetings, work.folder.path / arm / "games", arm)
 
 
@@ -132,12 +107,3 @@ def _run(*words: str) -> None:
     """Run a command of puckpilot, which prints to stderr here. ValueError, in one line, if it fails."""
     if subprocess.run([sys.executable, "-m", "puckpilot", *words], stdout=sys.stderr, check=False).returncode:
         raise ValueError(f"puckpilot {' '.join(words)} failed, as it says above")
-
-
-def _trained_minutes(run: Path) -> float:
-    """How long a run has been trained, by its curve."""
-    curve = run / "curve.csv"
-    if not curve.exists():
-        return 0.0
-    with curve.open(encoding="utf-8", newline="") as file:
-        return max((float(row["seconds"]) for row in csv.DictReader(file)), default=0.0) / 60.0

@@ -62,7 +62,7 @@ class TwinGame:
     """What came of a game: outcome 1, 0, -1 as the player won, drew or lost; goals of both; `seconds` of play.
 
     virtual: the twin's time from power-on to the end [s]; processor, wall: what it took on this computer [s]; stops:
-    how often a doubt stopped the table; shots: at both goals, as the robot's camera saw them.
+    how often a doubt stopped the table; shots: at both goals, as the robot's camera saw them; opponent: by name.
     """
 
     outcome: int
@@ -73,6 +73,7 @@ class TwinGame:
     wall: float
     stops: int = 0
     shots: Shots = field(default_factory=Shots)
+    opponent: str = ""
 
 
 def play_on_twin(meeting: Meeting, recording: Path | None, onlooker: Onlooker | None = None) -> TwinGame:
@@ -108,7 +109,9 @@ def _play(meeting: Meeting, recording: Path | None, onlooker: Onlooker | None = 
                 raise KeyboardInterrupt
             virtual = env.backend.now()
     processor, wall = time.process_time() - begin[0], time.perf_counter() - begin[1]
-    return TwinGame(log.outcome, log.score, log.seconds, virtual, processor, wall, len(log.faults), log.shots)
+    return TwinGame(
+        log.outcome, log.score, log.seconds, virtual, processor, wall, len(log.faults), log.shots, meeting.opponent
+    )
 
 
 def play_all(

@@ -1,4 +1,7 @@
-"""The score of a player against an opponent, goals a minute for and against, with intervals by resampling the games."""
+"""The score of a player, goals a minute for and against, with intervals by resampling the games.
+
+Against several opponents a rate is the mean of those against each: a game against one that concedes early is short, and
+would else count for less. The games against each are resampled by themselves."""
 
 from __future__ import annotations
 
@@ -26,10 +29,16 @@ class Game(Protocol):
         """Of play."""
         ...
 
+    @property
+    def opponent(self) -> str:
+        """Who it is against."""
+        ...
+
 
 RESAMPLES = 4000
 LEVEL = 0.95
 SHARES = np.linspace(-5.0, 5.0, 1001)  # tested one by one
+Resamples = list[NDArray[np.int64]]  # for each opponent rows of games against it: all of them first, then drawn ones
 
 
 @dataclass(frozen=True)
@@ -43,7 +52,7 @@ class Rate:
 
 def score(games: Sequence[Game]) -> dict[str, Rate]:
     """Goals a minute `scored`, `conceded`, and the difference of both, the `net` score."""
-    drawn = _drawn(len(games))
+    drawn = _drawn(games)
     return {name: _rate(_rates(games, name, drawn)) for name in ("scored", "conceded", "net")}
 
 
@@ -53,7 +62,7 @@ def shots(games: Sequence[TwinGame]) -> Shots:
 
 
 def change(before: Sequence[Game], after: Sequence[Game]) -> Rate:
-    """By how much the net score is higher `after`: in games of the same seeds, in the same order."""
+    """By how much the net score is higher `after`: in games of the same seeds and opponents, in the same order."""
     return mean_change([(before, after)])
 
 
@@ -78,22 +87,27 @@ def share(series: Sequence[tuple[Sequence[Game], Sequence[Game], Sequence[Game]]
 def _mean_changes(series: Sequence[tuple[Sequence[Game], Sequence[Game]]]) -> NDArray[np.float64]:
     changes = []
     for k, (before, after) in enumerate(series):
-        drawn = _drawn(len(before), k)
+        drawn = _drawn(before, k)
         changes.append(_rates(after, "net", drawn) - _rates(before, "net", drawn))
     return np.mean(changes, axis=0)
 
 
-def _drawn(games: int, seed: int = 0) -> NDArray[np.int64]:
-    """Rows of games: all of them first, then as many at random, the same for the same seed."""
-    return np.concatenate([np.arange(games)[None], np.random.default_rng(seed).integers(0, games, (RESAMPLES, games))])
+def _drawn(games: Sequence[Game], seed: int = 0) -> Resamples:
+    """As many games against each opponent as there are, drawn at random; the same for the same seed."""
+    rng, opponents = np.random.default_rng(seed), np.array([one.opponent for one in games])
+    drawn = []
+    for name in dict.fromkeys(opponents.tolist()):
+        own = np.flatnonzero(opponents == name)
+        drawn.append(np.concatenate([own[None], rng.choice(own, (RESAMPLES, len(own)))]))
+    return drawn
 
 
-def _rates(games: Sequence[Game], name: str, drawn: NDArray[np.int64]) -> NDArray[np.float64]:
-    """The rate [1/min] of each row of games."""
+def _rates(games: Sequence[Game], name: str, drawn: Resamples) -> NDArray[np.float64]:
+    """The rate [1/min] of each row of games, the mean over opponents."""
     scored, conceded = np.array([one.goals for one in games], float).T
     goals = {"scored": scored, "conceded": conceded, "net": scored - conceded}[name]
     minutes = np.array([one.seconds for one in games]) / 60.0
-    return goals[drawn].sum(axis=1) / minutes[drawn].sum(axis=1)
+    return np.mean([goals[rows].sum(axis=1) / minutes[rows].sum(axis=1) for rows in drawn], axis=0)
 
 
 def _rate(rates: NDArray[np.float64]) -> Rate:

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from sim2real.gap.against_truth import MISSED, NAMED, NOT_THERE, POSSIBLE, against_truth, learnt
-from sim2real.gap.found_words import against_line, against_rows, found_words, learnt_words
+from sim2real.gap.report.found_words import against_line, against_rows, found_words, learnt_words
 from sim2real.table.twin.concealed import TABLES
 
 SILENT_EFFECTS = """format = "puckpilot-effects/1"

@@ -13,15 +13,15 @@ pytest.importorskip("unicorn", reason="unicorn is not installed: the program can
 from agents.training.run_folder import RunFolder
 from puckpilot import main
 from puckpilot_env.options.at_table import AT_TABLE
-from sim2real.gap import film, stages
+from sim2real.gap import film, tuning
 from sim2real.gap.circle import Circle
 from sim2real.gap.circle_folder import Conditions
 from sim2real.table.twin import fidelity
 from tests.agents.training.tiny import TINY
 from tests.sim2real.gap.test_against_truth import finding
 
-PLAYED = {"scored", "conceded", "net", "shots", "stops", "games"}
-CONDITIONS = Conditions("interceptor", "goalie", "none", 3, 20.0, 2, 1.0, 5)
+PLAYED = {"scored", "conceded", "net", "against", "shots", "stops", "games"}
+CONDITIONS = Conditions("interceptor", ("bank_shot", "goalie"), "none", 2, 12.0, 1, 1.0, 5)
 
 
 def circle(folder: Path, **other: object) -> Circle:
@@ -35,19 +35,22 @@ def short_films(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.slow
 def test_a_circle_goes_round_and_is_not_run_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """With a player that does not learn: games on the table, of which two are recorded, and their diagnosis."""
+    """With a player that does not learn: games on the table, of which one is recorded, and its diagnosis."""
     result = circle(tmp_path).run([], lambda done, count: None)
-    assert {one.name for one in (tmp_path / "before" / "recordings").iterdir()} == {"game_5", "game_6"}
+    assert {one.name for one in (tmp_path / "before" / "recordings").iterdir()} == {"game_5"}
     assert result["films"] == {"before": "before/film.gif"} and (tmp_path / "before" / "film.gif").stat().st_size > 1e4
     assert result["found"] == [] and result["arms"] == {} and result["before"].keys() == PLAYED
     assert result["simulator"].keys() == {"scored", "conceded"}
+    assert (
+        list(result["before"]["against"]) == [game[3] for game in result["before"]["games"]] == ["bank_shot", "goalie"]
+    )
     shots = result["before"]["shots"]
-    assert shots["faced"] > 3 and shots["made"] >= shots["scored"]
+    assert shots["faced"] > 0 and shots["made"] >= shots["scored"]
     assert sum(shots[kind] for kind in ("late", "bounce", "straight", "deflected")) == sum(
-        conceded for _, conceded, _ in result["before"]["games"]
+        conceded for _, conceded, *_ in result["before"]["games"]
     )
     html = (tmp_path / "gap.html").read_text(encoding="utf-8")
-    assert "on a table with nothing: the control" in html and "--games 3 --seconds 20 --recorded 2" in html
+    assert "on a table with nothing: the control" in html and "--games 2 --seconds 12 --recorded 1" in html
 
     late = finding("camera_delay", "sensing", delay_s=0.002)
     content = json.loads((tmp_path / "diagnosis" / "diagnosis.json").read_text())
@@ -72,8 +75,8 @@ def test_an_arm_is_fine_tuned_and_plays_games_of_the_same_seeds(
     """Wide networks of the champion, a round of a dozen tables."""
     preset = tmp_path / "tiny.toml"
     preset.write_text(TINY.replace("hidden = [16]", "hidden = [128, 128]"))
-    monkeypatch.setattr(stages, "PRESET", str(preset))
-    made = circle(tmp_path / "out", player="policy:champion", games=2, recorded=1, seconds=10.0, minutes=1e-4)
+    monkeypatch.setattr(tuning, "PRESET", str(preset))
+    made = circle(tmp_path / "out", player="policy:champion", seconds=8.0, minutes=1e-4)
     result = made.run(["unchanged"], lambda done, count: None)
     arm = tmp_path / "out" / "unchanged"
     settings = RunFolder(arm / "training").settings()

@@ -5,13 +5,15 @@ from __future__ import annotations
 import json
 from contextlib import nullcontext
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
 
 from puckpilot import main
+from sim2real.commands import gap
 from sim2real.gap.overview import overview, read_circle
+from sim2real.gap.stages import LAST, STAGES, Work
 
 GAMES, MINUTES = 30, 1.0
 
@@ -20,17 +22,21 @@ def played(net: float, spread: float, seed: int) -> dict[str, Any]:
     """Games of a minute whose net scores have this mean exactly, and differ from game to game."""
     noise = np.random.default_rng(seed).normal(0.0, spread, GAMES)
     scores = net + noise - noise.mean()
-    return {"net": {"value": net}, "games": [[float(one), 0, 60.0 * MINUTES] for one in scores]}
+    return {"net": {"value": net}, "games": [[float(one), 0, 60.0 * MINUTES, "goalie"] for one in scores]}
 
 
 def circle(table: str, seed: int, before: float, spread: float = 0.3, **arms: float) -> dict[str, Any]:
     return {
-        "format": "puckpilot-gap/4",
+        "format": "puckpilot-gap/5",
         "conditions": {
-            "player": "policy:champion", "opponent": "interceptor", "table": table, "games": GAMES, "seconds": 60.0,
+            "player": "policy:champion", "opponents": ["goalie"], "table": table, "games": GAMES, "seconds": 60.0,
             "recorded": 5, "minutes": 30.0, "seed": seed,
         },
         "simulator": {"scored": 5.0, "conceded": 1.0},
+        "in_simulator": {
+            name: {"unchanged": {"scored": 5.0, "conceded": 1.0}, "truth": {"scored": 2.0 * net, "conceded": 0.5}}
+            for name, net in {"before": before, **arms}.items()
+        },
         "before": played(before, spread, seed),
         "found": ["table_tilt"],
         "arms": {arm: played(net, spread, seed + 10 * k + 1) for k, (arm, net) in enumerate(arms.items())},
@@ -48,8 +54,21 @@ def test_changes_and_shares_are_means_over_the_seeds() -> None:
     assert corrected["share"]["value"] == pytest.approx(0.75)
     assert corrected["share"]["low"] < 0.75 < corrected["share"]["high"]
     assert truth["own_better_by"]["value"] == pytest.approx(-0.5)
-    assert corrected["of_seeds"] == pytest.approx([1.0, 2.0])
+    assert corrected["of_seeds"] == pytest.approx([1.0, 2.0]) and corrected["simulated"] == pytest.approx(3.0)
     assert "share" not in truth and "own_better_by" not in corrected
+
+
+def test_over_all_tables_the_control_is_left_out() -> None:
+    """Won back: 1 and 3 of the ceiling's 2 and 4; on the control 4 of 0 are lost."""
+    circles = [
+        circle("none", 0, 6.0, corrected=2.0, truth=6.0),
+        circle("walls", 0, 1.0, corrected=2.0, truth=3.0),
+        circle("late", 0, 1.0, corrected=4.0, truth=5.0, unchanged=1.0),
+    ]
+    arms = overview(circles)["all"]
+    assert arms.keys() == {"corrected", "truth"}
+    assert arms["corrected"]["change"]["value"] == pytest.approx(2.0)
+    assert arms["corrected"]["share"]["value"] == pytest.approx(2.0 / 3.0)
 
 
 def test_without_a_ceiling_above_chance_there_is_no_share() -> None:
@@ -66,7 +85,7 @@ def test_an_interval_over_seeds_is_narrower_and_holds_the_truth() -> None:
             rng = np.random.default_rng(seed)
             made = circle("late", seed, 0.0, corrected=0.0)
             for games, mean in ((made["before"], 1.0), (made["arms"]["corrected"], 2.0)):
-                games["games"] = [[float(one), 0, 60.0] for one in rng.normal(mean, 1.0, GAMES)]
+                games["games"] = [[float(one), 0, 60.0, "goalie"] for one in rng.normal(mean, 1.0, GAMES)]
             series.append(made)
         both = overview(series)["tables"]["late"]["arms"]["corrected"]["change"]
         alone = overview(series[:1])["tables"]["late"]["arms"]["corrected"]["change"]
@@ -90,12 +109,32 @@ def test_the_command_writes_the_page(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert capsys.readouterr().err.strip().endswith("share games: 30 games need seeds as far from each other")
 
 
+def test_the_command_goes_round_several_tables_and_writes_a_page_over_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    seen = []
+
+    def report(work: Work) -> None:
+        table = work.folder.conditions.table
+        seen.append((work.folder.path.name, work.folder.shared))
+        (work.folder.path / "gap.json").write_text(json.dumps(circle(table, 0, 1.0, corrected=2.0)))
+
+    monkeypatch.setattr(gap, "_lines", lambda result: [])
+    for name in STAGES:
+        monkeypatch.setitem(cast(dict, STAGES), name, report if name == LAST else lambda work: None)
+    assert main(["gap", "goalie", "--table", "walls", "late", "--arms", "corrected", "--out", str(tmp_path)]) == 0
+    shared = tmp_path / "of_any_table"
+    assert seen == [("walls", shared), ("late", shared)]
+    assert list(json.loads((tmp_path / "overview.json").read_text())["tables"]) == ["walls", "late"]
+    assert "overview.html" in capsys.readouterr().out.splitlines()[-1]
+
+
 @pytest.mark.parametrize(
     ("content", "reason"),
     [
         (None, "has no gap.json: expected the --out of a puckpilot gap that is done"),
         ("{", "is no result of puckpilot gap"),
-        ('{"format": "puckpilot-gap/9"}', "is no result of puckpilot gap: expected the format puckpilot-gap/4"),
+        ('{"format": "puckpilot-gap/9"}', "is no result of puckpilot gap: expected the format puckpilot-gap/5"),
     ],
 )
 def test_what_is_no_circle_is_refused(tmp_path: Path, content: str | None, reason: str) -> None:
@@ -112,7 +151,7 @@ def test_a_share_of_a_ceiling_that_is_hardly_above_chance_is_a_number() -> None:
     for seed in range(40):
         made = circle("late", 100 * seed, 0.0, corrected=0.0, truth=0.0)
         for games, mean in ((made["before"], 2.0), (made["arms"]["corrected"], 2.4), (made["arms"]["truth"], 3.0)):
-            games["games"] = [[int(one), 0, 60.0] for one in rng.poisson(mean, GAMES)]
+            games["games"] = [[int(one), 0, 60.0, "goalie"] for one in rng.poisson(mean, GAMES)]
         row = overview([made])["tables"]["late"]["arms"]["corrected"]["share"]
         if row is not None:
             known += 1

@@ -17,7 +17,7 @@ from sim2real.gap.stages import STAGES
 from sim2real.table.twin.fidelity import Meeting, TwinGame
 from tests.sim2real.gap.test_against_truth import SILENT_DRAWS, SILENT_EFFECTS
 
-CONDITIONS = Conditions("interceptor", "goalie", "late", 3, 20.0, 2, 1.0, 5)
+CONDITIONS = Conditions("interceptor", ("goalie", "still"), "late", 3, 20.0, 2, 1.0, 5)
 DIAGNOSIS = {
     "verdict": "parameters_only", "findings": [], "baseline": {"parameters": {"friction": {"value": 0.11}}},
     "regimes": [{"regime": "glide", "verdict": "parameters_only"}, {"regime": "wall", "reason": "too few hits"}],
@@ -62,16 +62,22 @@ def test_the_report_alone_is_of_what_is_there(diagnosed: Path, monkeypatch: pyte
 
     def kept(meetings: list[Meeting], folder: Path) -> list[TwinGame]:
         assert folder in (diagnosed / "before", diagnosed / "allowing" / "games")
-        return [TwinGame(1, (k, 1), 20.0, 22.0, 2.0, 2.0) for k in range(len(meetings))]
+        return [TwinGame(1, (k, 1), 20.0, 22.0, 2.0, 2.0, opponent=one.opponent) for k, one in enumerate(meetings)]
 
     monkeypatch.setattr(result_module, "kept_games", kept)
     for name in ("simulator", "before", "allowing"):
         (diagnosed / name).mkdir()
-    (diagnosed / "simulator" / "games.json").write_text('{"goals": [10, 2], "minutes": 2.0}')
+    against = {"goalie": {"goals": [10, 2], "minutes": 2.0}, "still": {"goals": [9, 0], "minutes": 1.0}}
+    for name in ("before", "allowing"):
+        simulated = json.dumps({"unchanged": against, "truth": {"goalie": {"goals": [4, 4], "minutes": 2.0}}})
+        (diagnosed / "simulator" / f"{name}.json").write_text(simulated)
     (diagnosed / "before" / "film.gif").touch()
     run(diagnosed, "report", ["allowing"])
     result = json.loads((diagnosed / "gap.json").read_text())
-    assert result["simulator"] == {"scored": 5.0, "conceded": 1.0} and result["films"] == {"before": "before/film.gif"}
+    assert result["simulator"] == {"scored": 7.0, "conceded": 0.5}
+    assert result["in_simulator"]["allowing"]["truth"] == {"scored": 2.0, "conceded": 2.0}
+    assert result["before"]["against"]["still"]["scored"]["value"] == 3.0
+    assert result["films"] == {"before": "before/film.gif"}
     assert [one["outcome"] for one in result["against_truth"]] == ["missed", "missed"]
     assert result["learnt"]["draws"] == {"friction": [0.1, 0.12]}
     html = (diagnosed / "gap.html").read_text(encoding="utf-8")

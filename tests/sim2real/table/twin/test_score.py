@@ -12,14 +12,22 @@ from sim2real.table.twin.fidelity import TwinGame
 from sim2real.table.twin.score import change, score, shots
 
 
-def game(scored: int, conceded: int, seconds: float = 60.0) -> TwinGame:
-    return TwinGame(1, (scored, conceded), seconds, seconds, 1.0, 1.0)
+def game(scored: int, conceded: int, seconds: float = 60.0, opponent: str = "goalie") -> TwinGame:
+    return TwinGame(1, (scored, conceded), seconds, seconds, 1.0, 1.0, opponent=opponent)
 
 
 def test_rates_are_all_goals_by_all_minutes() -> None:
     rates = score([game(7, 1, 30.0), game(5, 2, 90.0)])
     assert {name: rate.value for name, rate in rates.items()} == {"scored": 6.0, "conceded": 1.5, "net": 4.5}
     assert (rates["scored"].low, rates["scored"].high) == pytest.approx((5.0 / 1.5, 14.0))
+
+
+def test_every_opponent_counts_the_same_however_short_its_games_are() -> None:
+    """14 goals a minute against one, in half-minutes, 1 against the other; its games are alike, so that nothing is in
+    doubt. Drawn without regard to opponents, some resamples would have games against one alone."""
+    short, long = [game(7, 0, 30.0, "follower")] * 3, [game(2, 1, 60.0)] * 3
+    net = score([short[0], long[0], short[1], long[1], short[2], long[2]])["net"]
+    assert (net.value, net.low, net.high) == pytest.approx((7.5, 7.5, 7.5))
 
 
 def test_the_shots_of_all_games_are_added() -> None:

@@ -11,7 +11,9 @@ from sim2real.diagnose.report import page as diagnosis_page
 from sim2real.diagnose.report.charts import BLUE, GREY
 from sim2real.diagnose.report.inline_svg import inline_svg
 from sim2real.gap.arms import ARMS
-from sim2real.gap.found_words import against_rows, found_words, learnt_words
+from sim2real.gap.circle_folder import BEFORE
+from sim2real.gap.in_simulator import TRUTH, UNCHANGED
+from sim2real.gap.report.found_words import against_rows, found_words, learnt_words
 from sim2real.table.game.shots import Shots
 from sim2real.table.twin.concealed import TABLES
 
@@ -50,10 +52,13 @@ def page(result: dict[str, Any]) -> str:
             chart=_chart(result),
             rows=_rows(result),
             shots=_shots(result),
+            opponents=list(conditions["opponents"]),
+            against=_against(result),
+            simulated=_simulated(result),
             films=_films(result),
             found=found_words(result),
             learnt=learnt_words(result["learnt"]),
-            against=against_rows(result["against_truth"]),
+            beside_truth=against_rows(result["against_truth"]),
             command=_command(conditions, list(result["arms"])),
             files=FILES,
         )
@@ -89,10 +94,31 @@ def _shots(result: dict[str, Any]) -> list[list[str]]:
     return rows
 
 
+def _against(result: dict[str, Any]) -> list[list[str]]:
+    """Each player's goals for and against, a minute, against each opponent."""
+    players = {PLAYED: result["before"], **result["arms"]}
+    rows = []
+    for name, one in players.items():
+        rates = [[of[side]["value"] for side in ("scored", "conceded")] for of in one["against"].values()]
+        rows.append([name, *(f"{scored:.2f} : {conceded:.2f}" for scored, conceded in rates)])
+    return rows
+
+
+def _simulated(result: dict[str, Any]) -> list[list[str]]:
+    """Each player's net score in the simulator, on tables without an effect and with what is concealed, and on the
+    table."""
+    rows = []
+    for name, tables in result["in_simulator"].items():
+        nets = [tables[one]["scored"] - tables[one]["conceded"] for one in (UNCHANGED, TRUTH)]
+        played = result["before"] if name == BEFORE else result["arms"][name]
+        rows.append([PLAYED if name == BEFORE else name, *(f"{one:.2f}" for one in (*nets, played["net"]["value"]))])
+    return rows
+
+
 def _films(result: dict[str, Any]) -> list[tuple[str, str]]:
     """The path of each film, and its caption."""
     return [
-        (path, PLAYED if name == "before" else f"{name}: {ARMS[name].words}") for name, path in result["films"].items()
+        (path, PLAYED if name == BEFORE else f"{name}: {ARMS[name].words}") for name, path in result["films"].items()
     ]
 
 
@@ -126,8 +152,9 @@ def _chart(result: dict[str, Any]) -> str:
 
 
 def _command(conditions: dict[str, Any], arms: list[str]) -> str:
-    options = " ".join(
-        f"--{name} {conditions[name]:g}" if isinstance(conditions[name], float) else f"--{name} {conditions[name]}"
-        for name in ("table", "opponent", "games", "seconds", "recorded", "minutes", "seed")
-    )
-    return f"puckpilot gap {conditions['player']} {options} --arms {' '.join(arms)}"
+    words = {
+        "table": conditions["table"], "opponent": " ".join(conditions["opponents"]),
+        **{name: f"{conditions[name]:g}" for name in ("games", "seconds", "recorded", "minutes")},
+        "seed": str(conditions["seed"]), "arms": " ".join(arms),
+    }  # fmt: skip
+    return " ".join(["puckpilot gap", conditions["player"], *(f"--{name} {one}" for name, one in words.items())])

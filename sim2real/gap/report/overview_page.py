@@ -6,20 +6,21 @@ from typing import TYPE_CHECKING, Any
 
 from sim2real.diagnose.report.charts import BLUE, GREY, ORANGE
 from sim2real.diagnose.report.inline_svg import INK, inline_svg
-from sim2real.gap.arms import ARMS
-from sim2real.gap.overview import CEILING, OWN
-from sim2real.gap.page import environment
+from sim2real.gap.arms import ARMS, CEILING, OWN
+from sim2real.gap.report.page import environment
 from sim2real.table.twin.concealed import TABLES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 WIDTH, ROW, LEFT = 620.0, 20.0, 190.0  # points
+ALL = "all but none"
 COLORS = {OWN: BLUE, CEILING: GREY}
 
 
 def overview_page(result: dict[str, Any], folders: list[str]) -> str:
     """The `overview` of the circles in `folders` as one self-contained HTML page without scripts."""
+    tables = {**{name: one["arms"] for name, one in result["tables"].items()}, ALL: result["all"]}
     return (
         environment()
         .get_template("overview.html.j2")
@@ -33,9 +34,7 @@ def overview_page(result: dict[str, Any], folders: list[str]) -> str:
             },
             chart=_chart(result["tables"]),
             tables=[_table_row(name, one) for name, one in result["tables"].items()],
-            rows=[
-                _arm_row(name, arm, row) for name, one in result["tables"].items() for arm, row in one["arms"].items()
-            ],
+            rows=[_arm_row(name, arm, row) for name, arms in tables.items() for arm, row in arms.items()],
             command=f"puckpilot gap --together {' '.join(folders)}",
         )
     )
@@ -55,7 +54,8 @@ def _arm_row(table: str, arm: str, row: dict[str, Any]) -> list[str]:
     of_ceiling = row.get("share")
     in_percent = of_ceiling and {name: 100.0 * value for name, value in of_ceiling.items()}
     return [
-        f"{table}, {arm}", *_interval(row["change"], "{:+.2f}"), ", ".join(f"{one:+.2f}" for one in row["of_seeds"]),
+        f"{table}, {arm}", *_interval(row["change"], "{:+.2f}"), f"{row['simulated']:+.2f}",
+        ", ".join(f"{one:+.2f}" for one in row["of_seeds"]) if table != ALL else "",
         *_interval(in_percent, "{:.0f} %"),
         *_interval(row.get("own_better_by"), "{:+.2f}"),
     ]  # fmt: skip

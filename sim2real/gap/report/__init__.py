@@ -1,0 +1,1 @@
+"""What a circle, and several together, look like on a page."""
