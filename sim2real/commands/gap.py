@@ -16,6 +16,7 @@ from typing import Any
 
 MOST_GAMES = 10_000
 PLAYER = "policy:table_champion"
+TABLE = "walls"
 OPPONENTS = ("interceptor", "follower", "bank_shot")  # against which goals are scored and conceded
 
 
@@ -23,13 +24,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
     parser.add_argument("player", nargs="?", default=PLAYER, metavar="PLAYER", help=f"({PLAYER})")
     parser.add_argument(
-        "--table", nargs="+", default=["walls"], metavar="NAME", help="the concealed table, or several (walls)"
+        "--table", action="append", metavar="NAME", help=f"the concealed table ({TABLE}); may be given several times"
     )
     parser.add_argument("--list", action="store_true", help="list the concealed tables, arms and stages, and end")
     parser.add_argument("--arms", nargs="+", metavar="ARM", help="what is compared (all)")
     parser.add_argument(
-        "--opponent", nargs="+", default=list(OPPONENTS), metavar="PLAYER",
-        help=f"the hand at the other end, of several each in turn ({' '.join(OPPONENTS)})",
+        "--opponent", action="append", metavar="PLAYER",
+        help=f"the hand at the other end ({', '.join(OPPONENTS)} in turn); may be given several times",
     )  # fmt: skip
     parser.add_argument("--games", type=int, default=40, metavar="N", help="of each player on the table (40)")
     parser.add_argument("--seconds", type=float, default=60.0, metavar="S", help="of play of a game, at most (60)")
@@ -67,24 +68,25 @@ def run(args: argparse.Namespace) -> int:
     refuse_unknown(arms, ARMS, "arm")
     stages = [args.stage] if args.stage else list(STAGES)
     refuse_unknown(stages, STAGES, "stage")
-    for name in args.table:
+    tables, opponents = args.table or [TABLE], args.opponent or list(OPPONENTS)
+    for name in tables:
         find_table(name)
     if "residual" in arms:
         require_sklearn()
-    for name in (args.player, *args.opponent):
+    for name in (args.player, *opponents):
         find_player(name)
     whole_number(args.processes, "--processes", 1, 64)
-    whole_number(args.games, "--games", 2 * len(args.opponent), MOST_GAMES)
+    whole_number(args.games, "--games", 2 * len(opponents), MOST_GAMES)
     whole_number(args.recorded, "--recorded", 1, args.games)
     for name in ("seconds", "minutes"):
         if not 0.0 < getattr(args, name) <= 1e5:
             raise ValueError(f"--{name} is {getattr(args, name):g}; expected more than 0, at most 1e5")
-    several = len(args.table) > 1
+    several = len(tables) > 1
     report = (lambda line: None) if args.json else lambda line: print(line, flush=True)
-    folders = [args.out / table if several else args.out for table in args.table]
-    for table, folder in zip(args.table, folders, strict=True):
+    folders = [args.out / table if several else args.out for table in tables]
+    for table, folder in zip(tables, folders, strict=True):
         conditions = Conditions(
-            args.player, tuple(args.opponent), table, args.games, args.seconds, args.recorded, args.minutes,
+            args.player, tuple(opponents), table, args.games, args.seconds, args.recorded, args.minutes,
             seed_number(args.seed),
         )  # fmt: skip
         circle = Circle(folder, conditions, args.processes, report, args.out / SHARED if several else None)

@@ -153,7 +153,7 @@ def _chart(result: dict[str, Any]) -> str:
 
 def _command(conditions: dict[str, Any], arms: list[str]) -> str:
     words = {
-        "table": conditions["table"], "opponent": " ".join(conditions["opponents"]),
+        "table": conditions["table"], "opponent": " --opponent ".join(conditions["opponents"]),
         **{name: f"{conditions[name]:g}" for name in ("games", "seconds", "recorded", "minutes")},
         "seed": str(conditions["seed"]), "arms": " ".join(arms),
     }  # fmt: skip

@@ -122,7 +122,8 @@ def test_the_command_goes_round_several_tables_and_writes_a_page_over_them(
     monkeypatch.setattr(gap, "_lines", lambda result: [])
     for name in STAGES:
         monkeypatch.setitem(cast(dict, STAGES), name, report if name == LAST else lambda work: None)
-    assert main(["gap", "goalie", "--table", "walls", "late", "--arms", "corrected", "--out", str(tmp_path)]) == 0
+    tables = ["--table", "walls", "--table", "late"]
+    assert main(["gap", "goalie", *tables, "--arms", "corrected", "--out", str(tmp_path)]) == 0
     shared = tmp_path / "of_any_table"
     assert seen == [("walls", shared), ("late", shared)]
     assert list(json.loads((tmp_path / "overview.json").read_text())["tables"]) == ["walls", "late"]
