@@ -12,7 +12,10 @@ from __future__ import annotations
 import argparse
 import json
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from sim2real.gap.circle_folder import Conditions
 
 MOST_GAMES = 10_000
 PLAYER = "policy:table_champion"
@@ -48,62 +51,87 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Go round. Returns 0. ValueError, in one line, for what cannot be."""
-    from baselines import find_player
-    from baselines.commands.options import progress_bar
-    from puckpilot_env.files.toml_file import refuse_unknown
-    from puckpilot_env.options.inputs import seed_number, whole_number
     from sim2real.gap.arms import ARMS
-    from sim2real.gap.circle import Circle
-    from sim2real.gap.circle_folder import SHARED, Conditions
-    from sim2real.gap.residual_fit import require_sklearn
     from sim2real.gap.stages import LAST, STAGES
-    from sim2real.table.twin.concealed import find_table
 
     if args.list:
         print("\n".join(_listed()))
         return 0
     if args.together:
         return _together(args.together, args.out, args.json)
-    arms = args.arms or list(ARMS)
+    arms, stages = args.arms or list(ARMS), [args.stage] if args.stage else list(STAGES)
+    _check(args, arms, stages)
+    circles = _circles(args)
+    for folder, conditions in circles.items():
+        _go_round(args, folder, conditions, arms, stages)
+    if stages[-1] != LAST:
+        print(json.dumps({"stage": args.stage}) if args.json else f"the stage {args.stage} is done in {args.out}")
+    elif len(circles) > 1:
+        _together(list(circles), args.out, args.json)
+    elif args.json:
+        print((args.out / "gap.json").read_text(encoding="utf-8"), end="")
+    return 0
+
+
+def _check(args: argparse.Namespace, arms: list[str], stages: list[str]) -> None:
+    """ValueError, in one line, for what cannot be, before any work is done."""
+    from baselines import find_player
+    from puckpilot_env.files.toml_file import refuse_unknown
+    from puckpilot_env.options.inputs import seed_number, whole_number
+    from sim2real.gap.arms import ARMS
+    from sim2real.gap.residual_fit import require_sklearn
+    from sim2real.gap.stages import STAGES
+    from sim2real.table.twin.concealed import find_table
+
     refuse_unknown(arms, ARMS, "arm")
-    stages = [args.stage] if args.stage else list(STAGES)
     refuse_unknown(stages, STAGES, "stage")
-    tables, opponents = args.table or [TABLE], args.opponent or list(OPPONENTS)
-    for name in tables:
+    for name in args.table or ():
         find_table(name)
     if "residual" in arms:
         require_sklearn()
+    opponents = args.opponent or OPPONENTS
     for name in (args.player, *opponents):
         find_player(name)
     whole_number(args.processes, "--processes", 1, 64)
     whole_number(args.games, "--games", 2 * len(opponents), MOST_GAMES)
     whole_number(args.recorded, "--recorded", 1, args.games)
+    seed_number(args.seed)
     for name in ("seconds", "minutes"):
         if not 0.0 < getattr(args, name) <= 1e5:
             raise ValueError(f"--{name} is {getattr(args, name):g}; expected more than 0, at most 1e5")
-    several = len(tables) > 1
+
+
+def _circles(args: argparse.Namespace) -> dict[Path, Conditions]:
+    """What is asked for: the conditions of each circle, by its folder."""
+    from sim2real.gap.circle_folder import Conditions
+
+    tables, opponents = args.table or [TABLE], tuple(args.opponent or OPPONENTS)
+    rest = (args.games, args.seconds, args.recorded, args.minutes, args.seed)
+    return {
+        args.out / table if len(tables) > 1 else args.out: Conditions(args.player, opponents, table, *rest)
+        for table in tables
+    }
+
+
+def _go_round(
+    args: argparse.Namespace, folder: Path, conditions: Conditions, arms: list[str], stages: list[str]
+) -> None:
+    """The stages of one circle, with what it comes to if they are all of them."""
+    from baselines.commands.options import progress_bar
+    from sim2real.gap.circle import Circle
+    from sim2real.gap.circle_folder import SHARED
+    from sim2real.gap.stages import LAST
+    from sim2real.table.twin.concealed import find_table
+
     report = (lambda line: None) if args.json else lambda line: print(line, flush=True)
-    folders = [args.out / table if several else args.out for table in tables]
-    for table, folder in zip(tables, folders, strict=True):
-        conditions = Conditions(
-            args.player, tuple(opponents), table, args.games, args.seconds, args.recorded, args.minutes,
-            seed_number(args.seed),
-        )  # fmt: skip
-        circle = Circle(folder, conditions, args.processes, report, args.out / SHARED if several else None)
-        if several:
-            report(f"{table}: {find_table(table).words}")
-        with progress_bar("games on the table") as progress:
-            for stage in stages:
-                circle.run_stage(stage, arms, progress)
-        if stages[-1] == LAST and not args.json:
-            print("\n".join([*_lines(circle.kept()), f"wrote {folder / 'gap.html'}"]))
-    if stages[-1] != LAST:
-        print(json.dumps({"stage": args.stage}) if args.json else f"the stage {args.stage} is done in {args.out}")
-    elif several:
-        _together(folders, args.out, args.json)
-    elif args.json:
-        print(json.dumps(circle.kept(), indent=1))
-    return 0
+    report(f"{conditions.table}: {find_table(conditions.table).words}")
+    shared = None if folder == args.out else args.out / SHARED
+    circle = Circle(folder, conditions, args.processes, report, shared)
+    with progress_bar("games on the table") as progress:
+        for stage in stages:
+            circle.run_stage(stage, arms, progress)
+    if stages[-1] == LAST:
+        report("\n".join([*_lines(circle.kept()), f"wrote {folder / 'gap.html'}"]))
 
 
 def _together(folders: list[Path], out: Path, as_json: bool) -> int:

@@ -118,13 +118,16 @@ def _differ_in_smooth_term(
 ) -> tuple[str, str, str] | None:
     """Return two recordings that no common smooth term fits, and that as the reason; None if there are none.
 
-    It compares losses, since single coefficients of a smooth term have no meaning.
+    It compares losses, since single coefficients of a smooth term have no meaning. A recording that the common term
+    explains to the noise does not contradict the others, however much less its own would leave of it.
     """
     own = np.sum([_losses(problem, found, part.clusters) for part in parts], axis=0)
     for pair in combinations(parts, 2):
         both = _losses(problem, found, np.concatenate([part.clusters for part in pair]))
         for part in pair:
             shared, alone = both[part.clusters].sum(), own[part.clusters].sum()
+            if shared < CONSISTENCY.explained * problem.freedom[part.clusters].sum():
+                continue
             if shared - alone > CONSISTENCY.harm * found.dispersion and shared > CONSISTENCY.worse_unlisted * alone:
                 return pair[0].name, pair[1].name, f"no common {problem.regime} correction fits both"
     return None

@@ -159,7 +159,7 @@ class SegmentationNumbers:
     )
     path_hole: float = tuned(0.05, "s", "a path drawn straight across missing samples", "choice: ten samples at 200 Hz")
     tuning_windows: int = tuned(
-        24, "windows", "a jerk chosen by chance, or slowly", "choice: a second's work for a recording"
+        48, "windows", "a jerk chosen by chance, or slowly", "choice: a second's work for a recording"
     )
     jerks: tuple[float, ...] = tuned(
         (1e1, 1e2, 1e3, 1e4, 1e5, 1e6),

@@ -175,3 +175,22 @@ def test_a_single_disturbed_launch_makes_no_other_table(monkeypatch, losses, une
     problem = SimpleNamespace(freedom=np.full(len(losses), 6.0))
     monkeypatch.setattr(consistency, "_own_loss", lambda fits, found, some: float(np.array(losses)[some].sum()))
     assert consistency._is_unexplained(consistency._Fits(problem), None, np.arange(len(losses))) is unexplained
+
+
+@pytest.mark.parametrize(
+    ("shared", "differ"), [(0.9, False), (1.6, True)], ids=["explained to the noise", "more than the noise"]
+)
+def test_a_smooth_term_that_explains_both_to_the_noise_makes_no_two_tables(monkeypatch, shared, differ):
+    """Each alone leaves a third of what a common term does: with errors that persist from sample to sample much of the
+    noise is fitted, too."""
+    problem = SimpleNamespace(freedom=np.full(20, 50.0), regime="gantry")
+    parts = [RecordingPart("one", np.arange(10)), RecordingPart("other", np.arange(10, 20))]
+
+    def losses(problem, found, clusters):
+        left = np.zeros(20)
+        left[clusters] = 50.0 * (shared if len(clusters) == 20 else shared / 3.0)
+        return left
+
+    monkeypatch.setattr(consistency, "_losses", losses)
+    found = SimpleNamespace(dispersion=1.0)
+    assert bool(consistency._differ_in_smooth_term(problem, found, parts)) is differ

@@ -16,8 +16,8 @@ from sim2real.diagnose.regimes.gantry.as_effect import effect_parameters
 from sim2real.diagnose.regimes.gantry.formula import is_readable, readable_formula
 from sim2real.diagnose.regimes.gantry.problem import GantryProblem, gantry_problem
 from sim2real.diagnose.result.result import Finding, Mismatch
+from sim2real.segmentation.possible_touches import possible_touches
 from sim2real.segmentation.segments import Segments
-from sim2real.segmentation.unseen_touches import unseen_touches
 
 
 class Gantry(Regime):
@@ -79,9 +79,7 @@ def _contact_times(segments: Sequence[Segments]) -> list[np.ndarray]:
 
 def _disturbed_times(evidence: Evidence) -> list[np.ndarray]:
     """Times [s] at which the puck pushed the robot's mallet, or may have, for each recording."""
-    contacts = _contact_times(evidence.segments)
-    unseen = [unseen_touches(*one) for one in zip(evidence.recordings, evidence.segments, strict=True)]
-    return [np.union1d(*one) for one in zip(contacts, unseen, strict=True)]
+    return [possible_touches(*one) for one in zip(evidence.recordings, evidence.segments, strict=True)]
 
 
 REGIME = Gantry()

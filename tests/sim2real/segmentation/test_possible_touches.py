@@ -1,4 +1,4 @@
-"""Touches of the robot's mallet that no known contact explains: of a puck that passes, by hand."""
+"""Possible touches of the robot's mallet: of a puck that passes, by hand, and about contacts."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from sim2real.diagnose.regimes.base import Evidence
 from sim2real.diagnose.regimes.gantry.regime import _disturbed_times
 from sim2real.recording.folder import Recording, Stream
 from sim2real.segmentation.events import ContactEvent
+from sim2real.segmentation.possible_touches import possible_touches
 from sim2real.segmentation.segments import segment
-from sim2real.segmentation.unseen_touches import unseen_touches
 
 RADII = 0.0309 + 0.0505  # m
 META = {"puck": {"radius_m": 0.0309}, "mallet": {"radius_m": 0.0505}, "table": {"length_m": 2.0, "width_m": 1.0}}
@@ -30,13 +30,13 @@ def recording(gap: float, speed: float) -> Recording:
 
 def test_a_puck_that_stays_clear_touches_nothing() -> None:
     one = recording(0.05, 1.0)
-    assert len(unseen_touches(one, segment(one))) == 0
+    assert len(possible_touches(one, segment(one))) == 0
 
 
 @pytest.mark.parametrize("speed", [0.4, 1.0])
 def test_a_touch_that_no_contact_explains_is_given_with_what_is_around_it(speed: float) -> None:
     one = recording(0.0, speed)
-    found = unseen_touches(one, replace(segment(one), contacts=()))
+    found = possible_touches(one, replace(segment(one), contacts=()))
     nearest = 0.5 + 1.0 / 240.0
     assert found[0] < nearest - 0.01 and found[-1] > nearest + 0.01
     assert np.diff(found).max() < 0.003  # so that no window of the mallet's path is left in between
@@ -44,13 +44,18 @@ def test_a_touch_that_no_contact_explains_is_given_with_what_is_around_it(speed:
     assert away.max() < 0.02  # m; the puck was near at all of them
 
 
-def test_a_known_contact_explains_the_puck_beside_the_mallet() -> None:
-    one = recording(0.0, 1.0)
-    found = unseen_touches(one, replace(segment(one), contacts=()))
-    still = np.zeros(2)
+def test_about_a_contact_whose_time_is_known_to_milliseconds_there_are_touches_wherever_the_puck_was_seen() -> None:
+    one, still = recording(0.2, 1.0), np.zeros(2)
     hit = ContactEvent("mallet", "robot", 0.5, 0.5, 0.58, still, still, 0.01, (60, 61), 0.0, True)
-    left = unseen_touches(one, replace(segment(one), contacts=(hit,)))
-    assert 0 < len(left) < len(found) and np.abs(left - 0.5).min() > 0.01
+    found = possible_touches(one, replace(segment(one), contacts=(hit,)))
+    assert found[0] < 0.4925 and found[-1] > 0.5075 and np.diff(found).max() < 0.003
+
+
+def test_places_between_two_hits_which_no_path_explains_are_touches() -> None:
+    one = recording(0.0, 1.0)
+    segments = replace(segment(one), contacts=())
+    wild = np.abs(np.arange(120) - 60) < 3
+    np.testing.assert_array_equal(possible_touches(one, replace(segments, wild=wild)), possible_touches(one, segments))
 
 
 def test_the_gantry_takes_them_from_frames_on_the_encoders_clock() -> None:
@@ -61,7 +66,7 @@ def test_the_gantry_takes_them_from_frames_on_the_encoders_clock() -> None:
     segments = replace(segment(one), contacts=())
     evidence = Evidence([one], [segments], [], [late], {})
     (found,) = _disturbed_times(evidence)
-    np.testing.assert_array_equal(found, unseen_touches(one, segments))
+    np.testing.assert_array_equal(found, possible_touches(one, segments))
     assert abs(0.5 * (found[0] + found[-1]) - 0.5 - 1.0 / 240.0) < 0.002
 
 
@@ -70,4 +75,4 @@ def test_a_wrong_place_does_not_make_its_neighbours_touches() -> None:
     assert one.frames is not None
     one.frames["puck_x"][60] += 1.0
     wild = np.arange(120) == 60
-    assert len(unseen_touches(one, replace(segment(one), contacts=(), wild=wild))) == 0
+    assert len(possible_touches(one, replace(segment(one), contacts=(), wild=wild))) == 0
