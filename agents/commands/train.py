@@ -54,8 +54,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--at-table",
         action="store_true",
-        help="with what is true of every physical table: plans that a board can brake, an opponent with its mallet in "
-        "a hand; the player learns the robot's seat alone",
+        help="with what is true of every physical table: plans that a board can brake, sights that are 20 ms old, an "
+        "opponent with its mallet in a hand; the player learns the robot's seat alone",
     )
     parser.add_argument(
         "--effects",

@@ -68,6 +68,9 @@ def turn_table(tables: np.ndarray, frames: np.ndarray, length: np.ndarray, width
         tables["puck"][f"v{axis}"] *= -1.0
         tables["camera"][f"error_{axis}"] *= TURNED_ERROR
         tables["camera"][f"puck_v{axis}"] *= -1.0
+        for seen, over in ((tables["sight"]["puck"], extent), (tables["sight"]["mallets"], extent[:, None])):
+            seen[axis] = over - seen[axis]
+            seen[f"v{axis}"] *= -1.0
         frames["puck"][axis] = extent[:, None] - frames["puck"][axis]
         frames["mallets"][axis] = extent[:, None, None] - frames["mallets"][axis]
         for mallets in (tables["mallets"][axis], tables["motors"][axis]):
@@ -85,4 +88,5 @@ def turn_table(tables: np.ndarray, frames: np.ndarray, length: np.ndarray, width
     tables["subject"] = 1 - tables["subject"]
     tables["winner"] = np.where(tables["winner"] < 0, -1, 1 - tables["winner"])
     tables["puck"]["turned"] = 1 - tables["puck"]["turned"]
+    tables["sight"]["mallets"] = tables["sight"]["mallets"][:, ::-1].copy()
     frames["mallets"] = frames["mallets"][:, :, ::-1].copy()

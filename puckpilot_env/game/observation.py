@@ -11,14 +11,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from puckpilot_env.game import mirror, predict, sensing
+from puckpilot_env.game import mirror, predict, sensing, sight
 from puckpilot_env.game.start import MATCH
 from puckpilot_env.kernel import kernel
 from puckpilot_env.physics.gantry.mallet import motion_now
+from puckpilot_env.physics.hand import is_by_hand
 
 HORIZONS = (0.2, 0.5)  # s ahead, of the expected puck places
 BEYOND = 0.05  # m; measured places may lie so far outside the table
 FASTEST_PUCK, FASTEST_MALLET = 50.0, 25.0  # m/s
+NOBODY = -1
 
 
 @dataclass(frozen=True)
@@ -102,14 +104,15 @@ def _put_mallet(table, p, nominal, row, at, k, player):
 
 
 @kernel
-def _put_expected(nominal, rows, at, x, y, vx, vy, now):
+def _put_expected(nominal, rows, at, x, y, vx, vy, now, but=NOBODY):
     """Where the puck is expected that is at `(x, y)` with `(vx, vy)` at `now` [s], all as player 0 is told it: one
-    prediction for both players."""
+    prediction for both players, `but` one."""
     for horizon in HORIZONS:
         x, y, vx, vy = predict.expected_place(x, y, vx, vy, nominal, horizon - now)
         now = horizon
-        rows[0, at], rows[0, at + 1] = x, y
-        rows[1, at], rows[1, at + 1] = mirror.place(1, x, y, nominal)
+        for k in range(2):
+            if k != but:
+                rows[k, at], rows[k, at + 1] = mirror.place(k, x, y, nominal)
         at += 2
     return at
 
@@ -123,6 +126,23 @@ def _put_exact(table, p, nominal, rows, at):
         _put_mallet(table, p, nominal, rows[k], i, k, 1 - k)
     x, y = mirror.shown(0, x, y, p, nominal)
     return _put_expected(nominal, rows, at + 8, x, y, vx, vy, 0.0)
+
+
+@kernel
+def _put_predicted(table, p, nominal, rows, at):
+    """Puck, opponent and expected places for those who have no hand, as far as they can be known."""
+    x, y, vx, vy = sight.expected_puck(table, p, nominal)
+    hand = NOBODY
+    for k in range(2):
+        if is_by_hand(table.puck, p, k):
+            hand = k
+            continue
+        rows[k, at], rows[k, at + 1] = mirror.place(k, x, y, nominal)
+        i = _put_velocity(rows[k], at + 2, k, vx, vy)
+        other_x, other_y, other_vx, other_vy = sight.expected_mallet(table, p, 1 - k)
+        i = _put_place(rows[k], i, k, other_x, other_y, p, nominal)
+        _put_velocity(rows[k], i, k, other_vx, other_vy)
+    _put_expected(nominal, rows, at + 8, x, y, vx, vy, 0.0, hand)
 
 
 @kernel
@@ -178,7 +198,9 @@ def write(table, p, nominal, rules, frames, bounds, rows):
         rows[k, at] = table.defending[k]
     at += 1
     if rules.sensing == sensing.EXACT:
-        at = _put_exact(table, p, nominal, rows, at)
+        first, at = at, _put_exact(table, p, nominal, rows, at)
+        if p.observation_age > 0.0:
+            _put_predicted(table, p, nominal, rows, first)
     elif rules.sensing == sensing.HISTORY:
         at = _put_history(table, p, nominal, frames, rows, at)
     else:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from puckpilot_env.game.random_stream import STREAM
+from puckpilot_env.game.sight import SIGHT
 from puckpilot_env.physics.advance import PUCK
 from puckpilot_env.physics.gantry.mallet import MALLET
 
@@ -38,6 +39,7 @@ TABLE = np.dtype(
         ("last_frame", np.int64),  # newest frame taken
         ("newest", np.int64),  # newest frame that has arrived by now
         ("camera", CAMERA),
+        ("sight", SIGHT),  # where observations are late
         ("time", np.float64),  # since the episode began [s]
         ("held", np.float64),  # since the puck last changed halves [s]
         ("steps", np.int64),  # since the episode began

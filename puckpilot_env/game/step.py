@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from puckpilot_env.game import mirror, observation, random_stream, reward, rules, sensing
+from puckpilot_env.game import mirror, observation, random_stream, reward, rules, sensing, sight
 from puckpilot_env.game.motion import play_step
 from puckpilot_env.game.start import begin_episode
 from puckpilot_env.kernel import inlined_kernel, kernel
@@ -82,6 +82,17 @@ def play_and_film(table, p, rule, frames, rewards, log, film):
 
 
 @kernel
+def play_and_look(table, p, rule, rewards, log, film):
+    """`play_step` whose observations are exact, but as old as a table's loop has them."""
+    if p.observation_age == 0.0:
+        return play_step(table, p, rule, rule.period, rewards, log, film[:0])
+    age = sight.set_times(p, rule.period, film)
+    over = play_step(table, p, rule, rule.period, rewards, log, film[:2])
+    sight.look_back(table, age, film)
+    return over
+
+
+@kernel
 def _random_impulse(table, p, period):
     if random_stream.uniform(table.stream) < p.impulse_rate * period:
         x, y = random_stream.normal_pair(table.stream)
@@ -101,7 +112,7 @@ def step_table(table, p, nominal, rule, frames, actions, rewards, log, film):
     table.ending = rules.RUNNING
     plan_both(table, p, nominal, actions, rewards)
     if rule.sensing == sensing.EXACT:
-        scored = play_step(table, p, rule, rule.period, rewards, log, film[:0])
+        scored = play_and_look(table, p, rule, rewards, log, film)
     else:
         scored = play_and_film(table, p, rule, frames, rewards, log, film)
     table.steps += 1
@@ -118,6 +129,8 @@ def step_table(table, p, nominal, rule, frames, actions, rewards, log, film):
             _random_impulse(table, p, rule.period)
     if table.ending == rules.RUNNING:
         refilled = rules.keep_time(table, p, rule, rewards) or refilled
+    if refilled and rule.sensing == sensing.EXACT:
+        sight.look_now(table)
     if rule.sensing != sensing.EXACT:
         if refilled:
             sensing.fill_frames(table, p, frames)
@@ -128,6 +141,7 @@ def step_table(table, p, nominal, rule, frames, actions, rewards, log, film):
 def begin_table(table, p, row, drawn, rule, frames):
     """Begin a new episode of a table."""
     begin_episode(table, p, row, drawn, rule.game)
+    sight.look_now(table)
     if rule.sensing != sensing.EXACT:
         sensing.begin_frames(table, p, frames)
         table.newest = sensing.newest_frame(table, p, table.time)

@@ -1,6 +1,6 @@
 """What is true of every physical table, as parameters of the simulator: who learns with them knows a table's loop.
 
-The loop's own delay is not among them, since players are shown what will be when they act.
+Late commands are not among them, since players are shown what will be when they act: as far as it can be predicted.
 """
 
 from __future__ import annotations
@@ -9,4 +9,7 @@ from collections.abc import Mapping
 
 OPERATING_VOLTS = 15.0  # V that a motor ever gets on a table (report)
 BRAKING_TIME = 0.034  # s that braking may take by the closed form; the board needs up to 3 ms more
-AT_TABLE: Mapping[str, float] = {"max_voltage": OPERATING_VOLTS, "braking_time": BRAKING_TIME, "hand": 1.0}
+OBSERVATION_AGE = 0.0205  # s from a frame's exposure until an action that answers it acts
+AT_TABLE: Mapping[str, float] = {
+    "max_voltage": OPERATING_VOLTS, "braking_time": BRAKING_TIME, "observation_age": OBSERVATION_AGE, "hand": 1.0,
+}  # fmt: skip

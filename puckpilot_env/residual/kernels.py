@@ -131,6 +131,8 @@ def _move(table, p, dx, dy, dvx, dvy):
         mallet_x, mallet_y = place_now(table.mallets[k])
         free = free and size(x - mallet_x, y - mallet_y) >= touch
     if free:
+        table.sight.puck.x += x - puck.x
+        table.sight.puck.y += y - puck.y
         puck.x, puck.y = x, y
     puck.vx = min(max(puck.vx + dvx, -FASTEST_PUCK), FASTEST_PUCK)
     puck.vy = min(max(puck.vy + dvy, -FASTEST_PUCK), FASTEST_PUCK)

@@ -36,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help=f"the hand at the other end ({', '.join(OPPONENTS)} in turn); may be given several times",
     )  # fmt: skip
     parser.add_argument("--games", type=int, default=40, metavar="N", help="of each player on the table (40)")
-    parser.add_argument("--seconds", type=float, default=60.0, metavar="S", help="of play of a game, at most (60)")
+    parser.add_argument("--seconds", type=float, default=60.0, metavar="S", help="of play of a game, in matches (60)")
     parser.add_argument("--recorded", type=int, default=5, metavar="N", help="games that are recorded (5)")
     parser.add_argument("--minutes", type=float, default=30.0, metavar="M", help="of fine-tuning of each arm (30)")
     parser.add_argument("--seed", type=int, default=0, help="of the first game, and of learning (0)")

@@ -32,8 +32,8 @@ BEFORE = "before"  # name of the player as it is
 @dataclass(frozen=True)
 class Conditions:
     """player, opponents: by name; table: a concealed one; games: of each player on the table, against each opponent in
-    turn, each of `seconds` of play at most, of which the first `recorded` are recorded; minutes: of fine-tuning; seed:
-    of the first game and of learning."""
+    turn, each of `seconds` of play, in matches, of which the first `recorded` are recorded; minutes: of fine-tuning;
+    seed: of the first game and of learning."""
 
     player: str
     opponents: tuple[str, ...]
@@ -109,6 +109,7 @@ class CircleFolder:
                 VARIANT,
                 c.seed + game,
                 c.seconds,
+                again=True,
                 concealed=c.table,
                 clears=True,
                 recorded=game < c.recorded,

@@ -12,7 +12,7 @@ from sim2real.gap.in_simulator import UNCHANGED, simulated_rates
 from sim2real.table.twin.fidelity import Meeting, TwinGame, kept_games
 from sim2real.table.twin.score import change, score, shots
 
-FORMAT = "puckpilot-gap/5"
+FORMAT = "puckpilot-gap/6"
 
 
 def result(folder: CircleFolder, arms: list[str]) -> dict[str, Any]:

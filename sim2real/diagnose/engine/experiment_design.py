@@ -32,7 +32,8 @@ def information(
 
 
 def most_informative(of_units: np.ndarray, kinds: Mapping[str, np.ndarray], unit_name: str) -> str:
-    """Return how many more units of which kind are needed, in words; "" if no kind is the most informative.
+    """Return how many more units of which kind are needed, in words; "" if no kind is the most informative, or if they
+    are more than anyone records.
 
     `of_units` (u,): the `information` of each unit; `kinds`: by name, which units (u,) bool are of a kind; `unit_name`:
     what units are called, in the plural.
@@ -45,5 +46,7 @@ def most_informative(of_units: np.ndarray, kinds: Mapping[str, np.ndarray], unit
     if means[best] < ENGINE.richer_kind * average:
         return ""
     more = max(int(np.ceil((ENGINE.discriminating - of_units.sum()) / means[best])), ENGINE.fewest_of_kind)
+    if more > ENGINE.most_to_record:
+        return ""
     ratio = means[best] / average
     return f"about {more} more {best} {unit_name}, each {ratio:.1f} times as informative as the average one"

@@ -180,6 +180,7 @@ class EngineNumbers:
     fewest_of_kind: int = tuned(
         4, "units", "an average of too few units", "choice: a standard error of half the scatter"
     )
+    most_to_record: int = tuned(1000, "units", "advice that nobody can follow", "choice: an hour of glides")
     # null_controls
     null_draws: int = tuned(
         6, "draws", "time, a search each", "choice: a false discovery rate of one in six would show"

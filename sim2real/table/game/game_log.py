@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from sim2real.table.faults import TableFaultError
 from sim2real.table.game.loop_times import LoopTimes
@@ -33,6 +33,22 @@ class GameLog:
     interrupted: bool = False
     fault: TableFaultError | None = None
     shots: Shots = field(default_factory=Shots)
+
+    def with_next(self, later: GameLog) -> GameLog:
+        """Of this game and the one that the same table played next, in which it went on counting plans, times and
+        shots; won by whom the goals of both say."""
+        score = self.score[0] + later.score[0], self.score[1] + later.score[1]
+        return replace(
+            later,
+            score=score,
+            fouls=(self.fouls[0] + later.fouls[0], self.fouls[1] + later.fouls[1]),
+            outcome=(score[0] > score[1]) - (score[0] < score[1]),
+            seconds=self.seconds + later.seconds,
+            off_path=max(self.off_path, later.off_path),
+            faults=self.faults + later.faults,
+            table_seconds=self.table_seconds + later.table_seconds,
+            wall_seconds=self.wall_seconds + later.wall_seconds,
+        )
 
     @property
     def complete(self) -> GameLog:

@@ -1,4 +1,4 @@
-"""Games of a player at the robot's seat of a table."""
+"""Games of a player at the robot's seat of a table, one or as many as a time takes."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from baselines.player import Seat
+from baselines.player import Player, Seat
 from sim2real.table.faults import TableFaultError
 from sim2real.table.game.game_log import GameLog
 from sim2real.table.game.loop import Loop
@@ -35,8 +35,42 @@ def play_game(
     show: takes loop, action and info of each step.
     ValueError, in one line, for an unknown name, and for a policy of another game or rate.
     """
+    return _play(env, _seated(env, player, seed), seed, seconds, report, may_clear, show)
+
+
+def play_for(
+    env: RobotSeat,
+    player: str,
+    seed: int,
+    seconds: float,
+    report: Callable[[str], None],
+    may_clear: Callable[[TableFaultError], bool],
+    show: Show,
+) -> GameLog:
+    """Play so many `seconds`, a new game where one ends, and return what came of all together; see `play_game`."""
+    actor = _seated(env, player, seed)
+    log = _play(env, actor, seed, seconds, report, may_clear, show)
+    while seconds - log.seconds > 1e-6 and not log.interrupted and log.fault is None:
+        log = log.with_next(_play(env, actor, None, seconds - log.seconds, report, may_clear, show))
+    return log
+
+
+def _seated(env: RobotSeat, player: str, seed: int) -> Player:
     actor = seated_player(player, Seat.from_tables(env.tables, 2 * seed))
     actor.act(np.zeros((1, *(env.observation_space.shape or ())), np.float32))  # compiled before the motors are armed
+    return actor
+
+
+def _play(
+    env: RobotSeat,
+    actor: Player,
+    seed: int | None,
+    seconds: float | None,
+    report: Callable[[str], None],
+    may_clear: Callable[[TableFaultError], bool],
+    show: Show,
+) -> GameLog:
+    """A game, the first of its seed, or one more of the same table."""
     actor.reset(np.ones(1, bool))
     log, over = GameLog(), False
     observation, info = env.reset(seed=seed)

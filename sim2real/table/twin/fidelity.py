@@ -20,7 +20,7 @@ from puckpilot_env.files.whole_file import write_text_whole
 from puckpilot_env.variants import find_variant
 from sim2real.study.version import OF_GAMES, code_version
 from sim2real.table.game.game_record import GameRecord
-from sim2real.table.game.play import play_game
+from sim2real.table.game.play import play_for, play_game
 from sim2real.table.game.robot_seat import make_robot_seat
 from sim2real.table.game.shots import Shots
 from sim2real.table.recorder.draft import draft_of
@@ -29,7 +29,7 @@ from sim2real.table.twin.concealed import find_table
 from sim2real.table.twin.plant import Plant
 from sim2real.table.twin.twin import Twin
 
-FORMAT = "puckpilot-twin-game/1"
+FORMAT = "puckpilot-twin-game/2"
 WARM = 0.3  # s of a game before the first one that is timed, in which all is compiled
 Onlooker = Callable[[Plant, np.void], None]
 ROOT = Path(sim2real.__file__).parents[1]  # of the checkout whose code plays
@@ -39,7 +39,8 @@ ROOT = Path(sim2real.__file__).parents[1]  # of the checkout whose code plays
 class Meeting:
     """Who meets on the twin: `player` at the robot's seat, its `opponent`, the `variant`'s id, and the game's `seed`.
 
-    seconds: of play at most; None for a whole game. camera: the kind of the twin's, see `cameras.CAMERAS`. concealed:
+    seconds: of play at most; None for a whole game. again: whether another game begins where one ends within them.
+    camera: the kind of the twin's, see `cameras.CAMERAS`. concealed:
     the table, see `concealed.TABLES`; "" for the simulator's. clears: whether play goes on after a doubt stopped the
     table. recorded: whether the game is recorded, as `recordings/game_SEED` beside its result.
     camera_delay: that the loop allows for [s].
@@ -51,6 +52,7 @@ class Meeting:
     seed: int
     seconds: float | None = None
     camera: str = "places"
+    again: bool = False
     concealed: str = ""
     clears: bool = False
     recorded: bool = False
@@ -59,7 +61,8 @@ class Meeting:
 
 @dataclass(frozen=True)
 class TwinGame:
-    """What came of a game: outcome 1, 0, -1 as the player won, drew or lost; goals of both; `seconds` of play.
+    """What came of a game, or of several: outcome 1, 0, -1 as the player won, drew or lost; goals of both; `seconds` of
+    play.
 
     virtual: the twin's time from power-on to the end [s]; processor, wall: what it took on this computer [s]; stops:
     how often a doubt stopped the table; shots: at both goals, as the robot's camera saw them; opponent: by name.
@@ -101,10 +104,12 @@ def _play(meeting: Meeting, recording: Path | None, onlooker: Onlooker | None = 
             env.backend.onlooker = lambda plant: onlooker(plant, env.game.record)
         note = f"{meeting.player} against {meeting.opponent} on the twin, seed {meeting.seed}"
         with nullcontext() if recording is None else recorded(env, recording, note):
-            log = play_game(
-                env, meeting.player, meeting.seed, meeting.seconds, lambda line: None, lambda fault: meeting.clears,
-                lambda loop, action, info: None,
-            ).complete  # fmt: skip
+            given = env, meeting.player, meeting.seed
+            silently = (lambda line: None), (lambda fault: meeting.clears), (lambda loop, action, info: None)
+            if meeting.again and meeting.seconds is not None:
+                log = play_for(*given, meeting.seconds, *silently).complete
+            else:
+                log = play_game(*given, meeting.seconds, *silently).complete
             if log.interrupted:
                 raise KeyboardInterrupt
             virtual = env.backend.now()

@@ -52,3 +52,10 @@ def test_weak_laws_need_more_segments(scale, more):
 def test_where_no_kind_is_more_informative_none_is_advised():
     assert most_informative(np.ones(8), {"slow": np.arange(8) < 4, "fast": np.arange(8) >= 4}, "glides") == ""
     assert most_informative(np.zeros(8), {"slow": np.arange(8) < 4}, "glides") == ""
+
+
+def test_what_nobody_records_is_not_advised():
+    assert (
+        most_informative(1e-6 * np.array([2.0, 2.0, 12.0, 12.0, 12.0, 12.0]), {"fast": np.arange(6) > 1}, "glides")
+        == ""
+    )
