@@ -97,6 +97,7 @@ OPTIONS = {
         "--seconds",
         "--recorded",
         "--minutes",
+        "--steps",
         "--seed",
         "--stage",
         "--processes",

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from sim2real.gap.circle_folder import Conditions
 
-MOST_GAMES = 10_000
+MOST_GAMES, MOST_STEPS = 10_000, 10**10
 PLAYER = "policy:table_champion"
 TABLE = "walls"
 OPPONENTS = ("interceptor", "follower", "bank_shot")  # against which goals are scored and conceded
@@ -39,6 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seconds", type=float, default=60.0, metavar="S", help="of play of a game, in matches (60)")
     parser.add_argument("--recorded", type=int, default=5, metavar="N", help="games that are recorded (5)")
     parser.add_argument("--minutes", type=float, default=30.0, metavar="M", help="of fine-tuning of each arm (30)")
+    parser.add_argument("--steps", type=int, metavar="N", help="of that instead: what else runs here takes none")
     parser.add_argument("--seed", type=int, default=0, help="of the first game, and of learning (0)")
     parser.add_argument("--stage", metavar="NAME", help="run it alone, on what those before it left (all)")
     parser.add_argument("--processes", type=int, default=2, metavar="N", help="that play or learn at once (2)")
@@ -96,6 +97,8 @@ def _check(args: argparse.Namespace, arms: list[str], stages: list[str]) -> None
     whole_number(args.games, "--games", 2 * len(opponents), MOST_GAMES)
     whole_number(args.recorded, "--recorded", 1, args.games)
     seed_number(args.seed)
+    if args.steps is not None:
+        whole_number(args.steps, "--steps", 1, MOST_STEPS)
     for name in ("seconds", "minutes"):
         if not 0.0 < getattr(args, name) <= 1e5:
             raise ValueError(f"--{name} is {getattr(args, name):g}; expected more than 0, at most 1e5")
@@ -106,7 +109,7 @@ def _circles(args: argparse.Namespace) -> dict[Path, Conditions]:
     from sim2real.gap.circle_folder import Conditions
 
     tables, opponents = args.table or [TABLE], tuple(args.opponent or OPPONENTS)
-    rest = (args.games, args.seconds, args.recorded, args.minutes, args.seed)
+    rest = (args.games, args.seconds, args.recorded, args.minutes, args.steps, args.seed)
     return {
         args.out / table if len(tables) > 1 else args.out: Conditions(args.player, opponents, table, *rest)
         for table in tables

@@ -32,8 +32,8 @@ BEFORE = "before"  # name of the player as it is
 @dataclass(frozen=True)
 class Conditions:
     """player, opponents: by name; table: a concealed one; games: of each player on the table, against each opponent in
-    turn, each of `seconds` of play, in matches, of which the first `recorded` are recorded; minutes: of fine-tuning;
-    seed: of the first game and of learning."""
+    turn, each of `seconds` of play, in matches, of which the first `recorded` are recorded; minutes: of fine-tuning, or
+    steps: if they are given instead; seed: of the first game and of learning."""
 
     player: str
     opponents: tuple[str, ...]
@@ -42,7 +42,13 @@ class Conditions:
     seconds: float
     recorded: int
     minutes: float
+    steps: int | None
     seed: int
+
+
+def training_words(minutes: float, steps: int | None) -> str:
+    """How long each arm is fine-tuned, in words."""
+    return f"{minutes:g} minutes" if steps is None else f"{1e-6 * steps:g} million steps"
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ from sim2real.table.twin.score import mean_change, share
 
 FORMAT = "puckpilot-gap-overview/2"
 CONTROL = "none"  # the table without an effect, of which nothing is won back
-ALIKE = ("player", "opponents", "seconds", "minutes")  # conditions that all circles share
+ALIKE = ("player", "opponents", "seconds", "minutes", "steps")  # conditions that all circles share
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from puckpilot_env.files.whole_file import write_text_whole
 from sim2real.gap.arms import ARMS, CEILING, recordings_of, simulator_of
-from sim2real.gap.circle_folder import BEFORE, FILM, VARIANT, CircleFolder, missing
+from sim2real.gap.circle_folder import BEFORE, FILM, VARIANT, CircleFolder, missing, training_words
 from sim2real.gap.film import film
 from sim2real.gap.in_simulator import simulate
 from sim2real.gap.report.page import page
@@ -78,7 +78,8 @@ def tune(work: Work) -> None:
     work.folder.diagnosed()
     arms = untrained(work.folder, work.arms)
     if arms:
-        work.report(f"{work.folder.conditions.minutes:g} minutes of training each: {', '.join(arms)}")
+        c = work.folder.conditions
+        work.report(f"{training_words(c.minutes, c.steps)} of training each: {', '.join(arms)}")
         fine_tune(work.folder, arms, work.processes)
 
 

@@ -46,9 +46,11 @@ def _fine_tune(folder: CircleFolder, arm: str) -> None:
             "--preset", PRESET, "--start", c.player, "--variant", VARIANT, "--seed", str(c.seed), "--threads", "1",
             *map(str, files),
         ]  # fmt: skip
-    left = max(c.minutes - _trained_minutes(run), 1e-3)
+    until = ["--steps", str(c.steps)]
+    if c.steps is None:
+        until = ["--minutes", f"{max(c.minutes - _trained_minutes(run), 1e-3):g}"]
     log = done.parent / LOG
-    words = ["train", "--out", str(run), "--minutes", f"{left:g}", *given]
+    words = ["train", "--out", str(run), *until, *given]
     with log.open("a", encoding="utf-8") as lines:
         command = [sys.executable, "-m", "puckpilot", *words]
         failed = subprocess.run(command, stdout=lines, stderr=lines, check=False).returncode

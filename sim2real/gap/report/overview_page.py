@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from sim2real.diagnose.report.charts import BLUE, GREY, ORANGE
 from sim2real.diagnose.report.inline_svg import INK, inline_svg
 from sim2real.gap.arms import ARMS, CEILING, OWN
+from sim2real.gap.circle_folder import training_words
 from sim2real.gap.report.page import environment
 from sim2real.table.twin.concealed import TABLES
 
@@ -27,6 +28,7 @@ def overview_page(result: dict[str, Any], folders: list[str]) -> str:
         .render(
             title=f"What the gap costs {result['conditions']['player']}, and what is won back",
             conditions=result["conditions"],
+            training=training_words(result["conditions"]["minutes"], result["conditions"]["steps"]),
             arms={
                 arm: row.words
                 for arm, row in ARMS.items()

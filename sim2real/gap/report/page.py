@@ -11,7 +11,7 @@ from sim2real.diagnose.report import page as diagnosis_page
 from sim2real.diagnose.report.charts import BLUE, GREY
 from sim2real.diagnose.report.inline_svg import inline_svg
 from sim2real.gap.arms import ARMS
-from sim2real.gap.circle_folder import BEFORE
+from sim2real.gap.circle_folder import BEFORE, training_words
 from sim2real.gap.in_simulator import TRUTH, UNCHANGED
 from sim2real.gap.report.found_words import against_rows, found_words, learnt_words
 from sim2real.table.game.shots import Shots
@@ -48,6 +48,7 @@ def page(result: dict[str, Any]) -> str:
         .render(
             title=f"{conditions['player']} on a table with {TABLES[conditions['table']].words}",
             conditions=conditions,
+            training=training_words(conditions["minutes"], conditions["steps"]),
             words=TABLES[conditions["table"]].words,
             chart=_chart(result),
             rows=_rows(result),
@@ -154,7 +155,8 @@ def _chart(result: dict[str, Any]) -> str:
 def _command(conditions: dict[str, Any], arms: list[str]) -> str:
     words = {
         "table": conditions["table"], "opponent": " --opponent ".join(conditions["opponents"]),
-        **{name: f"{conditions[name]:g}" for name in ("games", "seconds", "recorded", "minutes")},
+        **{name: f"{conditions[name]:g}" for name in ("games", "seconds", "recorded")},
+        **({"steps": conditions["steps"]} if conditions["steps"] else {"minutes": f"{conditions['minutes']:g}"}),
         "seed": str(conditions["seed"]), "arms": " ".join(arms),
     }  # fmt: skip
     return " ".join(["puckpilot gap", conditions["player"], *(f"--{name} {one}" for name, one in words.items())])

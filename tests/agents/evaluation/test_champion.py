@@ -30,7 +30,7 @@ from puckpilot_env.game.rules import ENDING_NAMES
             "--preset attack_randomized_finish --variant attack-randomized-v0 --start out/attack_randomized",
         ),
         ("champion.defence-v0", "--preset defence --variant defence-v0"),
-        ("table_champion", "--preset fine_tune --start out/table_champion.npz --at-table"),
+        ("table_champion", "--preset fine_tune --start out/table_finish/policy.npz --at-table"),
         (
             "champion.defence-randomized-v0",
             "--preset defence --variant defence-randomized-v0 --start out/defence",

@@ -21,7 +21,7 @@ from tests.agents.training.tiny import TINY
 from tests.sim2real.gap.test_against_truth import finding
 
 PLAYED = {"scored", "conceded", "net", "against", "shots", "stops", "games"}
-CONDITIONS = Conditions("interceptor", ("bank_shot", "goalie"), "none", 2, 12.0, 1, 1.0, 5)
+CONDITIONS = Conditions("interceptor", ("bank_shot", "goalie"), "none", 2, 12.0, 1, 1.0, None, 5)
 
 
 def circle(folder: Path, **other: object) -> Circle:
@@ -103,6 +103,7 @@ def test_a_folder_of_another_circle_is_refused(tmp_path: Path) -> None:
         (["--arms", "truht"], "did you mean 'truth'"),
         (["--recorded", "50"], "--recorded is 50"),
         (["--minutes", "0"], "--minutes is 0"),
+        (["--steps", "0"], "--steps is 0"),
         (["nobody"], "nobody"),
     ],
 )

@@ -30,7 +30,7 @@ def circle(table: str, seed: int, before: float, spread: float = 0.3, **arms: fl
         "format": "puckpilot-gap/6",
         "conditions": {
             "player": "policy:champion", "opponents": ["goalie"], "table": table, "games": GAMES, "seconds": 60.0,
-            "recorded": 5, "minutes": 30.0, "seed": seed,
+            "recorded": 5, "minutes": 30.0, "steps": None, "seed": seed,
         },
         "simulator": {"scored": 5.0, "conceded": 1.0},
         "in_simulator": {

@@ -17,7 +17,7 @@ from sim2real.gap.stages import STAGES
 from sim2real.table.twin.fidelity import Meeting, TwinGame
 from tests.sim2real.gap.test_against_truth import SILENT_DRAWS, SILENT_EFFECTS
 
-CONDITIONS = Conditions("interceptor", ("goalie", "still"), "late", 3, 20.0, 2, 1.0, 5)
+CONDITIONS = Conditions("interceptor", ("goalie", "still"), "late", 3, 20.0, 2, 1.0, None, 5)
 DIAGNOSIS = {
     "verdict": "parameters_only", "findings": [], "baseline": {"parameters": {"friction": {"value": 0.11}}},
     "regimes": [{"regime": "glide", "verdict": "parameters_only"}, {"regime": "wall", "reason": "too few hits"}],
