@@ -142,13 +142,17 @@ def _together(folders: list[Path], out: Path, as_json: bool) -> int:
     from puckpilot_env.files.whole_file import write_text_whole
     from sim2real.gap.overview import overview, read_circle
     from sim2real.gap.report.overview_page import overview_page
+    from sim2real.gap.report.overview_words import overview_lines
 
     result = overview([read_circle(folder) for folder in folders])
     out.mkdir(parents=True, exist_ok=True)
     text = json.dumps(result, indent=1)
     write_text_whole(out / "overview.json", text + "\n")
     write_text_whole(out / "overview.html", overview_page(result, [str(one) for one in folders]))
-    print(text if as_json else f"wrote {out / 'overview.json'}, {out / 'overview.html'}")
+    if as_json:
+        print(text)
+    else:
+        print("\n".join([*overview_lines(result), f"wrote {out / 'overview.json'}, {out / 'overview.html'}"]))
     return 0
 
 

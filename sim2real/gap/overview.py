@@ -20,7 +20,7 @@ from sim2real.gap.in_simulator import TRUTH
 from sim2real.table.twin.concealed import TABLES, find_table
 from sim2real.table.twin.score import mean_change, share
 
-FORMAT = "puckpilot-gap-overview/2"
+FORMAT = "puckpilot-gap-overview/3"
 CONTROL = "none"  # the table without an effect, of which nothing is won back
 ALIKE = ("player", "opponents", "seconds", "minutes", "steps")  # conditions that all circles share
 
@@ -62,16 +62,34 @@ def overview(circles: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     seen = {one["conditions"]["table"] for one in circles}
     for one, other in combinations(circles, 2):
         _refuse_same_games(one["conditions"], other["conditions"])
+    tables = {
+        table: _of_table([one for one in circles if one["conditions"]["table"] == table])
+        for table in TABLES
+        if table in seen
+    }
     return {
         "format": FORMAT,
         "conditions": {name: circles[0]["conditions"][name] for name in ALIKE},
-        "tables": {
-            table: _of_table([one for one in circles if one["conditions"]["table"] == table])
-            for table in TABLES
-            if table in seen
-        },
+        "tables": tables,
         "all": _of_arms(concealed) if concealed else {},
+        "own_better_on": _own_better_on([one["arms"] for name, one in tables.items() if name != CONTROL]),
     }
+
+
+def _own_better_on(tables: Sequence[Mapping[str, Any]]) -> dict[str, dict[str, int]]:
+    """By the name of each other arm: of how many `tables`, which have both, the arm OWN is `better` than it, `clearly`
+    so, beyond the interval, and better `in_simulator`."""
+    counts = {}
+    for arm in ARMS:
+        both = [(one[OWN], one[arm]) for one in tables if OWN in one and arm in one and arm != OWN]
+        if both:
+            counts[arm] = {
+                "tables": len(both),
+                "better": sum(other["own_better_by"]["value"] > 0.0 for _, other in both),
+                "clearly": sum(other["own_better_by"]["low"] > 0.0 for _, other in both),
+                "in_simulator": sum(own["simulated"] > other["simulated"] for own, other in both),
+            }
+    return counts
 
 
 def _in_words(condition: Any) -> str:

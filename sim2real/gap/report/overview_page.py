@@ -36,6 +36,10 @@ def overview_page(result: dict[str, Any], folders: list[str]) -> str:
             },
             chart=_chart(result["tables"]),
             tables=[_table_row(name, one) for name, one in result["tables"].items()],
+            counts=[
+                [arm, *(f"{one[name]} of {one['tables']}" for name in ("better", "clearly", "in_simulator"))]
+                for arm, one in result["own_better_on"].items()
+            ],
             rows=[_arm_row(name, arm, row) for name, arms in tables.items() for arm, row in arms.items()],
             command=f"puckpilot gap --together {' '.join(folders)}",
         )

@@ -13,6 +13,7 @@ import pytest
 from puckpilot import main
 from sim2real.commands import gap
 from sim2real.gap.overview import overview, read_circle
+from sim2real.gap.report.overview_words import overview_lines
 from sim2real.gap.stages import LAST, STAGES, Work
 
 GAMES, MINUTES = 30, 1.0
@@ -56,6 +57,25 @@ def test_changes_and_shares_are_means_over_the_seeds() -> None:
     assert truth["own_better_by"]["value"] == pytest.approx(-0.5)
     assert corrected["of_seeds"] == pytest.approx([1.0, 2.0]) and corrected["simulated"] == pytest.approx(3.0)
     assert "share" not in truth and "own_better_by" not in corrected
+
+
+def test_tables_on_which_an_arm_is_better_are_counted() -> None:
+    """Than `unchanged` on two of three, but by next to nothing on one of them; the control does not count."""
+    circles = [
+        circle("none", 0, 6.0, corrected=8.0, unchanged=2.0),
+        circle("walls", 0, 1.0, corrected=4.0, unchanged=1.0),
+        circle("warp", 0, 1.0, corrected=2.01, unchanged=2.0),
+        circle("late", 0, 1.0, corrected=2.0, unchanged=4.0, truth=3.0),
+    ]
+    result = overview(circles)
+    assert result["own_better_on"] == {
+        "unchanged": {"tables": 3, "better": 2, "clearly": 1, "in_simulator": 2},
+        "truth": {"tables": 1, "better": 0, "clearly": 0, "in_simulator": 0},
+    }
+    lines = overview_lines(result)
+    assert "corrected wins back more than unchanged on 2 of 3 tables, on 1 beyond the interval" in lines
+    walls = next(line for line in lines if line.startswith("walls"))
+    assert "4.00    1.00" in walls and "+3.00 (" in walls and "+0.00 (" in walls
 
 
 def test_over_all_tables_the_control_is_left_out() -> None:
