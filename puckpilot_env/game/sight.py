@@ -15,14 +15,16 @@ from puckpilot_env.physics.gantry.mallet import motion_now
 
 LOOK = 1e-4  # s over which velocities are measured
 SEEN = np.dtype([(name, np.float64) for name in ("x", "y", "vx", "vy")], align=True)  # m, m/s
-SIGHT = np.dtype([("age", np.float64), ("puck", SEEN), ("mallets", SEEN, 2)], align=True)  # age: of what is seen [s]
+SIGHT = np.dtype(
+    [("puck_age", np.float64), ("puck", SEEN), ("mallets_age", np.float64), ("mallets", SEEN, 2)], align=True
+)  # ages of what is seen [s]
 
 
 @kernel
 def look_now(table):
     """See the table as it is."""
     sight = table.sight
-    sight.age = 0.0
+    sight.puck_age = sight.mallets_age = 0.0
     sight.puck.x, sight.puck.y = table.puck.x, table.puck.y
     sight.puck.vx, sight.puck.vy = table.puck.vx, table.puck.vy
     for k in range(2):
@@ -42,7 +44,7 @@ def set_times(p, period, film):
 @kernel
 def look_back(table, age, film):
     """See the table as in the shots of `set_times`."""
-    table.sight.age = age
+    table.sight.puck_age = table.sight.mallets_age = age
     _between(table.sight.puck, film, 1)
     for k in range(2):
         _between(table.sight.mallets[k], film, 3 + 2 * k)
@@ -59,13 +61,23 @@ def expected_puck(table, p, nominal):
     """The puck's place [m] and velocity [m/s] now, as player 0 is told them."""
     puck = table.sight.puck
     x, y = mirror.shown(0, puck.x, puck.y, p, nominal)
-    return predict.expected_place(x, y, puck.vx, puck.vy, nominal, table.sight.age)
+    return predict.expected_place(x, y, puck.vx, puck.vy, nominal, table.sight.puck_age)
+
+
+@kernel
+def correct_puck(table, p, nominal, dx, dy, dvx, dvy):
+    """Let the puck be expected so much farther [m] and faster [m/s], in the table's frame."""
+    puck = table.sight.puck
+    x, y, puck.vx, puck.vy = expected_puck(table, p, nominal)
+    puck.x, puck.y = mirror.meant(0, x, y, p, nominal)
+    puck.x, puck.y, puck.vx, puck.vy = puck.x + dx, puck.y + dy, puck.vx + dvx, puck.vy + dvy
+    table.sight.puck_age = 0.0
 
 
 @kernel
 def expected_mallet(table, p, player):
     """The place [m] and velocity [m/s] of a player's mallet now, in the table's frame."""
-    mallet, age = table.sight.mallets[player], table.sight.age
+    mallet, age = table.sight.mallets[player], table.sight.mallets_age
     x_low, x_high, y_low, y_high = mirror.area(player, p)
     x, y = min(max(mallet.x + age * mallet.vx, x_low), x_high), min(max(mallet.y + age * mallet.vy, y_low), y_high)
     return x, y, mallet.vx, mallet.vy

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from puckpilot_env.game import mirror
+from puckpilot_env.game import mirror, sight
 from puckpilot_env.game.observation import FASTEST_PUCK
 from puckpilot_env.game.step import observe_table
 from puckpilot_env.kernel import kernel
@@ -131,8 +131,6 @@ def _move(table, p, dx, dy, dvx, dvy):
         mallet_x, mallet_y = place_now(table.mallets[k])
         free = free and size(x - mallet_x, y - mallet_y) >= touch
     if free:
-        table.sight.puck.x += x - puck.x
-        table.sight.puck.y += y - puck.y
         puck.x, puck.y = x, y
     puck.vx = min(max(puck.vx + dvx, -FASTEST_PUCK), FASTEST_PUCK)
     puck.vy = min(max(puck.vy + dvy, -FASTEST_PUCK), FASTEST_PUCK)
@@ -154,5 +152,8 @@ def correct_range(
             continue
         dx, dy = mirror.velocity(table.puck.turned, given[0], given[1])
         dvx, dvy = mirror.velocity(table.puck.turned, given[2], given[3])
+        x, y, vx, vy = table.puck.x, table.puck.y, table.puck.vx, table.puck.vy
         _move(table, p, dx, dy, dvx, dvy)
+        puck = table.puck
+        sight.correct_puck(table, p, nominal[0], puck.x - x, puck.y - y, puck.vx - vx, puck.vy - vy)
         observe_table(table, p, nominal[0], rules[0], frames[i], bounds, observations[i])

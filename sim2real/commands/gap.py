@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from sim2real.gap.circle_folder import Conditions
 
 MOST_GAMES, MOST_STEPS = 10_000, 10**10
+MINUTES = 30.0  # of fine-tuning
 PLAYER = "policy:table_champion"
 TABLE = "walls"
 OPPONENTS = ("interceptor", "follower", "bank_shot")  # against which goals are scored and conceded
@@ -36,10 +37,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help=f"the hand at the other end ({', '.join(OPPONENTS)} in turn); may be given several times",
     )  # fmt: skip
     parser.add_argument("--games", type=int, default=40, metavar="N", help="of each player on the table (40)")
-    parser.add_argument("--seconds", type=float, default=60.0, metavar="S", help="of play of a game, in matches (60)")
+    parser.add_argument(
+        "--seconds", type=float, default=60.0, metavar="S", help="of play of a game, match by match (60)"
+    )
     parser.add_argument("--recorded", type=int, default=5, metavar="N", help="games that are recorded (5)")
-    parser.add_argument("--minutes", type=float, default=30.0, metavar="M", help="of fine-tuning of each arm (30)")
-    parser.add_argument("--steps", type=int, metavar="N", help="of that instead: what else runs here takes none")
+    parser.add_argument("--minutes", type=float, metavar="M", help="of fine-tuning of each arm (30)")
+    parser.add_argument("--steps", type=int, metavar="N", help="of fine-tuning, in place of --minutes")
     parser.add_argument("--seed", type=int, default=0, help="of the first game, and of learning (0)")
     parser.add_argument("--stage", metavar="NAME", help="run it alone, on what those before it left (all)")
     parser.add_argument("--processes", type=int, default=2, metavar="N", help="that play or learn at once (2)")
@@ -99,9 +102,12 @@ def _check(args: argparse.Namespace, arms: list[str], stages: list[str]) -> None
     seed_number(args.seed)
     if args.steps is not None:
         whole_number(args.steps, "--steps", 1, MOST_STEPS)
+    if args.steps is not None and args.minutes is not None:
+        raise ValueError("--minutes and --steps are both given; leave one of the two out")
     for name in ("seconds", "minutes"):
-        if not 0.0 < getattr(args, name) <= 1e5:
-            raise ValueError(f"--{name} is {getattr(args, name):g}; expected more than 0, at most 1e5")
+        given = getattr(args, name)
+        if given is not None and not 0.0 < given <= 1e5:
+            raise ValueError(f"--{name} is {given:g}; expected more than 0, at most 1e5")
 
 
 def _circles(args: argparse.Namespace) -> dict[Path, Conditions]:
@@ -109,7 +115,8 @@ def _circles(args: argparse.Namespace) -> dict[Path, Conditions]:
     from sim2real.gap.circle_folder import Conditions
 
     tables, opponents = args.table or [TABLE], tuple(args.opponent or OPPONENTS)
-    rest = (args.games, args.seconds, args.recorded, args.minutes, args.steps, args.seed)
+    minutes = MINUTES if args.minutes is None and args.steps is None else args.minutes
+    rest = (args.games, args.seconds, args.recorded, minutes, args.steps, args.seed)
     return {
         args.out / table if len(tables) > 1 else args.out: Conditions(args.player, opponents, table, *rest)
         for table in tables

@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from sim2real.gap.circle_folder import CircleFolder, Conditions, keep_conditions
+from sim2real.gap.circle_folder import CircleFolder, Conditions, keep_conditions, keep_training
 from sim2real.gap.stages import STAGES, Progress, Report, Work
 
 
@@ -20,6 +20,8 @@ class Circle:
     ) -> None:
         self.folder, self._processes, self._report = CircleFolder(folder, conditions, shared), processes, report
         keep_conditions(folder, conditions)
+        if shared:
+            keep_training(shared, conditions)
 
     def run(self, arms: list[str], progress: Progress) -> dict[str, Any]:
         """All stages that are not done yet; the result, as it is written to gap.json."""

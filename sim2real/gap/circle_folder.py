@@ -15,7 +15,7 @@ DIR/gap.json, DIR/gap.html        the result
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -27,13 +27,14 @@ VARIANT = "match-v0"
 FILM = "film.gif"
 SHARED = "of_any_table"  # folder that circles of several tables share
 BEFORE = "before"  # name of the player as it is
+TRAINING = ("player", "minutes", "steps", "seed")  # conditions on which training rests
 
 
 @dataclass(frozen=True)
 class Conditions:
     """player, opponents: by name; table: a concealed one; games: of each player on the table, against each opponent in
-    turn, each of `seconds` of play, in matches, of which the first `recorded` are recorded; minutes: of fine-tuning, or
-    steps: if they are given instead; seed: of the first game and of learning."""
+    turn, each of `seconds` of play, in matches, of which the first `recorded` are recorded; minutes
+    or steps: of fine-tuning, the other is None; seed: of the first game and of learning."""
 
     player: str
     opponents: tuple[str, ...]
@@ -41,12 +42,12 @@ class Conditions:
     games: int
     seconds: float
     recorded: int
-    minutes: float
+    minutes: float | None
     steps: int | None
     seed: int
 
 
-def training_words(minutes: float, steps: int | None) -> str:
+def training_words(minutes: float | None, steps: int | None) -> str:
     """How long each arm is fine-tuned, in words."""
     return f"{minutes:g} minutes" if steps is None else f"{1e-6 * steps:g} million steps"
 
@@ -132,17 +133,27 @@ def missing(folder: Path, what: str, stage: str) -> ValueError:
 
 def keep_conditions(folder: Path, conditions: Conditions) -> None:
     """Write down the conditions of a new circle. ValueError, in one line, for a folder of another one."""
+    _keep(folder, {one.name: getattr(conditions, one.name) for one in fields(Conditions)}, "a circle")
+
+
+def keep_training(folder: Path, conditions: Conditions) -> None:
+    """The same of a new folder of arms that circles of several tables share, for what their training rests on."""
+    _keep(folder, {name: getattr(conditions, name) for name in TRAINING}, "players")
+
+
+def _keep(folder: Path, conditions: dict[str, Any], of_what: str) -> None:
     path = folder / "conditions.json"
     if path.exists():
         try:
-            content = json.loads(path.read_text(encoding="utf-8"))
-            kept = Conditions(**content | {"opponents": tuple(content["opponents"])})
-        except (ValueError, TypeError, KeyError):
-            raise ValueError(f"{path} says nothing of a circle; name another --out") from None
-        other = [one.name for one in fields(Conditions) if getattr(kept, one.name) != getattr(conditions, one.name)]
-        if other:
-            given = ", ".join(f"{name} {getattr(kept, name)}" for name in other)
-            raise ValueError(f"{folder} has a circle with {given}; give the same, or name another --out")
+            kept = json.loads(path.read_text(encoding="utf-8"))
+        except ValueError:
+            kept = None
+        if not isinstance(kept, dict) or kept.keys() != conditions.keys():
+            raise ValueError(f"{path} is not of this version; name another --out")
+        kept = {name: tuple(one) if isinstance(one, list) else one for name, one in kept.items()}
+        if other := [name for name in conditions if kept[name] != conditions[name]]:
+            given = ", ".join(f"{name} {kept[name]}" for name in other)
+            raise ValueError(f"{folder} has {of_what} with {given}; give the same, or name another --out")
         return
     folder.mkdir(parents=True, exist_ok=True)
-    write_text_whole(path, json.dumps(asdict(conditions), indent=1) + "\n")
+    write_text_whole(path, json.dumps(conditions, indent=1) + "\n")

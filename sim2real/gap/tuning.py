@@ -47,7 +47,7 @@ def _fine_tune(folder: CircleFolder, arm: str) -> None:
             *map(str, files),
         ]  # fmt: skip
     until = ["--steps", str(c.steps)]
-    if c.steps is None:
+    if c.minutes is not None:
         until = ["--minutes", f"{max(c.minutes - _trained_minutes(run), 1e-3):g}"]
     log = done.parent / LOG
     words = ["train", "--out", str(run), *until, *given]

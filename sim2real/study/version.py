@@ -8,7 +8,7 @@ from pathlib import Path
 
 OF_STUDIES = ("sim2real", "puckpilot_env")  # the diagnosis, its physics, and the independent table
 OF_GAMES = ("agents", "baselines", "firmware", "puckpilot_env", "sim2real")  # the players and the board's program too
-ENDINGS = (".py", ".elf")
+ENDINGS = (".py", ".elf", ".npz")  # code, the board's program, trained players
 
 
 def code_version(root: Path, folders: Sequence[str]) -> str:

@@ -156,7 +156,7 @@ def _command(conditions: dict[str, Any], arms: list[str]) -> str:
     words = {
         "table": conditions["table"], "opponent": " --opponent ".join(conditions["opponents"]),
         **{name: f"{conditions[name]:g}" for name in ("games", "seconds", "recorded")},
-        **({"steps": conditions["steps"]} if conditions["steps"] else {"minutes": f"{conditions['minutes']:g}"}),
+        **{name: f"{conditions[name]:g}" for name in ("minutes", "steps") if conditions[name]},
         "seed": str(conditions["seed"]), "arms": " ".join(arms),
     }  # fmt: skip
     return " ".join(["puckpilot gap", conditions["player"], *(f"--{name} {one}" for name, one in words.items())])

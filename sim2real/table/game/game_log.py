@@ -36,10 +36,11 @@ class GameLog:
 
     def with_next(self, later: GameLog) -> GameLog:
         """Of this game and the one that the same table played next, in which it went on counting plans, times and
-        shots; won by whom the goals of both say."""
+        shots; won by whom the goals of both say. One that ended before its first step has none of these."""
+        counted = later if later.plans else self
         score = self.score[0] + later.score[0], self.score[1] + later.score[1]
         return replace(
-            later,
+            counted,
             score=score,
             fouls=(self.fouls[0] + later.fouls[0], self.fouls[1] + later.fouls[1]),
             outcome=(score[0] > score[1]) - (score[0] < score[1]),
@@ -48,6 +49,8 @@ class GameLog:
             faults=self.faults + later.faults,
             table_seconds=self.table_seconds + later.table_seconds,
             wall_seconds=self.wall_seconds + later.wall_seconds,
+            interrupted=later.interrupted,
+            fault=later.fault,
         )
 
     @property

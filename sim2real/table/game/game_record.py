@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from puckpilot_env.game import sensing
+from puckpilot_env.game.sight import look_now
 from puckpilot_env.game.start import MATCH
 from puckpilot_env.game.state import FRAME
 from puckpilot_env.game.step import observe_table
@@ -74,6 +75,7 @@ class GameRecord:
 
 @kernel
 def _observe(states, params, nominal, rules, frames, bounds, observations):
+    look_now(states[0])  # what a caller writes is what is known, however old it is
     observe_table(states[0], params[0], nominal[0], rules[0], frames, bounds, observations)
 
 

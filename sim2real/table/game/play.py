@@ -16,6 +16,7 @@ from sim2real.table.game.loop import Loop
 from sim2real.table.game.robot_seat import RobotSeat
 from sim2real.table.game.seated_player import seated_player
 
+ROUNDING = 1e-6  # s; less is no time to play
 Show = Callable[[Loop, NDArray[np.float32], dict[str, Any]], None]
 
 
@@ -50,7 +51,7 @@ def play_for(
     """Play so many `seconds`, a new game where one ends, and return what came of all together; see `play_game`."""
     actor = _seated(env, player, seed)
     log = _play(env, actor, seed, seconds, report, may_clear, show)
-    while seconds - log.seconds > 1e-6 and not log.interrupted and log.fault is None:
+    while seconds - log.seconds > ROUNDING and not log.interrupted and log.fault is None:
         log = log.with_next(_play(env, actor, None, seconds - log.seconds, report, may_clear, show))
     return log
 
@@ -73,10 +74,14 @@ def _play(
     """A game, the first of its seed, or one more of the same table."""
     actor.reset(np.ones(1, bool))
     log, over = GameLog(), False
-    observation, info = env.reset(seed=seed)
+    try:
+        observation, info = env.reset(seed=seed)
+    except TableFaultError as fault:
+        log.faults.append(str(fault.cause))
+        observation, info = _cleared(env, fault, may_clear)
     begin, began = info["time"], time.perf_counter()
     try:
-        while not over and (seconds is None or log.seconds < seconds):
+        while not over and (seconds is None or seconds - log.seconds > ROUNDING):
             try:
                 action = actor.act(observation[None])[0]
                 observation, _, terminated, truncated, info = env.step(action)

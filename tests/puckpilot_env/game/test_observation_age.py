@@ -40,6 +40,7 @@ def test_what_is_shown_is_what_was_so_long_before_and_goes_straight_on(effects: 
     tables, earlier = tables_with(parameters, 256), tables_with(parameters, 256, period=0.1 - AGE)
     low, high = tables.action_bounds
     rng, differs = np.random.default_rng(6), 0
+    tilted = 1e-4 * effects.get("tilt_y", 0.0)  # m/s in the time over which velocities are measured
     for _ in range(8):
         actions = rng.uniform(low, high, (256, 2, 4)).astype(np.float32)
         earlier.states[:] = tables.states
@@ -50,11 +51,12 @@ def test_what_is_shown_is_what_was_so_long_before_and_goes_straight_on(effects: 
         free = (np.abs(was[:, 0, :2] - (0.5 * LENGTH, 0.5 * WIDTH)) < (0.5 * LENGTH - 0.2, 0.5 * WIDTH - 0.2)).all(1)
         free &= ~tables.terminated & (tables.states["held"] > 0.0) & (np.abs(was[:, 0, 2:]).max(1) < 5.0)
         shown = tables.observations[free, 0].astype(float)
-        np.testing.assert_allclose(shown[:, PUCK][:, :2], expected[free, 0], atol=2e-4)
+        np.testing.assert_allclose(shown[:, PUCK], np.hstack([expected[free, 0], was[free, 0, 2:]]), atol=5e-4 + tilted)
         inside = free & (np.abs(expected[:, 2, 1] - 0.5 * WIDTH) < 0.5 * WIDTH - 0.14)
         inside &= (expected[:, 2, 0] > 0.5 * LENGTH + 0.1) & (expected[:, 2, 0] < LENGTH - 0.1)
         shown = tables.observations[inside, 0].astype(float)
         np.testing.assert_allclose(shown[:, OTHER][:, :2], expected[inside, 2], atol=1e-3)
+        np.testing.assert_allclose(shown[:, OTHER][:, 2:], was[inside, 2, 2:], atol=0.05)
         differs += int((np.abs(motions(tables)[free, 0, :2] - expected[free, 0]).max(1) > 1e-3).sum())
     assert differs > 4  # so it says something: contacts were not foreseen
 
@@ -86,6 +88,31 @@ def test_a_strike_within_the_age_is_not_seen_but_by_a_hand(player: int) -> None:
 def test_a_face_off_is_seen_as_it_is() -> None:
     late, exact = tables_with({"observation_age": AGE}, 8), tables_with({}, 8)
     np.testing.assert_array_equal(late.observations[..., PLACES], exact.observations[..., PLACES])
+
+
+def test_a_strike_that_is_not_seen_is_in_no_expectation() -> None:
+    """A puck that a mallet sent back 10 ms ago is expected behind that mallet."""
+    tables = tables_with({**SMOOTH, "observation_age": AGE, "wall_restitution": 1.0})
+    for each in range(2):
+        put_mallet(tables, each, 0.3, 0.5)
+    put_puck(tables, 0.3 + 0.0309 + 0.0505 + 2.0 * 0.09, 0.5, -2.0, 0.0)
+    tables.step(STAY)
+    goes_on = 0.3 + 0.0309 + 0.0505 - 0.02 - 2.0 * 0.1
+    assert tables.observations[0, 0, 13] < 0.3 and goes_on > 0.0309  # it gets to the goal
+    assert tables.observations[0, 1, 13] > LENGTH - 0.3
+
+
+def test_a_serve_is_seen_as_it_is() -> None:
+    """Of either player, after a goal."""
+    tables = tables_with({**SMOOTH, "observation_age": AGE}, 2)
+    put_puck(tables, np.array([0.1, LENGTH - 0.1]), 0.5, np.array([-4.0, 4.0]), 0.0)
+    for each in range(2):
+        put_mallet(tables, each, 0.3, 0.2)
+    tables.step(np.tile(np.float32([0.3, 0.2, 1.0, 1.0]), (2, 2, 1)))
+    assert (tables.states["score"].sum(axis=1) == 1).all()
+    puck = motions(tables)[:, 0]
+    np.testing.assert_allclose(tables.observations[:, 0, PUCK], puck, atol=1e-6)
+    np.testing.assert_allclose(tables.observations[:, 0, 9:11], [[LENGTH * 0.875, 0.5 * WIDTH]] * 2, atol=1e-6)
 
 
 def test_a_turned_table_shows_the_same() -> None:

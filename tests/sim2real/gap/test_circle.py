@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -96,6 +97,24 @@ def test_a_folder_of_another_circle_is_refused(tmp_path: Path) -> None:
         circle(tmp_path, table="warp")
 
 
+def test_players_that_several_tables_share_are_of_one_training(tmp_path: Path) -> None:
+    def of(table: str, **others: Any) -> None:
+        conditions = replace(CONDITIONS, table=table, **others)
+        Circle(tmp_path / table, conditions, 1, lambda line: None, tmp_path / "of_any_table")
+
+    of("walls")
+    of("warp", games=4)
+    with pytest.raises(ValueError, match=r"of_any_table has players with minutes 1\.0; give the same, or name another"):
+        of("late", minutes=2.0)
+
+
+@pytest.mark.parametrize("text", ["{", "[]", '{"table": "none"}'])
+def test_a_folder_of_another_version_is_refused(text: str, tmp_path: Path) -> None:
+    (tmp_path / "conditions.json").write_text(text)
+    with pytest.raises(ValueError, match=r"conditions\.json is not of this version; name another --out"):
+        circle(tmp_path)
+
+
 @pytest.mark.parametrize(
     ("given", "said"),
     [
@@ -104,6 +123,7 @@ def test_a_folder_of_another_circle_is_refused(tmp_path: Path) -> None:
         (["--recorded", "50"], "--recorded is 50"),
         (["--minutes", "0"], "--minutes is 0"),
         (["--steps", "0"], "--steps is 0"),
+        (["--steps", "9", "--minutes", "3"], "--minutes and --steps are both given"),
         (["nobody"], "nobody"),
     ],
 )

@@ -48,7 +48,7 @@ def test_what_is_the_same_for_every_table_is_learnt_once(folder: CircleFolder, c
 
 
 def test_a_budget_of_steps_stands_in_place_of_minutes(folder: CircleFolder, commands: list[list[str]]) -> None:
-    counted = replace(folder, conditions=replace(folder.conditions, steps=7_000_000))
+    counted = replace(folder, conditions=replace(folder.conditions, minutes=None, steps=7_000_000))
     fine_tune(counted, ["unchanged"], 1)
     assert commands[0][commands[0].index("--steps") + 1] == "7000000" and "--minutes" not in commands[0]
 

@@ -110,8 +110,8 @@ class SlidingNumbers:
         "choice: between half a launch and a drift",
     )  # fmt: skip
     patch_radii: tuple[float, ...] = tuned(
-        (0.05, 0.1, 0.15, 0.2, 0.3), "m", "radii at which friction patches are searched",
-        "choice: from the puck's to a third of the width",
+        (0.05, 0.1, 0.15, 0.2, 0.3, 0.45), "m", "radii at which friction patches are searched",
+        "choice: from the puck's to nearly half of the width",
     )  # fmt: skip
     patch_spacing: float = tuned(
         0.7,
@@ -123,7 +123,10 @@ class SlidingNumbers:
         0.06, "m", "the same for the smallest discs, of which there would be too many", "choice: about the puck's width"
     )
     patches_kept: int = tuned(
-        2, "1", "places that are offered by either search: the best on the grid may not be the best fit", "choice: two"
+        2,
+        "1",
+        "places that are offered by either search: the best on the grid may not be the best fit",
+        "choice: a patch, and the rest of the table",
     )
     patch_refinements: int = tuned(
         2, "1", "rounds of looking nearby, each with half the step", "choice: a quarter step"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import closing
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,9 @@ import pytest
 
 pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
 
+from puckpilot_env import Tables
 from puckpilot_env.options.at_table import OBSERVATION_AGE
+from sim2real.table.faults import Cause, TableFaultError
 from sim2real.table.game.game_log import GameLog
 from sim2real.table.game.loop import Loop
 from sim2real.table.game.play import play_for
@@ -45,6 +48,59 @@ def test_a_new_game_begins_where_one_ends_and_all_goals_count(played: Played) ->
     assert log.outcome == np.sign(log.score[0] - log.score[1])
     assert log.seconds == pytest.approx(SECONDS) and len(scores) == round(SECONDS / 0.1)
     assert log.shots.made >= log.score[0] and log.plans >= len(scores)
+
+
+class StoppedBetweenGames:
+    """A seat whose games last ten steps, and whose table is stopped before the second one begins."""
+
+    def __init__(self, ends: Exception | None = None) -> None:
+        self.tables = Tables("match-v0", 1)
+        self.observation_space = SimpleNamespace(shape=self.tables.observations.shape[2:])
+        self.loop, self.begun, self.steps, self.cleared, self._ends = None, 0, 0, 0, ends
+
+    def seen(self) -> tuple[np.ndarray, dict[str, Any]]:
+        info = {
+            "time": 0.0, "score": np.array([1, 0]), "fouls": np.zeros(2, int), "new_point": False, "off_path": 0.0,
+            "play_time": 0.1 * self.steps, "plans": self.steps, "parked": 0.0,
+        }  # fmt: skip
+        return self.tables.observations[0, 0], info
+
+    def reset(self, seed: int | None = None) -> tuple[np.ndarray, dict[str, Any]]:
+        self.begun, self.steps = self.begun + 1, 0
+        if self.begun == 2:
+            raise self._ends or TableFaultError(Cause.PUCK_LOST, "the puck is not seen")
+        return self.seen()
+
+    def clear(self) -> tuple[np.ndarray, dict[str, Any]]:
+        self.cleared += 1
+        return self.seen()
+
+    def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
+        self.steps += 1
+        observation, info = self.seen()
+        return observation, 0.0, self.steps == 10, False, info
+
+
+def play_out(env: StoppedBetweenGames, clears: bool) -> GameLog:
+    return play_for(env, "still", 0, 2.5, lambda line: None, lambda fault: clears, lambda *seen: None)  # type: ignore[arg-type] - all that it asks for
+
+
+def test_a_table_that_is_stopped_between_games_is_cleared() -> None:
+    env = StoppedBetweenGames()
+    log = play_out(env, clears=True)
+    assert (env.begun, env.cleared, log.faults) == (3, 1, ["puck_lost"])
+    assert log.score == (3, 0) and log.seconds == pytest.approx(2.5)
+
+
+def test_a_table_that_is_not_cleared_between_games_is_a_fault() -> None:
+    with pytest.raises(TableFaultError, match="not seen"):
+        play_out(StoppedBetweenGames(), clears=False)
+
+
+def test_a_game_that_ended_before_it_began_leaves_what_was_counted() -> None:
+    first = GameLog(score=(2, 1), seconds=10.0, plans=100, parked=0.5, outcome=1)
+    both = first.with_next(GameLog(interrupted=True))
+    assert (both.score, both.seconds, both.plans, both.parked, both.interrupted) == ((2, 1), 10.0, 100, 0.5, True)
 
 
 def test_what_players_are_shown_is_as_old_as_the_simulator_has_it(played: Played) -> None:

@@ -39,7 +39,7 @@ def test_a_stopped_run_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.
     assert games == [result(one) for one in MEETINGS]
 
 
-@pytest.mark.parametrize("text", ["{", "[]", '{"format": "puckpilot-twin-game/1", "meeting": {}, "game": {}}'])
+@pytest.mark.parametrize("text", ["{", "[]", f'{{"format": "{fidelity.FORMAT}", "meeting": {{}}, "game": {{}}}}'])
 def test_a_file_of_another_meeting_is_refused(text: str, tmp_path: Path) -> None:
     (tmp_path / "game_3.json").write_text(text)
     with pytest.raises(ValueError, match=r"game_3.json: is no result of this meeting; name another folder"):

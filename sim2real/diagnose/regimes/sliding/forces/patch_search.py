@@ -28,14 +28,29 @@ def patch_laws(
     score = np.concatenate(
         [gains(grid[k : k + SLIDING.patch_chunk])[0] for k in range(0, len(grid), SLIDING.patch_chunk)], axis=1
     )
-    order = np.argsort(-score, axis=1)[:, : SLIDING.patches_kept]
-    best, beside = grid[order.ravel()], np.repeat(np.arange(len(rests)), SLIDING.patches_kept)
+    offered = [_distinct(grid, of_rest) for of_rest in score]
+    best = np.concatenate(offered)
+    beside = np.repeat(np.arange(len(rests)), [len(discs) for discs in offered])
     for finer in range(1, SLIDING.patch_refinements + 1):
         for k, disc in enumerate(best):
             near = _near(disc, 0.5**finer)
             best[k] = near[np.argmax(gains(near)[0][beside[k]])]
     laws = [_patch(f"patch_extra@{k}", disc, len(grid)) for k, disc in enumerate(best)]
     return laws, gains(best)[1]
+
+
+def _distinct(discs: np.ndarray, score: np.ndarray) -> np.ndarray:
+    """The best few of the `discs` (k, 3) by their `score` (k,), none with its centre in another.
+
+    A patch of more friction looks much like one of less wherever else the puck is, and both are tried.
+    """
+    kept: list[np.ndarray] = []
+    for disc in discs[np.argsort(-score)]:
+        if all(np.hypot(*(disc[:2] - one[:2])) > max(disc[2], one[2]) for one in kept):
+            kept.append(disc)
+        if len(kept) == SLIDING.patches_kept:
+            break
+    return np.array(kept)
 
 
 def _near(disc: np.ndarray, share: float) -> np.ndarray:

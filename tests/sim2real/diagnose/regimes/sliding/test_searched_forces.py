@@ -8,6 +8,7 @@ import pytest
 from sim2real.diagnose.engine.linear.rest import Rest, gains_of_groups
 from sim2real.diagnose.regimes.sliding.forces.force_search import ForceSearch, Steps, searched_forces
 from sim2real.diagnose.regimes.sliding.forces.motion import Motion
+from sim2real.diagnose.regimes.sliding.forces.patch_search import _distinct
 from sim2real.diagnose.regimes.sliding.forces.searched_forces import Span, Wave, searched_force
 
 FORCES = [
@@ -90,3 +91,10 @@ def test_a_search_without_rows_that_are_used_is_of_those_that_are() -> None:
         steps = Steps.of(m, as_rows, rows, "brake", "x")
         found.append([one.force for one in ForceSearch(m, as_rows, rest, rows).spans("brake", "x", steps)])
     assert found[0] == found[1] != []
+
+
+def test_no_patch_that_is_offered_has_its_middle_in_another() -> None:
+    """The two best overlap; the third is elsewhere."""
+    discs = np.array([[0.4, 0.7, 0.5], [0.45, 0.7, 0.5], [1.4, 0.5, 0.45], [1.5, 0.5, 0.3]])
+    kept = _distinct(discs, np.array([8.0, 10.0, 7.0, 5.0]))
+    np.testing.assert_array_equal(kept, discs[[1, 2]])
