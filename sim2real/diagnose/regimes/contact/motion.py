@@ -137,11 +137,11 @@ def _check_wall(
 
 def _extrapolate(states: States, glide: int, end: int, duration: float) -> ContactSide:
     """The motion `duration` [s] after the first (`end` 0) or last (1) frame of a glide; before it if negative."""
-    place, velocity, beyond = np.split(states.motion[glide, end], 3)
+    place, velocity, more = np.split(states.motion[glide, end], 3)
     moved = np.eye(4)
     moved[0, 2] = moved[1, 3] = duration
     return ContactSide(
-        *extrapolated(place, velocity, beyond, states.friction, states.drag, duration),
+        *extrapolated(states.record, float(states.t[glide, end]), place, velocity, more, duration),
         moved @ states.spread[glide, end] @ moved.T,
         moved @ states.drift[glide, end],
     )

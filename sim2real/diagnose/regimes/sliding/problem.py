@@ -14,7 +14,6 @@ from sim2real.diagnose.engine.problem import DesignMatrix
 from sim2real.diagnose.regimes.sliding.candidates import glide_columns
 from sim2real.diagnose.regimes.sliding.forces.basis_library import force
 from sim2real.diagnose.regimes.sliding.residuals import GlideResiduals
-from sim2real.diagnose.regimes.sliding.trajectory import braking
 from sim2real.diagnose.regimes.sliding.tuned import SLIDING
 
 
@@ -22,17 +21,17 @@ from sim2real.diagnose.regimes.sliding.tuned import SLIDING
 class States:
     """The states of glides at their first and last frames.
 
-    `motion` (g, 2, 6): place [m], velocity [m/s], and the acceleration [m/s^2] in addition to that by `friction`
-    [m/s^2] and `drag` [1/m]; `spread` (g, 2, 4, 4): covariance of place and velocity due to the frames' noise; `drift`
-    (g, 2, 4, k): changes of place and velocity by each independent standard deviation of the law and of the camera's
-    calibration, common to all glides.
+    `t` (g, 2) [s]: of these frames; `motion` (g, 2, 6): place [m], velocity [m/s], and the acceleration [m/s^2] in
+    addition to that by the law whose parameters are in `record` (1,); `spread` (g, 2, 4, 4): covariance of place and
+    velocity due to the frames' noise; `drift` (g, 2, 4, k): changes of place and velocity by each independent standard
+    deviation of the law and of the camera's calibration, common to all glides.
     """
 
+    t: np.ndarray
     motion: np.ndarray
     spread: np.ndarray
     drift: np.ndarray
-    friction: float
-    drag: float
+    record: np.ndarray
 
 
 class GlideProblem(GlideResiduals):
@@ -56,7 +55,7 @@ class GlideProblem(GlideResiduals):
         if given."""
         data, record = self.data, self._record(law.values)
         _, path, by_start = self._fit_starts(record)
-        whitened = self.errors.white(by_start[:, :2])
+        whitened, added = self.errors.white(by_start[:, :2]), np.zeros((len(path), 2))
         if theta is not None:
             added = force(smooth, self.motion(path), theta)
             change = np.concatenate(self.displacements(path, law.values, added[:, :, None]), axis=1)[:, :, 0]
@@ -65,18 +64,14 @@ class GlideProblem(GlideResiduals):
         ends = [data.first[:-1], data.first[1:] - 1]
         inverse = np.linalg.inv(self._normal(whitened)) * self._excess(path, by_start[:, :2])[:, None, None]
         by_modes = self._start_changes(whitened, self.errors.modes(path[:, :2]))
-        friction, drag = float(record["friction"]), float(record["drag"])
-        beyond = [
-            _beyond(data.t, path[:, 2:], at, step, friction, drag) for at, step in zip(ends, (1, -1), strict=True)
-        ]
         return States(
-            np.stack([np.concatenate([path[at], more], axis=1) for at, more in zip(ends, beyond, strict=True)], axis=1),
+            np.stack([data.t[at] for at in ends], axis=1),
+            np.stack([np.concatenate([path[at], added[at]], axis=1) for at in ends], axis=1),
             np.stack([by_start[at] @ inverse @ by_start[at].transpose(0, 2, 1) for at in ends], axis=1),
             np.concatenate(
                 [self._drift(law, ends), np.stack([by_start[at] @ by_modes for at in ends], axis=1)], axis=3
             ),
-            friction,
-            drag,
+            np.array([record]),
         )
 
     def _excess(self, path: np.ndarray, by_start: np.ndarray) -> np.ndarray:
@@ -99,11 +94,3 @@ class GlideProblem(GlideResiduals):
             other = self._fit_starts(self._record({**law.values, **shifted})).path
             drift[:, :, :, k] = np.stack([other[at] - path[at] for at in ends], axis=1)
         return drift
-
-
-def _beyond(t: np.ndarray, velocity: np.ndarray, at: np.ndarray, step: int, friction: float, drag: float) -> np.ndarray:
-    """Acceleration (k, 2) [m/s^2] at the frames `at` (k,) minus that of friction and drag, by the difference of the
-    velocity to the frames `at + step`."""
-    beside = at + step
-    slope = (velocity[beside] - velocity[at]) / (t[beside] - t[at])[:, None]
-    return slope - braking(0.5 * (velocity[beside] + velocity[at]), friction, drag)

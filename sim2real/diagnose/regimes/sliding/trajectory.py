@@ -3,6 +3,7 @@ small accelerations, and the extrapolation beyond a glide's frames to an unobser
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
 import numpy as np
@@ -47,10 +48,16 @@ def accelerations(values: Mapping[str, float], motion: Motion) -> np.ndarray:
 def _accelerations(p, t, place, velocity, found):
     for i in range(len(t)):
         x, y, vx, vy = place[i, 0], place[i, 1], velocity[i, 0], velocity[i, 1]
-        ax, ay = compose.acceleration(p, t[i], x, y, vx, vy, 0.0)
-        brake = max(compose.friction(p, t[i], x, y, vx, vy, p.friction), 0.0)
-        speed = max((vx * vx + vy * vy) ** 0.5, 1e-9)
-        found[i, 0], found[i, 1] = ax - brake * vx / speed, ay - brake * vy / speed
+        found[i, 0], found[i, 1] = _acceleration(p, t[i], x, y, vx, vy)
+
+
+@kernel
+def _acceleration(p, t, x, y, vx, vy):
+    """Acceleration [m/s^2] of a puck without spin by a law, without drag."""
+    ax, ay = compose.acceleration(p, t, x, y, vx, vy, 0.0)
+    brake = max(compose.friction(p, t, x, y, vx, vy, p.friction), 0.0)
+    speed = max(math.sqrt(vx * vx + vy * vy), 1e-9)
+    return ax - brake * vx / speed, ay - brake * vy / speed
 
 
 @array_kernel
@@ -88,25 +95,30 @@ def linear_response(first, t, path, friction, drag, force, moved, moving):
                 moving[i + 1, 0, j], moving[i + 1, 1, j] = dvx[j], dvy[j]
 
 
-def braking(velocity: np.ndarray, friction: float, drag: float) -> np.ndarray:
-    """Acceleration (…, 2) [m/s^2] of the baseline, a = -(friction + drag v^2) along the velocity (…, 2) [m/s], with
-    `friction` [m/s^2] and `drag` [1/m]."""
-    speed = np.linalg.norm(velocity, axis=-1, keepdims=True)
-    return -(friction + drag * speed**2) * velocity / np.maximum(speed, SLIDING.at_rest)
-
-
 def extrapolated(
-    place: np.ndarray, velocity: np.ndarray, beyond: np.ndarray, friction: float, drag: float, duration: float
+    record: np.ndarray, t: float, place: np.ndarray, velocity: np.ndarray, more: np.ndarray, duration: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Place (2,) [m] and velocity (2,) [m/s] `duration` [s] later (earlier if negative), under `braking` and a constant
-    acceleration `beyond` (2,) [m/s^2], by the Runge-Kutta method of fourth order."""
+    """Place (2,) [m] and velocity (2,) [m/s] `duration` [s] after `t` [s] (before it if negative), under the law of the
+    parameters `record` (1,) and a constant acceleration `more` (2,) [m/s^2]."""
+    state = np.concatenate([place, velocity])
     steps = max(int(np.ceil(abs(duration) / SLIDING.runge_kutta_step)), 1)
-    h = duration / steps
-    for _ in range(steps):
-        v, a = [velocity], [braking(velocity, friction, drag) + beyond]
-        for part in (0.5, 0.5, 1.0):
-            v.append(velocity + part * h * a[-1])
-            a.append(braking(v[-1], friction, drag) + beyond)
-        place = place + h / 6.0 * (v[0] + 2.0 * v[1] + 2.0 * v[2] + v[3])
-        velocity = velocity + h / 6.0 * (a[0] + 2.0 * a[1] + 2.0 * a[2] + a[3])
-    return place, velocity
+    _carry_on(record, t, state, more, duration / steps, steps)
+    return state[:2], state[2:]
+
+
+@array_kernel
+def _carry_on(record, t, state, more, h, steps):
+    """Take `state` (4,), place and velocity, so many steps of `h` [s] on, by the Runge-Kutta method of fourth order."""
+    p, slopes, at = record[0], np.empty((4, 4)), np.empty(4)
+    for step in range(steps):
+        for k in range(4):
+            part = 0.0 if k == 0 else 1.0 if k == 3 else 0.5
+            for i in range(4):
+                at[i] = state[i] + part * h * slopes[max(k - 1, 0), i] if k else state[i]
+            ax, ay = _acceleration(p, t + (step + part) * h, at[0], at[1], at[2], at[3])
+            speed = math.sqrt(at[2] * at[2] + at[3] * at[3])
+            slopes[k, 0], slopes[k, 1] = at[2], at[3]
+            slopes[k, 2] = ax - p.drag * speed * at[2] + more[0]
+            slopes[k, 3] = ay - p.drag * speed * at[3] + more[1]
+        for i in range(4):
+            state[i] += h / 6.0 * (slopes[0, i] + 2.0 * slopes[1, i] + 2.0 * slopes[2, i] + slopes[3, i])

@@ -162,10 +162,9 @@ class SlidingNumbers:
     )  # fmt: skip
     # extrapolation and figures
     runge_kutta_step: float = tuned(
-        0.01, "s", "longest step of the extrapolation: a fast puck's drag changes within a few",
+        0.001, "s", "longest step of the extrapolation: a friction patch begins and ends within one",
         "tests/sim2real/diagnose/regimes/sliding/test_extrapolate.py",
     )  # fmt: skip
-    at_rest: float = tuned(1e-6, "m/s", "a slower puck has no heading", "choice: far below the noise of a velocity")
     window: float = tuned(
         0.7, "s", "length of an acceleration window: the acceleration's noise falls with its 2.5th power, and a longer "
         "one averages over places", "choice: noise of a window below the forces that matter",

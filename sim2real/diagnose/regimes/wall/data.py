@@ -50,10 +50,11 @@ def wall_contacts(
 
 
 def is_usual(every: WallContacts, known: WallContacts) -> np.ndarray:
-    """Whether each contact (n,) bool has a restitution near the median of its wall; True for every post contact.
+    """Whether each contact (n,) bool has a restitution near the median of its wall, and changes the velocity along it
+    by no more than friction and the loss of all of it can; True for every post contact.
 
-    A contact with an outlying restitution touched something else as well. For a wall with few contacts in `known` the
-    median of all walls is used.
+    Any other contact touched something else as well, a mallet beside the wall, say. For a wall with few contacts in
+    `known` the median of all walls is used.
     """
     restitution, known_restitution = (
         some.components(some.velocity_after)[:, 0] / some.closing_speed for some in (every, known)
@@ -64,7 +65,9 @@ def is_usual(every: WallContacts, known: WallContacts) -> np.ndarray:
         own = own if own.sum() >= WALL.fewest_of_wall else known_wall
         median = np.median(known_restitution[own]) if own.any() else np.median(restitution[wall])
         usual[every.kind == kind] = median
-    return ~wall | (np.abs(restitution - usual) < WALL.most_unusual_restitution)
+    normal_change, change_along = np.abs(every.components(every.velocity_after - every.velocity_before)).T
+    possible = change_along <= np.abs(every.tangential_velocity) + WALL.most_friction * normal_change
+    return ~wall | ((np.abs(restitution - usual) < WALL.most_unusual_restitution) & possible)
 
 
 def place_along_wall(data: WallContacts) -> np.ndarray:

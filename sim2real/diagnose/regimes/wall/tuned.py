@@ -35,6 +35,12 @@ class WallNumbers:
         "less drops contacts of a wall whose restitution varies; more keeps contacts with something else as well",
         "choice: no wall's restitution differs so much from one contact to the next",
     )
+    most_friction: float = tuned(
+        1.0,
+        "1",
+        "less drops contacts with a rough wall; more keeps contacts with something else as well",
+        "choice: more than any wall's",
+    )
     most_unusual_place: float = tuned(
         12.0,
         "standard deviations",

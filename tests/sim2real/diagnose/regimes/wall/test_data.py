@@ -52,6 +52,17 @@ def test_a_wall_unlike_the_others_is_kept_and_a_single_outlier_is_not() -> None:
     assert list(np.flatnonzero(~is_usual(odd, odd))) == [20]
 
 
+def test_a_contact_that_no_friction_turns_so_far_is_left_out() -> None:
+    """Of 0.9 of the restitution along the wall: 1.05 times that what a friction of 1 can change, and 0.95 times."""
+    data = contacts_that_keep(lambda x: np.full(COUNT, 0.9))
+    most = np.abs(data.velocity_before[:, 0]) + np.abs(data.velocity_after - data.velocity_before)[:, 1]
+    after = data.velocity_after.copy()
+    for row, share in ((7, 1.05), (8, 0.95)):
+        after[row, 0] = data.velocity_before[row, 0] - np.sign(data.velocity_before[row, 0]) * share * most[row]
+    odd = replace(data, velocity_after=after)
+    assert list(np.flatnonzero(~is_usual(odd, odd))) == [7]
+
+
 def test_outliers_are_judged_against_known_contacts() -> None:
     """A third of the contacts lose much more speed than the known ones; only these are rejected."""
     known = contacts_that_keep(lambda x: np.full(COUNT, 0.9))
