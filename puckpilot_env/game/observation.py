@@ -199,7 +199,7 @@ def write(table, p, nominal, rules, frames, bounds, rows):
     at += 1
     if rules.sensing == sensing.EXACT:
         first, at = at, _put_exact(table, p, nominal, rows, at)
-        if p.observation_age > 0.0:
+        if table.sight.mallets_age > 0.0:
             _put_predicted(table, p, nominal, rows, first)
     elif rules.sensing == sensing.HISTORY:
         at = _put_history(table, p, nominal, frames, rows, at)

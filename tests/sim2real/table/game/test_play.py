@@ -15,6 +15,7 @@ from puckpilot_env import Tables
 from puckpilot_env.options.at_table import OBSERVATION_AGE
 from sim2real.table.faults import Cause, TableFaultError
 from sim2real.table.game.game_log import GameLog
+from sim2real.table.game.game_record import GameRecord
 from sim2real.table.game.loop import Loop
 from sim2real.table.game.play import play_for
 from sim2real.table.game.robot_seat import make_robot_seat
@@ -48,6 +49,12 @@ def test_a_new_game_begins_where_one_ends_and_all_goals_count(played: Played) ->
     assert log.outcome == np.sign(log.score[0] - log.score[1])
     assert log.seconds == pytest.approx(SECONDS) and len(scores) == round(SECONDS / 0.1)
     assert log.shots.made >= log.score[0] and log.plans >= len(scores)
+
+
+def test_a_record_shows_what_was_written_however_late_its_table_is() -> None:
+    game = GameRecord("match-v0", {"observation_age": 0.03})
+    game.put_puck((0.7, 0.3, 1.0, -0.5))
+    np.testing.assert_allclose(game.observe()[0, 5:9], [0.7, 0.3, 1.0, -0.5], atol=1e-6)
 
 
 class StoppedBetweenGames:
