@@ -95,7 +95,7 @@ def play_out(env: StoppedBetweenGames, clears: bool) -> GameLog:
 def test_a_table_that_is_stopped_between_games_is_cleared() -> None:
     env = StoppedBetweenGames()
     log = play_out(env, clears=True)
-    assert (env.begun, env.cleared, log.faults) == (3, 1, ["puck_lost"])
+    assert (env.begun, env.cleared, log.faults) == (3, 1, [str(Cause.PUCK_LOST)])
     assert log.score == (3, 0) and log.seconds == pytest.approx(2.5)
 
 
