@@ -6,7 +6,7 @@ from typing import Any
 
 from sim2real.gap.arms import ARMS, OWN
 
-COLUMN = 24  # characters of an arm's column
+COLUMN = 26  # characters of an arm's column
 
 
 def overview_lines(result: dict[str, Any]) -> list[str]:
