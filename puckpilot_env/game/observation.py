@@ -2,7 +2,7 @@
 
 `columns` describes what `write` writes, in the same order; a test holds each column against a hand-set table. What is
 computed for the agent is computed with the `nominal` parameters, which it may know; of a table's own `p`, which may be
-drawn, the size is read, for places to be told from the middle (`mirror.shown`), and how late one sees, and who.
+drawn, the size is read, for places to be shown from the middle (`mirror.shown`), and how late one sees, and who.
 """
 
 from __future__ import annotations

@@ -58,7 +58,7 @@ def _between(seen, film, column):
 
 @kernel
 def expected_puck(table, p, nominal):
-    """The puck's place [m] and velocity [m/s] now, as player 0 is told them."""
+    """The puck's place [m] and velocity [m/s] now, as player 0 is shown them."""
     puck = table.sight.puck
     x, y = mirror.shown(0, puck.x, puck.y, p, nominal)
     return predict.expected_place(x, y, puck.vx, puck.vy, nominal, table.sight.puck_age)
