@@ -89,6 +89,7 @@ OPTIONS = {
     "compare": ["--json", "--out"],
     "diagnose": ["--holdout", "--baseline", "--out", "--json"],
     "gap": [
+        "--backend",
         "--table",
         "--list",
         "--arms",

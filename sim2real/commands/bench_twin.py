@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from baselines.matches.match import MatchResult
     from puckpilot_env.options.effects_file import Effects
-    from sim2real.table.twin.fidelity import TwinGame
+    from sim2real.table.meetings import PlayedMeeting
 
 MOST = 10_000
 
@@ -51,8 +51,8 @@ def run(args: argparse.Namespace) -> int:
     from puckpilot_env.options.inputs import seed_number, whole_number
     from puckpilot_env.variants import find_variant
     from sim2real.table.mallet_driver import AHEAD
+    from sim2real.table.meetings import Meeting, play_all
     from sim2real.table.twin.cameras import CAMERAS
-    from sim2real.table.twin.fidelity import Meeting, play_all
 
     whole_number(args.games, "--games", 1, MOST)
     whole_number(args.processes, "--processes", 1, 64)
@@ -94,7 +94,7 @@ def _simulated(match: MatchResult, period: float) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _speed(games: list[TwinGame]) -> dict[str, float]:
+def _speed(games: list[PlayedMeeting]) -> dict[str, float]:
     virtual = sum(game.virtual for game in games)
     return {
         "times_real_time": virtual / sum(game.processor for game in games),
@@ -104,9 +104,9 @@ def _speed(games: list[TwinGame]) -> dict[str, float]:
     }
 
 
-def _figures(games: list[TwinGame]) -> dict[str, Any]:
+def _figures(games: list[PlayedMeeting]) -> dict[str, Any]:
     from baselines.ratings.intervals import share_estimate
-    from sim2real.table.twin.score import score
+    from sim2real.table.score import score
 
     wins = [sum(game.outcome == sign for game in games) for sign in (1, -1)]
     both = score(games)

@@ -1,11 +1,11 @@
 """What physics that the simulator lacks costs a player on a table, and how much a diagnosis wins back.
 
-The whole circle on a twin whose physics is concealed: the player plays there, some of that play is recorded and
-diagnosed, the player is fine-tuned in the simulator with what was found, and plays again, in games of the same seeds.
-Beside it stand the usual answers, with as much training where they learn: an arm each. Every stage keeps what it made
-in --out, and the same command goes on where it was stopped; --stage runs one alone. Each of several tables has a folder
-there, beside a page over all; what is learnt the same for each of them is learnt once. Scores are goals a minute, over
-opponents the mean, with 95 % intervals."""
+The whole circle, on a twin whose physics is concealed or at a physical table: the player plays there, some of that play
+is recorded and diagnosed, the player is fine-tuned in the simulator with what was found, and plays again, in games of
+the same seeds. Beside it stand the usual answers, with as much training where they learn: an arm each. A stage keeps
+what it made in --out, and the same command goes on where it was stopped; --stage runs one alone. Each of several tables
+has a folder there, beside a page over all; what is learnt the same for each of them is learnt once. Scores are goals a
+minute, over opponents the mean, with 95 % intervals."""
 
 from __future__ import annotations
 
@@ -27,14 +27,17 @@ OPPONENTS = ("interceptor", "follower", "bank_shot")  # against which goals are 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
     parser.add_argument("player", nargs="?", default=PLAYER, metavar="PLAYER", help=f"({PLAYER})")
+    parser.add_argument("--backend", default="twin", metavar="NAME", help="twin (default) or table, a physical one")
     parser.add_argument(
-        "--table", action="append", metavar="NAME", help=f"the concealed table ({TABLE}); may be given several times"
-    )
+        "--table", action="append", metavar="NAME",
+        help=f"of the twin, what is concealed ({TABLE}), may be given several times; or a physical one's table.toml",
+    )  # fmt: skip
     parser.add_argument("--list", action="store_true", help="list the concealed tables, arms and stages, and end")
     parser.add_argument("--arms", nargs="+", metavar="ARM", help="what is compared (all)")
     parser.add_argument(
         "--opponent", action="append", metavar="PLAYER",
-        help=f"the hand at the other end ({', '.join(OPPONENTS)} in turn); may be given several times",
+        help=f"the hand at the other end ({', '.join(OPPONENTS)} in turn), of a physical table in the simulator alone; "
+        "may be given several times",
     )  # fmt: skip
     parser.add_argument("--games", type=int, default=40, metavar="N", help="of each player on the table (40)")
     parser.add_argument(
@@ -56,6 +59,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Go round. Returns 0. ValueError, in one line, for what cannot be."""
     from sim2real.gap.arms import ARMS
+    from sim2real.gap.gap_table import TWIN
     from sim2real.gap.stages import LAST, STAGES
 
     if args.list:
@@ -63,7 +67,8 @@ def run(args: argparse.Namespace) -> int:
         return 0
     if args.together:
         return _together(args.together, args.out, args.json)
-    arms, stages = args.arms or list(ARMS), [args.stage] if args.stage else list(STAGES)
+    arms = args.arms or [name for name, arm in ARMS.items() if args.backend == TWIN or not arm.needs_truth]
+    stages = [args.stage] if args.stage else list(STAGES)
     _check(args, arms, stages)
     circles = _circles(args)
     for folder, conditions in circles.items():
@@ -83,21 +88,20 @@ def _check(args: argparse.Namespace, arms: list[str], stages: list[str]) -> None
     from puckpilot_env.files.toml_file import refuse_unknown
     from puckpilot_env.options.inputs import seed_number, whole_number
     from sim2real.gap.arms import ARMS
+    from sim2real.gap.gap_table import PHYSICAL
     from sim2real.gap.residual_fit import require_sklearn
     from sim2real.gap.stages import STAGES
-    from sim2real.table.twin.concealed import find_table
 
     refuse_unknown(arms, ARMS, "arm")
     refuse_unknown(stages, STAGES, "stage")
-    for name in args.table or ():
-        find_table(name)
+    _check_tables(args, arms)
     if "residual" in arms:
         require_sklearn()
     opponents = args.opponent or OPPONENTS
     for name in (args.player, *opponents):
         find_player(name)
     whole_number(args.processes, "--processes", 1, 64)
-    whole_number(args.games, "--games", 2 * len(opponents), MOST_GAMES)
+    whole_number(args.games, "--games", 2 if args.backend == PHYSICAL else 2 * len(opponents), MOST_GAMES)
     whole_number(args.recorded, "--recorded", 1, args.games)
     seed_number(args.seed)
     if args.steps is not None:
@@ -110,17 +114,29 @@ def _check(args: argparse.Namespace, arms: list[str], stages: list[str]) -> None
             raise ValueError(f"--{name} is {given:g}; expected more than 0, at most 1e5")
 
 
+def _check_tables(args: argparse.Namespace, arms: list[str]) -> None:
+    from sim2real.gap.arms import ARMS
+    from sim2real.gap.gap_table import PHYSICAL, find_gap_table
+
+    for name in args.table or ([] if args.backend == PHYSICAL else [TABLE]):
+        find_gap_table(args.backend, name)
+    if args.backend != PHYSICAL:
+        return
+    if len(args.table or ()) != 1:
+        raise ValueError("--backend table needs one --table FILE; puckpilot table check --example prints one")
+    if args.arms and (unknown := [name for name in arms if ARMS[name].needs_truth]):
+        raise ValueError(f"--arms {unknown[0]} needs a truth that is known; leave it out with --backend table")
+
+
 def _circles(args: argparse.Namespace) -> dict[Path, Conditions]:
     """What is asked for: the conditions of each circle, by its folder."""
     from sim2real.gap.circle_folder import Conditions
 
     tables, opponents = args.table or [TABLE], tuple(args.opponent or OPPONENTS)
     minutes = MINUTES if args.minutes is None and args.steps is None else args.minutes
-    rest = (args.games, args.seconds, args.recorded, minutes, args.steps, args.seed)
-    return {
-        args.out / table if len(tables) > 1 else args.out: Conditions(args.player, opponents, table, *rest)
-        for table in tables
-    }
+    before = (args.player, opponents, args.backend)
+    after = (args.games, args.seconds, args.recorded, minutes, args.steps, args.seed)
+    return {args.out / table if len(tables) > 1 else args.out: Conditions(*before, table, *after) for table in tables}
 
 
 def _go_round(
@@ -131,10 +147,9 @@ def _go_round(
     from sim2real.gap.circle import Circle
     from sim2real.gap.circle_folder import SHARED
     from sim2real.gap.stages import LAST
-    from sim2real.table.twin.concealed import find_table
 
     report = (lambda line: None) if args.json else lambda line: print(line, flush=True)
-    report(f"{conditions.table}: {find_table(conditions.table).words}")
+    report(f"{conditions.table}: {conditions.of_table.words}")
     shared = None if folder == args.out else args.out / SHARED
     circle = Circle(folder, conditions, args.processes, report, shared)
     with progress_bar("games on the table") as progress:
@@ -181,7 +196,7 @@ def _lines(result: dict[str, Any]) -> list[str]:
     simulated, before = result["simulator"], result["before"]
     lines = [
         f"the diagnosis of its play found: {found_words(result)}",
-        f"beside the truth: {against_line(result['against_truth'])}",
+        *([] if result["against_truth"] is None else [f"beside the truth: {against_line(result['against_truth'])}"]),
         f"{'goals a minute':50} {'for':>5} {'against':>8} {'net':>6}  {'95 %':>14}  {'won back':>8}  {'95 %':>14}",
         f"{'in the simulator':50} {simulated['scored']:5.2f} {simulated['conceded']:8.2f} "
         f"{simulated['scored'] - simulated['conceded']:6.2f}",

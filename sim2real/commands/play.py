@@ -147,17 +147,12 @@ def _option(names: set[str]) -> str:
 
 def _may_clear(args: argparse.Namespace) -> Callable[[TableFaultError], bool]:
     """Asks a person whether to go on after a fault; a twin mends nothing by itself."""
-    if args.backend != "table" or not sys.stdin.isatty():
+    if args.backend != "table":
         return lambda fault: False
 
-    from sim2real.table.physical.person import forget_typed
+    from sim2real.table.physical.person import may_go_on  # a terminal of Unix
 
-    def ask(fault: TableFaultError) -> bool:
-        forget_typed()
-        print(f"{fault}. Press Enter to go on, Ctrl-C to end", file=sys.stderr, flush=True)
-        return bool(sys.stdin.readline())
-
-    return ask
+    return may_go_on
 
 
 @contextmanager

@@ -10,19 +10,20 @@ from puckpilot_env.options.at_table import AT_TABLE
 from puckpilot_env.parameters import BY_NAME, EFFECT_ROWS
 from puckpilot_env.physics.effects import EFFECTS
 from sim2real.gap.arms import OWN, simulator_of
-from sim2real.table.twin.concealed import find_table
+from sim2real.gap.gap_table import GapTable
+from sim2real.table.twin.concealed import ConcealedTable
 
 NAMED, POSSIBLE, MISSED, NOT_THERE = "named", "named as another possibility", "missed", "not there"
 CAMERA_DELAY = "camera_delay"
 UNLISTED = "unlisted"  # mechanism of all laws without a name
 
 
-def against_truth(findings: Sequence[Mapping[str, Any]], table: str) -> list[dict[str, Any]]:
+def against_truth(findings: Sequence[Mapping[str, Any]], table: ConcealedTable) -> list[dict[str, Any]]:
     """A row for each effect that the concealed `table` has or a diagnosis named, those that are there first.
 
     effect: its name, of an unlisted law "unlisted" and its regime; outcome: NAMED, POSSIBLE, MISSED or NOT_THERE;
     numbers: by their short names, `unit` and the `truth` beside what was `found`, {value, low, high}, None if it was
-    not; of an unlisted law there are none. ValueError, in one line, for an unknown table.
+    not; of an unlisted law there are none.
     """
     there = _there(table)
     found: dict[str, Mapping[str, Any]] = {}
@@ -38,7 +39,7 @@ def against_truth(findings: Sequence[Mapping[str, Any]], table: str) -> list[dic
     return rows
 
 
-def learnt(circle: Path, table: str) -> dict[str, Any]:
+def learnt(circle: Path, table: GapTable) -> dict[str, Any]:
     """What the arm `corrected` of the circle in a folder learns on beyond what is true of every table.
 
     effects: those that are switched on; constants: of the baseline, by name, that differ from the simulator's; draws:
@@ -59,9 +60,8 @@ def _name(mechanism: str, regime: str) -> str:
     return f"{UNLISTED}, {regime}" if mechanism == UNLISTED else mechanism
 
 
-def _there(table: str) -> dict[str, dict[str, float]]:
+def _there(concealed: ConcealedTable) -> dict[str, dict[str, float]]:
     """The effects that a concealed table has, with all their numbers by their short names."""
-    concealed = find_table(table)
     there = {}
     for name, effect in EFFECTS.items():
         numbers = {short: concealed.truth.get(row.name, row.default) for short, row in effect.rows.items()}

@@ -18,8 +18,9 @@ from puckpilot_env.options.at_table import AT_TABLE
 from puckpilot_env.options.draws_file import read_draws
 from puckpilot_env.options.effects_file import effect_values
 from puckpilot_env.variants import find_variant
+from sim2real.gap.gap_table import GapTable
 from sim2real.gap.residual_fit import write_residual
-from sim2real.table.twin.concealed import DELAY, find_table
+from sim2real.table.twin.concealed import DELAY, ConcealedTable
 
 CEILING, OWN = "truth", "corrected"  # names of arms
 DIAGNOSIS = "diagnosis"  # its folder in the circle's
@@ -35,10 +36,10 @@ class Simulator:
     draws: Mapping[str, Any] | None = None
     residual_of: tuple[Path, ...] = ()
 
-    def at_table(self) -> Simulator:
-        """The same with what is true of every table, and without late commands, of which the board's feedback leaves
-        no more than a wobble."""
-        values = {name: value for name, value in self.values.items() if name != DELAY}
+    def at_table(self, known: Mapping[str, float]) -> Simulator:
+        """The same with what is `known` of this table, where nothing else was found, and with what is true of every
+        table; and without late commands, of which the board's feedback leaves no more than a wobble."""
+        values = {name: value for name, value in {**known, **self.values}.items() if name != DELAY}
         if self.draws is None:
             return replace(self, values={**values, **AT_TABLE})
         draws = read_draws(self.draws).as_dict()
@@ -50,13 +51,14 @@ class Simulator:
 @dataclass(frozen=True)
 class Arm:
     """words: what it does; simulator: what is learnt on, None if nothing is learnt; camera_delay: that the loop allows
-    for [s]. Both are made from the circle's folder, with before/recordings and diagnosis, and the table's name.
-    of_any_table: whether it learns the same whatever the table."""
+    for [s]. Both are made from the circle's folder, with before/recordings and diagnosis, and its table.
+    of_any_table: whether it learns the same whatever the table; needs_truth: whether it takes one that is known."""
 
     words: str
-    simulator: Callable[[Path, str], Simulator] | None
-    camera_delay: Callable[[Path, str], float] = lambda circle, table: 0.0
+    simulator: Callable[[Path, GapTable], Simulator] | None
+    camera_delay: Callable[[Path, GapTable], float] = lambda circle, table: 0.0
     of_any_table: bool = False
+    needs_truth: bool = False
 
 
 def recordings_of(circle: Path) -> tuple[Path, ...]:
@@ -64,26 +66,26 @@ def recordings_of(circle: Path) -> tuple[Path, ...]:
     return tuple(sorted((circle / "before" / "recordings").glob("game_*")))
 
 
-def _corrected(circle: Path, table: str) -> Simulator:
+def _corrected(circle: Path, table: GapTable) -> Simulator:
     """All that was found, and the intervals of what was measured."""
     drawn = read_draws(circle / DIAGNOSIS / "draws.toml").as_dict()
     return Simulator(effect_values(circle / DIAGNOSIS / "effects.toml"), drawn if drawn["draws"] else None)
 
 
-def _found_camera_delay(circle: Path, table: str) -> float:
+def _found_camera_delay(circle: Path, table: GapTable) -> float:
     """By how much a diagnosis found stamps later than exposures; 0 if it did not."""
     content = json.loads((circle / DIAGNOSIS / "diagnosis.json").read_text(encoding="utf-8"))
     late = [one for one in content["findings"] if one["mechanism"] == "camera_delay"]
     return sum(float(one["parameters"]["delay_s"]["value"]) for one in late)
 
 
-def _constants(circle: Path, table: str) -> Simulator:
+def _constants(circle: Path, table: GapTable) -> Simulator:
     """The baseline's parameters as refitted, and nothing else."""
     content = json.loads((circle / DIAGNOSIS / "diagnosis.json").read_text(encoding="utf-8"))
     return Simulator({name: float(one["value"]) for name, one in content["baseline"]["parameters"].items()})
 
 
-def _randomized(circle: Path, table: str) -> Simulator:
+def _randomized(circle: Path, table: GapTable) -> Simulator:
     """The ranges of `match-randomized-v0`, whatever was recorded."""
     rows = {
         draw.parameter: {"low": draw.low, "high": draw.high}
@@ -91,6 +93,12 @@ def _randomized(circle: Path, table: str) -> Simulator:
         if not draw.parameter.startswith(SENSORS)
     }
     return Simulator({}, rows)
+
+
+def _concealed(table: GapTable) -> ConcealedTable:
+    if table.concealed is None:
+        raise ValueError(f"{table.words}: its truth is not known; leave the arm {CEILING} out")
+    return table.concealed
 
 
 ARMS = {
@@ -102,8 +110,8 @@ ARMS = {
                     lambda circle, table: Simulator(residual_of=recordings_of(circle))),
     "corrected": Arm("fine-tuned with what the diagnosis found", _corrected, _found_camera_delay),
     "truth": Arm("fine-tuned on the concealed truth: the ceiling",
-                 lambda circle, table: Simulator(find_table(table).truth),
-                 lambda circle, table: find_table(table).errors.stamp_late),
+                 lambda circle, table: Simulator(_concealed(table).truth),
+                 lambda circle, table: _concealed(table).errors.stamp_late, needs_truth=True),
 }  # fmt: skip
 
 
@@ -128,9 +136,9 @@ def write_simulator(simulator: Simulator, folder: Path) -> dict[str, Path]:
     return paths
 
 
-def simulator_of(arm: str, circle: Path, table: str) -> Simulator | None:
+def simulator_of(arm: str, circle: Path, table: GapTable) -> Simulator | None:
     """What an arm learns on, by the circle's folder; None if it learns nothing. ValueError, in one line, for an unknown
-    arm."""
+    arm, and for one that needs a truth where none is known."""
     refuse_unknown([arm], ARMS, "arm")
     simulator = ARMS[arm].simulator
-    return simulator and simulator(circle, table).at_table()
+    return simulator and simulator(circle, table).at_table(table.parameters)

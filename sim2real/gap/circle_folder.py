@@ -21,7 +21,8 @@ from typing import Any
 
 from puckpilot_env.files.whole_file import write_text_whole
 from sim2real.gap.arms import ARMS, DIAGNOSIS
-from sim2real.table.twin.fidelity import Meeting
+from sim2real.gap.gap_table import PERSON, PHYSICAL, GapTable, find_gap_table
+from sim2real.table.meetings import Meeting
 
 VARIANT = "match-v0"
 FILM = "film.gif"
@@ -32,12 +33,13 @@ TRAINING = ("player", "minutes", "steps", "seed")  # conditions on which trainin
 
 @dataclass(frozen=True)
 class Conditions:
-    """player, opponents: by name; table: a concealed one; games: of each player on the table, against each opponent in
-    turn, each of `seconds` of play, in matches, of which the first `recorded` are recorded; minutes
-    or steps: of fine-tuning, the other is None; seed: of the first game and of learning."""
+    """player, opponents: by name; backend, table: see `gap_table`; games: of each player on the table, against each
+    opponent in turn, or a person, each of `seconds` of play, in matches, of which the first `recorded` are recorded;
+    minutes or steps: of fine-tuning, the other is None; seed: of the first game and of learning."""
 
     player: str
     opponents: tuple[str, ...]
+    backend: str
     table: str
     games: int
     seconds: float
@@ -45,6 +47,21 @@ class Conditions:
     minutes: float | None
     steps: int | None
     seed: int
+
+    @property
+    def physical(self) -> bool:
+        """Whether the table is a physical one."""
+        return self.backend == PHYSICAL
+
+    @property
+    def of_table(self) -> GapTable:
+        """Where it is played. ValueError, in one line, for an unknown table, or a file that is none."""
+        return find_gap_table(self.backend, self.table)
+
+    @property
+    def on_the_table(self) -> tuple[str, ...]:
+        """The opponents on the table, by name."""
+        return (PERSON,) if self.physical else self.opponents
 
 
 def training_words(minutes: float | None, steps: int | None) -> str:
@@ -103,7 +120,7 @@ class CircleFolder:
 
     def meetings_after(self, arm: str) -> list[Meeting]:
         """Those of an arm's player. ValueError, in one line, if it has not learnt yet."""
-        return self._meetings(self.player(arm), ARMS[arm].camera_delay(self.path, self.conditions.table))
+        return self._meetings(self.player(arm), ARMS[arm].camera_delay(self.path, self.conditions.of_table))
 
     def _meetings(self, player: str, camera_delay: float = 0.0) -> list[Meeting]:
         """A player's games, with a delay [s] that its loop allows for. The first are recorded, of every player: what
@@ -112,15 +129,16 @@ class CircleFolder:
         return [
             Meeting(
                 player,
-                c.opponents[game % len(c.opponents)],
+                c.on_the_table[game % len(c.on_the_table)],
                 VARIANT,
                 c.seed + game,
                 c.seconds,
                 again=True,
-                concealed=c.table,
-                clears=True,
+                concealed="" if c.physical else c.table,
+                clears=not c.physical,
                 recorded=game < c.recorded,
                 camera_delay=camera_delay,
+                table=c.table if c.physical else "",
             )
             for game in range(c.games)
         ]

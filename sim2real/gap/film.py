@@ -14,7 +14,7 @@ from puckpilot_env.rendering.film import TRAIL_TIME, Video
 from puckpilot_env.rendering.video import VideoWriter
 from puckpilot_env.variants import find_variant
 from sim2real.table.game.game_record import GameRecord
-from sim2real.table.twin.fidelity import Meeting, play_on_twin
+from sim2real.table.meetings import Meeting, play_meeting
 from sim2real.table.twin.hand import GAME
 from sim2real.table.twin.plant import Plant
 
@@ -25,13 +25,13 @@ SCALE = 200.0  # pixels a metre
 
 def film(meeting: Meeting, path: Path, name: str) -> None:
     """Play the first SECONDS of a game as it was played, and film them as a new file `path`, there whole or not at
-    all. The player is called `name` there. ValueError as of `VideoWriter` and `play_on_twin`.
+    all. The player is called `name` there. ValueError as of `VideoWriter` and `play_meeting`.
 
     The same seed gives the same game, if it is recorded as that was: a recording begins with the mallet at rest."""
     seconds = SECONDS if meeting.seconds is None else min(SECONDS, meeting.seconds)
     with VideoWriter(path, FPS) as video, TemporaryDirectory() as folder:
         recording = Path(folder) / "recording" if meeting.recorded else None
-        play_on_twin(replace(meeting, seconds=seconds), recording, TwinFilm(meeting, name, video).see)
+        play_meeting(replace(meeting, seconds=seconds), recording, TwinFilm(meeting, name, video).see)
 
 
 class TwinFilm:

@@ -16,22 +16,29 @@ UNCHANGED, TRUTH = "unchanged", "truth"
 
 
 def simulate(
-    path: Path, variant: str, player: str, opponents: Sequence[str], games: int, seed: int, truth: Mapping[str, float]
+    path: Path,
+    variant: str,
+    player: str,
+    opponents: Sequence[str],
+    games: int,
+    seed: int,
+    tables: Mapping[str, Mapping[str, float]],
 ) -> None:
-    """Play `games` against each of the opponents on tables without an effect, and on those with the parameters `truth`,
+    """Play `games` against each of the opponents on each kind of `tables`, UNCHANGED or the TRUTH with its parameters,
     and write goals and minutes as a new file `path`, if it is not there."""
     if path.exists():
         return
     content = {
         name: {one: _goals(variant, player, one, games, seed, effects) for one in opponents}
-        for name, effects in ((UNCHANGED, {}), (TRUTH, truth))
+        for name, effects in tables.items()
     }
     path.parent.mkdir(parents=True, exist_ok=True)
     write_text_whole(path, json.dumps(content, indent=1) + "\n")
 
 
 def simulated_rates(path: Path) -> dict[str, dict[str, float]]:
-    """Goals a minute `scored` and `conceded` on tables UNCHANGED and of the TRUTH, the mean over opponents."""
+    """Goals a minute `scored` and `conceded` on tables UNCHANGED and, if it is known, of the TRUTH, the mean over
+    opponents."""
     content = json.loads(path.read_text(encoding="utf-8"))
     return {name: _rates(list(one.values())) for name, one in content.items()}
 

@@ -16,9 +16,10 @@ from typing import Any
 
 from sim2real.gap.arms import ARMS, CEILING, OWN
 from sim2real.gap.circle_folder import BEFORE
+from sim2real.gap.gap_table import TWIN
 from sim2real.gap.in_simulator import TRUTH
+from sim2real.table.score import mean_change, share
 from sim2real.table.twin.concealed import TABLES, find_table
-from sim2real.table.twin.score import mean_change, share
 
 FORMAT = "puckpilot-gap-overview/3"
 CONTROL = "none"  # the table without an effect, of which nothing is won back
@@ -57,6 +58,8 @@ def overview(circles: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         if len(values) > 1:
             raise ValueError(f"circles of different {name} cannot be compared: {', '.join(values)}")
     for one in circles:
+        if one["conditions"]["backend"] != TWIN:
+            raise ValueError(f"a circle of {one['conditions']['table']} has no truth to be held against; leave it out")
         find_table(one["conditions"]["table"])
     concealed = [one for one in circles if one["conditions"]["table"] != CONTROL]
     seen = {one["conditions"]["table"] for one in circles}

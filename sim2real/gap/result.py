@@ -9,10 +9,10 @@ from typing import Any
 from sim2real.gap.against_truth import against_truth, learnt
 from sim2real.gap.circle_folder import BEFORE, FILM, CircleFolder, missing
 from sim2real.gap.in_simulator import UNCHANGED, simulated_rates
-from sim2real.table.twin.fidelity import Meeting, TwinGame, kept_games
-from sim2real.table.twin.score import change, score, shots
+from sim2real.table.meetings import Meeting, PlayedMeeting, kept_games
+from sim2real.table.score import change, score, shots
 
-FORMAT = "puckpilot-gap/6"
+FORMAT = "puckpilot-gap/7"
 
 
 def result(folder: CircleFolder, arms: list[str]) -> dict[str, Any]:
@@ -20,7 +20,8 @@ def result(folder: CircleFolder, arms: list[str]) -> dict[str, Any]:
 
     Rates are goals a minute, over opponents the mean; `simulator`: of the player as it is, on tables without an effect;
     `in_simulator`: of each player there and with what is concealed, see `in_simulator.simulated_rates`. `films`: paths
-    from the folder, of the player as it is under "before" and of each arm; `against_truth`, `learnt`: see there;
+    from the folder, of the player as it is under "before" and of each arm; `against_truth`: see there, None where no
+    truth is known; `learnt`: see there;
     `open`: why the diagnosis says nothing of a regime, by its name, and under "all" why it says nothing at all.
     """
     if not folder.simulated(BEFORE).exists():
@@ -28,6 +29,7 @@ def result(folder: CircleFolder, arms: list[str]) -> dict[str, Any]:
     before = _kept(folder.meetings_before(), folder.before, "play")
     content = folder.diagnosed()
     after = {arm: _kept(folder.meetings_after(arm), folder.path / arm / "games", "replay") for arm in arms}
+    table = folder.conditions.of_table
     simulated = {name: simulated_rates(folder.simulated(name)) for name in (BEFORE, *arms)}
     return {
         "format": FORMAT,
@@ -38,14 +40,14 @@ def result(folder: CircleFolder, arms: list[str]) -> dict[str, Any]:
         "found": [one["mechanism"] for one in content["findings"]],
         "verdict": content["verdict"],
         "open": _open(content),
-        "against_truth": against_truth(content["findings"], folder.conditions.table),
-        "learnt": learnt(folder.path, folder.conditions.table),
+        "against_truth": against_truth(content["findings"], table.concealed) if table.concealed else None,
+        "learnt": learnt(folder.path, table),
         "arms": {arm: {**_played(games), "change": asdict(change(before, games))} for arm, games in after.items()},
         "films": {name: f"{name}/{FILM}" for name in (BEFORE, *arms) if (folder.path / name / FILM).exists()},
     }
 
 
-def _kept(meetings: list[Meeting], folder: Path, stage: str) -> list[TwinGame]:
+def _kept(meetings: list[Meeting], folder: Path, stage: str) -> list[PlayedMeeting]:
     games = kept_games(meetings, folder)
     if len(games) < len(meetings):
         raise missing(folder, f"{len(meetings)} games", stage)
@@ -57,7 +59,7 @@ def _open(diagnosis: dict[str, Any]) -> dict[str, str]:
     return reasons | ({"all": diagnosis["reason"]} if diagnosis.get("reason") else {})
 
 
-def _played(games: list[TwinGame]) -> dict[str, Any]:
+def _played(games: list[PlayedMeeting]) -> dict[str, Any]:
     """What came of a player's games: rates a minute, also against each opponent alone, shots, stops of the table, and
     goals, seconds and opponent of each game."""
     return {

@@ -11,14 +11,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from puckpilot_env.files.whole_file import write_text_whole
-from sim2real.gap.arms import ARMS, CEILING, recordings_of, simulator_of
+from sim2real.gap.arms import ARMS, Simulator, recordings_of
 from sim2real.gap.circle_folder import BEFORE, FILM, VARIANT, CircleFolder, missing, training_words
 from sim2real.gap.film import film
-from sim2real.gap.in_simulator import simulate
+from sim2real.gap.in_simulator import TRUTH, UNCHANGED, simulate
 from sim2real.gap.report.page import page
 from sim2real.gap.result import result
 from sim2real.gap.tuning import fine_tune, untrained
-from sim2real.table.twin.fidelity import Meeting, play_all
+from sim2real.table.meetings import Meeting, play_all
 
 Progress = Callable[[int, int], None]
 Report = Callable[[str], None]
@@ -44,19 +44,20 @@ def play(work: Work) -> None:
 
 
 def _simulate(work: Work, name: str, player: str) -> None:
-    """The score in the simulator, with what is true of every table, without and with what is concealed."""
-    c = work.folder.conditions
-    truth = simulator_of(CEILING, work.folder.path, c.table)
-    assert truth is not None
-    simulate(work.folder.simulated(name), VARIANT, player, c.opponents, 10 * c.games, c.seed, truth.values)
+    """The score in the simulator, with what is true of every table: without and, where it is known, with what is
+    concealed."""
+    c, table = work.folder.conditions, work.folder.conditions.of_table
+    simulators = {UNCHANGED: Simulator()} | ({TRUTH: Simulator(table.concealed.truth)} if table.concealed else {})
+    values = {one: simulator.at_table(table.parameters).values for one, simulator in simulators.items()}
+    simulate(work.folder.simulated(name), VARIANT, player, c.opponents, 10 * c.games, c.seed, values)
 
 
 def _games(work: Work, meetings: list[Meeting], folder: Path, name: str) -> None:
-    """Play games, whose results go into a folder, and film the first as that of "before" or of an arm."""
+    """Play games, whose results go into a folder, and film the first, on a twin, as that of "before" or of an arm."""
     filmed = work.folder.path / name / FILM
     folder.mkdir(parents=True, exist_ok=True)
     play_all(meetings, folder, work.processes, work.progress)
-    if not filmed.exists():
+    if not filmed.exists() and not work.folder.conditions.physical:
         film(meetings[0], filmed, work.folder.conditions.player if name == BEFORE else name)
 
 
@@ -97,7 +98,7 @@ def report(work: Work) -> None:
     """The result, as gap.json and gap.html."""
     content = result(work.folder, work.arms)
     write_text_whole(work.folder.path / "gap.json", json.dumps(content, indent=1) + "\n")
-    write_text_whole(work.folder.path / "gap.html", page(content))
+    write_text_whole(work.folder.path / "gap.html", page(content, work.folder.conditions.of_table))
 
 
 STAGES: Mapping[str, Callable[[Work], None]] = {one.__name__: one for one in (play, diagnose, tune, replay, report)}

@@ -19,8 +19,8 @@ LOG = "training.log"
 
 def untrained(folder: CircleFolder, arms: Sequence[str]) -> list[str]:
     """Which of the arms have to learn yet."""
-    names = (folder.path, folder.conditions.table)
-    return [arm for arm in arms if simulator_of(arm, *names) is not None and not folder.trained(arm).exists()]
+    of = (folder.path, folder.conditions.of_table)
+    return [arm for arm in arms if simulator_of(arm, *of) is not None and not folder.trained(arm).exists()]
 
 
 def fine_tune(folder: CircleFolder, arms: Sequence[str], at_once: int) -> None:
@@ -35,7 +35,7 @@ def fine_tune(folder: CircleFolder, arms: Sequence[str], at_once: int) -> None:
 
 def _fine_tune(folder: CircleFolder, arm: str) -> None:
     c, done = folder.conditions, folder.trained(arm)
-    simulator = simulator_of(arm, folder.path, c.table)
+    simulator = simulator_of(arm, folder.path, c.of_table)
     assert simulator is not None
     run = done.parent / "training"
     given = ["--resume"]

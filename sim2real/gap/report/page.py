@@ -12,10 +12,10 @@ from sim2real.diagnose.report.charts import BLUE, GREY
 from sim2real.diagnose.report.inline_svg import inline_svg
 from sim2real.gap.arms import ARMS
 from sim2real.gap.circle_folder import BEFORE, training_words
+from sim2real.gap.gap_table import TWIN, GapTable
 from sim2real.gap.in_simulator import TRUTH, UNCHANGED
 from sim2real.gap.report.found_words import against_rows, found_words, learnt_words
 from sim2real.table.game.shots import Shots
-from sim2real.table.twin.concealed import TABLES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 TEMPLATES = Path(__file__).parent / "templates"
 WIDTH, ROW, LEFT = 560.0, 26.0, 150.0  # points
 SIMULATED, PLAYED = "in the simulator", "on the table, as it is"
+SIMULATORS = ("simulator, no effect", "simulator, what is concealed")
 FILES = (
     "before/: the games on the table, with the recordings of the first of them, and a film",
     "diagnosis/: what these say, report.html, effects.toml and draws.toml",
@@ -39,27 +40,31 @@ def environment() -> Environment:
     )  # fmt: skip
 
 
-def page(result: dict[str, Any]) -> str:
-    """The result of a circle, see `result.result`, as one HTML page without scripts, self-contained but for films."""
-    conditions = result["conditions"]
+def page(result: dict[str, Any], table: GapTable) -> str:
+    """The result of a circle at a table, see `result.result`, as one HTML page without scripts, self-contained but for
+    films."""
+    conditions, concealed = result["conditions"], table.concealed is not None
+    opponents = list(conditions["opponents"])
     return (
         environment()
         .get_template("gap.html.j2")
         .render(
-            title=f"{conditions['player']} on a table with {TABLES[conditions['table']].words}",
+            title=f"{conditions['player']} on {f'a table with {table.words}' if concealed else table.words}",
             conditions=conditions,
+            concealed=concealed,
             training=training_words(conditions["minutes"], conditions["steps"]),
-            words=TABLES[conditions["table"]].words,
+            words=table.words,
             chart=_chart(result),
             rows=_rows(result),
             shots=_shots(result),
-            opponents=list(conditions["opponents"]),
-            against=_against(result),
+            opponents=opponents,
+            against=_against(result) if concealed and len(opponents) > 1 else [],
             simulated=_simulated(result),
+            simulators=SIMULATORS[: 1 + concealed],
             films=_films(result),
             found=found_words(result),
             learnt=learnt_words(result["learnt"]),
-            beside_truth=against_rows(result["against_truth"]),
+            beside_truth=against_rows(result["against_truth"] or []),
             command=_command(conditions, list(result["arms"])),
             files=FILES,
         )
@@ -106,11 +111,11 @@ def _against(result: dict[str, Any]) -> list[list[str]]:
 
 
 def _simulated(result: dict[str, Any]) -> list[list[str]]:
-    """Each player's net score in the simulator, on tables without an effect and with what is concealed, and on the
-    table."""
+    """Each player's net score in the simulator, on tables without an effect and, where that is known, with what is
+    concealed, and on the table."""
     rows = []
     for name, tables in result["in_simulator"].items():
-        nets = [tables[one]["scored"] - tables[one]["conceded"] for one in (UNCHANGED, TRUTH)]
+        nets = [tables[one]["scored"] - tables[one]["conceded"] for one in (UNCHANGED, TRUTH) if one in tables]
         played = result["before"] if name == BEFORE else result["arms"][name]
         rows.append([PLAYED if name == BEFORE else name, *(f"{one:.2f}" for one in (*nets, played["net"]["value"]))])
     return rows
@@ -154,6 +159,7 @@ def _chart(result: dict[str, Any]) -> str:
 
 def _command(conditions: dict[str, Any], arms: list[str]) -> str:
     words = {
+        **({} if conditions["backend"] == TWIN else {"backend": conditions["backend"]}),
         "table": conditions["table"], "opponent": " --opponent ".join(conditions["opponents"]),
         **{name: f"{conditions[name]:g}" for name in ("games", "seconds", "recorded")},
         **{name: f"{conditions[name]:g}" for name in ("minutes", "steps") if conditions[name]},

@@ -24,7 +24,7 @@ class PersonAtTerminal:
         """Ask for the puck at (x, y) [m]; play begins as soon as it is seen."""
         speed = math.hypot(puck[2], puck[3])
         how = f"let it go at about {speed:.1f} m/s" if speed > 0.0 else "let it lie"
-        _say(f"puck, please: at ({puck[0]:.2f}, {puck[1]:.2f}) m from the robot's right-hand corner, and {how}")
+        say(f"puck, please: at ({puck[0]:.2f}, {puck[1]:.2f}) m from the robot's right-hand corner, and {how}")
 
     def home_mallet(self, home: Place) -> None:
         """Ask for the robot's mallet at `home` [m], and wait for Enter."""
@@ -37,7 +37,7 @@ class PersonAtTerminal:
     def confirm(self, words: str) -> None:
         """Say something, and serve the table until Enter is pressed. TableFaultError where nobody can press it."""
         forget_typed()
-        _say(words)
+        say(words)
         while not select.select([sys.stdin], [], [], 0.0)[0]:
             self._serve()
         if not sys.stdin.readline():
@@ -50,5 +50,15 @@ def forget_typed() -> None:
         termios.tcflush(sys.stdin, termios.TCIFLUSH)
 
 
-def _say(words: str) -> None:
+def may_go_on(fault: TableFaultError) -> bool:
+    """Ask whether to play on after a fault, once it is mended; not where nobody can answer."""
+    if not sys.stdin.isatty():
+        return False
+    forget_typed()
+    say(f"{fault}. Press Enter to go on, Ctrl-C to end")
+    return bool(sys.stdin.readline())
+
+
+def say(words: str) -> None:
+    """A line for the person, on stderr."""
     print(words, file=sys.stderr, flush=True)

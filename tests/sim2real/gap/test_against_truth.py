@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from sim2real.gap.against_truth import MISSED, NAMED, NOT_THERE, POSSIBLE, against_truth, learnt
+from sim2real.gap.gap_table import TWIN, find_gap_table
 from sim2real.gap.report.found_words import against_line, against_rows, found_words, learnt_words
 from sim2real.table.twin.concealed import TABLES
 
@@ -31,12 +32,12 @@ def finding(mechanism: str, regime: str = "gantry", also: tuple[str, ...] = (), 
 
 
 def outcomes(findings: list[dict[str, Any]], table: str) -> dict[str, str]:
-    return {one["effect"]: one["outcome"] for one in against_truth(findings, table)}
+    return {one["effect"]: one["outcome"] for one in against_truth(findings, TABLES[table])}
 
 
 def test_what_is_named_stands_beside_the_truth() -> None:
     made_up = finding("backlash", width=0.002)
-    rows = against_truth([finding("command_delay", delay_s=0.0052), made_up], "late")
+    rows = against_truth([finding("command_delay", delay_s=0.0052), made_up], TABLES["late"])
     assert [(one["effect"], one["outcome"]) for one in rows] == [
         ("command_delay", NAMED), ("camera_delay", MISSED), ("backlash", NOT_THERE),
     ]  # fmt: skip
@@ -51,7 +52,8 @@ def test_all_numbers_of_an_effect_that_was_found_are_shown_and_no_others() -> No
     """Of walls that spin, inertia and decay are as the simulator's; a restitution is no number of the effect."""
     walls = finding("speed_dependent_restitution", "wall", slope=0.09, e0=0.7)
     rows = {
-        one["effect"]: one for one in against_truth([walls, finding("wall_friction_spin", "wall", mu=0.2)], "walls")
+        one["effect"]: one
+        for one in against_truth([walls, finding("wall_friction_spin", "wall", mu=0.2)], TABLES["walls"])
     }
     assert rows["wall_friction_spin"]["numbers"].keys() == {"mu"}
     assert rows["speed_dependent_restitution"]["numbers"].keys() == {"slope"}
@@ -72,14 +74,14 @@ def test_another_possibility_is_neither_named_nor_missed() -> None:
 
 @pytest.mark.parametrize("table", TABLES)
 def test_every_concealed_table_has_something_to_miss(table: str) -> None:
-    assert bool(against_truth([], table)) == (table != "none") and set(outcomes([], table).values()) <= {MISSED}
+    assert bool(against_truth([], TABLES[table])) == (table != "none") and set(outcomes([], table).values()) <= {MISSED}
 
 
 def test_of_a_silent_diagnosis_constants_and_draws_are_learnt(tmp_path: Path) -> None:
     (tmp_path / "diagnosis").mkdir()
     (tmp_path / "diagnosis" / "effects.toml").write_text(SILENT_EFFECTS)
     (tmp_path / "diagnosis" / "draws.toml").write_text(SILENT_DRAWS)
-    made = learnt(tmp_path, "none")
+    made = learnt(tmp_path, find_gap_table(TWIN, "none"))
     assert made == {"effects": [], "constants": {"friction": 0.11}, "draws": {"friction": [0.1, 0.12]}}
     words = learnt_words(made)
     assert "effects switched on: none" in words and "friction 0.11;" in words and "friction 0.1 to 0.12." in words

@@ -12,6 +12,7 @@ from puckpilot_env.options.at_table import AT_TABLE
 from puckpilot_env.options.draws_file import read_draws
 from puckpilot_env.options.effects_file import as_content, effect_values
 from sim2real.gap.arms import ARMS, simulator_of, write_simulator
+from sim2real.gap.gap_table import TWIN, GapTable, find_gap_table
 from sim2real.table.twin.concealed import TABLES
 
 EFFECTS = """format = "puckpilot-effects/1"
@@ -36,6 +37,10 @@ high = 0.005
 """
 
 
+def twin(table: str) -> GapTable:
+    return find_gap_table(TWIN, table)
+
+
 @pytest.fixture
 def circle(tmp_path: Path) -> Path:
     late = {"mechanism": "camera_delay", "parameters": {"delay_s": {"value": 0.01}}}
@@ -48,18 +53,18 @@ def circle(tmp_path: Path) -> Path:
 
 
 def test_the_corrected_arm_has_what_was_found_and_its_loop_allows_for_the_camera_s_delay(circle: Path) -> None:
-    one = simulator_of("corrected", circle, "none")
+    one = simulator_of("corrected", circle, twin("none"))
     assert one is not None and one.draws is not None
     assert dict(one.values) == {"friction": 0.1, "tilt_x": 0.03, "tilt_y": 0.0, **AT_TABLE}
     assert set(one.draws["draws"]) == {"friction"}
-    allowed = {arm: row.camera_delay(circle, "late") for arm, row in ARMS.items()}
+    allowed = {arm: row.camera_delay(circle, twin("late")) for arm, row in ARMS.items()}
     assert {arm: delay for arm, delay in allowed.items() if delay} == {
         "allowing": 0.01, "corrected": 0.01, "truth": TABLES["late"].errors.stamp_late,
     }  # fmt: skip
 
 
 def test_others_do_not_see_the_findings(circle: Path) -> None:
-    made = {arm: simulator_of(arm, circle, "warp") for arm in ARMS}
+    made = {arm: simulator_of(arm, circle, twin("warp")) for arm in ARMS}
     values = {arm: dict(one.values) for arm, one in made.items() if one}
     assert made.keys() - values.keys() == {"allowing"}
     networks = {arm: one.residual_of for arm, one in made.items() if one and one.residual_of}
@@ -72,7 +77,7 @@ def test_others_do_not_see_the_findings(circle: Path) -> None:
 @pytest.mark.parametrize("table", TABLES)
 def test_every_arm_can_be_learnt_on(circle: Path, table: str) -> None:
     for arm in ARMS:
-        one = simulator_of(arm, circle, table)
+        one = simulator_of(arm, circle, twin(table))
         if one is None or one.residual_of:  # this one needs recordings: test_residual.py
             continue
         tables = Tables("match-v0", 2, effects=as_content(one.values), draws=one.draws)
@@ -85,4 +90,4 @@ def test_every_arm_can_be_learnt_on(circle: Path, table: str) -> None:
 
 def test_an_unknown_arm_is_refused_in_one_line(circle: Path) -> None:
     with pytest.raises(ValueError, match="unknown arm 'corected'"):
-        simulator_of("corected", circle, "none")
+        simulator_of("corected", circle, twin("none"))

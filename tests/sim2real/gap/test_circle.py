@@ -17,12 +17,12 @@ from puckpilot_env.options.at_table import AT_TABLE
 from sim2real.gap import film, tuning
 from sim2real.gap.circle import Circle
 from sim2real.gap.circle_folder import Conditions
-from sim2real.table.twin import fidelity
+from sim2real.table import meetings
 from tests.agents.training.tiny import TINY
 from tests.sim2real.gap.test_against_truth import finding
 
 PLAYED = {"scored", "conceded", "net", "against", "shots", "stops", "games"}
-CONDITIONS = Conditions("interceptor", ("bank_shot", "goalie"), "none", 2, 12.0, 1, 1.0, None, 5)
+CONDITIONS = Conditions("interceptor", ("bank_shot", "goalie"), "twin", "none", 2, 12.0, 1, 1.0, None, 5)
 
 
 def circle(folder: Path, **other: object) -> Circle:
@@ -65,7 +65,7 @@ def test_a_circle_goes_round_and_is_not_run_again(tmp_path: Path, monkeypatch: p
     def again(*_: object) -> None:
         raise AssertionError("a game is played again")
 
-    monkeypatch.setattr(fidelity, "play_on_twin", again)
+    monkeypatch.setattr(meetings, "play_meeting", again)
     assert circle(tmp_path).run([], lambda done, count: None) == result
 
 

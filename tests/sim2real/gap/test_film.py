@@ -17,7 +17,7 @@ pytest.importorskip("unicorn", reason="unicorn is not installed: the program can
 from sim2real.gap import film as film_module
 from sim2real.gap.film import TwinFilm, film
 from sim2real.table.game.game_record import GameRecord
-from sim2real.table.twin.fidelity import Meeting, Onlooker, play_on_twin
+from sim2real.table.meetings import Meeting, Onlooker, play_meeting
 
 MEETING = Meeting("interceptor", "goalie", "match-v0", 5, 2.0, concealed="late", clears=True)
 
@@ -65,7 +65,7 @@ def test_a_game_that_was_recorded_is_filmed_as_it_was(tmp_path: Path, monkeypatc
         played.append((meeting.seconds, recording))
         seen(see, GameRecord("match-v0").record, 1.0, 1.0)
 
-    monkeypatch.setattr(film_module, "play_on_twin", plays)
+    monkeypatch.setattr(film_module, "play_meeting", plays)
     for recorded in (False, True):
         film(replace(MEETING, seconds=60.0, recorded=recorded), tmp_path / "film.gif", "before")
     (first, none), (second, folder) = played
@@ -79,7 +79,7 @@ def test_a_film_is_the_beginning_of_the_game_at_its_own_speed(tmp_path: Path) ->
     games = []
     for seconds, recording in ((2.0, None), (1.0, None), (0.3, tmp_path / "recording")):
         path: list[tuple[float, ...]] = []
-        play_on_twin(
+        play_meeting(
             replace(MEETING, seconds=seconds), recording,
             lambda plant, record, path=path: path.append((plant.time, *plant.puck, *plant.mallet(0))),
         )  # fmt: skip

@@ -28,10 +28,10 @@ def played(net: float, spread: float, seed: int) -> dict[str, Any]:
 
 def circle(table: str, seed: int, before: float, spread: float = 0.3, **arms: float) -> dict[str, Any]:
     return {
-        "format": "puckpilot-gap/6",
+        "format": "puckpilot-gap/7",
         "conditions": {
-            "player": "policy:champion", "opponents": ["goalie"], "table": table, "games": GAMES, "seconds": 60.0,
-            "recorded": 5, "minutes": 30.0, "steps": None, "seed": seed,
+            "player": "policy:champion", "opponents": ["goalie"], "backend": "twin", "table": table, "games": GAMES,
+            "seconds": 60.0, "recorded": 5, "minutes": 30.0, "steps": None, "seed": seed,
         },
         "simulator": {"scored": 5.0, "conceded": 1.0},
         "in_simulator": {
@@ -155,7 +155,7 @@ def test_the_command_goes_round_several_tables_and_writes_a_page_over_them(
     [
         (None, "has no gap.json: expected the --out of a puckpilot gap that is done"),
         ("{", "is no result of puckpilot gap"),
-        ('{"format": "puckpilot-gap/9"}', "is no result of puckpilot gap: expected the format puckpilot-gap/6"),
+        ('{"format": "puckpilot-gap/9"}', "is no result of puckpilot gap: expected the format puckpilot-gap/7"),
     ],
 )
 def test_what_is_no_circle_is_refused(tmp_path: Path, content: str | None, reason: str) -> None:

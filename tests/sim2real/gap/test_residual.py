@@ -66,7 +66,7 @@ def test_the_network_takes_most_of_it_from_steps_that_it_never_saw(samples: Samp
 
 def test_the_arm_s_simulator_plays_nearer_to_the_leaning_table(recordings: list[Path], tmp_path: Path) -> None:
     """One step from the same games on the simulator, the corrected one, and the simulator with the true tilt."""
-    files = write_simulator(Simulator(residual_of=tuple(recordings)).at_table(), tmp_path)
+    files = write_simulator(Simulator(residual_of=tuple(recordings)).at_table({}), tmp_path)
     assert files["residual"] == tmp_path / "residual.npz"
     assert json.loads((tmp_path / "residual.json").read_text())["format"] == "puckpilot-residual-fit/1"
     plain = Tables("match-v0", 200, seed=1, parameters=AT_TABLE)

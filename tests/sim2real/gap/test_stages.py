@@ -14,10 +14,10 @@ from sim2real.gap import result as result_module
 from sim2real.gap.circle import Circle
 from sim2real.gap.circle_folder import Conditions
 from sim2real.gap.stages import STAGES
-from sim2real.table.twin.fidelity import Meeting, TwinGame
+from sim2real.table.meetings import Meeting, PlayedMeeting
 from tests.sim2real.gap.test_against_truth import SILENT_DRAWS, SILENT_EFFECTS
 
-CONDITIONS = Conditions("interceptor", ("goalie", "still"), "late", 3, 20.0, 2, 1.0, None, 5)
+CONDITIONS = Conditions("interceptor", ("goalie", "still"), "twin", "late", 3, 20.0, 2, 1.0, None, 5)
 DIAGNOSIS = {
     "verdict": "parameters_only", "findings": [], "baseline": {"parameters": {"friction": {"value": 0.11}}},
     "regimes": [{"regime": "glide", "verdict": "parameters_only"}, {"regime": "wall", "reason": "too few hits"}],
@@ -60,9 +60,9 @@ def test_an_arm_is_not_played_before_it_has_learnt(diagnosed: Path) -> None:
 def test_the_report_alone_is_of_what_is_there(diagnosed: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing was named, though the table is late: the page says so, and shows the films that there are."""
 
-    def kept(meetings: list[Meeting], folder: Path) -> list[TwinGame]:
+    def kept(meetings: list[Meeting], folder: Path) -> list[PlayedMeeting]:
         assert folder in (diagnosed / "before", diagnosed / "allowing" / "games")
-        return [TwinGame(1, (k, 1), 20.0, 22.0, 2.0, 2.0, opponent=one.opponent) for k, one in enumerate(meetings)]
+        return [PlayedMeeting(1, (k, 1), 20.0, 22.0, 2.0, 2.0, opponent=one.opponent) for k, one in enumerate(meetings)]
 
     monkeypatch.setattr(result_module, "kept_games", kept)
     for name in ("simulator", "before", "allowing"):

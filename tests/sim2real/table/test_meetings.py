@@ -9,27 +9,27 @@ import pytest
 pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
 
 from sim2real.recording.folder import read_recording
+from sim2real.table import meetings
+from sim2real.table.meetings import Meeting, PlayedMeeting, play_all
 from sim2real.table.recorder.draft import draft_of
-from sim2real.table.twin import fidelity
-from sim2real.table.twin.fidelity import Meeting, TwinGame, play_all
 
 MEETINGS = [Meeting("still", "goalie", "puckpilot/match-v0", seed) for seed in (3, 4, 5)]
 
 
-def result(meeting: Meeting, recording: Path | None = None) -> TwinGame:
-    return TwinGame(1, (meeting.seed, 0), 60.0, 62.0, 20.0, 25.0)
+def result(meeting: Meeting, recording: Path | None = None) -> PlayedMeeting:
+    return PlayedMeeting(1, (meeting.seed, 0), 60.0, 62.0, 20.0, 25.0)
 
 
 def test_a_stopped_run_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     played: list[int] = []
 
-    def fails_at_the_second(meeting: Meeting, recording: Path | None) -> TwinGame:
+    def fails_at_the_second(meeting: Meeting, recording: Path | None) -> PlayedMeeting:
         if meeting.seed == 4 and len(played) == 1:
             raise KeyboardInterrupt
         played.append(meeting.seed)
         return result(meeting)
 
-    monkeypatch.setattr(fidelity, "play_on_twin", fails_at_the_second)
+    monkeypatch.setattr(meetings, "play_meeting", fails_at_the_second)
     with pytest.raises(KeyboardInterrupt):
         play_all(MEETINGS, tmp_path, 1, lambda done, count: None)
     played.append(-1)
@@ -39,7 +39,7 @@ def test_a_stopped_run_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.
     assert games == [result(one) for one in MEETINGS]
 
 
-@pytest.mark.parametrize("text", ["{", "[]", f'{{"format": "{fidelity.FORMAT}", "meeting": {{}}, "game": {{}}}}'])
+@pytest.mark.parametrize("text", ["{", "[]", f'{{"format": "{meetings.FORMAT}", "meeting": {{}}, "game": {{}}}}'])
 def test_a_file_of_another_meeting_is_refused(text: str, tmp_path: Path) -> None:
     (tmp_path / "game_3.json").write_text(text)
     with pytest.raises(ValueError, match=r"game_3.json: is no result of this meeting; name another folder"):
@@ -47,10 +47,10 @@ def test_a_file_of_another_meeting_is_refused(text: str, tmp_path: Path) -> None
 
 
 def test_a_game_of_another_version_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(fidelity, "play_on_twin", result)
-    monkeypatch.setattr(fidelity, "code_version", lambda *_: "before")
+    monkeypatch.setattr(meetings, "play_meeting", result)
+    monkeypatch.setattr(meetings, "code_version", lambda *_: "before")
     play_all(MEETINGS, tmp_path, 1, lambda done, count: None)
-    monkeypatch.setattr(fidelity, "code_version", lambda *_: "after")
+    monkeypatch.setattr(meetings, "code_version", lambda *_: "after")
     with pytest.raises(ValueError, match=r"game_3.json: was played by another version of the code; name another"):
         play_all(MEETINGS, tmp_path, 1, lambda done, count: None)
 

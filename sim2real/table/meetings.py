@@ -1,4 +1,5 @@
-"""Games on the twin, in parallel and resumable: how they end, how fast the twin is, and recordings of them."""
+"""Games at a table, resumable: how they end, how long they take, and recordings of them. On the twin several are played
+at once; at a physical table a person sits at the other end, and they are played in turn."""
 
 from __future__ import annotations
 
@@ -19,9 +20,10 @@ import sim2real
 from puckpilot_env.files.whole_file import write_text_whole
 from puckpilot_env.variants import find_variant
 from sim2real.study.version import OF_GAMES, code_version
+from sim2real.table.faults import TableFaultError
 from sim2real.table.game.game_record import GameRecord
 from sim2real.table.game.play import play_for, play_game
-from sim2real.table.game.robot_seat import make_robot_seat
+from sim2real.table.game.robot_seat import RobotSeat, make_robot_seat
 from sim2real.table.game.shots import Shots
 from sim2real.table.recorder.draft import draft_of
 from sim2real.table.recorder.recorded_game import recorded
@@ -29,7 +31,7 @@ from sim2real.table.twin.concealed import find_table
 from sim2real.table.twin.plant import Plant
 from sim2real.table.twin.twin import Twin
 
-FORMAT = "puckpilot-twin-game/2"
+FORMAT = "puckpilot-meeting/1"
 WARM = 0.3  # s of a game before the first one that is timed, in which all is compiled
 Onlooker = Callable[[Plant, np.void], None]
 ROOT = Path(sim2real.__file__).parents[1]  # of the checkout whose code plays
@@ -37,7 +39,7 @@ ROOT = Path(sim2real.__file__).parents[1]  # of the checkout whose code plays
 
 @dataclass(frozen=True)
 class Meeting:
-    """Who meets on the twin: `player` at the robot's seat, its `opponent`, the `variant`'s id, and the game's `seed`.
+    """Who meets: `player` at the robot's seat, its `opponent`, the `variant`'s id, and the game's `seed`.
 
     seconds: of play at most; None for a whole game. again: whether another game begins where one ends within them.
     camera: the kind of the twin's, see `cameras.CAMERAS`. concealed:
@@ -57,15 +59,17 @@ class Meeting:
     clears: bool = False
     recorded: bool = False
     camera_delay: float = 0.0
+    table: str = ""
 
 
 @dataclass(frozen=True)
-class TwinGame:
+class PlayedMeeting:
     """What came of a game, or of several: outcome 1, 0, -1 as the player won, drew or lost; goals of both; `seconds` of
     play.
 
-    virtual: the twin's time from power-on to the end [s]; processor, wall: what it took on this computer [s]; stops:
-    how often a doubt stopped the table; shots: at both goals, as the robot's camera saw them; opponent: by name.
+    virtual: the table's time from power-on to the end [s], of a twin virtual; processor, wall: what it took on this
+    computer [s]; stops: how often a doubt stopped the table; shots: at both goals, as the robot's camera saw them;
+    opponent: by name.
     """
 
     outcome: int
@@ -79,12 +83,13 @@ class TwinGame:
     opponent: str = ""
 
 
-def play_on_twin(meeting: Meeting, recording: Path | None, onlooker: Onlooker | None = None) -> TwinGame:
+def play_meeting(meeting: Meeting, recording: Path | None, onlooker: Onlooker | None = None) -> PlayedMeeting:
     """Play a game, recorded as a new folder if one is given. ValueError, in one line, for an unknown name, and where
     the table stopped.
 
-    onlooker: takes the plant as it is, and the game's record, at each frame of the camera."""
-    _warm_up(replace(meeting, seed=0, seconds=WARM))
+    onlooker: takes the twin's plant as it is, and the game's record, at each frame of the camera."""
+    if not meeting.table:
+        _warm_up(replace(meeting, seed=0, seconds=WARM))
     return _play(meeting, recording, onlooker)
 
 
@@ -93,39 +98,56 @@ def _warm_up(meeting: Meeting) -> None:
     _play(meeting, None)
 
 
-def _play(meeting: Meeting, recording: Path | None, onlooker: Onlooker | None = None) -> TwinGame:
+def _play(meeting: Meeting, recording: Path | None, onlooker: Onlooker | None = None) -> PlayedMeeting:
     begin = time.process_time(), time.perf_counter()
-    variant = find_variant(meeting.variant)
-    options = find_table(meeting.concealed).twin_options(GameRecord(variant).p) if meeting.concealed else {}
-    options |= {"opponent": meeting.opponent, "camera": meeting.camera}
-    with closing(make_robot_seat(variant, "twin", camera_delay=meeting.camera_delay, **options)) as env:
+    with closing(_seat(meeting)) as env:
         if onlooker:
             assert isinstance(env.backend, Twin)
             env.backend.onlooker = lambda plant: onlooker(plant, env.game.record)
-        note = f"{meeting.player} against {meeting.opponent} on the twin, seed {meeting.seed}"
+        where = meeting.table or "the twin"
+        note = f"{meeting.player} against {meeting.opponent} on {where}, seed {meeting.seed}"
         with nullcontext() if recording is None else recorded(env, recording, note):
             given = env, meeting.player, meeting.seed
-            silently = (lambda line: None), (lambda fault: meeting.clears), (lambda loop, action, info: None)
+            said = *_spoken(meeting), (lambda loop, action, info: None)
             if meeting.again and meeting.seconds is not None:
-                log = play_for(*given, meeting.seconds, *silently).complete
+                log = play_for(*given, meeting.seconds, *said).complete
             else:
-                log = play_game(*given, meeting.seconds, *silently).complete
+                log = play_game(*given, meeting.seconds, *said).complete
             if log.interrupted:
                 raise KeyboardInterrupt
-            virtual = env.backend.now()
+            of_table = env.backend.now()
     processor, wall = time.process_time() - begin[0], time.perf_counter() - begin[1]
-    return TwinGame(
-        log.outcome, log.score, log.seconds, virtual, processor, wall, len(log.faults), log.shots, meeting.opponent
+    return PlayedMeeting(
+        log.outcome, log.score, log.seconds, of_table, processor, wall, len(log.faults), log.shots, meeting.opponent
     )
+
+
+def _seat(meeting: Meeting) -> RobotSeat:
+    variant = find_variant(meeting.variant)
+    if meeting.table:
+        return make_robot_seat(variant, "table", camera_delay=meeting.camera_delay, table=meeting.table)
+    options = find_table(meeting.concealed).twin_options(GameRecord(variant).p) if meeting.concealed else {}
+    options |= {"opponent": meeting.opponent, "camera": meeting.camera}
+    return make_robot_seat(variant, "twin", camera_delay=meeting.camera_delay, **options)
+
+
+def _spoken(meeting: Meeting) -> tuple[Callable[[str], None], Callable[[TableFaultError], bool]]:
+    """What takes a line for each goal, foul and fault, and whether play goes on after a fault: the person at a physical
+    table is asked."""
+    if meeting.table:
+        from sim2real.table.physical.person import may_go_on, say  # a terminal of Unix
+
+        return say, may_go_on
+    return (lambda line: None), (lambda fault: meeting.clears)
 
 
 def play_all(
     meetings: list[Meeting], folder: Path, processes: int, progress: Callable[[int, int], None]
-) -> list[TwinGame]:
+) -> list[PlayedMeeting]:
     """Play the games whose results are not in `folder` yet, and return all of them, in the order of `meetings`.
 
     Each result is written there as soon as its game is over. ValueError, in one line, for a file of another meeting, or
-    of another version of the code.
+    of another version of the code. Games at a physical table are played in turn, and kept whatever the version.
     """
     code = code_version(ROOT, OF_GAMES)
     missing = [one for one in meetings if _read(folder, one, code) is None]
@@ -134,14 +156,14 @@ def play_all(
     return kept_games(meetings, folder)
 
 
-def kept_games(meetings: list[Meeting], folder: Path) -> list[TwinGame]:
+def kept_games(meetings: list[Meeting], folder: Path) -> list[PlayedMeeting]:
     """The games of `meetings` whose results are in `folder`, in their order. ValueError as of `play_all`."""
     code = code_version(ROOT, OF_GAMES)
     return [game for one in meetings if (game := _read(folder, one, code)) is not None]
 
 
 def _results(missing: list[Meeting], folder: Path, code: str, processes: int) -> Iterator[None]:
-    if processes == 1 or len(missing) < 2:
+    if processes == 1 or len(missing) < 2 or any(one.table for one in missing):
         yield from (_play_and_write(one, folder, code) for one in missing)
         return
     with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
@@ -167,12 +189,12 @@ def _recording(folder: Path, meeting: Meeting) -> Path | None:
 
 
 def _play_and_write(meeting: Meeting, folder: Path, code: str) -> None:
-    game = asdict(play_on_twin(meeting, _recording(folder, meeting)))
+    game = asdict(play_meeting(meeting, _recording(folder, meeting)))
     content = {"format": FORMAT, "code": code, "meeting": asdict(meeting), "game": game}
     write_text_whole(_file(folder, meeting), json.dumps(content, indent=1) + "\n")
 
 
-def _read(folder: Path, meeting: Meeting, code: str) -> TwinGame | None:
+def _read(folder: Path, meeting: Meeting, code: str) -> PlayedMeeting | None:
     path = _file(folder, meeting)
     if not path.exists():
         return None
@@ -181,9 +203,9 @@ def _read(folder: Path, meeting: Meeting, code: str) -> TwinGame | None:
         if content["format"] != FORMAT or Meeting(**content["meeting"]) != meeting:
             raise ValueError
         read = {"goals": tuple(content["game"]["goals"]), "shots": Shots(**content["game"]["shots"])}
-        game = TwinGame(**content["game"] | read)
+        game = PlayedMeeting(**content["game"] | read)
     except (ValueError, KeyError, TypeError):
         raise ValueError(f"{path}: is no result of this meeting; name another folder, or remove it") from None
-    if content.get("code") != code:
+    if content.get("code") != code and not meeting.table:
         raise ValueError(f"{path}: was played by another version of the code; name another folder, or remove it")
     return game

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from sim2real.table.game.shots import Shots
-from sim2real.table.twin.fidelity import TwinGame
-from sim2real.table.twin.score import change, score, shots
+from sim2real.table.meetings import PlayedMeeting
+from sim2real.table.score import change, score, shots
 
 
-def game(scored: int, conceded: int, seconds: float = 60.0, opponent: str = "goalie") -> TwinGame:
-    return TwinGame(1, (scored, conceded), seconds, seconds, 1.0, 1.0, opponent=opponent)
+def game(scored: int, conceded: int, seconds: float = 60.0, opponent: str = "goalie") -> PlayedMeeting:
+    return PlayedMeeting(1, (scored, conceded), seconds, seconds, 1.0, 1.0, opponent=opponent)
 
 
 def test_rates_are_all_goals_by_all_minutes() -> None:

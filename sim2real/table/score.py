@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim2real.table.game.shots import Shots
-from sim2real.table.twin.fidelity import TwinGame
+from sim2real.table.meetings import PlayedMeeting
 
 
 class Game(Protocol):
@@ -56,7 +56,7 @@ def score(games: Sequence[Game]) -> dict[str, Rate]:
     return {name: _rate(_rates(games, name, drawn)) for name in ("scored", "conceded", "net")}
 
 
-def shots(games: Sequence[TwinGame]) -> Shots:
+def shots(games: Sequence[PlayedMeeting]) -> Shots:
     """The shots of all games."""
     return sum((one.shots for one in games), Shots())
 
