@@ -64,7 +64,7 @@ class GantryRecording:
         """The part (n, 2) [m] of the path that dry friction causes; `delay` [s]: of all changes."""
         changes, volts = self.drive_inputs.at_motors(p)
         unknown = np.ascontiguousarray(self.drive_inputs.unknown[:, 0])
-        return path_of_friction(p, changes + delay, volts, unknown, self.t, self.velocity, self.windows)
+        return path_of_friction(p, changes + delay, volts, unknown, self.t, self.observed, self.velocity, self.windows)
 
     def residuals(
         self, p: np.void, delay: float = 0.0, extra: np.ndarray | None = None, friction: np.ndarray | None = None

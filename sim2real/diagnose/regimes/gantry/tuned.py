@@ -77,6 +77,12 @@ class GantryDataNumbers:
     dry_step: float = tuned(
         1e-4, "s", "for which friction is held: more lets the speed of an axis at rest swing", "choice: stable at 1 V"
     )
+    start_shown: float = tuned(
+        0.1,
+        "s",
+        "after a push, how long the path shows its speed: less leaves noise in it, with more wrong friction bends it",
+        "choice: a few samples of a thinned record, less than a time constant of an axis",
+    )
     run_in: float = tuned(
         1.0,
         "s",

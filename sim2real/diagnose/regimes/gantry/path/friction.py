@@ -16,29 +16,34 @@ from sim2real.diagnose.regimes.gantry.tuned import GANTRY_DATA
 from sim2real.diagnose.regimes.gantry.windows import StreamWindows
 
 ROWS = EFFECT.row_names
-STEP, FASTEST, CREEP, RUN_IN = range(4)  # of the tuned numbers that the kernels take
+STEP, FASTEST, CREEP, RUN_IN, SHOWN = range(5)  # of the tuned numbers that the kernels take
+FEWEST_SHOWN = 4  # samples that correct a start
+ROUNDS = 3  # of a start's correction: friction's direction depends on the speed, and the path on friction
 
 
 def path_of_friction(
-    p: np.void, changes: np.ndarray, volts: np.ndarray, unknown: np.ndarray, t: np.ndarray, velocity: np.ndarray,
-    windows: StreamWindows,
+    p: np.void, changes: np.ndarray, volts: np.ndarray, unknown: np.ndarray, t: np.ndarray, observed: np.ndarray,
+    velocity: np.ndarray, windows: StreamWindows,
 ) -> np.ndarray:  # fmt: skip
     """The part (n, 2) [m] of the path at the times `t` (n,) [s] that the friction of the parameters `p` causes, from
-    the same start in each window; `velocity` (n, 2) [m/s]: of the measured path; `volts` (k, 2) [V]: of the axes from
-    `changes` (k,) [s] on, without friction; `unknown` (m,) [s]: where gaps in their record begin."""
+    the same start in each window; `observed` (n, 2) [m], `velocity` (n, 2) [m/s]: of the measured path; `volts` (k, 2)
+    [V]: of the axes from `changes` (k,) [s] on, without friction; `unknown` (m,) [s]: where gaps in their record
+    begin."""
     path = np.zeros(velocity.shape)
     sizes = np.array([float(p[row]) for row in ROWS])
     if sizes.any():
-        numbers = np.array([GANTRY_DATA.dry_step, GANTRY_DATA.fastest, GANTRY_DATA.dry_speed, GANTRY_DATA.run_in])
-        _change(p, sizes, changes, volts, unknown, t, velocity, windows.begin, windows.end, numbers, path)
+        tuned = GANTRY_DATA
+        numbers = np.array([tuned.dry_step, tuned.fastest, tuned.dry_speed, tuned.run_in, tuned.start_shown])
+        _change(p, sizes, changes, volts, unknown, t, observed, velocity, windows.begin, windows.end, numbers, path)
     return path
 
 
 @array_kernel
-def _change(p, sizes, changes, volts, unknown, t, velocity, begin, end, numbers, path):
+def _change(p, sizes, changes, volts, unknown, t, observed, velocity, begin, end, numbers, path):
     """Write the displacement by friction to `path` (n, 2) [m]. The simulation continues from one window to the next,
     and starts RUN_IN before the first, because a slow measured speed has the wrong sign as often as not. It starts with
-    the measured speed only where the volts before were not recorded."""
+    the measured speed only where the volts before were not recorded. There, and after whatever parts two windows, a
+    push of the puck above all, the speed is corrected by what the path shows next."""
     x, y, none = axis_of(p, 0), axis_of(p, 1), np.zeros(4)
     now, gap, moment = 0, 0, -math.inf
     at_x = at_y = (0.0, 0.0, 0.0, 0.0, 0.0)
@@ -55,6 +60,8 @@ def _change(p, sizes, changes, volts, unknown, t, velocity, begin, end, numbers,
             now, at_x, at_y = _drive(x, y, sizes, changes, volts, now, moment, t[a], at_x, at_y, numbers)
         else:
             at_x, at_y = _start(x, velocity[a, 0], volts[now, 0]), _start(y, velocity[a, 1], volts[now, 1])
+        if not known or (w > 0 and begin[w] != end[w - 1]):
+            at_x, at_y = _corrected(x, y, sizes, changes, volts, now, t[a:b], observed[a:b], at_x, at_y, numbers)
         without, to_x, to_y = now, at_x, at_y
         moment = t[a]
         for i in range(a, b):
@@ -81,6 +88,39 @@ def _drive(x, y, sizes, changes, volts, now, moment, until, at_x, at_y, numbers)
         while now + 1 < len(changes) and changes[now + 1] <= moment:
             now += 1
     return now, at_x, at_y
+
+
+@kernel
+def _corrected(x, y, sizes, changes, volts, now, t, observed, at_x, at_y, numbers):
+    """The states of both axes at t[0] with such slow modes that the path SHOWN from there on fits `observed` (n, 2) [m]
+    best; the volts before do not tell what pushed the mallet."""
+    for _ in range(ROUNDS):
+        place_now, moment, sx, sy = now, t[0], at_x, at_y
+        sums_x = sums_y = (0.0, 0.0, 0.0, 0.0, 0.0)
+        for i in range(len(t)):
+            if t[i] - t[0] > numbers[SHOWN]:
+                break
+            place_now, sx, sy = _drive(x, y, sizes, changes, volts, place_now, moment, t[i], sx, sy, numbers)
+            moment = t[i]
+            sums_x = _with(sums_x, math.exp(-x[0] * (t[i] - t[0])), observed[i, 0] - sx[0] - sx[1] - sx[2])
+            sums_y = _with(sums_y, math.exp(-y[0] * (t[i] - t[0])), observed[i, 1] - sy[0] - sy[1] - sy[2])
+        if sums_x[0] < FEWEST_SHOWN:
+            break
+        at_x = (at_x[0], at_x[1] + _slope(sums_x), at_x[2], at_x[3], at_x[4])
+        at_y = (at_y[0], at_y[1] + _slope(sums_y), at_y[2], at_y[3], at_y[4])
+    return at_x, at_y
+
+
+@kernel
+def _with(sums, mode, off):
+    """The sums of a straight line's fit of `off` over `mode` with one more sample."""
+    return sums[0] + 1.0, sums[1] + mode, sums[2] + mode * mode, sums[3] + off, sums[4] + mode * off
+
+
+@kernel
+def _slope(sums):
+    """The slope of the line."""
+    return (sums[0] * sums[4] - sums[1] * sums[3]) / (sums[0] * sums[2] - sums[1] * sums[1])
 
 
 @kernel
