@@ -21,18 +21,30 @@ def refit(
 ) -> LeastSquaresFit:
     """Fit the baseline and the `listed` laws jointly to the clusters `use`, adding one law at a time.
 
-    A nonlinear law starts from the best of its starts in the design matrix `screen`.
+    A nonlinear law starts from the best of its starts in the design matrix `screen`; and once more beside the laws that
+    were added after it, without which it may have settled far off.
     """
     best = baseline
     for law in listed:
         free = tuple(dict.fromkeys((*best.free, *law.rows)))
-        values = {**best.values, **law.start}
+        best = fit(problem, _best_start(problem, best, law, free, screen, use), free, use)
+    for law in listed[:-1]:
         if law.start:
-            starts = [one.start for one in screen.listed if one.name == law.name]
-            tries = [fit(problem, {**values, **start}, free, use, ENGINE.exploring_rounds) for start in starts]
-            values = min(tries, key=lambda one: one.loss).values
-        best = fit(problem, values, free, use)
+            again = fit(problem, _best_start(problem, best, law, best.free, screen, use), best.free, use)
+            best = min(best, again, key=lambda one: one.loss)
     return best
+
+
+def _best_start(
+    problem: Problem, best: LeastSquaresFit, law: Law, free: Sequence[str], screen: DesignMatrix, use: np.ndarray
+) -> Mapping[str, float]:
+    """The values from which a joint fit with a law begins, the others as in the `best` fit so far."""
+    if not law.start:
+        return best.values
+    defaults = {name: BY_NAME[name].default for name in law.rows}
+    starts = [{**best.values, **defaults, **one.start} for one in screen.listed if one.name == law.name]
+    tries = [fit(problem, start, free, use, ENGINE.exploring_rounds) for start in starts]
+    return min(tries, key=lambda one: one.loss).values
 
 
 def eliminated(
