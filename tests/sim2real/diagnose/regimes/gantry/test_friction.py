@@ -17,6 +17,8 @@ from sim2real.diagnose.regimes.gantry.data import GantryRecording, read_gantry
 from sim2real.diagnose.regimes.gantry.listed_effects import StagedFit, _stands_out
 from sim2real.diagnose.regimes.gantry.residuals import GantryResiduals
 from sim2real.recording.folder import Recording, Stream, read_recording
+from sim2real.segmentation.possible_touches import possible_touches
+from sim2real.segmentation.segments import segment
 from sim2real.study.independent_table.physics.law import Law
 from sim2real.study.independent_table.recorder.record import make_recording
 
@@ -77,6 +79,14 @@ def test_a_path_that_begins_in_a_move_is_run_in_by_the_volts_before_it(recording
     fast = speed.t[(speed.t > 4.0) & (np.abs(speed.velocity[:, 0]) > 0.8)][0]
     run = read_gantry(second_part(recording, float(fast)), SUPPLY, np.zeros(0))
     assert left_over(run, **SIZES) == pytest.approx(1.0, abs=0.05)
+
+
+def test_after_the_puck_pushed_the_mallet_its_friction_has_the_direction_of_its_own_speed(tmp_path: Path) -> None:
+    """Of a soft mallet that strikes a puck: no volts tell of its recoil."""
+    make_recording(tmp_path, replace(LAW, mallet_give=0.1), "rally", 3, 30.0, dt=1e-4, encoder_noise=1e-5)
+    pushed = read_recording(tmp_path)
+    run = read_gantry(pushed, SUPPLY, possible_touches(pushed, segment(pushed)))
+    assert left_over(run, **SIZES) == pytest.approx(1.1, abs=0.15)
 
 
 @pytest.mark.parametrize(
