@@ -89,6 +89,12 @@ class _Linearization:
     columns: DesignMatrix
 
 
+def _may_move(law: LeastSquaresFit, name: str, step: float) -> bool:
+    """Whether a parameter is not at a bound of its range already beyond which a step would take it."""
+    now = law.values[name]
+    return step == 0.0 or BY_NAME[name].within(now + step) != now
+
+
 class _Search:
     """Gauss-Newton steps on the clusters `use`."""
 
@@ -113,15 +119,24 @@ class _Search:
         return float(group_loss(squares, self._freedom).sum() + np.sum(here.coefficients**2) / spread**2)
 
     def solved(self, here: _Linearization) -> NonparametricFit:
-        """Return the robust least-squares fit at a linearization, with the spread of least cross-validation loss."""
+        """Return the robust least-squares fit at a linearization, with the spread of least cross-validation loss; a
+        parameter at a bound, beyond which the fit would take it, stays there."""
         equations = here.columns.equations
         selection = ForwardSelection(equations, self._problem.units, self._use, self._dispersion)
-        models = [Model(here.law.free, (here.family,), (spread,)) for spread in ENGINE.spreads]
-        cv_loss = [float(selection.cv_loss(model).sum()) for model in models]
-        best = int(np.argmin(cv_loss))
-        index, ridge = models[best].columns(equations)
-        theta = normal_equations.solve_robustly(equations, index, self._units, self._freedom, ridge)
-        return NonparametricFit(here.law, here.family, ENGINE.spreads[best], here.columns, theta, cv_loss[best])
+        free = here.law.free
+        while True:
+            models = [Model(free, (here.family,), (spread,)) for spread in ENGINE.spreads]
+            cv_loss = [float(selection.cv_loss(model).sum()) for model in models]
+            best = int(np.argmin(cv_loss))
+            index, ridge = models[best].columns(equations)
+            theta = normal_equations.solve_robustly(equations, index, self._units, self._freedom, ridge)
+            inside = tuple(name for name, step in zip(free, theta, strict=False) if _may_move(here.law, name, step))
+            if inside == free:
+                break
+            free = inside
+        steps = dict(zip(free, theta[: len(free)], strict=True))
+        every = np.concatenate([[steps.get(name, 0.0) for name in here.law.free], theta[len(free) :]])
+        return NonparametricFit(here.law, here.family, ENGINE.spreads[best], here.columns, every, cv_loss[best])
 
     def downhill(self, here: _Linearization, step: NonparametricFit) -> _Linearization | None:
         """Return the linearization after a step, shortened until it lowers the loss; None if no step does."""
