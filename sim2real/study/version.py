@@ -7,7 +7,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 OF_STUDIES = ("sim2real", "puckpilot_env")  # the diagnosis, its physics, and the independent table
-OF_GAMES = ("agents", "baselines", "firmware", "puckpilot_env", "sim2real")  # the players and the board's program too
+# The players, the board's program, and all that plays at a table; not what learns from it, such as the diagnosis
+OF_GAMES = (
+    "agents", "baselines", "firmware", "puckpilot_env", "sim2real/camera", "sim2real/emulate", "sim2real/link",
+    "sim2real/recording", "sim2real/statistics", "sim2real/study", "sim2real/table", "sim2real/vision",
+)  # fmt: skip
 ENDINGS = (".py", ".elf", ".npz")  # code, the board's program, trained players
 
 
