@@ -16,8 +16,6 @@ from sim2real.diagnose.result.regime_result import regime_result
 from sim2real.diagnose.result.result import RegimeResult
 from sim2real.diagnose.tuned import IDENTIFICATION
 
-INACCURATE_PREMISES = "it depends on the model of the glides, which does not fit well enough"
-
 
 def identify_regime(regime: Regime, problem: Problem, evidence: Evidence, known: Known) -> IdentifiedRegime:
     """Identify what a regime lacks from its `problem`, given the regimes `known` before it.
@@ -37,7 +35,7 @@ def identify_regime(regime: Regime, problem: Problem, evidence: Evidence, known:
     if not premises_hold and (result.unexplained or result.misfit):
         chosen = Selection(chosen.cross_validation, without_laws(chosen.found), {})
         result = regime_result(regime, problem, chosen, defaults)
-        result = replace(result, undetermined=INACCURATE_PREMISES, misfit=False)
+        result = replace(result, undetermined=f"it depends on {regime.premise}", misfit=False)
     elif (result.misfit or result.unexplained) and not result.next_recording:
         result = replace(result, next_recording=regime.more)
     result = replace(result, doubt="; ".join(filter(None, (result.doubt, regime.note(problem)))))

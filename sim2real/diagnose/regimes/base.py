@@ -82,7 +82,8 @@ class Regime:
     `name`: the regime's name in the diagnosis format. `after`: the regimes that are identified and reported first.
     `lacks`: the reason to report if the regime was not tested although a camera saw a puck. `more_of`: what to record
     more of. `unit`: the unit that the holdout counts, singular and plural. `shown_by`: the segments whose residuals
-    show the regime. `measured_at`: where `size` is measured. `least_size` [m]: the smallest effect that is reported.
+    show the regime. `measured_at`: where `size` is measured. `premise`: what the regime depends on, and why that may be
+    wrong, if its `premises` do not hold. `least_size` [m]: the smallest effect that is reported.
     """
 
     name: str
@@ -92,6 +93,7 @@ class Regime:
     unit: tuple[str, str] = ("launch", "launches")
     shown_by: str = ""
     measured_at: str = ""
+    premise: str = "the model of the glides, which does not fit well enough"
     least_size: float
 
     @property

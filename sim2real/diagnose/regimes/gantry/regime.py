@@ -27,6 +27,7 @@ class Gantry(Regime):
     after = ("glide", "wall", "mallet")  # only the order of reports; it does not use their results
     more_of = "plans of the gantry, a minute or more over its whole area"
     unit = ("segment of some seconds", "segments of some seconds")
+    premise = "when the puck pushed the mallet, which is not known well enough"
     least_size = 5e-5  # small, because paths are compared over half a second from refitted starts
 
     def problem(self, evidence: Evidence, known: Known) -> GantryProblem | None:
