@@ -10,6 +10,7 @@ minute, over opponents the mean, with 95 % intervals."""
 from __future__ import annotations
 
 import argparse
+import hashlib
 import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -115,28 +116,36 @@ def _check(args: argparse.Namespace, arms: list[str], stages: list[str]) -> None
 
 
 def _check_tables(args: argparse.Namespace, arms: list[str]) -> None:
+    from puckpilot_env.files.toml_file import refuse_unknown
     from sim2real.gap.arms import ARMS
-    from sim2real.gap.gap_table import PHYSICAL, find_gap_table
+    from sim2real.gap.gap_table import BACKENDS, PHYSICAL, find_gap_table
 
-    for name in args.table or ([] if args.backend == PHYSICAL else [TABLE]):
+    refuse_unknown([args.backend], BACKENDS, "backend")
+    if args.backend == PHYSICAL and len(args.table or ()) != 1:
+        given = f"it is given {len(args.table)} times" if args.table else "puckpilot table check --example prints one"
+        raise ValueError(f"--backend table needs one --table FILE; {given}")
+    for name in args.table or [TABLE]:
         find_gap_table(args.backend, name)
-    if args.backend != PHYSICAL:
-        return
-    if len(args.table or ()) != 1:
-        raise ValueError("--backend table needs one --table FILE; puckpilot table check --example prints one")
-    if args.arms and (unknown := [name for name in arms if ARMS[name].needs_truth]):
-        raise ValueError(f"--arms {unknown[0]} needs a truth that is known; leave it out with --backend table")
+    impossible = [name for name in arms if ARMS[name].needs_truth and args.backend == PHYSICAL]
+    if impossible:
+        raise ValueError(f"--arms {impossible[0]} needs a truth that is known; leave it out with --backend table")
 
 
 def _circles(args: argparse.Namespace) -> dict[Path, Conditions]:
     """What is asked for: the conditions of each circle, by its folder."""
     from sim2real.gap.circle_folder import Conditions
+    from sim2real.gap.gap_table import PHYSICAL
 
-    tables, opponents = args.table or [TABLE], tuple(args.opponent or OPPONENTS)
-    minutes = MINUTES if args.minutes is None and args.steps is None else args.minutes
-    before = (args.player, opponents, args.backend)
-    after = (args.games, args.seconds, args.recorded, minutes, args.steps, args.seed)
-    return {args.out / table if len(tables) > 1 else args.out: Conditions(*before, table, *after) for table in tables}
+    tables, digest = args.table or [TABLE], ""
+    if args.backend == PHYSICAL:
+        tables = [str(Path(tables[0]).absolute())]
+        digest = hashlib.sha256(Path(tables[0]).read_bytes()).hexdigest()[:12]
+    given = {
+        "player": args.player, "opponents": tuple(args.opponent or OPPONENTS), "backend": args.backend,
+        **{name: getattr(args, name) for name in ("games", "seconds", "recorded", "steps", "seed")},
+        "minutes": MINUTES if args.minutes is None and args.steps is None else args.minutes, "table_contents": digest,
+    }  # fmt: skip
+    return {args.out / one if len(tables) > 1 else args.out: Conditions(table=one, **given) for one in tables}
 
 
 def _go_round(
@@ -149,7 +158,8 @@ def _go_round(
     from sim2real.gap.stages import LAST
 
     report = (lambda line: None) if args.json else lambda line: print(line, flush=True)
-    report(f"{conditions.table}: {conditions.of_table.words}")
+    words = conditions.gap_table.words
+    report(words if conditions.physical else f"{conditions.table}: {words}")
     shared = None if folder == args.out else args.out / SHARED
     circle = Circle(folder, conditions, args.processes, report, shared)
     with progress_bar("games on the table") as progress:
@@ -194,14 +204,18 @@ def _lines(result: dict[str, Any]) -> list[str]:
     from sim2real.gap.report.found_words import against_line, found_words
 
     simulated, before = result["simulator"], result["before"]
-    lines = [
-        f"the diagnosis of its play found: {found_words(result)}",
-        *([] if result["against_truth"] is None else [f"beside the truth: {against_line(result['against_truth'])}"]),
-        f"{'goals a minute':50} {'for':>5} {'against':>8} {'net':>6}  {'95 %':>14}  {'won back':>8}  {'95 %':>14}",
-        f"{'in the simulator':50} {simulated['scored']:5.2f} {simulated['conceded']:8.2f} "
-        f"{simulated['scored'] - simulated['conceded']:6.2f}",
-        f"{'on the table, as it is':50} {_rates(before)}",
-    ]
+    lines = [f"the diagnosis of its play found: {found_words(result)}"]
+    header = f"{'goals a minute':50} {'for':>5} {'against':>8} {'net':>6}  {'95 %':>14}  {'won back':>8}  {'95 %':>14}"
+    if result["against_truth"] is None:
+        lines.append(header)
+    else:
+        lines += [
+            f"beside the truth: {against_line(result['against_truth'])}",
+            header,
+            f"{'in the simulator':50} {simulated['scored']:5.2f} {simulated['conceded']:8.2f} "
+            f"{simulated['scored'] - simulated['conceded']:6.2f}",
+        ]
+    lines.append(f"{'on the table, as it is':50} {_rates(before)}")
     for name, arm in result["arms"].items():
         more = arm["change"]
         lines.append(

@@ -42,12 +42,13 @@ def against_truth(findings: Sequence[Mapping[str, Any]], table: ConcealedTable) 
 def learnt(circle: Path, table: GapTable) -> dict[str, Any]:
     """What the arm `corrected` of the circle in a folder learns on beyond what is true of every table.
 
-    effects: those that are switched on; constants: of the baseline, by name, that differ from the simulator's; draws:
-    [low, high] by name."""
+    effects: those that are switched on; constants: of the baseline, by name, that differ from the simulator's, or from
+    what is known of the table; draws: [low, high] by name."""
     simulator = simulator_of(OWN, circle, table)
     assert simulator is not None
     values = {name: value for name, value in simulator.values.items() if name not in AT_TABLE}
-    changed = {name for name, value in values.items() if value != BY_NAME[name].default}
+    known = {name: table.parameters.get(name, BY_NAME[name].default) for name in values}
+    changed = {name for name, value in values.items() if value != known[name]}
     draws = simulator.draws["draws"] if simulator.draws else {}
     return {
         "effects": [name for name, effect in EFFECTS.items() if changed.intersection(effect.row_names)],

@@ -86,11 +86,11 @@ def _constants(circle: Path, table: GapTable) -> Simulator:
 
 
 def _randomized(circle: Path, table: GapTable) -> Simulator:
-    """The ranges of `match-randomized-v0`, whatever was recorded."""
+    """The ranges of `match-randomized-v0`, whatever was recorded, but of what is known of the table."""
     rows = {
         draw.parameter: {"low": draw.low, "high": draw.high}
         for draw in find_variant("match-randomized-v0").draws
-        if not draw.parameter.startswith(SENSORS)
+        if not draw.parameter.startswith(SENSORS) and draw.parameter not in table.parameters
     }
     return Simulator({}, rows)
 
@@ -132,7 +132,7 @@ def write_simulator(simulator: Simulator, folder: Path) -> dict[str, Path]:
         write_text_whole(folder / f"{name}.toml", text)
     paths = {name: folder / f"{name}.toml" for name in files}
     if simulator.residual_of:
-        paths["residual"] = write_residual(simulator.residual_of, folder / "residual.npz")
+        paths["residual"] = write_residual(simulator.residual_of, simulator.values, folder / "residual.npz")
     return paths
 
 

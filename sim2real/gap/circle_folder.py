@@ -35,7 +35,8 @@ TRAINING = ("player", "minutes", "steps", "seed")  # conditions on which trainin
 class Conditions:
     """player, opponents: by name; backend, table: see `gap_table`; games: of each player on the table, against each
     opponent in turn, or a person, each of `seconds` of play, in matches, of which the first `recorded` are recorded;
-    minutes or steps: of fine-tuning, the other is None; seed: of the first game and of learning."""
+    minutes or steps: of fine-tuning, the other is None; seed: of the first game and of learning; table_contents: a
+    digest of a physical table's file, "" of the twin."""
 
     player: str
     opponents: tuple[str, ...]
@@ -47,6 +48,7 @@ class Conditions:
     minutes: float | None
     steps: int | None
     seed: int
+    table_contents: str = ""
 
     @property
     def physical(self) -> bool:
@@ -54,12 +56,12 @@ class Conditions:
         return self.backend == PHYSICAL
 
     @property
-    def of_table(self) -> GapTable:
+    def gap_table(self) -> GapTable:
         """Where it is played. ValueError, in one line, for an unknown table, or a file that is none."""
         return find_gap_table(self.backend, self.table)
 
     @property
-    def on_the_table(self) -> tuple[str, ...]:
+    def opponents_at_table(self) -> tuple[str, ...]:
         """The opponents on the table, by name."""
         return (PERSON,) if self.physical else self.opponents
 
@@ -120,7 +122,7 @@ class CircleFolder:
 
     def meetings_after(self, arm: str) -> list[Meeting]:
         """Those of an arm's player. ValueError, in one line, if it has not learnt yet."""
-        return self._meetings(self.player(arm), ARMS[arm].camera_delay(self.path, self.conditions.of_table))
+        return self._meetings(self.player(arm), ARMS[arm].camera_delay(self.path, self.conditions.gap_table))
 
     def _meetings(self, player: str, camera_delay: float = 0.0) -> list[Meeting]:
         """A player's games, with a delay [s] that its loop allows for. The first are recorded, of every player: what
@@ -129,7 +131,7 @@ class CircleFolder:
         return [
             Meeting(
                 player,
-                c.on_the_table[game % len(c.on_the_table)],
+                c.opponents_at_table[game % len(c.opponents_at_table)],
                 VARIANT,
                 c.seed + game,
                 c.seconds,

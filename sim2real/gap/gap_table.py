@@ -5,14 +5,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from puckpilot_env.files.toml_file import refuse_unknown
 from sim2real.table.physical.table_file import read_table_file
-from sim2real.table.twin.concealed import ConcealedTable, find_table
+from sim2real.table.twin.concealed import TABLES, ConcealedTable, find_table
 
 TWIN, PHYSICAL = "twin", "table"
 BACKENDS = {TWIN: "a twin whose physics is concealed", PHYSICAL: "the physical table of a table.toml"}
 PERSON = "person"  # who is at the other end of a physical table
+_NAMES = f"a name: {', '.join(TABLES)}"
 
 
 @dataclass(frozen=True)
@@ -30,6 +32,8 @@ def find_gap_table(backend: str, table: str) -> GapTable:
     name, and for a file that is none."""
     refuse_unknown([backend], BACKENDS, "backend")
     if backend == TWIN:
+        if Path(table).suffix == ".toml":
+            raise ValueError(f"--table is the file {table}, which --backend table takes; without that, {_NAMES}")
         concealed = find_table(table)
         return GapTable(concealed.words, concealed)
     return GapTable(f"the physical table of {table}", parameters=read_table_file(table).parameters)

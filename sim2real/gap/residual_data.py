@@ -2,18 +2,17 @@
 
 A step is taken where the puck glides at both of its ends, within one launch, and the opponent's mallet, whose orders no
 recording holds, stays away from it. The simulator begins with what was measured, and has no physics but what is true
-of every table.
+of every table, and what is known of this one.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from puckpilot_env.options.at_table import AT_TABLE
 from puckpilot_env.parameters import BY_NAME
 from puckpilot_env.residual.kernels import NEAR, put_range
 from puckpilot_env.residual.network import OUTPUTS, PERIOD, no_residual
@@ -56,24 +55,24 @@ class _Step:
     block: int
 
 
-def read_samples(folders: Sequence[Path]) -> Samples:
-    """The samples of all recordings. ValueError, in one line, for a recording that cannot be read, or is of a table of
-    other sizes than the simulator's."""
+def read_samples(folders: Sequence[Path], values: Mapping[str, float]) -> Samples:
+    """The samples of all recordings, beside the simulator of the parameters `values`, the others at their defaults.
+    ValueError, in one line, for a recording that cannot be read, or is of a table of other sizes."""
     steps: list[_Step] = []
     for folder in folders:
         recording = read_recording(folder)
         first = steps[-1].block + 1 if steps else 0
-        steps += _steps(recording, first)
-    return _simulated(steps)
+        steps += _steps(recording, first, values)
+    return _simulated(steps, values)
 
 
-def _steps(recording: Recording, first_block: int) -> list[_Step]:
+def _steps(recording: Recording, first_block: int, values: Mapping[str, float]) -> list[_Step]:
     """The steps that a recording shows, in order of time."""
     commands, frames, robot = recording.commands, recording.frames, robot_path(recording)
     if commands is None or frames is None or robot is None:
         return []
     found, segments, opponent = [], segment(recording), _opponent(recording)
-    sizes = {name: _size(recording, name) for name in SIZES}
+    sizes = {name: _size(recording, name, values) for name in SIZES}
     radius = sizes["puck_radius"] + sizes["mallet_radius"]
     columns = np.stack([commands[name] for name in ("x_f", "y_f", "V_x", "V_y")], axis=1)
     for row in np.flatnonzero(np.abs(np.diff(commands.t) - PERIOD) < OFF_STEP):
@@ -94,12 +93,12 @@ def _steps(recording: Recording, first_block: int) -> list[_Step]:
     return found
 
 
-def _size(recording: Recording, name: str) -> float:
+def _size(recording: Recording, name: str, values: Mapping[str, float]) -> float:
     """A size of the simulator's table; ValueError where the recording's is another."""
-    default, stated = BY_NAME[name].default, stated_sizes(recording).get(name)
-    if stated is not None and abs(stated - default) > 1e-9:
-        raise ValueError(f"{recording.name}: its {name} is {stated:g} m; a network is learnt for {default:g} m alone")
-    return default
+    simulated, stated = float(values.get(name, BY_NAME[name].default)), stated_sizes(recording).get(name)
+    if stated is not None and abs(stated - simulated) > 1e-9:
+        raise ValueError(f"{recording.name}: its {name} is {stated:g} m, that of the simulator {simulated:g} m")
+    return simulated
 
 
 def _opponent(recording: Recording) -> MalletPath:
@@ -147,11 +146,11 @@ def _motion(segments: Segments, glide: Glide, when: float) -> np.ndarray:
     return np.concatenate([fit.place, fit.velocity])
 
 
-def _simulated(steps: list[_Step]) -> Samples:
+def _simulated(steps: list[_Step], values: Mapping[str, float]) -> Samples:
     """The samples of steps in which play simply goes on in the simulator, too."""
     if not steps:
         return Samples(np.zeros((0, 18), np.float32), np.zeros((0, len(OUTPUTS))), np.zeros(0, np.int64))
-    tables = ResidualTables(VARIANT, len(steps), no_residual(), autoreset=False, parameters=AT_TABLE)
+    tables = ResidualTables(VARIANT, len(steps), no_residual(), autoreset=False, parameters=values)
     p = tables.nominal[0]
     begins = np.array([one.begin for one in steps])
     radius = p["mallet_radius"]

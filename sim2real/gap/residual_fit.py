@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -33,10 +33,11 @@ def require_sklearn() -> None:
         raise ValueError("a network of residuals needs scikit-learn; install it with: pip install 'puckpilot[train]'")
 
 
-def write_residual(recordings: Sequence[Path], path: Path) -> Path:
-    """Fit a network to recordings, write it to `path` (.npz), and beside it, as .json, how good it is; returns `path`.
-    ValueError, in one line, for recordings that cannot be read, or show too few steps."""
-    residual, report = fit_residual(read_samples(recordings))
+def write_residual(recordings: Sequence[Path], values: Mapping[str, float], path: Path) -> Path:
+    """Fit a network of what the simulator of the parameters `values` lacks to recordings, write it to `path` (.npz),
+    and beside it, as .json, how good it is; returns `path`. ValueError, in one line, for recordings that cannot be
+    read, are of a table of other sizes, or show too few steps."""
+    residual, report = fit_residual(read_samples(recordings, values))
     residual.save(path)
     write_text_whole(path.with_suffix(".json"), json.dumps(report, indent=1) + "\n")
     return path

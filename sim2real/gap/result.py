@@ -29,7 +29,7 @@ def result(folder: CircleFolder, arms: list[str]) -> dict[str, Any]:
     before = _kept(folder.meetings_before(), folder.before, "play")
     content = folder.diagnosed()
     after = {arm: _kept(folder.meetings_after(arm), folder.path / arm / "games", "replay") for arm in arms}
-    table = folder.conditions.of_table
+    table = folder.conditions.gap_table
     simulated = {name: simulated_rates(folder.simulated(name)) for name in (BEFORE, *arms)}
     return {
         "format": FORMAT,

@@ -10,6 +10,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from puckpilot_env.files.whole_file import write_text_whole
 from sim2real.gap.arms import ARMS, Simulator, recordings_of
 from sim2real.gap.circle_folder import BEFORE, FILM, VARIANT, CircleFolder, missing, training_words
@@ -46,7 +48,7 @@ def play(work: Work) -> None:
 def _simulate(work: Work, name: str, player: str) -> None:
     """The score in the simulator, with what is true of every table: without and, where it is known, with what is
     concealed."""
-    c, table = work.folder.conditions, work.folder.conditions.of_table
+    c, table = work.folder.conditions, work.folder.conditions.gap_table
     simulators = {UNCHANGED: Simulator()} | ({TRUTH: Simulator(table.concealed.truth)} if table.concealed else {})
     values = {one: simulator.at_table(table.parameters).values for one, simulator in simulators.items()}
     simulate(work.folder.simulated(name), VARIANT, player, c.opponents, 10 * c.games, c.seed, values)
@@ -89,16 +91,30 @@ def replay(work: Work) -> None:
     work.folder.diagnosed()
     players = {arm: work.folder.meetings_after(arm) for arm in work.arms}
     for arm, meetings in players.items():
-        work.report(f"playing on the table: {ARMS[arm].words}")
+        if not work.folder.conditions.physical:
+            work.report(f"playing on the table: {ARMS[arm].words}")
         _simulate(work, arm, meetings[0].player)
-        _games(work, meetings, work.folder.path / arm / "games", arm)
+        if not work.folder.conditions.physical:
+            _games(work, meetings, work.folder.path / arm / "games", arm)
+    if work.folder.conditions.physical:
+        _in_mixed_order(work, players)
+
+
+def _in_mixed_order(work: Work, players: Mapping[str, list[Meeting]]) -> None:
+    """The games of all arms against a person, who is not told which arm plays: each plays once before any plays again,
+    in an order drawn from the circle's seed."""
+    rng, c = np.random.default_rng(work.folder.conditions.seed), work.folder.conditions
+    order = [(arm, game) for game in range(c.games) for arm in rng.permutation(list(players)).tolist()]
+    for number, (arm, game) in enumerate(order, 1):
+        work.report(f"playing on the table: game {number} of {len(order)}")
+        _games(work, [players[arm][game]], work.folder.path / arm / "games", arm)
 
 
 def report(work: Work) -> None:
     """The result, as gap.json and gap.html."""
     content = result(work.folder, work.arms)
     write_text_whole(work.folder.path / "gap.json", json.dumps(content, indent=1) + "\n")
-    write_text_whole(work.folder.path / "gap.html", page(content, work.folder.conditions.of_table))
+    write_text_whole(work.folder.path / "gap.html", page(content, work.folder.conditions.gap_table))
 
 
 STAGES: Mapping[str, Callable[[Work], None]] = {one.__name__: one for one in (play, diagnose, tune, replay, report)}

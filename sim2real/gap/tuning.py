@@ -19,8 +19,9 @@ LOG = "training.log"
 
 def untrained(folder: CircleFolder, arms: Sequence[str]) -> list[str]:
     """Which of the arms have to learn yet."""
-    of = (folder.path, folder.conditions.of_table)
-    return [arm for arm in arms if simulator_of(arm, *of) is not None and not folder.trained(arm).exists()]
+    table = folder.conditions.gap_table
+    learning = [arm for arm in arms if simulator_of(arm, folder.path, table) is not None]
+    return [arm for arm in learning if not folder.trained(arm).exists()]
 
 
 def fine_tune(folder: CircleFolder, arms: Sequence[str], at_once: int) -> None:
@@ -35,7 +36,7 @@ def fine_tune(folder: CircleFolder, arms: Sequence[str], at_once: int) -> None:
 
 def _fine_tune(folder: CircleFolder, arm: str) -> None:
     c, done = folder.conditions, folder.trained(arm)
-    simulator = simulator_of(arm, folder.path, c.of_table)
+    simulator = simulator_of(arm, folder.path, c.gap_table)
     assert simulator is not None
     run = done.parent / "training"
     given = ["--resume"]

@@ -10,7 +10,8 @@ OF_STUDIES = ("sim2real", "puckpilot_env")  # the diagnosis, its physics, and th
 # The players, the board's program, and all that plays at a table; not what learns from it, such as the diagnosis
 OF_GAMES = (
     "agents", "baselines", "firmware", "puckpilot_env", "sim2real/camera", "sim2real/emulate", "sim2real/link",
-    "sim2real/recording", "sim2real/statistics", "sim2real/study", "sim2real/table", "sim2real/vision",
+    "sim2real/recording", "sim2real/statistics", "sim2real/study/independent_table", "sim2real/table",
+    "sim2real/vision",
 )  # fmt: skip
 ENDINGS = (".py", ".elf", ".npz")  # code, the board's program, trained players
 

@@ -42,10 +42,10 @@ class Meeting:
     """Who meets: `player` at the robot's seat, its `opponent`, the `variant`'s id, and the game's `seed`.
 
     seconds: of play at most; None for a whole game. again: whether another game begins where one ends within them.
-    camera: the kind of the twin's, see `cameras.CAMERAS`. concealed:
-    the table, see `concealed.TABLES`; "" for the simulator's. clears: whether play goes on after a doubt stopped the
-    table. recorded: whether the game is recorded, as `recordings/game_SEED` beside its result.
-    camera_delay: that the loop allows for [s].
+    camera: the kind of the twin's, see `cameras.CAMERAS`. concealed: the twin's table, see `concealed.TABLES`; "" for
+    the simulator's. clears: whether play goes on after a doubt stopped the twin. recorded: whether the game is
+    recorded, as `recordings/game_SEED` beside its result. camera_delay: that the loop allows for [s]. table: the
+    table.toml of a physical table, where a person is the opponent, and is asked whether play goes on; "" for the twin.
     """
 
     player: str
@@ -67,9 +67,9 @@ class PlayedMeeting:
     """What came of a game, or of several: outcome 1, 0, -1 as the player won, drew or lost; goals of both; `seconds` of
     play.
 
-    virtual: the table's time from power-on to the end [s], of a twin virtual; processor, wall: what it took on this
-    computer [s]; stops: how often a doubt stopped the table; shots: at both goals, as the robot's camera saw them;
-    opponent: by name.
+    virtual: the twin's time from power-on to the end, the physical table's from the face-off on [s]; processor, wall:
+    what it took on this computer [s]; stops: how often a doubt stopped the table; shots: at both goals, as the robot's
+    camera saw them; opponent: by name.
     """
 
     outcome: int
@@ -115,10 +115,10 @@ def _play(meeting: Meeting, recording: Path | None, onlooker: Onlooker | None = 
                 log = play_game(*given, meeting.seconds, *said).complete
             if log.interrupted:
                 raise KeyboardInterrupt
-            of_table = env.backend.now()
+            on_table = log.table_seconds if meeting.table else env.backend.now()
     processor, wall = time.process_time() - begin[0], time.perf_counter() - begin[1]
     return PlayedMeeting(
-        log.outcome, log.score, log.seconds, of_table, processor, wall, len(log.faults), log.shots, meeting.opponent
+        log.outcome, log.score, log.seconds, on_table, processor, wall, len(log.faults), log.shots, meeting.opponent
     )
 
 

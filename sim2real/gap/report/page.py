@@ -25,11 +25,12 @@ WIDTH, ROW, LEFT = 560.0, 26.0, 150.0  # points
 SIMULATED, PLAYED = "in the simulator", "on the table, as it is"
 SIMULATORS = ("simulator, no effect", "simulator, what is concealed")
 FILES = (
-    "before/: the games on the table, with the recordings of the first of them, and a film",
+    "before/: the games on the table, with the recordings of the first of them",
     "diagnosis/: what these say, report.html, effects.toml and draws.toml",
-    "ARM/training/: a run of puckpilot train; ARM/games/: its player on the table; ARM/film.gif: the first of them",
+    "ARM/training/: a run of puckpilot train; ARM/games/: its player on the table",
     "gap.json: all numbers of this page",
 )
+FILMS = "before/film.gif, ARM/film.gif: the first game of each player on the table"
 
 
 def environment() -> Environment:
@@ -66,7 +67,7 @@ def page(result: dict[str, Any], table: GapTable) -> str:
             learnt=learnt_words(result["learnt"]),
             beside_truth=against_rows(result["against_truth"] or []),
             command=_command(conditions, list(result["arms"])),
-            files=FILES,
+            files=[*FILES, *([FILMS] if concealed else [])],
         )
     )
 
@@ -75,6 +76,7 @@ def _rows(result: dict[str, Any]) -> list[list[str]]:
     simulated = result["simulator"]
     net = simulated["scored"] - simulated["conceded"]
     rows = [[SIMULATED, f"{simulated['scored']:.2f}", f"{simulated['conceded']:.2f}", f"{net:.2f}", "", "", "", ""]]
+    rows = rows if result["against_truth"] is not None else []  # else it is against another opponent
     rows.append([PLAYED, *_rates(result["before"]), "", "", str(result["before"]["stops"])])
     for name, arm in result["arms"].items():
         change = arm["change"]
@@ -137,7 +139,7 @@ def _rates(one: dict[str, Any]) -> list[str]:
 
 
 def _chart(result: dict[str, Any]) -> str:
-    """The net scores, one below the other, with the simulator's as a line."""
+    """The net scores, one below the other, with the simulator's as a line, where that is against the same hands."""
     simulated = result["simulator"]["scored"] - result["simulator"]["conceded"]
     bars = {PLAYED: result["before"]["net"], **{name: arm["net"] for name, arm in result["arms"].items()}}
 
@@ -148,7 +150,8 @@ def _chart(result: dict[str, Any]) -> str:
             [bar["value"] - bar["low"] for bar in bars.values()],
             [bar["high"] - bar["value"] for bar in bars.values()],
         ]
-        axes.axvline(simulated, color=GREY, linestyle="--", label=SIMULATED)
+        if result["against_truth"] is not None:
+            axes.axvline(simulated, color=GREY, linestyle="--", label=SIMULATED)
         axes.errorbar(values, places, xerr=errors, fmt="s", color=BLUE, capsize=3.0)
         axes.set_yticks(places, list(bars))
         axes.set_ylim(len(bars) - 0.5, -0.5)

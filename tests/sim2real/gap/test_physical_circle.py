@@ -11,21 +11,27 @@ import pytest
 pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
 
 from puckpilot import main
+from puckpilot_env import Tables
 from puckpilot_env.options.at_table import AT_TABLE
+from puckpilot_env.options.effects_file import as_content
 from puckpilot_env.variants import Variant
-from sim2real.gap.arms import simulator_of
+from sim2real.gap import stages
+from sim2real.gap.arms import ARMS, simulator_of
 from sim2real.gap.circle import Circle
 from sim2real.gap.circle_folder import CircleFolder, Conditions
 from sim2real.gap.gap_table import find_gap_table
 from sim2real.gap.overview import overview
 from sim2real.table import meetings
 from sim2real.table.game.robot_seat import RobotSeat, make_robot_seat
-from tests.sim2real.gap.test_against_truth import finding
+from tests.sim2real.gap.test_against_truth import SILENT_DRAWS, SILENT_EFFECTS, finding
 
+SIZES = {"length": 2.362, "width": 1.144}
 FILE = """
 format = "puckpilot-table/1"
 [parameters]
 friction = 0.1
+length = 2.362
+width = 1.144
 [camera]
 source = "device:0"
 calibration = "table.json"
@@ -95,17 +101,69 @@ def test_games_that_a_person_played_are_kept_whatever_the_version(
         monkeypatch.setattr(meetings, "play_meeting", None)
 
 
-def test_what_the_table_s_file_states_is_learnt_on(tmp_path: Path, file: str) -> None:
-    """The voltage that motors ever get is another matter than the supply's."""
-    made = simulator_of("unchanged", tmp_path, find_gap_table("table", file))
-    assert made is not None and dict(made.values) == {"friction": 0.1, **AT_TABLE}
+@pytest.mark.parametrize("arm", [name for name, arm in ARMS.items() if arm.simulator and not arm.needs_truth])
+def test_every_arm_learns_on_the_table_of_the_file(tmp_path: Path, file: str, arm: str) -> None:
+    """Its sizes, and its friction where no other was found or is drawn. The voltage that motors ever get is another
+    matter than the supply's."""
+    silent_diagnosis(tmp_path)
+    made = simulator_of(arm, tmp_path, find_gap_table("table", file))
+    assert made is not None and dict(made.values).items() >= {**SIZES, **AT_TABLE}.items()
+    tables = Tables("match-v0", 2, effects=as_content(made.values), draws=made.draws)
+    assert all((tables.params[name] == size).all() for name, size in SIZES.items())
+    known = arm not in ("constants", "corrected")
+    assert (tables.params["friction"] == 0.1).all() == known
+
+
+def silent_diagnosis(folder: Path) -> None:
+    sizes = "".join(f"{name} = {size}\n" for name, size in SIZES.items())
+    found = {"baseline": {"parameters": {"friction": {"value": 0.11}}}, "findings": []}
+    texts = {
+        "effects.toml": SILENT_EFFECTS.replace("length = 2.0\n", sizes), "diagnosis.json": json.dumps(found),
+        "draws.toml": SILENT_DRAWS.replace("friction = 0.11\n", f"friction = 0.11\n{sizes}", 1),
+    }  # fmt: skip
+    (folder / "diagnosis").mkdir()
+    for name, text in texts.items():
+        (folder / "diagnosis" / name).write_text(text)
+
+
+def test_the_person_meets_the_arms_in_mixed_order_and_is_not_told_which_it_is(
+    tmp_path: Path, file: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    silent_diagnosis(tmp_path)
+    conditions = Conditions("interceptor", ("goalie",), "table", file, 4, 9.0, 1, 1.0, None, 5)
+    folder, said, played = CircleFolder(tmp_path, conditions), [], []
+    arms = ["allowing", "unchanged", "corrected"]
+    for arm in arms[1:]:
+        folder.trained(arm).parent.mkdir()
+        folder.trained(arm).touch()
+    monkeypatch.setattr(stages, "simulate", lambda *_: None)
+    monkeypatch.setattr(stages, "play_all", lambda games, out, *_: played.append((out.parent.name, games[0].seed)))
+    stages.replay(stages.Work(folder, arms, 2, said.append, lambda done, count: None))
+    assert sorted(played) == sorted((arm, seed) for arm in arms for seed in range(5, 9))
+    assert [seed for _, seed in played] == sorted(seed for _, seed in played)
+    assert len({tuple(arm for arm, of in played if of == seed) for seed in range(5, 9)}) > 1
+    assert said[0] == "playing on the table: game 1 of 12" and not any(arm in line for arm in arms for line in said)
+
+
+def test_another_file_of_the_table_is_another_circle(
+    tmp_path: Path, file: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    words = ["gap", "interceptor", "--backend", "table", "--stage", "tune", "--arms", "allowing", "--out", "out"]
+    assert main([*words, "--table", "table.toml"]) == 2
+    assert "run the stage 'diagnose' first" in capsys.readouterr().err
+    kept = json.loads((tmp_path / "out" / "conditions.json").read_text())
+    assert kept["table"] == file and len(kept["table_contents"]) == 12
+    Path(file).write_text(FILE.replace("friction = 0.1", "friction = 0.2"))
+    assert main([*words, "--table", file]) == 2
+    assert "has a circle with table_contents" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        ([], "--backend table needs one --table FILE"),
-        (["--table", "FILE", "--table", "FILE"], "--backend table needs one --table FILE"),
+        ([], "--backend table needs one --table FILE; puckpilot table check --example prints one"),
+        (["--table", "FILE", "--table", "FILE"], "--backend table needs one --table FILE; it is given 2 times"),
         (["--table", "FILE", "--arms", "truth"], "--arms truth needs a truth that is known"),
         (["--table", "walls"], "walls"),
         (["--table", "FILE", "--games", "1"], "--games is 1"),
@@ -121,6 +179,10 @@ def test_what_cannot_be_is_said_in_one_line(
     assert not (tmp_path / "out").exists()
 
 
-def test_an_unknown_backend_is_refused_in_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_unknown_or_forgotten_backend_is_refused_in_one_line(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["gap", "--backend", "tabel"]) == 2
     assert "did you mean 'table'" in capsys.readouterr().err
+    assert main(["gap", "--table", "table.toml"]) == 2
+    assert "--table is the file table.toml, which --backend table takes; without that, a name: none" in (
+        capsys.readouterr().err
+    )

@@ -41,7 +41,7 @@ def recordings(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
 
 @pytest.fixture(scope="module")
 def samples(recordings: list[Path]) -> Samples:
-    return read_samples(recordings)
+    return read_samples(recordings, AT_TABLE)
 
 
 def test_what_a_step_lacks_on_a_leaning_table_is_the_tilt(samples: Samples) -> None:
@@ -118,7 +118,7 @@ def test_too_little_and_what_is_not_installed_is_said_in_one_line(
 
 def test_a_recording_without_commands_or_of_another_size_shows_no_steps(tmp_path: Path) -> None:
     make_recording(tmp_path / "launches", Law(), "launches", 0, 4.0, SHARP, dt=1e-4)
-    assert len(read_samples([tmp_path / "launches"])) == 0
+    assert len(read_samples([tmp_path / "launches"], AT_TABLE)) == 0
     make_recording(tmp_path / "large", Law(length=2.2), "match", 0, 4.0, SHARP, dt=1e-4)
-    with pytest.raises(ValueError, match=r"large: its length is 2\.2 m; a network is learnt for 2 m alone"):
-        read_samples([tmp_path / "large"])
+    with pytest.raises(ValueError, match=r"large: its length is 2\.2 m, that of the simulator 2 m"):
+        read_samples([tmp_path / "large"], AT_TABLE)

@@ -60,4 +60,5 @@ def test_all_that_plays_a_game_is_in_its_version() -> None:
     pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
     loaded = subprocess.run([sys.executable, "-c", PLAYED], capture_output=True, text=True, check=True, cwd=ROOT).stdout
     outside = [one for one in loaded.split() if not any(one.startswith(f"{folder}/") for folder in OF_GAMES)]
-    assert "sim2real/table/meetings.py" in loaded.split() and set(outside) == {"sim2real/__init__.py"}
+    assert "sim2real/table/meetings.py" in loaded.split() and all((ROOT / folder).is_dir() for folder in OF_GAMES)
+    assert set(outside) == {"sim2real/__init__.py", "sim2real/study/__init__.py", "sim2real/study/version.py"}

@@ -45,14 +45,15 @@ class GantryRecording:
         """A copy with only the first `count` windows, each a cluster."""
         begin, end = self.windows.begin[:count], self.windows.end[:count]
         kept = {name: getattr(self, name)[: end[-1]] for name in ARRAYS}
-        return replace(self, windows=StreamWindows(begin, end, np.arange(len(begin))), **kept)
+        windows = StreamWindows(begin, end, np.arange(len(begin)), self.windows.parted[:count])
+        return replace(self, windows=windows, **kept)
 
     def thinned(self, samples: int) -> GantryRecording:
         """A copy with every k-th sample, about `samples` in total; of a long record, with every m-th cluster alone."""
         most = max(samples // GANTRY_DATA.thin_window, 1)
         kept = self.windows.every(-(-len(self.windows.begin) // most))
         k = max(1, len(self.t) * len(kept.begin) // (len(self.windows.begin) * samples))
-        windows = StreamWindows(-(-kept.begin // k), -(-kept.end // k), kept.cluster)
+        windows = replace(kept, begin=-(-kept.begin // k), end=-(-kept.end // k))
         return replace(self, windows=windows, **{name: getattr(self, name)[::k].copy() for name in ARRAYS})
 
     def freedom(self) -> np.ndarray:

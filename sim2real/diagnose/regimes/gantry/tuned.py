@@ -83,6 +83,15 @@ class GantryDataNumbers:
         "after a push, how long the path shows its speed: less leaves noise in it, with more wrong friction bends it",
         "choice: a few samples of a thinned record, less than a time constant of an axis",
     )
+    start_samples: int = tuned(
+        4,
+        "samples",
+        "fewer leave no rest beside the two numbers of a speed's fit; more reach past a time constant of a thin record",
+        "choice: twice the numbers",
+    )
+    start_rounds: int = tuned(
+        3, "rounds", "fewer leave friction of the wrong direction in it, more take time", "choice: each corrects most"
+    )
     run_in: float = tuned(
         1.0,
         "s",

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
+import threading
 
 import numpy as np
 import pytest
 
 from sim2real.table.faults import Cause, TableFaultError
-from sim2real.table.physical.person import PersonAtTerminal
+from sim2real.table.physical.person import PersonAtTerminal, may_go_on
 
 
 class Terminal:
@@ -48,3 +49,24 @@ def test_a_puck_is_asked_for_with_its_speed(
     PersonAtTerminal(lambda: None).put_puck(np.array([1.0, 0.4, *velocity]))
     said = capsys.readouterr().err
     assert "(1.00, 0.40) m" in said and words in said
+
+
+FAULT = TableFaultError(Cause.NOT_READY, "the camera is unplugged")
+
+
+@pytest.mark.parametrize(("typed", "goes_on"), [(b"\n", True), (b"\x04", False)], ids=["Enter", "end of input"])
+def test_after_a_fault_the_person_is_asked_whether_to_go_on(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], typed: bytes, goes_on: bool
+) -> None:
+    """What was typed before the question is no answer to it."""
+    terminal, side = os.openpty()
+    monkeypatch.setattr("sys.stdin", os.fdopen(side))
+    os.write(terminal, b"\n")
+    threading.Timer(0.3, os.write, (terminal, typed)).start()
+    assert may_go_on(FAULT) == goes_on
+    assert "the camera is unplugged. Press Enter to go on, Ctrl-C to end" in capsys.readouterr().err
+
+
+def test_where_nobody_can_answer_play_does_not_go_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    Terminal(monkeypatch, b"\n").serve()
+    assert not may_go_on(FAULT)

@@ -16,9 +16,7 @@ from sim2real.diagnose.regimes.gantry.tuned import GANTRY_DATA
 from sim2real.diagnose.regimes.gantry.windows import StreamWindows
 
 ROWS = EFFECT.row_names
-STEP, FASTEST, CREEP, RUN_IN, SHOWN = range(5)  # of the tuned numbers that the kernels take
-FEWEST_SHOWN = 4  # samples that correct a start
-ROUNDS = 3  # of a start's correction: friction's direction depends on the speed, and the path on friction
+STEP, FASTEST, CREEP, RUN_IN, SHOWN, FEWEST, ROUNDS = range(7)  # of the tuned numbers that the kernels take
 
 
 def path_of_friction(
@@ -33,17 +31,19 @@ def path_of_friction(
     sizes = np.array([float(p[row]) for row in ROWS])
     if sizes.any():
         tuned = GANTRY_DATA
-        numbers = np.array([tuned.dry_step, tuned.fastest, tuned.dry_speed, tuned.run_in, tuned.start_shown])
-        _change(p, sizes, changes, volts, unknown, t, observed, velocity, windows.begin, windows.end, numbers, path)
+        start = (tuned.start_shown, tuned.start_samples, tuned.start_rounds)
+        numbers = np.array([tuned.dry_step, tuned.fastest, tuned.dry_speed, tuned.run_in, *start])
+        cut = (windows.begin, windows.end, windows.parted)
+        _change(p, sizes, changes, volts, unknown, t, observed, velocity, *cut, numbers, path)
     return path
 
 
 @array_kernel
-def _change(p, sizes, changes, volts, unknown, t, observed, velocity, begin, end, numbers, path):
+def _change(p, sizes, changes, volts, unknown, t, observed, velocity, begin, end, parted, numbers, path):
     """Write the displacement by friction to `path` (n, 2) [m]. The simulation continues from one window to the next,
     and starts RUN_IN before the first, because a slow measured speed has the wrong sign as often as not. It starts with
-    the measured speed only where the volts before were not recorded. There, and after whatever parts two windows, a
-    push of the puck above all, the speed is corrected by what the path shows next."""
+    the measured speed only where the volts before were not recorded. There, and in a window that is `parted` from the
+    one before, by a push of the puck above all, the speed is corrected by what the path shows next."""
     x, y, none = axis_of(p, 0), axis_of(p, 1), np.zeros(4)
     now, gap, moment = 0, 0, -math.inf
     at_x = at_y = (0.0, 0.0, 0.0, 0.0, 0.0)
@@ -60,7 +60,7 @@ def _change(p, sizes, changes, volts, unknown, t, observed, velocity, begin, end
             now, at_x, at_y = _drive(x, y, sizes, changes, volts, now, moment, t[a], at_x, at_y, numbers)
         else:
             at_x, at_y = _start(x, velocity[a, 0], volts[now, 0]), _start(y, velocity[a, 1], volts[now, 1])
-        if not known or (w > 0 and begin[w] != end[w - 1]):
+        if parted[w] or not known:
             at_x, at_y = _corrected(x, y, sizes, changes, volts, now, t[a:b], observed[a:b], at_x, at_y, numbers)
         without, to_x, to_y = now, at_x, at_y
         moment = t[a]
@@ -93,18 +93,19 @@ def _drive(x, y, sizes, changes, volts, now, moment, until, at_x, at_y, numbers)
 @kernel
 def _corrected(x, y, sizes, changes, volts, now, t, observed, at_x, at_y, numbers):
     """The states of both axes at t[0] with such slow modes that the path SHOWN from there on fits `observed` (n, 2) [m]
-    best; the volts before do not tell what pushed the mallet."""
-    for _ in range(ROUNDS):
+    best, of FEWEST samples at least; the volts before do not tell what pushed the mallet. In ROUNDS, since friction's
+    direction depends on the speed, and the path on friction."""
+    for _ in range(int(numbers[ROUNDS])):
         place_now, moment, sx, sy = now, t[0], at_x, at_y
         sums_x = sums_y = (0.0, 0.0, 0.0, 0.0, 0.0)
         for i in range(len(t)):
-            if t[i] - t[0] > numbers[SHOWN]:
+            if t[i] - t[0] > numbers[SHOWN] and sums_x[0] >= numbers[FEWEST]:
                 break
             place_now, sx, sy = _drive(x, y, sizes, changes, volts, place_now, moment, t[i], sx, sy, numbers)
             moment = t[i]
             sums_x = _with(sums_x, math.exp(-x[0] * (t[i] - t[0])), observed[i, 0] - sx[0] - sx[1] - sx[2])
             sums_y = _with(sums_y, math.exp(-y[0] * (t[i] - t[0])), observed[i, 1] - sy[0] - sy[1] - sy[2])
-        if sums_x[0] < FEWEST_SHOWN:
+        if sums_x[0] < numbers[FEWEST]:
             break
         at_x = (at_x[0], at_x[1] + _slope(sums_x), at_x[2], at_x[3], at_x[4])
         at_y = (at_y[0], at_y[1] + _slope(sums_y), at_y[2], at_y[3], at_y[4])

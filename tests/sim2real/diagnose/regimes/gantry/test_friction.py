@@ -87,6 +87,7 @@ def test_after_the_puck_pushed_the_mallet_its_friction_has_the_direction_of_its_
     pushed = read_recording(tmp_path)
     run = read_gantry(pushed, SUPPLY, possible_touches(pushed, segment(pushed)))
     assert left_over(run, **SIZES) == pytest.approx(1.1, abs=0.15)
+    assert left_over(run.thinned(700), **SIZES) == pytest.approx(1.0, abs=0.15)
 
 
 @pytest.mark.parametrize(
