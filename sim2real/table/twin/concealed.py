@@ -50,7 +50,6 @@ def _braking(law: Mapping[str, Any]) -> dict[str, float]:
     }
 
 
-DELAY = "command_delay"
 _FRICTION = {
     "motor_friction_left": 0.42, "motor_friction_right": 0.36, "axis_friction_x": 0.12, "axis_friction_y": 0.48,
     "voltage_sag": 0.005,
@@ -67,7 +66,7 @@ TABLES = {
     "walls": _alike("walls that spin the puck, and give back less of a fast one", _SPIN),
     "mallet": _alike("a mallet that recoils, and has less restitution at speed", _SOFT),
     "friction": _alike("friction of the motors, and voltage that sags", _FRICTION),
-    "late": _alike("commands and a camera that are late", {DELAY: 0.005}, late=0.015),
+    "late": _alike("commands and a camera that are late", {"command_delay": 0.005}, late=0.015),
     "patch": _alike("a patch that brakes the puck", _PATCH, patch_extra=_PATCH["patch_friction"]),
     "unlisted": _alike("a drag that grows with the cube of speed, which is not listed", _CUBIC, **_braking(_CUBIC)),
     "everything": _alike(

@@ -11,7 +11,7 @@ from puckpilot_env import Tables
 from puckpilot_env.options.at_table import AT_TABLE
 from puckpilot_env.options.draws_file import read_draws
 from puckpilot_env.options.effects_file import as_content, effect_values
-from sim2real.gap.arms import ARMS, simulator_of, write_simulator
+from sim2real.gap.arms import ARMS, HELD, simulator_of, write_simulator
 from sim2real.gap.gap_table import TWIN, GapTable, find_gap_table
 from sim2real.table.twin.concealed import TABLES
 
@@ -74,6 +74,13 @@ def test_others_do_not_see_the_findings(circle: Path) -> None:
     assert values["truth"]["tilt_x"] == TABLES["warp"].truth["tilt_x"]
 
 
+@pytest.mark.parametrize("table", ["friction", "late"])
+def test_what_the_board_s_feedback_holds_is_not_learnt_on(circle: Path, table: str) -> None:
+    assert TABLES[table].truth.keys() <= set(HELD)
+    truth = simulator_of("truth", circle, twin(table))
+    assert truth is not None and truth.values == AT_TABLE
+
+
 @pytest.mark.parametrize("table", TABLES)
 def test_every_arm_can_be_learnt_on(circle: Path, table: str) -> None:
     for arm in ARMS:
@@ -81,7 +88,7 @@ def test_every_arm_can_be_learnt_on(circle: Path, table: str) -> None:
         if one is None or one.residual_of:  # this one needs recordings: test_residual.py
             continue
         tables = Tables("match-v0", 2, effects=as_content(one.values), draws=one.draws)
-        assert not tables.params["command_delay"].any() and (tables.params["max_voltage"] == 15.0).all()
+        assert not any(tables.params[name].any() for name in HELD) and (tables.params["max_voltage"] == 15.0).all()
         (circle / arm).mkdir()
         files = write_simulator(one, circle / arm)
         assert effect_values(files["effects"]) == one.values
