@@ -11,7 +11,7 @@ from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.output.effects_toml import GANTRY, accepted_regimes, found_numbers
 from sim2real.diagnose.pipeline import Diagnosis
 from sim2real.diagnose.result.context import PLAIN, ReportContext
-from sim2real.diagnose.result.result import Estimate
+from sim2real.diagnose.result.result import Estimate, Finding
 
 UNLISTED = {row.name for effect in EFFECTS.values() if not effect.listed for row in effect.rows.values()}
 SPREAD = "gantry_spread"
@@ -23,17 +23,19 @@ def draws_toml(diagnosis: Diagnosis, context: ReportContext = PLAIN) -> str:
     Each fitted parameter is drawn from its 95 % interval, clipped to the simulator's range. Parameters without an
     interval are not drawn. Neither are the gantry's coefficients, since players may observe their own gantry's ratio to
     the nominal one: instead the gantry spread is as wide as the intervals of C6 and C7. Unlisted laws cannot be drawn;
-    effects.toml has them.
+    effects.toml has them. Nor are the other parameters of their regime: these intervals are wide because what one of
+    them takes the unlisted law gives, so that drawn alone they would be of other tables.
     """
     values, _ = found_numbers(diagnosis)
     nominal = {name: values[name] for name in (row.name for row in TABLE) if name in values and name not in UNLISTED}
     by = {name: (one, each.regime) for each in accepted_regimes(diagnosis) for name, one in each.baseline.items()}
     by |= {name: (one, found.regime) for found in diagnosis.findings for name, one in found.ranges.items()}
     lines = [f'format = "{FORMAT}"', "", "[parameters]", *(f"{name} = {value!r}" for name, value in nominal.items())]
+    fixed = {one.regime for one in _unlisted(diagnosis)}
     where = f" of {' and '.join(context.recordings)}" if context.recordings else ""
     for name in nominal:
         one, regime = by.get(name, (None, ""))
-        if one is None or name in GANTRY:
+        if one is None or name in GANTRY or regime in fixed:
             continue
         low, high = BY_NAME[name].within(one.low), BY_NAME[name].within(one.high)
         if low < high:
@@ -80,13 +82,17 @@ def playable_spread(share: float, nominal: Mapping[str, float]) -> float:
     return 0.0
 
 
+def _unlisted(diagnosis: Diagnosis) -> list[Finding]:
+    """The findings that are laws without a name, as parameters of the simulator."""
+    return [one for one in diagnosis.findings if one.mechanism == "unlisted" and UNLISTED.intersection(one.values)]
+
+
 def _comments(diagnosis: Diagnosis) -> list[str]:
     """Return comments on what cannot be drawn, a line each."""
-    unlisted = [one for one in diagnosis.findings if one.mechanism == "unlisted" and UNLISTED.intersection(one.values)]
     lines = [
-        f"# not drawn: the unlisted {one.regime} law that depends on {' and '.join(one.depends_on)}; "
-        "it is in effects.toml: use --effects effects.toml --draws draws.toml"
-        for one in unlisted
+        f"# not drawn: the unlisted {one.regime} law that depends on {' and '.join(one.depends_on)}, and what else was "
+        f"fitted to the {one.regime}; it is in effects.toml: use --effects effects.toml --draws draws.toml"
+        for one in _unlisted(diagnosis)
     ]
     names = [one.mechanism for one in diagnosis.findings if one.mechanism in EFFECTS]
     return lines + [f"{NOT_SWITCHED} {name}" for name in names if EFFECTS[name].not_simulated]

@@ -64,7 +64,7 @@ def written(folder: Path, diagnosis: Diagnosis) -> Path:
 def found() -> Diagnosis:
     return Diagnosis(
         (
-            RegimeResult("glide", (TILT, VORTEX), GLIDES, False, None),
+            RegimeResult("glide", (TILT,), GLIDES, False, None),
             RegimeResult("wall", (RUBBING,), {"wall_restitution": Estimate(0.8, 0.8, 0.8, "1")}, False, None),
             RegimeResult(
                 "mallet", (), {"mallet_restitution": Estimate(0.6, 0.5, 0.7, "1")}, False, None, undetermined="few"
@@ -98,15 +98,20 @@ def test_tables_of_every_variant_draw_within_the_intervals(variant: str, found: 
     np.testing.assert_allclose(tables.observation_bounds[1].max(), 180.0 if "match" in variant else 50.0)
 
 
-def test_with_effects_toml_the_unlisted_law_is_on_too(found: Diagnosis, tmp_path: Path) -> None:
-    file = written(tmp_path, found)
+def test_beside_an_unlisted_law_nothing_of_its_regime_is_drawn_and_effects_toml_has_it(
+    found: Diagnosis, tmp_path: Path
+) -> None:
+    glide, *others = found.regime_results
+    with_vortex = dataclasses.replace(glide, findings=(TILT, VORTEX))
+    file = written(tmp_path, dataclasses.replace(found, regime_results=(with_vortex, *others)))
     alone, both = (
         Tables("match-randomized-v0", 50, draws=file, effects=effects) for effects in (None, tmp_path / "effects.toml")
     )
     assert (alone.params["unlisted_kind"] == 0.0).all() and (both.params["unlisted_kind"] == 6.0).all()
-    for name, (low, high) in RANGES.items():
-        assert low <= both.params[name].min() < both.params[name].max() <= high
-    assert "# not drawn: the unlisted glide law that depends on position; it is in effects.toml" in file.read_text()
+    for name, value in {"friction": 0.09, "drag": 0.02, "tilt_x": 0.02, "tilt_y": -0.19}.items():
+        assert (both.params[name] == value).all(), name
+    assert 0.09 <= both.params["wall_mu"].min() < both.params["wall_mu"].max() <= 0.13
+    assert "# not drawn: the unlisted glide law that depends on position, and what else was fitted" in file.read_text()
 
 
 def test_undetermined_parameters_are_left_to_the_variant(found: Diagnosis, tmp_path: Path) -> None:
@@ -121,7 +126,7 @@ def test_undetermined_parameters_are_left_to_the_variant(found: Diagnosis, tmp_p
 def test_parameters_are_those_of_effects_toml(found: Diagnosis, tmp_path: Path) -> None:
     expected = read_draws(written(tmp_path, found)).parameters
     effects = effect_values(tmp_path / "effects.toml")
-    assert expected == {name: value for name, value in effects.items() if not name.startswith("unlisted")}
+    assert expected == effects
 
 
 def test_the_gantry_spread_is_as_wide_as_the_intervals_of_its_coefficients(tmp_path: Path) -> None:
