@@ -133,7 +133,7 @@ class _Search:
             inside = tuple(name for name, step in zip(free, theta, strict=False) if _may_move(here.law, name, step))
             if inside == free:
                 break
-            free = inside
+            free = inside  # for this step; the next, about another trajectory, may move it again
         steps = dict(zip(free, theta[: len(free)], strict=True))
         every = np.concatenate([[steps.get(name, 0.0) for name in here.law.free], theta[len(free) :]])
         return NonparametricFit(here.law, here.family, ENGINE.spreads[best], here.columns, every, cv_loss[best])
