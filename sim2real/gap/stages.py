@@ -101,8 +101,8 @@ def replay(work: Work) -> None:
 
 
 def _in_mixed_order(work: Work, players: Mapping[str, list[Meeting]]) -> None:
-    """The games of all arms against a person, who is not told which arm plays: each plays once before any plays again,
-    in an order drawn from the circle's seed."""
+    """The games of all arms against a person, who does not know which arm plays: each plays once before any plays
+    again, in an order drawn from the circle's seed."""
     rng, c = np.random.default_rng(work.folder.conditions.seed), work.folder.conditions
     order = [(arm, game) for game in range(c.games) for arm in rng.permutation(list(players)).tolist()]
     for number, (arm, game) in enumerate(order, 1):
