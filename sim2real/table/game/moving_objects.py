@@ -9,9 +9,18 @@ import numpy as np
 
 from puckpilot_env.game.predict import expected_place
 from puckpilot_env.kernel import kernel
+from puckpilot_env.physics.sliding import glide
+from puckpilot_env.physics.vector import size
 from sim2real.table.backend import Motion, Place
 from sim2real.vision.track.detector import OPPONENT_POWER, PUCK_POWER
-from sim2real.vision.track.kalman_tracker import ANY_SPEED, KalmanTracker, Measurement, TrackState
+from sim2real.vision.track.kalman_tracker import (
+    ANY_SPEED,
+    Coast,
+    KalmanTracker,
+    Measurement,
+    TrackState,
+    straight_on,
+)
 
 DEVIATION = 0.0003  # m, of a measured place, each coordinate
 WALL = 0.01  # m from where a wall would have sent it
@@ -22,16 +31,16 @@ class SeenObject:
     """An object that the camera sees: the newest state of its track, kept while it is hidden.
 
     power: of the track's white acceleration [m^2/s^3]; expected: its motion a time [s] after another without contacts
-    with mallets.
+    with mallets; coast: the same without any contact, which the track follows.
     """
 
-    def __init__(self, power: float, expected: Callable[[Motion, float], Motion]) -> None:
-        self._power, self._expected = power, expected
+    def __init__(self, power: float, expected: Callable[[Motion, float], Motion], coast: Coast = straight_on) -> None:
+        self._power, self._expected, self._coast = power, expected, coast
         self.forget()
 
     def forget(self) -> None:
         """Begin anew: the object was put somewhere else."""
-        self._tracker = KalmanTracker(self._power)
+        self._tracker = KalmanTracker(self._power, self._coast)
         self.state: TrackState | None = None
         self._velocity = np.zeros(2)
 
@@ -85,8 +94,13 @@ class SeenTable:
 
     def __init__(self, p: np.void) -> None:
         self._p, self._params = p, np.array([p])
-        self.puck = SeenObject(PUCK_POWER, lambda motion, ahead: _expected(*motion, self._params, ahead))
+        self.puck = SeenObject(PUCK_POWER, lambda motion, ahead: _expected(*motion, self._params, ahead), self._glide)
         self.opponent = SeenObject(OPPONENT_POWER, _straight_on)
+
+    def _glide(self, place: np.ndarray, velocity: np.ndarray, ahead: float) -> tuple[np.ndarray, np.ndarray]:
+        """A track of constant velocity would lag a fast puck, which slows down, by some centimetres a second."""
+        x, y, vx, vy = _gliding(*place, *velocity, self._params, ahead)
+        return np.array([x, y]), np.array([vx, vy])
 
     def forget(self) -> None:
         """Begin anew."""
@@ -113,3 +127,13 @@ class SeenTable:
 @kernel
 def _expected(x, y, vx, vy, params, ahead):
     return expected_place(x, y, vx, vy, params[0], ahead)
+
+
+@kernel
+def _gliding(x, y, vx, vy, params, ahead):
+    """Place [m] and velocity [m/s] after `ahead` [s] on a table without walls."""
+    speed = size(vx, vy)
+    if speed == 0.0:
+        return x, y, vx, vy
+    travel, slower = glide.advance(speed, ahead, params[0].friction, params[0].drag)
+    return x + vx / speed * travel, y + vy / speed * travel, vx / speed * slower, vy / speed * slower

@@ -1,6 +1,7 @@
 """A Kalman tracker of one object: its place and velocity with their covariance, and whether they are known.
 
-The motion model is a constant velocity with white acceleration, which holds between contacts. A measurement outside of
+The motion model is a constant velocity, or that of a law which slows the object down, with white acceleration; it
+holds between contacts. A measurement outside of
 the prediction's gate is a contact, after which a new track begins. An object that is not measured is hidden under the
 gantry, beside the mallet that may strike it at any time: its state is unknown, and the track resumes at any place that
 the object can have reached since it was last measured.
@@ -9,7 +10,7 @@ the object can have reached since it was last measured.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +22,13 @@ GATE = 16.0  # squared Mahalanobis distance up to which a measurement belongs to
 CLOSE = 0.01  # m, predicted standard deviation beyond which only unambiguous measurements are taken,
 FASTEST = 15.0  # m/s, and only if the object can have reached their place at this speed
 ANY_SPEED = 5.0  # m/s, prior standard deviation of the velocity
+Coast = Callable[[np.ndarray, np.ndarray, float], tuple[np.ndarray, np.ndarray]]
+"""Place (2,) [m] and velocity (2,) [m/s] after a time [s] without contacts."""
+
+
+def straight_on(place: np.ndarray, velocity: np.ndarray, time: float) -> tuple[np.ndarray, np.ndarray]:
+    """Place (2,) [m] and velocity (2,) [m/s] after a `time` [s] at a constant velocity."""
+    return place + time * velocity, velocity
 
 
 @dataclass(frozen=True)
@@ -60,11 +68,11 @@ class TrackState:
         """Standard deviation of the place in the least certain direction [m]."""
         return deviation(self.covariance)
 
-    def predicted(self, time: float, power: float) -> TrackState:
-        """The state at a later time [s], for a white acceleration of this spectral density [m^2/s^3]."""
+    def predicted(self, time: float, power: float, coast: Coast = straight_on) -> TrackState:
+        """The state at a later time [s], for a white acceleration of this spectral density [m^2/s^3] about `coast`."""
         dt, covariance = time - self.time, np.empty((4, 4))
         _grow(self.covariance, dt, power, covariance)
-        return TrackState(time, self.place + dt * self.velocity, self.velocity, covariance, self.pictures)
+        return TrackState(time, *coast(self.place, self.velocity, dt), covariance, self.pictures)
 
     def updated(self, measurement: Measurement) -> TrackState:
         """The state after a measurement of the same time (Kalman 1960)."""
@@ -80,11 +88,11 @@ class TrackState:
 class KalmanTracker:
     """Tracks one object through pictures in order of time.
 
-    power: spectral density of the white acceleration between contacts [m^2/s^3].
+    power: spectral density of the white acceleration between contacts [m^2/s^3]; coast: its motion without that.
     """
 
-    def __init__(self, power: float) -> None:
-        self._power = power
+    def __init__(self, power: float, coast: Coast = straight_on) -> None:
+        self._power, self._coast = power, coast
         self._last: TrackState | None = None  # at the last measurement
         self._time = -math.inf  # of the last picture
         self._predicted: TrackState | None = None  # from `_last`, for the time that was asked for last
@@ -126,7 +134,7 @@ class KalmanTracker:
     def _ahead(self, last: TrackState, time: float) -> TrackState:
         """The last state as it is at a later time [s]; it is asked for twice, to search in a picture and to update."""
         if self._predicted is None or self._predicted.time != time:
-            self._predicted = last.predicted(time, self._power)
+            self._predicted = last.predicted(time, self._power, self._coast)
         return self._predicted
 
     def _next(self, time: float, measurements: Sequence[Measurement]) -> TrackState | None:

@@ -30,6 +30,18 @@ def test_a_puck_is_predicted_past_a_bounce() -> None:
     assert expected[2:] == pytest.approx(trace.puck[late, 2:], abs=0.02)
 
 
+@pytest.mark.parametrize("speed", [2.0, 6.0])
+def test_the_estimate_keeps_up_with_a_puck_that_slows_down(speed: float) -> None:
+    """A track of constant velocity is 0.05 m/s too fast at 6 m/s; the truth is the independent table's."""
+    seen, law = SeenTable(P), Law()
+    trace = run(law, (0.1, 0.5, speed, 0.0), duration=0.2, sample=1 / RATE)
+    for frame in range(len(trace.puck)):
+        seen.puck.update(frame / RATE, tuple(trace.puck[frame, :2]))
+    found = seen.puck.motion()
+    assert not trace.contacts and speed - trace.puck[-1, 2] > 0.03
+    assert found is not None and found[2:] == pytest.approx(trace.puck[-1, 2:], abs=0.002)
+
+
 def test_the_velocity_after_a_bounce_is_known_at_once() -> None:
     """In the first frame after a wall, and nearly so after a mallet; the truth is the independent table's."""
     trace = run(Law(), (1.0, 0.5, 0.4, 3.0), duration=0.5, sample=1 / RATE)
