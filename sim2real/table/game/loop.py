@@ -82,6 +82,7 @@ class Loop:
         self.seen.forget()
         self.referee.begin(self._placed)
         self._await_sight(self.backend.patience, self.home)
+        self._await_frame()
         self._decided = -math.inf
 
     def step(self, action: NDArray[np.float32]) -> bool:
@@ -188,6 +189,11 @@ class Loop:
                 )
             self._hold(place)
             self._take_frames()
+
+    def _await_frame(self) -> None:
+        """Begin a point's decisions with a frame, as all that follow: the first period is as long as the others."""
+        self.backend.wait_for_frame(self.backend.now() + 1.0 / self.backend.frame_rate)
+        self._take_frames()
 
     def _missing(self) -> str:
         """What has to be seen to play, and is not; empty if nothing is missing. A recording may have no opponent."""
