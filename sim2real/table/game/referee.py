@@ -85,6 +85,8 @@ class Referee:
         record["held"] = now - self._half_since
         again = False
         if side := self._goal(now, seen):
+            record["steps"] -= int(seen.puck.unseen_for(now) / float(rule["period"]) + 1e-6)  # in, and not noticed
+            record["time"] = float(record["steps"]) * float(rule["period"])
             self.shots.goal(against=side < 0)
             rules.goal(record, p, rule, self.rewards, bounce.GOAL_X0 if side < 0 else bounce.GOAL_X1)
             again = record["ending"] == rules.RUNNING

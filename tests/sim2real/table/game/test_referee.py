@@ -47,6 +47,16 @@ def test_a_puck_that_disappears_into_a_goal_scores_for_the_other(x: float, vx: f
     assert game.score == score
 
 
+def test_the_clock_stands_while_a_goal_is_not_noticed() -> None:
+    game = Game()
+    game.step(0.35, 0.5, -2.0)
+    time = float(game.record.record["time"])
+    while game.score == [0, 0]:
+        game.step(0.1, 0.5, seen=False)
+    unseen = game.seen.puck.unseen_for(game.time)
+    assert unseen == pytest.approx(2 * PERIOD) and float(game.record.record["time"]) == pytest.approx(time)
+
+
 def test_a_new_point_begins_after_a_goal_with_the_puck_before_who_conceded() -> None:
     game = Game()
     game.step(0.35, 0.5, -2.0)
