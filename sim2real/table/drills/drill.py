@@ -19,6 +19,7 @@ from sim2real.table.twin.twin import Twin
 NOTICED_WITHIN = 5.0  # s of play after which a fault that stopped nothing is mended
 STILL = 0.05  # s after a fault was noticed by which the mallet has to stand
 AFTER = 0.6  # s that the mallet is watched after a stop
+MENDING = 0.6  # s from mending to clear, in which the camera's checks, one every 0.5 s, see the table as it is again
 TRIES = 5  # of clearing
 
 
@@ -103,6 +104,7 @@ class Drill:
         at_rest = monitor.moving_at - begun[0] if cause else math.nan
         fault.end(twin)
         if cause:
+            twin.pass_time(twin.now() + MENDING)
             self._clear()
         return Stop(fault.name, cause, noticed, max(at_rest, 0.0), begun[1])
 
