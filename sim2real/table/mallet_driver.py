@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from puckpilot_env.game import mirror
 from puckpilot_env.kernel import kernel
-from puckpilot_env.options.at_table import BRAKING_TIME, OPERATING_VOLTS
+from puckpilot_env.options.at_table import BRAKING_TIME, FEEDBACK_VOLTS, OPERATING_VOLTS
 from puckpilot_env.physics.gantry.brakeable import brakeable_volts
 from puckpilot_env.physics.gantry.mallet import (
     MALLET,
@@ -22,7 +22,6 @@ from puckpilot_env.physics.gantry.mallet import (
 )
 from puckpilot_env.physics.gantry.plan import plan_mallet, plan_orders
 
-FEEDBACK_VOLTS = 1.0  # V of these that plans leave to the board's feedback
 MARGIN = 0.002  # m inside the mallet's area that plans stay, for it errs by up to 1 mm on its path
 AHEAD = 0.014  # s from sending a plan until it acts: the board looks at it for 10 ms
 ENDLESS = 60.0  # s that no plan takes, but one whose volts all go to the other axis
@@ -56,6 +55,11 @@ def operating_volts(p: np.void) -> float:
     return min(OPERATING_VOLTS, float(p["max_voltage"]))
 
 
+def planned_volts(p: np.void) -> float:
+    """The most that a plan may give a motor on a table of these parameters [V]."""
+    return operating_volts(p) - FEEDBACK_VOLTS
+
+
 class MalletDriver:
     """The robot's mallet as commanded: plans follow each other without a jump.
 
@@ -64,7 +68,7 @@ class MalletDriver:
 
     def __init__(self, p: np.void) -> None:
         self._params = np.array([p])
-        self._limit = operating_volts(p) - FEEDBACK_VOLTS
+        self._limit = planned_volts(p)
         self._mallets = np.zeros(1, MALLET)
         self._mallet = self._mallets[0]  # a view
         _prepare(self._mallet, p)

@@ -9,7 +9,7 @@ import numpy as np
 
 from puckpilot_env.game import mirror
 from sim2real.table.backend import Backend, Place
-from sim2real.table.mallet_driver import AHEAD, FEEDBACK_VOLTS, MalletDriver, operating_volts
+from sim2real.table.mallet_driver import AHEAD, MalletDriver, planned_volts
 
 VOLTS = (4.0, 7.0, 10.0, 14.0)  # V, from where friction matters to what a motor may get
 AXES = ((True, False), (False, True), (True, True))  # which axes a move drives
@@ -30,7 +30,7 @@ class Move:
 
 def refuse_volts(p: np.void, volts: Sequence[float]) -> None:
     """ValueError, in one line, for a voltage that a plan may not give a motor."""
-    most = operating_volts(p) - FEEDBACK_VOLTS
+    most = planned_volts(p)
     for one in volts:
         if not 0.0 < one <= most:
             raise ValueError(f"a voltage of the excitation is {one:g} V; expected more than 0, at most {most:g} V")

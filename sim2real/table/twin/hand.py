@@ -13,6 +13,7 @@ from puckpilot_env.physics.gantry.plan import plan_mallet
 from sim2real.table.backend import Place
 from sim2real.table.game.game_record import GameRecord
 from sim2real.table.game.seated_player import seated_player
+from sim2real.table.mallet_driver import planned_volts
 from sim2real.table.twin.plant import OpponentPlan, Plant
 
 GAME = ("score", "time", "held", "steps", "defending", "fouls")  # what the opponent may know
@@ -22,7 +23,8 @@ class ScriptedHand:
     """A player, by name or itself, at the opponent's seat of a game. ValueError, in one line, for an unknown name."""
 
     def __init__(self, game: GameRecord, player: str | Player, seed: int) -> None:
-        self._game = GameRecord(game.tables.variant, game.given, seed, period=float(game.rule["period"]))
+        given = {**game.given, "max_voltage": planned_volts(game.p)}  # no stronger than the robot's mallet
+        self._game = GameRecord(game.tables.variant, given, seed, period=float(game.rule["period"]))
         seat = Seat.from_tables(self._game.tables, seed)
         self._player = seated_player(player, seat) if isinstance(player, str) else player
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from puckpilot_env.options.at_table import OPERATING_VOLTS
+from puckpilot_env.options.at_table import FEEDBACK_VOLTS, OPERATING_VOLTS
 from puckpilot_env.parameters import make_records
-from sim2real.table.mallet_driver import FEEDBACK_VOLTS, MalletDriver, MalletPlan
+from sim2real.table.mallet_driver import MalletDriver, MalletPlan
 
 P = make_records(1)[0]
 HOME = (0.25, 0.5)

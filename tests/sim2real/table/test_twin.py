@@ -9,7 +9,10 @@ import pytest
 pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
 
 import puckpilot_env  # noqa: F401 - registers the ids
+from puckpilot_env.options.at_table import AT_TABLE
 from sim2real.table.game.robot_seat import RobotSeat, make_robot_seat
+from sim2real.table.game.two_seats import GivenActions
+from sim2real.table.twin.hand import ScriptedHand
 from tests.sim2real.table.seats import MATCH, STAY, twin_of
 
 
@@ -51,6 +54,14 @@ def test_puck_and_opponent_are_seen_where_they_are_and_as_fast() -> None:
         assert (np.array(places) > 0.05).sum() <= 2 and (np.array(speeds) > 1.0).sum() <= 4  # contacts meanwhile
     finally:
         env.close()
+
+
+def test_the_hand_has_no_more_volts_than_plans_of_the_robot(seat: RobotSeat) -> None:
+    seat.reset(seed=1)
+    twin, given = twin_of(seat), GivenActions()
+    given.action[:] = 1.1, 0.1, 24.0, 24.0
+    plan = ScriptedHand(seat.game, given, 1).decide(twin.plant, seat.game.record)
+    assert 27.0 < abs(plan[0]) + abs(plan[1]) <= 2.0 * AT_TABLE["max_voltage"]
 
 
 def played(seed: int, env: RobotSeat, steps: int = 10) -> tuple[list, list]:
