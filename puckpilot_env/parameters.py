@@ -59,6 +59,15 @@ TABLE: tuple[Parameter, ...] = (
         _CHOICE,
     ),
     Parameter(
+        "feedback_voltage",
+        "V",
+        0.0,
+        0.0,
+        6.0,
+        "at each motor, beyond a plan's: with it a board holds the mallet on its plan (1) against friction and sag",
+        _CHOICE,
+    ),
+    Parameter(
         "observation_age",
         "s",
         0.0,

@@ -14,5 +14,5 @@ PLANNED_BRAKING_TIME = 0.036  # s that the same braking takes with the volts of 
 OBSERVATION_AGE = 0.0205  # s from a frame's exposure until an action that answers it acts
 AT_TABLE: Mapping[str, float] = {
     "max_voltage": OPERATING_VOLTS - FEEDBACK_VOLTS, "braking_time": PLANNED_BRAKING_TIME,
-    "observation_age": OBSERVATION_AGE, "hand": 1.0,
+    "feedback_voltage": FEEDBACK_VOLTS, "observation_age": OBSERVATION_AGE, "hand": 1.0,
 }  # fmt: skip

@@ -25,9 +25,9 @@ from sim2real.table.twin.concealed import ConcealedTable
 
 CEILING, OWN = "truth", "corrected"  # names of arms
 DIAGNOSIS = "diagnosis"  # its folder in the circle's
-# Of late commands, friction and sag the board's feedback leaves some millimetres, and hardly a goal, while there are
-# volts to spare. The simulator has no feedback: who learns with them there learns to live with far more.
-HELD = tuple(row for name in ("command_delay", "motor_friction", "voltage_sag") for row in EFFECTS[name].row_names)
+# Of late commands the board's feedback leaves some millimetres, and hardly a goal. In the simulator feedback does not
+# know of them: who learns with them there learns to live with far more.
+HELD = EFFECTS["command_delay"].row_names
 SENSORS = ("camera_", "beam_", "frame_", "dropped_", "held_")  # without effect where players see the state
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from puckpilot_env.kernel import kernel
-from puckpilot_env.physics import compose
+from puckpilot_env.physics.gantry import feedback
 from puckpilot_env.physics.gantry.decay import decay, fade
 from puckpilot_env.physics.gantry.mallet import idle, modes_at, reach
 from puckpilot_env.physics.gantry.plan import ROUNDING, SMALLEST_VOLTAGE
@@ -21,18 +21,17 @@ HALVINGS = 50  # of a time span, to find when an axis meets the rail
 @kernel
 def weaken(mallet, p, area, max_voltage):
     """Give a mallet that was just planned the volts that arrive under `p`; the others as in `plan_mallet`."""
-    load = abs(mallet.x.volts) + abs(mallet.y.volts)
     limit = 2.0 * (max_voltage - SMALLEST_VOLTAGE)
-    drive_axis(mallet.x, compose.delivered(p, mallet.x.volts, load), area[0], area[1], limit, math.inf)
-    drive_axis(mallet.y, compose.delivered(p, mallet.y.volts, load), area[2], area[3], limit, math.inf)
+    volts_x, volts_y = feedback.delivered(p, mallet.x.volts, mallet.y.volts)
+    drive_axis(mallet.x, volts_x, area[0], area[1], limit, math.inf)
+    drive_axis(mallet.y, volts_y, area[2], area[3], limit, math.inf)
 
 
 @kernel
 def send(p, plans, orders):
     """Write down the orders of a mallet's `plans`, see `plan_orders`, as they arrive at the motors under `p`."""
-    load = abs(plans[0][0]) + abs(plans[1][0])
+    orders[0, 0], orders[1, 0] = feedback.delivered(p, plans[0][0], plans[1][0])
     for a in range(2):
-        orders[a, 0] = compose.delivered(p, plans[a][0], load)
         orders[a, 1], orders[a, 2] = plans[a][1], plans[a][2]
 
 

@@ -15,7 +15,7 @@ import math
 
 from puckpilot_env.kernel import inlined_kernel, kernel
 from puckpilot_env.physics import compose
-from puckpilot_env.physics.gantry import carriage, dry_friction
+from puckpilot_env.physics.gantry import carriage, dry_friction, feedback
 from puckpilot_env.physics.gantry.drive import drive_axis
 from puckpilot_env.physics.gantry.mallet import idle, modes_at, motion_now, settle
 from puckpilot_env.physics.gantry.plan import SMALLEST_VOLTAGE
@@ -108,7 +108,7 @@ def begin_piece(p, player, t, motor, mallet, carriages, area, least, longest):
         more_x, more_y = _extra_volts(p, player, t + 0.5 * h, 0.5 * h, motor, volts_x, volts_y)
         volts_x = min(max(volts_x + more_x, -limit), limit)
         volts_y = min(max(volts_y + more_y, -limit), limit)
-    rubs = compose.dry_friction(p)
+    rubs = feedback.friction_left(p)
     if max(max(rubs[0], rubs[1]), max(rubs[2], rubs[3])) > 0.0:
         volts_x, volts_y, h = dry_friction.remaining_volts(rubs, motor, volts_x, volts_y, h)
         if not _rests(motor, volts_x, volts_y):

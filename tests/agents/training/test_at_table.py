@@ -68,7 +68,4 @@ def test_the_option_is_kept_and_resumed(tmp_path: Path, capsys: pytest.CaptureFi
     assert main([*words, "--at-table", "--resume"]) == 0
     other = [*words[:-1], str(tmp_path / "other")]
     assert main(other) == 0 and main([*other, "--resume", "--at-table"]) == 2
-    assert (
-        "--at-table is given where the run has another max_voltage, braking_time, observation_age, hand;"
-        in capsys.readouterr().err
-    )
+    assert f"--at-table is given where the run has another {', '.join(AT_TABLE)};" in capsys.readouterr().err

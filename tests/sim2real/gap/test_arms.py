@@ -74,11 +74,11 @@ def test_others_do_not_see_the_findings(circle: Path) -> None:
     assert values["truth"]["tilt_x"] == TABLES["warp"].truth["tilt_x"]
 
 
-@pytest.mark.parametrize("table", ["friction", "late"])
-def test_what_the_board_s_feedback_holds_is_not_learnt_on(circle: Path, table: str) -> None:
-    assert TABLES[table].truth.keys() <= set(HELD)
-    truth = simulator_of("truth", circle, twin(table))
-    assert truth is not None and truth.values == AT_TABLE
+def test_late_commands_are_not_learnt_on_and_friction_is_beside_a_board_s_feedback(circle: Path) -> None:
+    late, friction = (simulator_of("truth", circle, twin(table)) for table in ("late", "friction"))
+    assert TABLES["late"].truth.keys() == set(HELD) and late is not None and late.values == AT_TABLE
+    assert friction is not None and friction.values == {**TABLES["friction"].truth, **AT_TABLE}
+    assert AT_TABLE["feedback_voltage"] > 0.0
 
 
 @pytest.mark.parametrize("table", TABLES)
@@ -88,7 +88,7 @@ def test_every_arm_can_be_learnt_on(circle: Path, table: str) -> None:
         if one is None or one.residual_of:  # this one needs recordings: test_residual.py
             continue
         tables = Tables("match-v0", 2, effects=as_content(one.values), draws=one.draws)
-        assert not any(tables.params[name].any() for name in HELD) and (tables.params["max_voltage"] == 15.0).all()
+        assert not any(tables.params[name].any() for name in HELD) and (tables.params["hand"] == 1.0).all()
         (circle / arm).mkdir()
         files = write_simulator(one, circle / arm)
         assert effect_values(files["effects"]) == one.values
