@@ -66,7 +66,7 @@ class BoardClock:
         Returns False, and ignores the exchange, if the board took longer than the host waited. If no line fits all
         exchanges, the board's clock has jumped, and the older half is dropped until one does.
         """
-        spent = _signed(sent - received)
+        spent = signed(sent - received)
         if not 0 <= spent * MICRO <= pong_received - ping_sent + 0.5 * MICRO:  # so a line exists for it alone
             return False
         received = self._unwrap(received, ping_sent)
@@ -124,7 +124,7 @@ class BoardClock:
         """The host's time [s] at which the board's clock shows `board_us` [us, u32], within 35 minutes of the newest
         exchange. Raises ValueError before the first exchange."""
         ping_sent, received = self._newest()[:2]
-        x = _signed(board_us - received) * MICRO
+        x = signed(board_us - received) * MICRO
         offset, slope = self._found_line()
         return ping_sent + x + offset + slope * x
 
@@ -164,7 +164,7 @@ class BoardClock:
         if not self._exchanges:
             return board_us
         due = self._exchanges[-1][1] + round((host_s - self._exchanges[-1][0]) / MICRO)
-        return due + _signed(board_us - due)
+        return due + signed(board_us - due)
 
     def _lines(self) -> EnvelopeLines:
         """The lines that satisfy all exchanges, as far as their slopes are possible. x: the board's time since it
@@ -178,6 +178,6 @@ class BoardClock:
         return EnvelopeLines(lower, upper, MOST_DRIFT)
 
 
-def _signed(difference: int) -> int:
+def signed(difference: int) -> int:
     """The difference of two wrapping times [us], in the range of half a turn to either side."""
     return (difference + TURN // 2) % TURN - TURN // 2

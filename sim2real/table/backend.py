@@ -37,13 +37,15 @@ class SeenFrame:
 class SeenMallet:
     """The robot's mallet by its encoders at `time` on the host's clock [s].
 
-    `path`: where its plan has it, None without one; `duties`: of motors left and right, signed parts of the supply.
+    `path`: where its plan has it, None without one; `duties`: of motors left and right, signed parts of the supply;
+    `tick`: the same time on the board's clock, if there is a board [us, u32].
     """
 
     time: float
     place: Place
     path: Place | None
     duties: tuple[float, float]
+    tick: int = 0
 
 
 @dataclass(frozen=True)

@@ -237,7 +237,8 @@ class BoardLine:
             raise _reset_error() if self._was_reset else TableFaultError(Cause.NOT_READY, str(error)) from None
         self._fates.send(number, plan.begin)
         seconds = ((MICRO * first, MICRO * second) for first, second in (t1, t2))
-        return replace(plan, volts=volts, t1=next(seconds), t2=next(seconds), modes=np.array([rest, slow, fast]))
+        modes = np.array([rest, slow, fast])
+        return replace(plan, volts=volts, t1=next(seconds), t2=next(seconds), modes=modes, tick=begin)
 
     def stop(self) -> None:
         """Have the board brake and switch the motors off; an emergency stop if it does not show that it did. A board
@@ -285,4 +286,4 @@ def _reset_error() -> TableFaultError:
 def _seen(telemetry: Telemetry, time: float) -> SeenMallet:
     path = telemetry.path if telemetry.state == State.ARMED and telemetry.sequence else None
     left, right = telemetry.pwm
-    return SeenMallet(time, telemetry.place, path, (left / PWM_FULL, right / PWM_FULL))
+    return SeenMallet(time, telemetry.place, path, (left / PWM_FULL, right / PWM_FULL), telemetry.time)

@@ -35,7 +35,8 @@ class MalletPlan:
     """A plan of the robot's mallet: +volts until t1, -volts until t2, then none, from the state that the modes say.
 
     `begin`: on the host's clock [s]; `volts` signed, axes x and y [V]; `t1`, `t2` since the begin [s]; `modes` (3, 2):
-    rest, slow and fast of x and y at the begin [m].
+    rest, slow and fast of x and y at the begin [m]; `tick`: the begin on the board's clock, once it was sent to one
+    [us, u32].
     """
 
     begin: float
@@ -43,6 +44,7 @@ class MalletPlan:
     t1: tuple[float, float]
     t2: tuple[float, float]
     modes: np.ndarray
+    tick: int = 0
 
     @property
     def life(self) -> float:

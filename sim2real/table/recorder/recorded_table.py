@@ -14,7 +14,7 @@ from sim2real.table.backend import Backend, Motion, Place, Reading, SeenFrame, S
 from sim2real.table.mallet_driver import MalletPlan, operating_volts
 from sim2real.table.plan_fates import SAID_WITHIN
 from sim2real.table.recorder.draft import RecordingDraft
-from sim2real.table.recorder.motor_log import TICK, MotorLog
+from sim2real.table.recorder.motor_log import MICRO, TICK, MotorLog
 
 STEADY = 1.5  # s after connecting in which the estimate of the board's clock still moves by 0.1 ms
 KNOWN_AFTER = SAID_WITHIN + 0.004  # s after a plan's begin at which a lost one is known to be
@@ -80,7 +80,7 @@ class RecordedTable(Backend):
         """
         self._table.connect(home)
         for part in range(round(STEADY / WAIT)):
-            self._table.wait(self._table.now() + WAIT + TICK * (part * GOLDEN % 1.0))
+            self._table.wait(self._table.now() + WAIT + MICRO * TICK * (part * GOLDEN % 1.0))
         self._table.read()
 
     def clear(self, home: Place) -> None:

@@ -78,7 +78,7 @@ def game() -> GameRecord:
 
 
 def mallet(time: float) -> SeenMallet:
-    return SeenMallet(time, (0.3, 0.4), (0.31, 0.41), (0.1, -0.2))
+    return SeenMallet(time, (0.3, 0.4), (0.31, 0.41), (0.1, -0.2), round(1e6 * time))
 
 
 def test_all_streams_start_at_zero_of_one_clock(game: GameRecord, tmp_path: Path) -> None:
