@@ -88,11 +88,12 @@ class Backend(ABC):
         "frames.opponent_covariance": "m^2, (2, 2) or None", "frames.pucks": "number",
         "frames.troubles": "names and words",
         "mallets.time": "s", "mallets.place": "m, (x, y)", "mallets.path": "m, (x, y) or None",
-        "mallets.duties": "of motors left and right, -1 to 1",
+        "mallets.duties": "of motors left and right, -1 to 1", "mallets.tick": "us, u32, of the board's clock",
     }  # fmt: skip
     takes: ClassVar[dict[str, str]] = {
         "begin": "s", "volts": "V, of axes x and y, signed", "t1": "s, of x and y", "t2": "s, of x and y",
         "modes": "m, (3, 2): rest, slow, fast of x and y",
+        "tick": "us, u32, of the begin on the board's clock; set where the plan is sent",
     }  # fmt: skip
     obeys: bool = True
     patience: float = 1.0
