@@ -64,7 +64,7 @@ TABLE: tuple[Parameter, ...] = (
         0.0,
         0.0,
         6.0,
-        "at each motor, beyond a plan's: with it a board holds the mallet on its plan (1) against friction and sag",
+        "of feedback at each motor, beyond a plan's, against friction and sag, as a table's board has (1); 0: none",
         _CHOICE,
     ),
     Parameter(

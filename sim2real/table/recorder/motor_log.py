@@ -15,12 +15,11 @@ from collections import deque
 
 import numpy as np
 
-from sim2real.link.board_clock import signed
+from sim2real.link.board_clock import MICRO, signed
 from sim2real.table.backend import SeenMallet
 from sim2real.table.mallet_driver import MalletPlan
 
 TICK = 1000  # us, of the board's control (TICK_US in firmware/core/include/robot.h)
-MICRO = 1e-6  # s
 ROUNDING = 1e-3  # of a duty: the board writes it in steps of 1/3600
 KEPT = 8  # plans that may still act on ticks of which no telemetry has come
 Duties = tuple[float, float, float]  # time of the tick [s]; duties of motors left and right, nan where unknown

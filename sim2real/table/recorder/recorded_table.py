@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 
 from puckpilot_env.physics.gantry.mallet import axis_coefficients
+from sim2real.link.board_clock import MICRO
 from sim2real.recording.checks import FORMAT
 from sim2real.recording.table_parameters import FROM_META
 from sim2real.table.backend import Backend, Motion, Place, Reading, SeenFrame, SeenMallet
 from sim2real.table.mallet_driver import MalletPlan, operating_volts
 from sim2real.table.plan_fates import SAID_WITHIN
 from sim2real.table.recorder.draft import RecordingDraft
-from sim2real.table.recorder.motor_log import MICRO, TICK, MotorLog
+from sim2real.table.recorder.motor_log import TICK, MotorLog
 
 STEADY = 1.5  # s after connecting in which the estimate of the board's clock still moves by 0.1 ms
 KNOWN_AFTER = SAID_WITHIN + 0.004  # s after a plan's begin at which a lost one is known to be
