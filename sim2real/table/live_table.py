@@ -79,6 +79,11 @@ class LiveTable(Backend):
         """Whether a frame has come that is to be read at once; the line is served a moment later then."""
         return False
 
+    @property
+    def next_frame(self) -> float:
+        """When the next frame can be read [s], so that no time passes beyond it; inf where that is not known before."""
+        return math.inf
+
     def check_camera(self) -> None:
         """Read a first picture, where there are any. TableFaultError, in one line, if it shows not what it must."""
 
@@ -134,7 +139,7 @@ class LiveTable(Backend):
         """Let a moment pass, no longer than `until` [s], and take what came. TableFaultError on any doubt."""
         line, eyes, watchdog = self._opened(self.line), self._opened(self.eyes), self._opened(self._watchdog)
         try:
-            self.pass_time(min(self.now() + POLL, until))
+            self.pass_time(min(self.now() + POLL, until, self.next_frame))
             self._note_served()
             if self.frame_waits:
                 line.keep_alive()

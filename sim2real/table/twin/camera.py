@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sim2real.table.backend import Place, SeenFrame
+from sim2real.table.twin.coming_frames import ComingFrames
 from sim2real.table.twin.plant import Plant
 
 
@@ -30,15 +30,15 @@ class CameraErrors:
         return (1.0 + self.drift) * exposed + self.stamp_late
 
 
-class TwinCamera:
+class TwinCamera(ComingFrames):
     """Takes frames of a plant at its `errors.rate`, the first at half a period."""
 
     def __init__(self, errors: CameraErrors, seed: int) -> None:
+        super().__init__()
         self.errors = errors
-        self.unplugged, self.late = False, 0.0
+        self.unplugged = False
         self._random, self._ring_random = np.random.default_rng([seed, 1]), np.random.default_rng([seed, 1, 1])
         self._taken = 0
-        self._coming: deque[tuple[float, SeenFrame]] = deque()  # with the time at which it can be used [s]
 
     @property
     def next_exposure(self) -> float:
@@ -52,15 +52,8 @@ class TwinCamera:
             puck, opponent = (self._measured(place, self._random) for place in (plant.puck[:2], plant.mallet(1)[:2]))
             robot = self._measured(plant.mallet(0)[:2], self._ring_random)
             frame = SeenFrame(self.errors.stamp(plant.time), puck, opponent, robot=robot)
-            self._coming.append((plant.time + self.errors.delay, frame))
+            self.add(plant.time + self.errors.delay, frame)
 
     def _measured(self, place: ArrayLike, random: np.random.Generator) -> Place | None:
         x, y = np.asarray(place) + self.errors.noise * random.standard_normal(2)
         return (float(x), float(y)) if np.isfinite(x) else None
-
-    def take(self, now: float) -> list[SeenFrame]:
-        """The frames that can be used at `now` [s] and were not taken before."""
-        found = []
-        while self._coming and self._coming[0][0] + self.late <= now:
-            found.append(self._coming.popleft()[1])
-        return found

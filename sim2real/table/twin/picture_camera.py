@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections import deque
 from dataclasses import dataclass, replace
 
 import cv2
@@ -17,6 +16,7 @@ from sim2real.table.backend import SeenFrame
 from sim2real.table.faults import Cause, TableFaultError
 from sim2real.table.physical.frame_reader import FrameReader
 from sim2real.table.twin.camera import CameraErrors
+from sim2real.table.twin.coming_frames import ComingFrames
 from sim2real.table.twin.plant import Plant
 from sim2real.table.twin.rendered_table import RenderedTable
 
@@ -35,7 +35,7 @@ class Disturbances:
     things: tuple[Glint, ...] = ()
 
 
-class PictureCamera:
+class PictureCamera(ComingFrames):
     """Takes pictures of a plant at its `errors.rate`, the first at half a period, which shows where the camera is.
 
     rendered: the table as it is calibrated; renderer: draws it; `renderer` may be replaced by one of a table or a view
@@ -43,11 +43,11 @@ class PictureCamera:
     """
 
     def __init__(self, rendered: RenderedTable, renderer: Renderer, errors: CameraErrors, seed: int) -> None:
+        super().__init__()
         self.errors, self.rendered, self.renderer, self.scene = errors, rendered, renderer, Disturbances()
-        self.unplugged, self.late = False, 0.0
+        self.unplugged = False
         self._reader = FrameReader(rendered.calibration(), rendered.targets())
         self._seed, self._taken = seed, 0
-        self._coming: deque[tuple[float, SeenFrame]] = deque()  # with the time at which it can be used [s]
 
     @property
     def next_exposure(self) -> float:
@@ -63,7 +63,7 @@ class PictureCamera:
             frame = Frame(self.picture(plant, number), plant.time, plant.time, number)
             try:
                 seen = replace(self._reader.read(frame), time=self.errors.stamp(plant.time))
-                self._coming.append((plant.time + self.errors.delay, seen))
+                self.add(plant.time + self.errors.delay, seen)
                 self._reader.check()
             except ValueError as error:
                 raise TableFaultError(Cause.CAMERA_TROUBLE, f"{error}; then connect anew") from None
@@ -77,10 +77,3 @@ class PictureCamera:
         )  # fmt: skip
         image = self.renderer.picture(state, self._seed * NUMBERS + number)
         return image if self.scene.light == 1.0 else cv2.convertScaleAbs(image, alpha=self.scene.light)
-
-    def take(self, now: float) -> list[SeenFrame]:
-        """The frames that can be used at `now` [s] and were not taken before."""
-        found = []
-        while self._coming and self._coming[0][0] + self.late <= now:
-            found.append(self._coming.popleft()[1])
-        return found

@@ -25,6 +25,7 @@ from sim2real.table.twin.hand import ScriptedHand
 from sim2real.table.twin.plant import Plant
 
 MODELLED = tuple(row.name for row in TABLE if row.name in {field.name for field in fields(Law)})  # of the baseline
+WAKING = 1e-6  # s from a frame until the host is awake, more than a tick of the clock
 CARRYING = 1.0  # m/s at which a hand takes the robot's mallet home
 
 
@@ -59,6 +60,7 @@ class Twin(LiveTable):
         self.p, self._law, self._board_errors = game.p, law or law_of(game.p), board_errors
         self._reaction = AHEAD if isinstance(opponent, str) else 0.0  # s from `play` until the hand decides
         self._decision: tuple[float, np.void] | None = None  # when the hand decides next, by which state of the game
+        self._holds_puck = False
         self._make_hand = lambda seed: ScriptedHand(game, opponent, 2 * seed + 1)
         self.hand = self._make_hand(self._seed)
         self.board: EmulatedBoard | None = None
@@ -81,6 +83,11 @@ class Twin(LiveTable):
         """Virtual time since power-on [s]."""
         return self._opened(self.board).now()
 
+    @property
+    def next_frame(self) -> float:
+        """See `LiveTable.next_frame`: a host that waits for a frame wakes up as it comes."""
+        return self.camera.next_frame + WAKING
+
     def pass_time(self, until: float) -> None:
         """Let virtual time pass, with the frames and the hand's decision that are due."""
         board = self._opened(self.board)
@@ -96,6 +103,7 @@ class Twin(LiveTable):
                     self.onlooker(self.plant)
             elif self._decision:
                 (_, game), self._decision = self._decision, None
+                self._let_puck_go()
                 self.plant.play(self.hand.decide(self.plant, game))
         board.run(until)
 
@@ -107,11 +115,19 @@ class Twin(LiveTable):
     # The person at the table: the hand
 
     def put_puck(self, puck: np.ndarray) -> None:
-        """The hand puts the puck down and its mallet home."""
+        """The hand puts its mallet home and the puck down. One at rest it holds until play goes on, as the simulator
+        does: from a tilted table it would else have moved before the first decision."""
         self._decision = None
         self.plant.put_puck(puck)
+        self._holds_puck = not puck[2:].any()
+        self.plant.jam(self._holds_puck)
         self.plant.put_opponent(self.hand.home)
         self.hand.begin_point()
+
+    def _let_puck_go(self) -> None:
+        if self._holds_puck:
+            self._holds_puck = False
+            self.plant.jam(False)
 
     def home_mallet(self, home: Place) -> None:
         """The hand takes the robot's mallet home, no faster than encoders can count."""

@@ -26,6 +26,11 @@ class Watcher(Protocol):
         """Take a frame of the plant as it is now. TableFaultError, in one line, if it cannot be used."""
         ...
 
+    @property
+    def next_frame(self) -> float:
+        """When the next frame can be used [s]; inf if none is on its way."""
+        ...
+
     def take(self, now: float) -> list[SeenFrame]:
         """The frames that can be used at `now` [s] and were not taken before."""
         ...
