@@ -12,7 +12,6 @@ from sim2real.camera.frame import Frame
 from sim2real.camera.render.renderer import Renderer
 from sim2real.camera.render.scene_state import BodyState, SceneState
 from sim2real.camera.render.table import Glint
-from sim2real.table.backend import SeenFrame
 from sim2real.table.faults import Cause, TableFaultError
 from sim2real.table.physical.frame_reader import FrameReader
 from sim2real.table.twin.camera import CameraErrors

@@ -38,7 +38,7 @@ def played() -> Played:
 
     with closing(make_robot_seat("match-v0", "twin", opponent="still")) as env:
         env.game.rule["points"] = 1
-        log = play_for(env, "interceptor", 3, SECONDS, lambda line: None, lambda fault: True, see)
+        log = play_for(env, "interceptor", 6, SECONDS, lambda line: None, lambda fault: True, see)
     return log, scores, ages
 
 
