@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from puckpilot_env.options.at_table import FEEDBACK_VOLTS, OPERATING_VOLTS
+from puckpilot_env.options.at_table import BRAKING_TIME, FEEDBACK_VOLTS, OPERATING_VOLTS, PLANNED_BRAKING_TIME
 from puckpilot_env.parameters import make_records
 from sim2real.table.mallet_driver import MalletDriver, MalletPlan
 
@@ -109,3 +109,12 @@ def test_a_mallet_that_rests_at_the_edge_of_its_area_gets_a_plan_like_any_other(
     assert max(plan.t2) < 1.0 and min(map(abs, plan.volts)) > 0.5
     end = integrated(plan, np.array([[place[0], 0, 0], [place[1], 0, 0]]), plan.life)
     assert end[:, 0] == pytest.approx([0.4, 0.6], abs=1e-4)
+
+
+@pytest.mark.parametrize("sign", [-1.0, 1.0])  # of what the other motor does: axis x, axis y
+def test_the_simulator_and_the_board_brake_from_the_same_speed(sign: float) -> None:
+    p = make_records(1)[0]
+    rate = -np.roots([p[f"a{k}"] + sign * p[f"b{k}"] for k in (1, 2, 3)]).real.max()  # 1/s, the slow mode's
+    speed = OPERATING_VOLTS * np.expm1(rate * BRAKING_TIME)  # from which it takes BRAKING_TIME, in units of the gain
+    planned = np.log1p(speed / (OPERATING_VOLTS - FEEDBACK_VOLTS)) / rate
+    assert planned == pytest.approx(PLANNED_BRAKING_TIME, abs=0.0003)
