@@ -95,8 +95,8 @@ class WallProblem(ContactProblem[WallContacts]):
         spun = d.components(self._velocity_after(record, d.velocity_before, WALL.spin_step))
         by_spin = self.whitened((spun - predicted) / WALL.spin_step)
         spin_std = np.where(d.spin_unknown, WALL.unknown_spin, WALL.launch_spin)
-        rows = rows.copy()
-        rows[1::2] /= self._tangential_growth(values)[:, None]
+        rows = self._with_tangential_noise(values, rows)
+        by_spin = self._with_tangential_noise(values, by_spin[:, None])[:, 0]
         for chain in np.unique(d.spin_chain):
             here = np.repeat(d.spin_chain == chain, 2)
             by_start = by_spin[here] * spin_std[d.spin_chain == chain][0]
@@ -117,15 +117,20 @@ class WallProblem(ContactProblem[WallContacts]):
                 changes.append(0.5 * abs(angle - other) * self._common[along])
         return max(changes)
 
-    def _tangential_growth(self, values: Mapping[str, float]) -> np.ndarray:
-        """The factor (n,) by which the tangential noise grows if spin or normal are unknown; the largest effect of
-        friction bounds it."""
+    def _with_tangential_noise(self, values: Mapping[str, float], rows: np.ndarray) -> np.ndarray:
+        """Whiten `rows` (2 n, k) for the tangential noise of each contact whose spin or normal is unknown; the largest
+        effect of friction bounds it. Whitened normals have a share in it: the noise of both is correlated."""
         d = self.data
-        reach = values["wall_mu"] * (1.0 + values["wall_restitution"]) * d.closing_speed
         unknown = d.kind == bounce.POST
         if not self.scatter.any():  # a scatter includes the effect of unobserved spins
             unknown |= d.spin_unknown
-        return np.where(unknown, np.hypot(1.0, reach * self._whitening[:, 1, 1]), 1.0)
+        reach = unknown * values["wall_mu"] * (1.0 + values["wall_restitution"]) * d.closing_speed
+        by_noise = self._whitening[:, :, 1] * reach[:, None]
+        size = np.maximum((by_noise**2).sum(axis=1), 1e-12)
+        by_noise *= np.sqrt((1.0 - 1.0 / np.sqrt(1.0 + size)) / size)[:, None]
+        pairs = rows.reshape(len(d), 2, -1)
+        along = np.einsum("ni,nik->nk", by_noise, pairs)
+        return (pairs - by_noise[:, :, None] * along[:, None]).reshape(rows.shape)
 
     def columns(
         self, values: Mapping[str, float], free: Sequence[str], use: np.ndarray | None, only: Sequence[Law] = ()
