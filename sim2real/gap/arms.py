@@ -85,9 +85,16 @@ def _found_camera_delay(circle: Path, table: GapTable) -> float:
 
 
 def _constants(circle: Path, table: GapTable) -> Simulator:
-    """The baseline's parameters as refitted, and nothing else."""
+    """The baseline's parameters as they were refitted, beside what was named, and nothing of that."""
     content = json.loads((circle / DIAGNOSIS / "diagnosis.json").read_text(encoding="utf-8"))
     return Simulator({name: float(one["value"]) for name, one in content["baseline"]["parameters"].items()})
+
+
+def _residual(circle: Path, table: GapTable) -> Simulator:
+    """The unchanged simulator under a network of its residuals on what was recorded."""
+    if not (recordings := recordings_of(circle)):
+        raise ValueError(f"{circle / 'before'} has no recordings, to which a network could be fitted")
+    return Simulator(residual_of=recordings)
 
 
 def _randomized(circle: Path, table: GapTable) -> Simulator:
@@ -110,9 +117,9 @@ ARMS = {
     "allowing": Arm("as it is; the loop allows for the camera's delay", None, _found_camera_delay),
     "unchanged": Arm("fine-tuned on the unchanged simulator", lambda circle, table: Simulator(), of_any_table=True),
     "randomized": Arm("fine-tuned on randomized tables", _randomized, of_any_table=True),
-    "constants": Arm("fine-tuned with the baseline's constants refitted", _constants),
+    "constants": Arm("fine-tuned with refitted constants alone, without what was named", _constants),
     "residual": Arm("fine-tuned on the simulator with a black-box network of its residuals",
-                    lambda circle, table: Simulator(residual_of=recordings_of(circle))),
+                    _residual),
     "corrected": Arm("fine-tuned with what the diagnosis found", _corrected, _found_camera_delay),
     "truth": Arm("fine-tuned on the concealed truth: the ceiling",
                  lambda circle, table: Simulator(_concealed(table).truth),

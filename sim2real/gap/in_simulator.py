@@ -10,6 +10,7 @@ from typing import Any
 
 from puckpilot_env.files.whole_file import write_text_whole
 from puckpilot_env.variants import find_variant
+from sim2real.table.player_file import player_digest
 from sim2real.table.simulated import play_simulated
 
 UNCHANGED, TRUTH = "unchanged", "truth"
@@ -25,22 +26,23 @@ def simulate(
     tables: Mapping[str, Mapping[str, float]],
 ) -> None:
     """Play `games` against each of the opponents on each kind of `tables`, UNCHANGED or the TRUTH with its parameters,
-    and write goals and minutes as a new file `path`, if it is not there."""
-    if path.exists():
+    and write goals and minutes as the file `path`, if that has not those of this player already."""
+    digest = player_digest(player)
+    if path.exists() and json.loads(path.read_text(encoding="utf-8")).get("player") == digest:
         return
-    content = {
+    played = {
         name: {one: _goals(variant, player, one, games, seed, effects) for one in opponents}
         for name, effects in tables.items()
     }
     path.parent.mkdir(parents=True, exist_ok=True)
-    write_text_whole(path, json.dumps(content, indent=1) + "\n")
+    write_text_whole(path, json.dumps({"player": digest, "tables": played}, indent=1) + "\n")
 
 
 def simulated_rates(path: Path) -> dict[str, dict[str, float]]:
-    """Goals a minute `scored` and `conceded` on tables UNCHANGED and, if it is known, of the TRUTH, the mean over
-    opponents."""
+    """Goals a minute `scored` and `conceded` on tables UNCHANGED and, where the simulator has any of it, of the TRUTH,
+    the mean over opponents."""
     content = json.loads(path.read_text(encoding="utf-8"))
-    return {name: _rates(list(one.values())) for name, one in content.items()}
+    return {name: _rates(list(one.values())) for name, one in content["tables"].items()}
 
 
 def _rates(against: list[dict[str, Any]]) -> dict[str, float]:

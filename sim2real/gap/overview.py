@@ -1,6 +1,6 @@
 """What several circles say together: for each table what was lost, what each arm won back, its share of the ceiling's.
 
-Circles of one table are series of games of different seeds: their means are taken, and each is resampled by itself.
+Circles of one table are series of games of different seeds, of which the mean is taken.
 The intervals are of these trained players: how much another training would differ is not in them, so the change of each
 circle stands beside their mean.
 """
@@ -21,7 +21,7 @@ from sim2real.gap.in_simulator import TRUTH
 from sim2real.table.score import mean_change, share
 from sim2real.table.twin.concealed import TABLES, find_table
 
-FORMAT = "puckpilot-gap-overview/3"
+FORMAT = "puckpilot-gap-overview/4"
 CONTROL = "none"  # the table without an effect, of which nothing is won back
 ALIKE = ("player", "opponents", "seconds", "minutes", "steps")  # conditions that all circles share
 
@@ -81,16 +81,18 @@ def overview(circles: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
 
 def _own_better_on(tables: Sequence[Mapping[str, Any]]) -> dict[str, dict[str, int]]:
     """By the name of each other arm: of how many `tables`, which have both, the arm OWN is `better` than it, `clearly`
-    so, beyond the interval, and better `in_simulator`."""
+    so, beyond the interval; and better `in_simulator`, of those `simulated`, of which that has anything."""
     counts = {}
     for arm in ARMS:
         both = [(one[OWN], one[arm]) for one in tables if OWN in one and arm in one and arm != OWN]
+        simulated = [(own["simulated"], other["simulated"]) for own, other in both if own["simulated"] is not None]
         if both:
             counts[arm] = {
                 "tables": len(both),
                 "better": sum(other["own_better_by"]["value"] > 0.0 for _, other in both),
                 "clearly": sum(other["own_better_by"]["low"] > 0.0 for _, other in both),
-                "in_simulator": sum(own["simulated"] > other["simulated"] for own, other in both),
+                "simulated": len(simulated),
+                "in_simulator": sum(own > other for own, other in simulated),
             }
     return counts
 
@@ -130,14 +132,16 @@ def _of_arms(circles: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
 
 
 def _of_arm(circles: Sequence[Mapping[str, Any]], arm: str, arms: Sequence[str]) -> dict[str, Any]:
-    """What an arm won back, over all circles and of each; the same in the simulator with what is concealed; that on the
-    tables as a share of the ceiling's; and by how much the arm OWN is better than it."""
+    """What an arm won back, over all circles and of each; the same in the simulator with what is concealed, over those
+    of which that has anything, None if there are none; that on the tables as a share of the ceiling's; and by how much
+    the arm OWN is better than it."""
+    gains = [_net(one, arm) - _net(one, BEFORE) for one in circles if TRUTH in one["in_simulator"][BEFORE]]
     before, after = [_games(one["before"]) for one in circles], [_games(one["arms"][arm]) for one in circles]
     series = list(zip(before, after, strict=True))
     content: dict[str, Any] = {
         "change": asdict(mean_change(series)),
         "of_seeds": [mean_change([one]).value for one in series],
-        "simulated": sum(_net(one, arm) - _net(one, BEFORE) for one in circles) / len(circles),
+        "simulated": sum(gains) / len(gains) if gains else None,
     }
     if CEILING in arms and arm != CEILING:
         best = [_games(one["arms"][CEILING]) for one in circles]

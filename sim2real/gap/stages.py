@@ -16,11 +16,12 @@ from puckpilot_env.files.whole_file import write_text_whole
 from sim2real.gap.arms import ARMS, Simulator, recordings_of
 from sim2real.gap.circle_folder import BEFORE, FILM, VARIANT, CircleFolder, missing, training_words
 from sim2real.gap.film import film
+from sim2real.gap.gap_table import GapTable
 from sim2real.gap.in_simulator import TRUTH, UNCHANGED, simulate
 from sim2real.gap.report.page import page
 from sim2real.gap.result import result
 from sim2real.gap.tuning import fine_tune, untrained
-from sim2real.table.meetings import Meeting, play_all
+from sim2real.table.meetings import Meeting, kept_games, play_all
 
 Progress = Callable[[int, int], None]
 Report = Callable[[str], None]
@@ -46,12 +47,23 @@ def play(work: Work) -> None:
 
 
 def _simulate(work: Work, name: str, player: str) -> None:
-    """The score in the simulator, with what is true of every table: without and, where it is known, with what is
-    concealed."""
-    c, table = work.folder.conditions, work.folder.conditions.gap_table
-    simulators = {UNCHANGED: Simulator()} | ({TRUTH: Simulator(table.concealed.truth)} if table.concealed else {})
-    values = {one: simulator.at_table(table.parameters).values for one, simulator in simulators.items()}
-    simulate(work.folder.simulated(name), VARIANT, player, c.opponents, 10 * c.games, c.seed, values)
+    """The score in the simulator, with what is true of every table: without and, where it is known and the simulator
+    has it, with what is concealed."""
+    c = work.folder.conditions
+    simulate(
+        work.folder.simulated(name), VARIANT, player, c.opponents, 10 * c.games, c.seed, simulated_tables(c.gap_table)
+    )
+
+
+def simulated_tables(table: GapTable) -> dict[str, Mapping[str, float]]:
+    """Parameters of the simulator's tables, UNCHANGED and of the TRUTH. Of a camera that is late, and of commands that
+    are, it has nothing: a table that conceals nothing else has no TRUTH there."""
+    unchanged = Simulator().at_table(table.parameters).values
+    if table.concealed is None:
+        return {UNCHANGED: unchanged}
+    truth = Simulator(table.concealed.truth).at_table(table.parameters).values
+    shows = truth != unchanged or not table.concealed.truth
+    return {UNCHANGED: unchanged, **({TRUTH: truth} if shows else {})}
 
 
 def _games(work: Work, meetings: list[Meeting], folder: Path, name: str) -> None:
@@ -68,10 +80,10 @@ def diagnose(work: Work) -> None:
     folder = work.folder.diagnosis
     if (folder / "diagnosis.json").exists():
         return
-    c = work.folder.conditions
+    meetings = work.folder.meetings_before()[: work.folder.conditions.recorded]
     recordings = recordings_of(work.folder.path)
-    if len(recordings) < c.recorded:
-        raise missing(work.folder.before, f"recordings of {c.recorded} games", "play")
+    if len(kept_games(meetings, work.folder.before)) < len(meetings) or len(recordings) < len(meetings):
+        raise missing(work.folder.before, f"recordings of {len(meetings)} games that were over", "play")
     work.report("diagnosing what was recorded")
     _run("diagnose", *map(str, recordings), "--out", str(folder))
 

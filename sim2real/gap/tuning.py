@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import shutil
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -10,7 +11,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from puckpilot_env.files.whole_file import write_text_whole
-from sim2real.gap.arms import simulator_of, write_simulator
+from sim2real.gap.arms import ARMS, simulator_of, write_simulator
 from sim2real.gap.circle_folder import VARIANT, CircleFolder
 
 PRESET = "fine_tune"
@@ -19,9 +20,7 @@ LOG = "training.log"
 
 def untrained(folder: CircleFolder, arms: Sequence[str]) -> list[str]:
     """Which of the arms have to learn yet."""
-    table = folder.conditions.gap_table
-    learning = [arm for arm in arms if simulator_of(arm, folder.path, table) is not None]
-    return [arm for arm in learning if not folder.trained(arm).exists()]
+    return [arm for arm in arms if ARMS[arm].simulator is not None and not folder.trained(arm).exists()]
 
 
 def fine_tune(folder: CircleFolder, arms: Sequence[str], at_once: int) -> None:
@@ -41,6 +40,7 @@ def _fine_tune(folder: CircleFolder, arm: str) -> None:
     run = done.parent / "training"
     given = ["--resume"]
     if not (run / "checkpoint.pt").exists():
+        shutil.rmtree(run, ignore_errors=True)  # one that was killed before its first round was over
         done.parent.mkdir(parents=True, exist_ok=True)
         files = [word for name, path in write_simulator(simulator, done.parent).items() for word in (f"--{name}", path)]
         given = [

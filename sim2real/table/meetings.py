@@ -25,13 +25,14 @@ from sim2real.table.game.game_record import GameRecord
 from sim2real.table.game.play import play_for, play_game
 from sim2real.table.game.robot_seat import RobotSeat, make_robot_seat
 from sim2real.table.game.shots import Shots
+from sim2real.table.player_file import player_digest
 from sim2real.table.recorder.draft import draft_of
 from sim2real.table.recorder.recorded_game import recorded
 from sim2real.table.twin.concealed import find_table
 from sim2real.table.twin.plant import Plant
 from sim2real.table.twin.twin import Twin
 
-FORMAT = "puckpilot-meeting/1"
+FORMAT = "puckpilot-meeting/2"
 WARM = 0.3  # s of a game before the first one that is timed, in which all is compiled
 Onlooker = Callable[[Plant, np.void], None]
 ROOT = Path(sim2real.__file__).parents[1]  # of the checkout whose code plays
@@ -146,8 +147,9 @@ def play_all(
 ) -> list[PlayedMeeting]:
     """Play the games whose results are not in `folder` yet, and return all of them, in the order of `meetings`.
 
-    Each result is written there as soon as its game is over. ValueError, in one line, for a file of another meeting, or
-    of another version of the code. Games at a physical table are played in turn, and kept whatever the version.
+    Each result is written there as soon as its game is over. ValueError, in one line, for a file of another meeting,
+    of a player that has changed since, wherever it lies, or of another version of the code. Games at a
+    physical table are played in turn, and kept whatever the version.
     """
     code = code_version(ROOT, OF_GAMES)
     missing = [one for one in meetings if _read(folder, one, code) is None]
@@ -190,7 +192,8 @@ def _recording(folder: Path, meeting: Meeting) -> Path | None:
 
 def _play_and_write(meeting: Meeting, folder: Path, code: str) -> None:
     game = asdict(play_meeting(meeting, _recording(folder, meeting)))
-    content = {"format": FORMAT, "code": code, "meeting": asdict(meeting), "game": game}
+    kept = {"code": code, "player": player_digest(meeting.player), "meeting": asdict(meeting)}
+    content = {"format": FORMAT, **kept, "game": game}
     write_text_whole(_file(folder, meeting), json.dumps(content, indent=1) + "\n")
 
 
@@ -200,12 +203,17 @@ def _read(folder: Path, meeting: Meeting, code: str) -> PlayedMeeting | None:
         return None
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
-        if content["format"] != FORMAT or Meeting(**content["meeting"]) != meeting:
+        if content["format"] != FORMAT or replace(Meeting(**content["meeting"]), player=meeting.player) != meeting:
             raise ValueError
+        player = content["player"]
         read = {"goals": tuple(content["game"]["goals"]), "shots": Shots(**content["game"]["shots"])}
         game = PlayedMeeting(**content["game"] | read)
     except (ValueError, KeyError, TypeError):
         raise ValueError(f"{path}: is no result of this meeting; name another folder, or remove it") from None
+    if player != player_digest(meeting.player):
+        raise ValueError(
+            f"{path}: was played by another player than {meeting.player}; name another folder, or remove it"
+        )
     if content.get("code") != code and not meeting.table:
         raise ValueError(f"{path}: was played by another version of the code; name another folder, or remove it")
     return game

@@ -100,7 +100,8 @@ def _estimate(one: Estimate) -> dict[str, Any]:
 
 
 def write(diagnosis: Diagnosis, folder: Path, context: ReportContext = PLAIN) -> list[Path]:
-    """Write all files into `folder`, each atomically, and return their paths."""
+    """Write all files into `folder`, each atomically, and return their paths; diagnosis.json comes last, so that where
+    it is, the others are, too."""
     from sim2real.diagnose.report.page import page
 
     folder.mkdir(parents=True, exist_ok=True)
@@ -110,4 +111,5 @@ def write(diagnosis: Diagnosis, folder: Path, context: ReportContext = PLAIN) ->
         "effects.toml": effects_toml(diagnosis),
         "draws.toml": draws_toml(diagnosis, context),
     }
-    return [write_text_whole(folder / name, text) for name, text in texts.items()]
+    paths = {name: write_text_whole(folder / name, texts[name]) for name in reversed(texts)}
+    return [paths[name] for name in texts]

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 WIDTH, ROW, LEFT = 620.0, 20.0, 190.0  # points
 ALL = "all but none"
 COLORS = {OWN: BLUE, CEILING: GREY}
+COUNTS = {"better": "tables", "clearly": "tables", "in_simulator": "simulated"}  # and of how many
 
 
 def overview_page(result: dict[str, Any], folders: list[str]) -> str:
@@ -37,7 +38,7 @@ def overview_page(result: dict[str, Any], folders: list[str]) -> str:
             chart=_chart(result["tables"]),
             tables=[_table_row(name, one) for name, one in result["tables"].items()],
             counts=[
-                [arm, *(f"{one[name]} of {one['tables']}" for name in ("better", "clearly", "in_simulator"))]
+                [arm, *(f"{one[name]} of {one[of]}" for name, of in COUNTS.items())]
                 for arm, one in result["own_better_on"].items()
             ],
             rows=[_arm_row(name, arm, row) for name, arms in tables.items() for arm, row in arms.items()],
@@ -58,9 +59,10 @@ def _table_row(name: str, one: dict[str, Any]) -> list[str]:
 def _arm_row(table: str, arm: str, row: dict[str, Any]) -> list[str]:
     """A row; the share is left out where the ceiling's change is not above 0 beyond chance."""
     of_ceiling = row.get("share")
+    simulated = "" if row["simulated"] is None else f"{row['simulated']:+.2f}"
     in_percent = of_ceiling and {name: 100.0 * value for name, value in of_ceiling.items()}
     return [
-        f"{table}, {arm}", *_interval(row["change"], "{:+.2f}"), f"{row['simulated']:+.2f}",
+        f"{table}, {arm}", *_interval(row["change"], "{:+.2f}"), simulated,
         ", ".join(f"{one:+.2f}" for one in row["of_seeds"]) if table != ALL else "",
         *_interval(in_percent, "{:.0f} %"),
         *_interval(row.get("own_better_by"), "{:+.2f}"),

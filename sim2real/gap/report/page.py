@@ -61,7 +61,7 @@ def page(result: dict[str, Any], table: GapTable) -> str:
             opponents=opponents,
             against=_against(result) if concealed and len(opponents) > 1 else [],
             simulated=_simulated(result),
-            simulators=SIMULATORS[: 1 + concealed],
+            simulators=SIMULATORS[: len(result["in_simulator"][BEFORE])],
             films=_films(result),
             found=found_words(result),
             learnt=learnt_words(result["learnt"]),
@@ -164,8 +164,8 @@ def _command(conditions: dict[str, Any], arms: list[str]) -> str:
     words = {
         **({} if conditions["backend"] == TWIN else {"backend": conditions["backend"]}),
         "table": conditions["table"], "opponent": " --opponent ".join(conditions["opponents"]),
-        **{name: f"{conditions[name]:g}" for name in ("games", "seconds", "recorded")},
-        **{name: f"{conditions[name]:g}" for name in ("minutes", "steps") if conditions[name]},
+        **{name: str(conditions[name]) for name in ("games", "seconds", "recorded")},
+        **{name: str(conditions[name]) for name in ("minutes", "steps") if conditions[name]},
         "seed": str(conditions["seed"]), "arms": " ".join(arms),
     }  # fmt: skip
     return " ".join(["puckpilot gap", conditions["player"], *(f"--{name} {one}" for name, one in words.items())])

@@ -63,6 +63,12 @@ def test_the_corrected_arm_has_what_was_found_and_its_loop_allows_for_the_camera
     }  # fmt: skip
 
 
+def test_without_recordings_there_is_no_black_box(circle: Path) -> None:
+    (circle / "before" / "recordings" / "game_0").rmdir()
+    with pytest.raises(ValueError, match="before has no recordings, to which a network could be fitted"):
+        simulator_of("residual", circle, twin("warp"))
+
+
 def test_others_do_not_see_the_findings(circle: Path) -> None:
     made = {arm: simulator_of(arm, circle, twin("warp")) for arm in ARMS}
     values = {arm: dict(one.values) for arm, one in made.items() if one}

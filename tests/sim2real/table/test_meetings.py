@@ -64,3 +64,20 @@ def test_a_game_is_recorded_anew_where_a_killed_run_left_half_of_it(tmp_path: Pa
     play_all([game], tmp_path, 1, lambda done, count: None)
     recording = read_recording(tmp_path / "recordings" / "game_3")
     assert recording.frames is not None and recording.frames.rows > 100 and not half.exists()
+
+
+def test_games_of_a_policy_are_kept_where_it_moves_and_refused_where_it_changed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(meetings, "play_meeting", result)
+    runs = [tmp_path / name for name in ("one", "other")]
+    (tmp_path / "games").mkdir()
+    for run in runs:
+        run.mkdir()
+        (run / "policy.npz").write_bytes(b"weights")
+    one, moved = (Meeting(f"policy:{run}", "goalie", "puckpilot/match-v0", 3) for run in runs)
+    games = play_all([one], tmp_path / "games", 1, lambda done, count: None)
+    assert play_all([moved], tmp_path / "games", 1, lambda done, count: None) == games
+    (runs[1] / "policy.npz").write_bytes(b"others")
+    with pytest.raises(ValueError, match=r"game_3.json: was played by another player than policy:.*other;"):
+        play_all([moved], tmp_path / "games", 1, lambda done, count: None)
