@@ -11,7 +11,7 @@ import numpy as np
 from sim2real.diagnose.regimes.contact.data import Contacts, common_place_variance, make_contacts, velocity_errors
 from sim2real.diagnose.regimes.contact.motion import ContactMotion
 from sim2real.diagnose.regimes.mallet.tuned import MALLET
-from sim2real.segmentation.causes import Geometry
+from sim2real.segmentation.causes import Geometry, nominal_lines
 from sim2real.segmentation.mallet_path import MalletPath
 
 
@@ -83,6 +83,8 @@ def _fields(motion: ContactMotion, path: MalletPath, geometry: Geometry) -> dict
     closing_speed = (velocity - before.velocity) @ normal
     if abs(distance - radii) > MALLET.farthest_rims or closing_speed < MALLET.least_closing_speed:
         return None
+    if _comes_from_a_wall(place, after.velocity, geometry):
+        return None
     by_noise = np.trace(before.covariance[:2, :2] + after.covariance[:2, :2]) / 8
     place_std = np.sqrt(by_noise + common_place_variance(before, after)) + path.noise
     return {
@@ -93,6 +95,15 @@ def _fields(motion: ContactMotion, path: MalletPath, geometry: Geometry) -> dict
         "normal_std": place_std / radii, "spin_chain": motion.spin_chain, "cluster": motion.cluster,
         **velocity_errors(normal, before, after),
     }  # fmt: skip
+
+
+def _comes_from_a_wall(place: np.ndarray, velocity: np.ndarray, geometry: Geometry) -> bool:
+    """Whether a puck of this `velocity` after the contact may have met a wall since, so near to it is the `place`: then
+    the motions before and after have both in between."""
+    lines = nominal_lines(geometry)
+    behind = [lines[f"{axis}{int(v < 0.0)}"] for axis, v in zip("xy", velocity, strict=True)]
+    towards = np.abs(velocity) / MALLET.wall_keeps  # before the wall
+    return bool((np.abs(place - behind) < towards * MALLET.longest_delay).any())
 
 
 def _covariance(normal: np.ndarray, by_axis: np.ndarray) -> np.ndarray:

@@ -31,6 +31,12 @@ class MalletNumbers:
         "for those of the mallet",
         "choice: as far as a wall may be off its place (`segmentation.causes.NEAR`)",
     )
+    wall_keeps: float = tuned(
+        0.5,
+        "of the speed towards it",
+        "more takes a contact with mallet and wall for one with the mallet, less loses contacts beside walls",
+        "choice: a wall that keeps less is hardly one",
+    )
     gross_error: float = tuned(
         30.0,
         "times a typical contact's residual",
