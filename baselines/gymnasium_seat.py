@@ -14,6 +14,7 @@ from typing import Any
 
 import gymnasium
 import numpy as np
+from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
 
 from baselines import find_player
@@ -108,6 +109,7 @@ def make_seats(
     *,
     threads: int = 1,
     copy: bool = True,
+    autoreset_mode: AutoresetMode | str = AutoresetMode.SAME_STEP,
     period: float | None = None,
     max_cycles: int | None = None,
     parameters: Mapping[str, float] | None = None,
@@ -116,7 +118,7 @@ def make_seats(
 ) -> TablesVectorEnv:
     """A Gymnasium vector environment of `num_envs` tables with one seat each; `seat` may also be "alternate".
 
-    `threads` and `copy` are those of `TablesVectorEnv`; the rest is as in `make_seat`.
+    `threads`, `copy` and `autoreset_mode` are those of `TablesVectorEnv`; the rest is as in `make_seat`.
     """
     seed = fresh_seed()
     num_envs = whole_number(num_envs, "num_envs", 1, MOST_TABLES)
@@ -126,7 +128,7 @@ def make_seats(
         draws=draws,
     )  # fmt: skip
     found = find_opponent(opponent, tables, seed)
-    return TablesVectorEnv(tables, found, seat=seat, render_mode=render_mode, copy=copy)
+    return TablesVectorEnv(tables, found, seat=seat, render_mode=render_mode, copy=copy, autoreset_mode=autoreset_mode)
 
 
 def find_opponent(opponent: AnyOpponent, tables: Tables, seed: int) -> Opponent:

@@ -11,7 +11,9 @@ from puckpilot_env.game.rules import ENDING_NAMES
 from puckpilot_env.game.sensing import first_delay
 from puckpilot_env.tables import Tables
 
+AGENTS = ("player_0", "player_1")
 _ENDINGS = np.array(ENDING_NAMES, dtype=object)
+_WINNERS = np.array([*AGENTS, None], dtype=object)  # of -1, the last: nobody
 
 
 def drawn_info(tables: Tables, seats: NDArray[np.integer]) -> dict[str, Any]:
@@ -33,8 +35,9 @@ def drawn_info(tables: Tables, seats: NDArray[np.integer]) -> dict[str, Any]:
 def outcome_info(tables: Tables, seats: NDArray[np.integer]) -> dict[str, Any]:
     """How the episodes that ended in the last step did so, for the players in `seats` (n,): arrays with a row a table.
 
-    `ending` in words, `outcome` (1 won, 0 nobody won, -1 lost), `score` (n, 2) and `fouls` (n, 2), the player's own
-    first. Rows of tables whose episode goes on mean nothing.
+    `ending` in words, `winner` by name or None, `outcome` (1 won, 0 nobody won, -1 lost), `is_success` (whether it
+    won, as Stable-Baselines3 asks for), `score` (n, 2) and `fouls` (n, 2), the player's own first. Rows of tables whose
+    episode goes on mean nothing.
     """
     states, rows = tables.states, np.arange(len(tables))
     last = "last_" if tables.autoreset else ""
@@ -42,7 +45,9 @@ def outcome_info(tables: Tables, seats: NDArray[np.integer]) -> dict[str, Any]:
     winner = states["winner"]
     return {
         "ending": _ENDINGS[states["ending"]],
+        "winner": _WINNERS[winner],
         "outcome": np.where(winner < 0, 0, np.where(winner == seats, 1, -1)),
+        "is_success": winner == seats,
         "score": np.stack([score[rows, seats], score[rows, 1 - seats]], axis=1),
         "fouls": np.stack([fouls[rows, seats], fouls[rows, 1 - seats]], axis=1),
     }

@@ -11,10 +11,9 @@ from gymnasium.spaces import Box
 from numpy.typing import NDArray
 from pettingzoo import ParallelEnv
 
-from puckpilot_env.adapters.infos import drawn_info, only_row
+from puckpilot_env.adapters.infos import AGENTS, drawn_info, only_row, outcome_info
 from puckpilot_env.batch.motion import mallet_motion, puck_motion
 from puckpilot_env.batch.one_thread import one_thread
-from puckpilot_env.game.rules import ENDING_NAMES
 from puckpilot_env.options.draws_file import Draws
 from puckpilot_env.options.effects_file import Effects
 from puckpilot_env.options.inputs import in_short, one_of, reset_options
@@ -22,7 +21,6 @@ from puckpilot_env.options.real_numbers import real_numbers
 from puckpilot_env.tables import ACTION_COLUMNS, Tables
 from puckpilot_env.variants import Variant
 
-AGENTS = ("player_0", "player_1")
 STATE_HIGH = 60.0  # bound of every number of `state()`, in SI units
 
 
@@ -158,14 +156,8 @@ class TableEnv(ParallelEnv):
         return only_row(drawn_info(self._tables, np.array([player])))
 
     def _outcome(self, player: int) -> dict[str, Any]:
-        table = self._tables.states[0]
-        winner = int(table["winner"])
-        return {
-            "ending": ENDING_NAMES[int(table["ending"])],
-            "winner": None if winner < 0 else AGENTS[winner],
-            "score": (int(table["score"][player]), int(table["score"][1 - player])),
-            "fouls": (int(table["fouls"][player]), int(table["fouls"][1 - player])),
-        }
+        info = only_row(outcome_info(self._tables, np.array([player])))
+        return {**info, **{name: tuple(info[name].tolist()) for name in ("score", "fouls")}}
 
     def state(self) -> NDArray[np.float64]:
         """The true state in the table's frame: puck, then each mallet, as x, y, vx, vy [m, m/s]."""

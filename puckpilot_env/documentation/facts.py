@@ -77,6 +77,8 @@ OUTCOMES = {SCORES: "would score", SAVED: "would be saved", MISSES: "would miss"
 INFOS_AT_END = (
     ("ending", "name of the ending, see above"),
     ("winner", "`player_0`, `player_1` or None"),
+    ("outcome", "1 won, 0 nobody won, -1 lost"),
+    ("is_success", "whether it won"),
     ("score", "(own points, opponent's points)"),
     ("fouls", "(own, the opponent's): how often each held the puck for too long"),
 )

@@ -114,9 +114,10 @@ class TwoSeats(ParallelEnv):
 
 
 def mirrored(info: dict[str, Any]) -> dict[str, Any]:
-    """The opponent's info: its own score and fouls first, its own outcome."""
+    """The opponent's info: its own score and fouls first, its own outcome and success."""
     turned = {name: info[name][::-1].copy() for name in ("score", "fouls")}
-    return info | turned | ({"outcome": -info["outcome"]} if "outcome" in info else {})
+    ended = {"outcome": -info["outcome"], "is_success": info["outcome"] == -1} if "outcome" in info else {}
+    return info | turned | ended
 
 
 def make_two_seats(variant: Variant, backend: str, **options: Any) -> TwoSeats:
