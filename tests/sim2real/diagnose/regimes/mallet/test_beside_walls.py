@@ -1,4 +1,4 @@
-"""Contacts beside a wall that the puck meets before the next frame: what is seen after them is not the mallet's work."""
+"""Contacts beside a wall that the puck meets before the next frame: what follows is not the mallet's work alone."""
 
 from __future__ import annotations
 
