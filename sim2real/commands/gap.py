@@ -95,10 +95,10 @@ def _check(args: argparse.Namespace, arms: list[str], stages: list[str]) -> None
 
     refuse_unknown(arms, ARMS, "arm")
     refuse_unknown(stages, STAGES, "stage")
+    _check_tables(args, arms)
     for name, given in (("--arms", arms), ("--table", args.table or ()), ("--opponent", args.opponent or ())):
         if twice := [one for one in given if given.count(one) > 1]:
             raise ValueError(f"{name} names {twice[0]} more than once; name it once")
-    _check_tables(args, arms)
     if "residual" in arms:
         require_sklearn()
     opponents = args.opponent or OPPONENTS

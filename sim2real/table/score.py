@@ -129,8 +129,8 @@ def _spread(series: Sequence[list[_Games]], others: Sequence[list[_Games]]) -> t
     for opponents, other_opponents in zip(series, others, strict=True):
         for one, other in zip(opponents, other_opponents, strict=True):
             count = len(one.parts)
-            if count < 2:
-                raise ValueError(f"{count} game against an opponent; an interval needs 2 against each")
+            if count < 2:  # no scatter is known of a single game: its interval is its value
+                continue
             own = float(one.parts @ other.parts) / (count - 1) / count / (len(series) * len(opponents)) ** 2
             total, by_freedom = total + own, by_freedom + own * own / (count - 1)
     return total, total * total / by_freedom if by_freedom else inf

@@ -160,12 +160,16 @@ def _chart(result: dict[str, Any]) -> str:
     return inline_svg("Net score of each player", WIDTH, ROW * len(bars) + 70.0, draw, (LEFT, 24.0, 40.0))
 
 
+def _exactly(number: float) -> str:
+    return str(int(number)) if number == int(number) else repr(number)
+
+
 def _command(conditions: dict[str, Any], arms: list[str]) -> str:
     words = {
         **({} if conditions["backend"] == TWIN else {"backend": conditions["backend"]}),
         "table": conditions["table"], "opponent": " --opponent ".join(conditions["opponents"]),
-        **{name: str(conditions[name]) for name in ("games", "seconds", "recorded")},
-        **{name: str(conditions[name]) for name in ("minutes", "steps") if conditions[name]},
+        **{name: _exactly(conditions[name]) for name in ("games", "seconds", "recorded")},
+        **{name: _exactly(conditions[name]) for name in ("minutes", "steps") if conditions[name]},
         "seed": str(conditions["seed"]), "arms": " ".join(arms),
     }  # fmt: skip
     return " ".join(["puckpilot gap", conditions["player"], *(f"--{name} {one}" for name, one in words.items())])

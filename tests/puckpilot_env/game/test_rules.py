@@ -325,5 +325,7 @@ def test_infos_at_the_end(winner):
     actions = staying(env.tables)[0]
     infos = env.step({"player_0": actions[0], "player_1": actions[1]})[4]
     name = None if winner < 0 else f"player_{winner}"
-    assert infos["player_0"] == {"ending": "clock", "winner": name, "score": score, "fouls": (4, 0)}
-    assert infos["player_1"] == {"ending": "clock", "winner": name, "score": score[::-1], "fouls": (0, 4)}
+    outcome = {0: 1, 1: -1, -1: 0}[winner]
+    told = [{"ending": "clock", "winner": name, "outcome": one, "is_success": one == 1} for one in (outcome, -outcome)]
+    assert infos["player_0"] == {**told[0], "score": score, "fouls": (4, 0)}
+    assert infos["player_1"] == {**told[1], "score": score[::-1], "fouls": (0, 4)}

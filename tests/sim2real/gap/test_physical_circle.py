@@ -106,6 +106,7 @@ def test_every_arm_learns_on_the_table_of_the_file(tmp_path: Path, file: str, ar
     """Its sizes, and its friction where no other was found or is drawn. The voltage that motors ever get is another
     matter than the supply's."""
     silent_diagnosis(tmp_path)
+    (tmp_path / "before" / "recordings" / "game_0").mkdir(parents=True)
     made = simulator_of(arm, tmp_path, find_gap_table("table", file))
     assert made is not None and dict(made.values).items() >= {**SIZES, **AT_TABLE}.items()
     tables = Tables("match-v0", 2, effects=as_content(made.values), draws=made.draws)

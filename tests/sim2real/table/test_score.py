@@ -91,6 +91,6 @@ def test_a_share_of_a_small_whole_is_wide_and_no_error() -> None:
     assert found is not None and found.low < found.value < found.high and found.value == pytest.approx(6.0)
 
 
-def test_one_game_against_an_opponent_has_no_interval() -> None:
-    with pytest.raises(ValueError, match="1 game against an opponent; an interval needs 2"):
-        score([game(1, 0)])
+def test_one_game_tells_its_value_alone() -> None:
+    net = score([game(3, 1)])["net"]
+    assert (net.value, net.low, net.high) == (2.0, 2.0, 2.0)
