@@ -51,12 +51,14 @@ class SB3VecEnv(VecEnv):
 
     def step_wait(self) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any], list[dict[str, Any]]]:
         """Play the step: observations, rewards, dones and infos."""
-        rows, rewards, terminated, truncated, told = self.envs.step(self._actions)
+        rows, rewards, terminated, truncated, step_infos = self.envs.step(self._actions)
         infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
         for table in np.flatnonzero(terminated | truncated).tolist():
-            ending = {name: value[table] for name, value in told["final_info"].items() if not name.startswith("_")}
+            ending = {
+                name: value[table] for name, value in step_infos["final_info"].items() if not name.startswith("_")
+            }
             infos[table] = {
-                "terminal_observation": told["final_obs"][table],
+                "terminal_observation": step_infos["final_obs"][table],
                 "TimeLimit.truncated": bool(truncated[table] and not terminated[table]),
                 **{name: value.item() if isinstance(value, np.generic) else value for name, value in ending.items()},
             }

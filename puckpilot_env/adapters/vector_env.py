@@ -125,7 +125,7 @@ class TablesVectorEnv(VectorEnv[Arrays, Arrays, Arrays]):
         return rows.copy() if self._copy else rows
 
     def _infos(self, begins: NDArray[np.bool_]) -> dict[str, Any]:
-        """What is told after a step, in which episodes began on these tables (n,) that had waited."""
+        """The infos of a step in which episodes began on these tables (n,), which had waited."""
         own, ended = self._seats.own, self._ended
         begins = begins if self._waits else ended
         infos = masked(drawn_info(self.tables, own), begins) if begins.any() else {}

@@ -1,4 +1,4 @@
-"""Many tables for Stable-Baselines3: the episodes are those of the vector environment, told as that library asks."""
+"""Many tables for Stable-Baselines3: the episodes are those of the vector environment, with that library's infos."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def test_the_episodes_are_those_of_the_tables() -> None:
         shares = rng.uniform(-1.0, 1.0, (8, 4)).astype(np.float32)
         ours.step_async(shares)
         rows, rewards, dones, infos = ours.step_wait()
-        expected, gains, terminated, truncated, told = many.step(low + 0.5 * (shares + 1.0) * (high - low))
+        expected, gains, terminated, truncated, ended_infos = many.step(low + 0.5 * (shares + 1.0) * (high - low))
         np.testing.assert_allclose(rows, expected, atol=1e-5)
         np.testing.assert_allclose(rewards, gains, atol=1e-5)
         np.testing.assert_array_equal(dones, terminated | truncated)
@@ -33,7 +33,7 @@ def test_the_episodes_are_those_of_the_tables() -> None:
             if not dones[table]:
                 assert info == {}
                 continue
-            np.testing.assert_allclose(info["terminal_observation"], told["final_obs"][table], atol=1e-5)
+            np.testing.assert_allclose(info["terminal_observation"], ended_infos["final_obs"][table], atol=1e-5)
             assert info["TimeLimit.truncated"] == (truncated[table] and not terminated[table])
             assert info["is_success"] == (info["outcome"] == 1) == (info["winner"] == "player_0")
             ended, cut, won = ended + 1, cut + info["TimeLimit.truncated"], won + info["is_success"]
