@@ -28,8 +28,9 @@ def identify_regime(regime: Regime, problem: Problem, evidence: Evidence, known:
     clear, premises_hold = regime.premises(evidence, known)
     values = regime.parameters(evidence, known)
     defaults = {name: values[name] for name in problem.base}
-    check_consistency(problem, defaults, regime.parts(problem, evidence, known))
     problem, found = regime.search(problem, defaults, live, clear)
+    # of what the search leaves of scatter: the noise of a camera alone would make two tables of one with rough walls
+    check_consistency(problem, defaults, regime.parts(problem, evidence, known))
     chosen = _drop_small_laws(regime, problem, select(problem, found, premises_hold))
     result = regime_result(regime, problem, chosen, defaults)
     if not premises_hold and (result.unexplained or result.misfit):

@@ -10,6 +10,7 @@ import numpy as np
 from sim2real.recording.folder import Recording
 from sim2real.segmentation import causes, changepoints
 from sim2real.segmentation.events import ContactEvent, attribute, find_events
+from sim2real.segmentation.let_go import let_go
 from sim2real.segmentation.local_motion import LocalMotion, local_motion
 from sim2real.segmentation.sensor_noise import Noise, held_frames
 from sim2real.segmentation.tuned import SEGMENTATION
@@ -38,8 +39,9 @@ class Segments:
     """The segments of a recording.
 
     `noise`: of the puck's place and the frames' clock; `held`, `wild` (frames,) bool: repeated frames and outliers;
-    `glides` and `contacts`: in order of time; `launches`: (start, stop) frames of uninterrupted motion; `lines`:
-    coordinate [m] of the puck's centre at contact with each wall.
+    `glides` and `contacts`: in order of time; `launches`: (start, stop) frames of uninterrupted motion; `let_go`:
+    whether a hand let the puck go at the beginning of each; `lines`: coordinate [m] of the puck's centre at contact
+    with each wall.
     """
 
     noise: Noise
@@ -48,6 +50,7 @@ class Segments:
     glides: tuple[Glide, ...]
     contacts: tuple[ContactEvent, ...]
     launches: tuple[tuple[int, int], ...]
+    let_go: tuple[bool, ...]
     lines: dict[str, float]
 
     @property
@@ -70,7 +73,7 @@ def segment(recording: Recording) -> Segments:
     held, far = held_frames(x, y), recording.outside()
     noise, path, wild = valid_path(t, np.stack([x, y], axis=1), held, far)
     if len(path.t) < SEGMENTATION.glide_frames:
-        return Segments(noise, held, wild, (), (), (), causes.nominal_lines(g))
+        return Segments(noise, held, wild, (), (), (), (), causes.nominal_lines(g))
     tracks = causes.mallet_tracks(recording, path.t)
     expected = causes.possible(g, path.p, tracks, noise.position)
     strength = changepoints.find_changepoints(path.t, path.p, noise, path.jumps, expected)
@@ -82,7 +85,9 @@ def segment(recording: Recording) -> Segments:
     contacts = [contact for event in events for contact in attribute(event, path, g, lines, tracks)]
     glides, pushes = _glides(path, noise, strength > 0)
     contacts = tuple(sorted((*contacts, *pushes), key=lambda contact: contact.t))
-    return Segments(noise, held, wild, tuple(glides), contacts, tuple(_launches(path)), lines)
+    launches = tuple(_launches(path))
+    handled = let_go(t, np.stack([x, y], axis=1), launches)
+    return Segments(noise, held, wild, tuple(glides), contacts, launches, handled, lines)
 
 
 def _glides(path: Path, noise: Noise, broken: np.ndarray) -> tuple[list[Glide], list[ContactEvent]]:

@@ -40,6 +40,18 @@ class SegmentationNumbers:
     glide_frames: int = tuned(
         8, "frames", "glides too short to show a law", "choice: more than twice a parabola's numbers"
     )
+    handling: float = tuned(
+        0.3,
+        "s",
+        "a puck of which play lost sight taken for one that a hand let go; more ignores what is known of those",
+        "choice: no hand takes a puck and puts it down again in less",
+    )
+    fastest: float = tuned(
+        10.0, "m/s", "a fast puck of play taken for one that a hand let go", "choice: no mallet hits a puck faster"
+    )
+    left_out: float = tuned(
+        2.5, "frame periods", "frames without a puck taken for frames that are left out", "choice: two and a half"
+    )
     end_frames: int = tuned(
         24, "frames", "an end's velocity that is noise, or no longer local", "choice: 0.2 s at 120 Hz"
     )

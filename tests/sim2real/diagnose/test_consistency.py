@@ -3,6 +3,7 @@
 import json
 from contextlib import nullcontext
 from functools import cache
+from itertools import count
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -101,20 +102,12 @@ def test_two_recordings_of_one_table_agree(recorded, name, mechanism):
     assert [one.mechanism for one in found.findings] == [mechanism]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "number, missing",
-    [
-        pytest.param(0, "side_force", marks=pytest.mark.long),
-        pytest.param(1, "mallet_give", marks=pytest.mark.long),
-        pytest.param(35, "wall_to_wall_restitution", marks=pytest.mark.long),
-        pytest.param(38, "scale_error", marks=pytest.mark.long),
-    ],
-)
-def test_what_is_missing_in_both_is_no_other_table(tmp_path, number, missing):
+@pytest.mark.long
+@pytest.mark.parametrize("missing", ["side_force", "mallet_give", "wall_to_wall_restitution", "scale_error"])
+def test_what_is_missing_in_both_is_no_other_table(tmp_path, missing):
     """Two recordings of one table, of 30 s and 15 s; the effect may be larger in one of them, or differ by launch."""
-    case = draw_case(54, number, "one", None)
-    assert case.truth["mechanisms"] == [missing]
+    cases = (draw_case(54, number, "one", None) for number in count())
+    case = next(one for one in cases if one.truth["mechanisms"] == [missing])
     for seed, (name, seconds) in enumerate((("long", 30.0), ("short", 15.0))):
         make_recording(
             tmp_path / name, case.law, case.scenario, seed, seconds, case.camera,

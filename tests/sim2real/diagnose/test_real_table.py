@@ -15,6 +15,7 @@ import pytest
 from puckpilot_env.parameters import TABLE
 from sim2real.diagnose.engine.least_squares import given
 from sim2real.diagnose.engine.model_search import SearchResult, search_model
+from sim2real.diagnose.pipeline import diagnose
 from sim2real.diagnose.regimes.contact.motion import find_contact_motions
 from sim2real.diagnose.regimes.sliding.data import glide_data
 from sim2real.diagnose.regimes.sliding.problem import GlideProblem
@@ -113,3 +114,11 @@ def test_the_wall_contacts_of_one_recording_predict_another() -> None:
         print(f"puck_a's bounces, against the {words}: normal {change[0]:+.0%}, along the wall {change[1]:+.0%}")
     assert final[0] < 0.55 * defaults[0] and final[1] < 0.4 * defaults[1]
     assert final[0] < refitted[0] and final[1] < 0.4 * refitted[1]
+
+
+def test_the_recordings_are_of_one_table() -> None:
+    """Bounces that scatter, of a puck whose spin nobody knows, must not make two tables of one."""
+    recordings = [part(name).recording for name in ("play_a", "puck_a")]
+    found = diagnose(recordings, [], {}, lambda stage, share: None)
+    assert (found.verdict, found.reason) == ("missing_physics", "")
+    assert {"table_warp", "wall_friction_spin", "stamp_jitter"} <= {one.mechanism for one in found.findings}

@@ -37,7 +37,7 @@ class ContactMotion:
     """A contact between two glides, with the motion `before` and `after` it; `cluster`: its launch.
 
     `spin_chain`: contacts with the same number follow each other without a gap, so the puck's spin carries over.
-    `spin_unknown`: the launch had a contact before this chain, so the chain begins with an unknown spin.
+    `spin_unknown`: the puck may have been turned before this chain, which begins with an unknown spin then.
     `time_since_contact` [s]: time since the previous contact, nan if unknown. `glide`: index of the following glide in
     the recording.
     """
@@ -84,7 +84,7 @@ def find_contact_motions(
         if last and last.contact.kind not in SPIN_UNPREDICTED:
             spin_chain, spin_unknown = last.spin_chain, last.spin_unknown
         else:
-            spin_chain, spin_unknown = int(here[after]), _had_contact_before(segments, contact)
+            spin_chain, spin_unknown = int(here[after]), _is_spin_unknown(segments, contact)
         found.append(ContactMotion(contact, cluster, left, right, spin_chain, spin_unknown, time_since_contact, after))
     return found
 
@@ -103,10 +103,13 @@ def glide_before(segments: Segments, begin: np.ndarray, finish: np.ndarray, k: i
     return before if near and not _has_neighbour(segments, k, finish[before], begin[after]) else None
 
 
-def _had_contact_before(segments: Segments, contact: ContactEvent) -> bool:
-    """Whether the launch had another contact before `contact`."""
-    begun = max((start for start, _ in segments.launches if start <= contact.frames[0]), default=0)
-    return any(other.t < contact.t and other.frames[0] >= begun for other in segments.contacts)
+def _is_spin_unknown(segments: Segments, contact: ContactEvent) -> bool:
+    """Whether the puck may have been turned before `contact`: since no hand let it go at the launch's beginning, or by
+    a contact with anything but a mallet, over which the spin of a chain goes on, too."""
+    number = max((k for k, (start, _) in enumerate(segments.launches) if start <= contact.frames[0]), default=0)
+    begun = segments.launches[number][0] if segments.launches else 0
+    before = [one for one in segments.contacts if one.t < contact.t and one.frames[0] >= begun]
+    return not all(segments.let_go[number : number + 1]) or any(one.kind != "mallet" for one in before)
 
 
 def _has_neighbour(segments: Segments, k: int, start: float, stop: float) -> bool:
