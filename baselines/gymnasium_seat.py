@@ -8,49 +8,24 @@ envs = gymnasium.make_vec("puckpilot/match-v0", num_envs=64, opponent="goalie", 
 from __future__ import annotations
 
 import importlib
-from collections.abc import Callable, Mapping
-from dataclasses import replace
+from collections.abc import Mapping
 from typing import Any
 
 import gymnasium
-import numpy as np
 from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
 
-from baselines import find_player
-from baselines.player import Player, Seat
+from baselines.opponents import AnyOpponent, find_opponent
 from puckpilot_env.adapters.parallel_env import fresh_seed
-from puckpilot_env.adapters.seats import Opponent
 from puckpilot_env.adapters.single_env import SingleEnv
 from puckpilot_env.adapters.vector_env import TablesVectorEnv
 from puckpilot_env.options.draws_file import Draws
 from puckpilot_env.options.effects_file import Effects
-from puckpilot_env.options.inputs import in_short, whole_number
+from puckpilot_env.options.inputs import whole_number
 from puckpilot_env.tables import MOST_TABLES, Tables
 from puckpilot_env.variants import Variant
 
 TABLE_SEAT = "sim2real.table.game.robot_seat"  # of a package above this one, so loaded only where a backend is named
-AnyOpponent = str | Callable[[Seat], Player] | Opponent  # a name, a function from a seat to a player, or a player
-
-
-class SeededPlayer:
-    """An opponent that makes a new player for every seed, so that the same seed gives the same game."""
-
-    def __init__(self, make: Callable[[Seat], Player], seat: Seat) -> None:
-        self._make, self._seat = make, seat
-        self._player = make(seat)
-
-    def seed(self, seed: int) -> None:
-        """Make a new player whose randomness has this seed."""
-        self._player = self._make(replace(self._seat, seed=int(seed)))
-
-    def reset(self, mask: NDArray[np.bool_]) -> None:
-        """See `Player.reset`."""
-        self._player.reset(mask)
-
-    def act(self, observation: NDArray[np.float32]) -> NDArray[np.float32]:
-        """See `Player.act`."""
-        return self._player.act(observation)
 
 
 def make_env(
@@ -79,11 +54,12 @@ def make_seat(
     parameters: Mapping[str, float] | None = None,
     effects: Effects | None = None,
     draws: Draws | None = None,
+    reward: str | None = None,
 ) -> SingleEnv:
     """A Gymnasium environment of one seat (0 or 1); `opponent` plays the other.
 
-    `period` [s], `max_cycles`, `parameters`, `effects` and `draws` are those of `Tables`. ValueError, in one line, for
-    an invalid argument.
+    `period` [s], `max_cycles`, `parameters`, `effects`, `draws` and `reward` are those of `Tables`. ValueError, in one
+    line, for an invalid argument.
     """
     seed = fresh_seed()
     tables = Tables(
@@ -96,6 +72,7 @@ def make_seat(
         parameters=parameters,
         effects=effects,
         draws=draws,
+        reward=reward,
     )
     return SingleEnv(tables, find_opponent(opponent, tables, seed), seat=seat, render_mode=render_mode)
 
@@ -115,30 +92,18 @@ def make_seats(
     parameters: Mapping[str, float] | None = None,
     effects: Effects | None = None,
     draws: Draws | None = None,
+    reward: str | None = None,
 ) -> TablesVectorEnv:
     """A Gymnasium vector environment of `num_envs` tables with one seat each; `seat` may also be "alternate".
 
-    `threads`, `copy` and `autoreset_mode` are those of `TablesVectorEnv`; the rest is as in `make_seat`.
+    `opponent` may be several, dealt to the tables in turn. `threads`, `copy` and `autoreset_mode` are those of
+    `TablesVectorEnv`; the rest is as in `make_seat`.
     """
     seed = fresh_seed()
     num_envs = whole_number(num_envs, "num_envs", 1, MOST_TABLES)
     tables = Tables(
         variant, num_envs, seed=seed, threads=threads, period=period, max_cycles=max_cycles, parameters=parameters,
-        effects=effects,
-        draws=draws,
+        effects=effects, draws=draws, reward=reward,
     )  # fmt: skip
     found = find_opponent(opponent, tables, seed)
     return TablesVectorEnv(tables, found, seat=seat, render_mode=render_mode, copy=copy, autoreset_mode=autoreset_mode)
-
-
-def find_opponent(opponent: AnyOpponent, tables: Tables, seed: int) -> Opponent:
-    """The opponent, ready to play at these tables. ValueError, in one line, for an unknown name."""
-    if isinstance(opponent, str):
-        opponent = find_player(opponent)
-    elif not isinstance(opponent, type) and hasattr(opponent, "act"):
-        return opponent  # pyright: ignore[reportReturnType] - what can act is an opponent
-    if not callable(opponent):
-        raise ValueError(
-            f"opponent is {in_short(opponent)}; expected a player's name, what makes a Player, or an Opponent"
-        )
-    return SeededPlayer(opponent, Seat.from_tables(tables, seed=seed))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -44,6 +45,15 @@ class Seat:
             len(tables),
             seed,
         )
+
+    @classmethod
+    def of_env(cls, env: Any, seed: int = 0) -> Seat:
+        """The seat of a player of all tables of an environment, PettingZoo's or Gymnasium's. ValueError, in one line,
+        for one that has no tables."""
+        tables = getattr(getattr(env, "unwrapped", env), "tables", None)
+        if not isinstance(tables, Tables):
+            raise ValueError(f"env is a {type(env).__name__}; expected an environment of puckpilot")
+        return cls.from_tables(tables, seed)
 
     @cached_property
     def parameters(self) -> dict[str, float]:

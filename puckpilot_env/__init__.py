@@ -10,15 +10,18 @@ from __future__ import annotations
 
 import importlib
 from functools import partial
+from importlib.metadata import version
 from typing import Any
 
 import gymnasium
 import pettingzoo
 
+from puckpilot_env.adapters.parallel_vector_env import ParallelVectorEnv, parallel_vector_env
 from puckpilot_env.tables import Tables
 from puckpilot_env.variants import all_variants, find_variant
 
-__all__ = ["Tables", "all_variants", "find_variant"]
+__all__ = ["ParallelVectorEnv", "Tables", "__version__", "all_variants", "find_variant", "parallel_vector_env"]
+__version__ = version("puckpilot")
 
 
 def _make(module: str, function: str, **options: Any) -> Any:

@@ -65,13 +65,15 @@ class Tables:
         parameters: Mapping[str, float] | None = None,
         effects: Effects | None = None,
         draws: Draws | None = None,
+        reward: str | None = None,
     ) -> None:
         """Make `tables` tables of a variant (or its id) and reset them.
 
         `period` [s] of a step replaces the variant's (from 1/120 s on), `max_cycles` its step limit (truncation);
         `effects` adds physics beyond the baseline (see `effects_file`), `draws` say what differs from table to table,
         beside or in place of the variant's own (see `draws_file`); `parameters` stand in place of all others, by name.
-        One that is given is no longer drawn, except that `draws` win over `effects`, which are then nominal.
+        One that is given is no longer drawn, except that `draws` win over `effects`, which are then nominal. `reward`:
+        "shaped", as the variant's page says, or "sparse" (see `rules.sparse_rewards`).
 
         Raises ValueError, in one line, for anything that cannot be.
         """
@@ -79,7 +81,7 @@ class Tables:
         self.threads = min(whole_number(threads, "threads", 1, MOST_THREADS), tables)
         self.autoreset = truth(autoreset, "autoreset")
         seed = seed_number(seed)
-        self.variant, values = asked_for(variant, period, max_cycles, parameters, effects, draws)
+        self.variant, values = asked_for(variant, period, max_cycles, parameters, effects, draws, reward)
         self.params = make_records(tables, {**self.variant.parameters, **values})
         self.nominal = self.params[:1].copy()
         self._rules = self.variant.rules()

@@ -38,6 +38,7 @@ class Variant:
     shows_gantry: bool = False
     period: float = 0.1  # of a step [s]
     step_limit: int = 0  # truncation; 0 for none
+    sparse_reward: bool = False  # whether nothing but goals, or who won a drill, is rewarded
     points: int = 7  # to win a match
     match_time: float = 180.0  # s
     possession_time: float = 7.0  # longest in one half of a match [s]

@@ -52,17 +52,18 @@ class TableEnv(ParallelEnv):
         parameters: Mapping[str, float] | None = None,
         effects: Effects | None = None,
         draws: Draws | None = None,
+        reward: str | None = None,
     ) -> None:
         """`max_cycles`: truncate after so many steps; `period` [s] of a step, from 1/120 s; `parameters` by name;
         `effects`: physics beyond the baseline, by name or from a file (see `effects_file`); `draws`: what differs from
-        episode to episode, likewise (see `draws_file`).
+        episode to episode, likewise (see `draws_file`); `reward`: "shaped" or "sparse".
 
         Raises ValueError, in one line, for anything that cannot be.
         """
         one_of(render_mode, "render_mode", None, *self.metadata["render_modes"])
         self._tables = Tables(
             variant, 1, autoreset=False, period=period, max_cycles=max_cycles, parameters=parameters, effects=effects,
-            draws=draws, seed=fresh_seed(),
+            draws=draws, reward=reward, seed=fresh_seed(),
         )  # fmt: skip
         self.inside = self._tables.inside
         self.metadata = {

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import difflib
-import importlib
-import sys
 from collections.abc import Callable
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import pettingzoo
 
 from puckpilot_env.checks import actions, extras, mirror, ownership, play, returns, seeding, spaces
 from puckpilot_env.checks.result import WARNING, Check, CheckResult, Subject
+from puckpilot_env.options.module_attribute import import_callable
 
 CHECKS: tuple[Check, ...] = tuple(
     check for module in (play, seeding, spaces, returns, ownership, actions, extras, mirror) for check in module.CHECKS
@@ -69,7 +67,7 @@ def _refuse_what_is_no_parallel_env(maker: Callable[..., Any], name: str) -> Non
 def find_maker(name: str) -> Callable[..., Any]:
     """What makes the environment of an id (`puckpilot/` may be left out) or "module:attribute". ValueError if none."""
     if ":" in name:
-        return _import_maker(name)
+        return import_callable(name, "an environment")
     known = pettingzoo.parallel_registry
     for id_ in (name, f"puckpilot/{name}"):
         if id_ in known:
@@ -78,19 +76,3 @@ def find_maker(name: str) -> Callable[..., Any]:
     near = difflib.get_close_matches(name.rpartition("/")[2], short, n=1)
     hint = f"did you mean '{short[near[0]]}'?" if near else 'expected an id of the registry or "module:attribute"'
     raise ValueError(f"unknown environment '{name}'; {hint}")
-
-
-def _import_maker(name: str) -> Callable[..., Any]:
-    module, _, attribute = name.partition(":")
-    here = str(Path.cwd())
-    if here not in sys.path:  # an installed command does not look in the folder where it is called
-        sys.path.insert(0, here)
-    try:
-        found = importlib.import_module(module)
-        for part in attribute.split("."):
-            found = getattr(found, part)
-    except (ImportError, AttributeError, ValueError) as error:
-        raise ValueError(f"cannot import '{name}': {error}") from error
-    if not callable(found):
-        raise ValueError(f"'{name}' is a {type(found).__name__}; expected something that makes an environment")
-    return found

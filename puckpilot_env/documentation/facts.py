@@ -36,6 +36,10 @@ ENDINGS = {
     ATTACK: (SHOT, MISSED, CONCEDED),
     MATCH: (POINTS, CLOCK),
 }
+SPARSE_REWARDS = {
+    **dict.fromkeys((DEFENCE, ATTACK), "1 for the winner of the drill and -1 for the loser, when it ends"),
+    MATCH: "1 for a goal, and -1 for the conceder",
+}
 # Who gets a term, by game; a term that is absent cannot occur there.
 _EACH_STEP = "both, at every step"
 _IN_MATCH = "both"
@@ -119,6 +123,7 @@ def describe(variant: Variant) -> dict[str, Any]:
             for name, term in reward_terms().items()
             if variant.game in RECEIVERS[name]
         ],
+        "sparse_rewards": SPARSE_REWARDS[variant.game],
         "parameters": [
             {**vars(row), "default": float(nominal[row.name]), "usual": row.default}
             for row in parameters.TABLE

@@ -178,7 +178,9 @@ def _rewards(facts: dict[str, Any]) -> str:
     rows = [(f"`{r['name']}`", r["meaning"], r["size"], r["receiver"]) for r in facts["rewards"]]
     return (
         "## Rewards\n\nThe sum of these terms, each a function of `puckpilot_env/game/reward.py`, which cites the "
-        "report's appendix J.\n\n" + _table(("term", "what for", "size", "who, when"), rows)
+        "report's appendix J.\n\n"
+        + _table(("term", "what for", "size", "who, when"), rows)
+        + f'\nOption `reward="sparse"`: in place of all of these {facts["sparse_rewards"]}.\n'
     )
 
 

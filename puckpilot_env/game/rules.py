@@ -27,6 +27,7 @@ RULES = np.dtype(
         ("match_time", np.float64),  # [s]
         ("possession_time", np.float64),  # in a match: longest time in one half before a foul [s]
         ("step_limit", np.int64),  # truncation; 0 for none
+        ("sparse_reward", np.int64),  # 1: nothing but what decides the game is rewarded
     ]
 )
 
@@ -142,3 +143,15 @@ def keep_time(table, p, rules, rewards):
     if table.ending == RUNNING and 0 < rules.step_limit <= table.steps:
         end(table, STEP_LIMIT, -1)
     return moved
+
+
+@kernel
+def sparse_rewards(table, rules, rewards, lead):
+    """In place of all terms: in a match 1 for a goal and -1 for the conceder; in a drill 1 for who won it, and -1 for
+    the other. lead: of player 0 before the step, in goals."""
+    gain = 0.0
+    if rules.game == MATCH:
+        gain = table.score[0] - table.score[1] - lead
+    elif table.ending != RUNNING and table.winner >= 0:
+        gain = 1.0 - 2.0 * table.winner
+    rewards[0], rewards[1] = gain, -gain

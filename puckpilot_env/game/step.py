@@ -109,7 +109,7 @@ def step_table(table, p, nominal, rule, frames, actions, rewards, log, film):
     record; frames: its camera frames; actions: float32 (2, 4), finite; rewards: float32 (2,), written; log: see
     `physics.advance`; film: (MOST_WANTED, SHOT_COLUMNS), scratch.
     """
-    table.ending = rules.RUNNING
+    table.ending, lead = rules.RUNNING, table.score[0] - table.score[1]
     plan_both(table, p, nominal, actions, rewards)
     if rule.sensing == sensing.EXACT:
         scored = play_and_look(table, p, rule, rewards, log, film)
@@ -129,6 +129,8 @@ def step_table(table, p, nominal, rule, frames, actions, rewards, log, film):
             _random_impulse(table, p, rule.period)
     if table.ending == rules.RUNNING:
         refilled = rules.keep_time(table, p, rule, rewards) or refilled
+    if rule.sparse_reward:
+        rules.sparse_rewards(table, rule, rewards, lead)
     if refilled and rule.sensing == sensing.EXACT:
         sight.look_now(table)
     if rule.sensing != sensing.EXACT:

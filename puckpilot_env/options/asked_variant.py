@@ -7,9 +7,11 @@ from dataclasses import replace
 
 from puckpilot_env.options.draws_file import Draws, on_tables
 from puckpilot_env.options.effects_file import Effects
-from puckpilot_env.options.inputs import in_short, real_number, whole_number
+from puckpilot_env.options.inputs import in_short, one_of, real_number, whole_number
 from puckpilot_env.variants import Variant, find_variant
 
+SPARSE = "sparse"
+REWARDS = ("shaped", SPARSE)
 MOST_STEPS = 1_000_000_000
 SHORTEST_PERIOD, LONGEST_PERIOD = 1.0 / 120.0, 1.0  # s
 
@@ -21,6 +23,7 @@ def asked_for(
     parameters: Mapping[str, float] | None,
     effects: Effects | None,
     draws: Draws | None,
+    reward: str | None = None,
 ) -> tuple[Variant, dict[str, float]]:
     """The variant with this timing and with what is then drawn, and the numbers that are given, by name.
 
@@ -29,6 +32,8 @@ def asked_for(
     if not isinstance(variant, Variant):
         variant = find_variant(variant)
     variant = _with_timing(variant, period, max_cycles)
+    if one_of(reward, "reward", None, *REWARDS) is not None:
+        variant = replace(variant, sparse_reward=reward == SPARSE)
     drawn, values = on_tables(variant, draws, effects, parameters)
     return replace(variant, draws=drawn), values
 
