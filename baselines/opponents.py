@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,4 +87,4 @@ def _maker(opponent: Any) -> Maker:
         raise ValueError(
             f"opponent is {in_short(opponent)}; expected a player's name, what makes a Player, or an Opponent"
         )
-    return opponent
+    return cast(Maker, opponent)

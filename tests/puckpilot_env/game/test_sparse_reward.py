@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import gymnasium
 import numpy as np
 import pettingzoo
 import pytest
 
 from baselines import make_player
+from baselines.gymnasium_seat import make_seat, make_seats
 from baselines.player import Seat
 from puckpilot_env.tables import Tables
 from puckpilot_env.variants import all_variants
@@ -64,7 +64,7 @@ def test_every_interface_takes_it(id_: str) -> None:
     env = pettingzoo.make("parallel", id_, reward="sparse")
     env.reset(seed=0)
     (*_,) = env.step({agent: env.action_space(agent).sample() for agent in env.agents})
-    assert gymnasium.make(id_, reward="sparse").unwrapped.tables.variant.sparse_reward
-    assert gymnasium.make_vec(id_, 2, reward="sparse").unwrapped.tables.variant.sparse_reward
+    assert make_seat(id_, reward="sparse").tables.variant.sparse_reward
+    assert make_seats(id_, 2, reward="sparse").tables.variant.sparse_reward
     with pytest.raises(ValueError, match="reward is 'dense'; expected None, 'shaped' or 'sparse'"):
         Tables(id_, 1, reward="dense")
