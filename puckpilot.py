@@ -62,6 +62,10 @@ COMMANDS = {
 }
 
 
+# Packages that some commands alone need, and by which of the project's extras they come
+EXTRAS = {"unicorn": "emulate", "torch": "train", "rsl_rl": "train", "tensordict": "train", "sklearn": "train"}
+
+
 class _Parser(argparse.ArgumentParser):
     """A parser whose errors are one line."""
 
@@ -196,6 +200,15 @@ def _run(words: list[str]) -> int:
         return 2
     except ValueError as error:
         print(f"puckpilot {name}: {' '.join(str(error).split())}", file=sys.stderr)
+        return 2
+    except ModuleNotFoundError as error:
+        package = str(error.name).partition(".")[0]
+        if package not in EXTRAS:
+            raise
+        print(
+            f"puckpilot {name}: needs {package}; install it with: pip install 'puckpilot[{EXTRAS[package]}]'",
+            file=sys.stderr,
+        )
         return 2
     except MemoryError:
         print(f"puckpilot {name}: not enough memory for so many tables at once; ask for fewer", file=sys.stderr)

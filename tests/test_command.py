@@ -246,6 +246,28 @@ def test_a_library_that_fails_of_an_interrupt_ends_in_one_line(monkeypatch, caps
     assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
 
 
+@pytest.mark.parametrize(("package", "extra"), [("unicorn.arm_const", "emulate"), ("torch", "train")])
+def test_a_package_of_an_extra_that_is_missing_is_said_in_one_line(package, extra, monkeypatch, capsys):
+    def lacking(name: str) -> None:
+        raise ModuleNotFoundError(f"No module named '{package}'", name=package)
+
+    monkeypatch.setattr(puckpilot.importlib, "import_module", lacking)
+    assert puckpilot.main(["envs"]) == 2
+    needs = package.partition(".")[0]
+    assert capsys.readouterr().err == (
+        f"puckpilot envs: needs {needs}; install it with: pip install 'puckpilot[{extra}]'\n"
+    )
+
+
+def test_a_package_of_no_extra_that_is_missing_is_an_error_of_the_program(monkeypatch):
+    def lacking(name: str) -> None:
+        raise ModuleNotFoundError("No module named 'nobody'", name="nobody")
+
+    monkeypatch.setattr(puckpilot.importlib, "import_module", lacking)
+    with pytest.raises(ModuleNotFoundError):
+        puckpilot.main(["envs"])
+
+
 @pytest.mark.skipif(os.name != "posix", reason="pipes of POSIX")
 def test_a_reader_that_has_seen_enough_ends_the_overview_quietly():
     code = "import sys, time; time.sleep(0.5); import puckpilot; sys.exit(puckpilot.main(['--help']))"

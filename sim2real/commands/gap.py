@@ -13,7 +13,7 @@ import argparse
 import hashlib
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from sim2real.gap.circle_folder import Conditions
@@ -40,13 +40,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help=f"the hand at the other end ({', '.join(OPPONENTS)} in turn), of a physical table in the simulator alone; "
         "may be given several times",
     )  # fmt: skip
-    parser.add_argument("--games", type=int, default=40, metavar="N", help="of each player on the table (40)")
+    parser.add_argument(
+        "--games",
+        type=int,
+        default=40,
+        metavar="N",
+        help="of each player on the table, two or more against each opponent (40)",
+    )
     parser.add_argument(
         "--seconds", type=float, default=60.0, metavar="S", help="of play of a game, match by match (60)"
     )
     parser.add_argument("--recorded", type=int, default=5, metavar="N", help="games that are recorded (5)")
     parser.add_argument("--minutes", type=float, metavar="M", help="of fine-tuning of each arm (30)")
-    parser.add_argument("--steps", type=int, metavar="N", help="of fine-tuning, in place of --minutes")
+    parser.add_argument(
+        "--steps", type=int, metavar="N", help="of fine-tuning, in place of --minutes, rounded up to whole rounds"
+    )
     parser.add_argument("--seed", type=int, default=0, help="of the first game, and of learning (0)")
     parser.add_argument("--stage", metavar="NAME", help="run it alone, on what those before it left (all)")
     parser.add_argument("--processes", type=int, default=2, metavar="N", help="that play or learn at once (2)")
@@ -92,6 +100,7 @@ def _check(args: argparse.Namespace, arms: list[str], stages: list[str]) -> None
     from sim2real.gap.gap_table import PHYSICAL
     from sim2real.gap.residual_fit import require_sklearn
     from sim2real.gap.stages import STAGES
+    from sim2real.gap.tuning import FEWEST_STEPS, require_training
 
     refuse_unknown(arms, ARMS, "arm")
     refuse_unknown(stages, STAGES, "stage")
@@ -99,19 +108,29 @@ def _check(args: argparse.Namespace, arms: list[str], stages: list[str]) -> None
     for name, given in (("--arms", arms), ("--table", args.table or ()), ("--opponent", args.opponent or ())):
         if twice := [one for one in given if given.count(one) > 1]:
             raise ValueError(f"{name} names {twice[0]} more than once; name it once")
+    if any(ARMS[name].simulator for name in arms):
+        require_training()
     if "residual" in arms:
         require_sklearn()
     opponents = args.opponent or OPPONENTS
     for name in (args.player, *opponents):
         find_player(name)
     whole_number(args.processes, "--processes", 1, 64)
-    whole_number(args.games, "--games", 2 if args.backend == PHYSICAL else 2 * len(opponents), MOST_GAMES)
+    fewest = 2 if args.backend == PHYSICAL else 2 * len(opponents)
+    if args.games < fewest and fewest > 2:
+        raise ValueError(
+            f"--games is {args.games}; expected {fewest} or more, two against each of {', '.join(opponents)}"
+        )
+    whole_number(args.games, "--games", fewest, MOST_GAMES)
     whole_number(args.recorded, "--recorded", 1, args.games)
     seed_number(args.seed)
-    if args.steps is not None:
-        whole_number(args.steps, "--steps", 1, MOST_STEPS)
     if args.steps is not None and args.minutes is not None:
         raise ValueError("--minutes and --steps are both given; leave one of the two out")
+    if args.steps is not None:
+        whole_number(args.steps, "--steps", 1, MOST_STEPS)
+        if args.steps < FEWEST_STEPS:
+            words = "in fewer the critic alone learns, and the player stays as it is"
+            raise ValueError(f"--steps is {args.steps:,}; expected {FEWEST_STEPS:,} or more: {words}")
     for name in ("seconds", "minutes"):
         given = getattr(args, name)
         if given is not None and not 0.0 < given <= 1e5:
@@ -158,6 +177,7 @@ def _go_round(
     from baselines.commands.options import progress_bar
     from sim2real.gap.circle import Circle
     from sim2real.gap.circle_folder import SHARED
+    from sim2real.gap.report.circle_words import circle_lines
     from sim2real.gap.stages import LAST
 
     report = (lambda line: None) if args.json else lambda line: print(line, flush=True)
@@ -169,7 +189,7 @@ def _go_round(
         for stage in stages:
             circle.run_stage(stage, arms, progress)
     if stages[-1] == LAST:
-        report("\n".join([*_lines(circle.kept()), f"wrote {folder / 'gap.html'}"]))
+        report("\n".join([*circle_lines(circle.kept()), f"wrote {folder / 'gap.html'}"]))
 
 
 def _together(folders: list[Path], out: Path, as_json: bool) -> int:
@@ -200,37 +220,3 @@ def _listed() -> list[str]:
     for title, rows in (("tables", TABLES), ("arms", ARMS)):
         lines += [title, *(f"  {name:12} {row.words}" for name, row in rows.items())]
     return [*lines, "stages", *(f"  {name:12} {stage.__doc__}" for name, stage in STAGES.items())]
-
-
-def _lines(result: dict[str, Any]) -> list[str]:
-    from sim2real.gap.arms import ARMS
-    from sim2real.gap.report.found_words import against_line, found_words
-
-    simulated, before = result["simulator"], result["before"]
-    lines = [f"the diagnosis of its play found: {found_words(result)}"]
-    header = f"{'goals a minute':50} {'for':>5} {'against':>8} {'net':>6}  {'95 %':>14}  {'won back':>8}  {'95 %':>14}"
-    if result["against_truth"] is None:
-        lines.append(header)
-    else:
-        lines += [
-            f"beside the truth: {against_line(result['against_truth'])}",
-            header,
-            f"{'in the simulator':50} {simulated['scored']:5.2f} {simulated['conceded']:8.2f} "
-            f"{simulated['scored'] - simulated['conceded']:6.2f}",
-        ]
-    lines.append(f"{'on the table, as it is':50} {_rates(before)}")
-    for name, arm in result["arms"].items():
-        more = arm["change"]
-        lines.append(
-            f"{f'{name}: {ARMS[name].words}':50} {_rates(arm)}  {more['value']:+8.2f}  "
-            f"{more['low']:+6.2f} {more['high']:+7.2f}"
-        )
-    return lines
-
-
-def _rates(one: dict[str, Any]) -> str:
-    net = one["net"]
-    return (
-        f"{one['scored']['value']:5.2f} {one['conceded']['value']:8.2f} {net['value']:6.2f}  "
-        f"{net['low']:6.2f} {net['high']:7.2f}"
-    )

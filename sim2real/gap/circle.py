@@ -7,8 +7,15 @@ import json
 from pathlib import Path
 from typing import Any
 
-from sim2real.gap.circle_folder import CircleFolder, Conditions, keep_conditions, keep_training
-from sim2real.gap.stages import STAGES, Progress, Report, Work
+from sim2real.gap.circle_folder import (
+    CircleFolder,
+    Conditions,
+    keep_conditions,
+    keep_training,
+    refuse_other,
+    refuse_other_training,
+)
+from sim2real.gap.stages import FIRST, STAGES, Progress, Report, Work
 
 
 class Circle:
@@ -19,9 +26,9 @@ class Circle:
         self, folder: Path, conditions: Conditions, processes: int, report: Report, shared: Path | None = None
     ) -> None:
         self.folder, self._processes, self._report = CircleFolder(folder, conditions, shared), processes, report
-        keep_conditions(folder, conditions)
+        refuse_other(folder, conditions)
         if shared:
-            keep_training(shared, conditions)
+            refuse_other_training(shared, conditions)
 
     def run(self, arms: list[str], progress: Progress) -> dict[str, Any]:
         """All stages that are not done yet; the result, as it is written to gap.json."""
@@ -31,7 +38,15 @@ class Circle:
 
     def run_stage(self, stage: str, arms: list[str], progress: Progress) -> None:
         """One of `stages.STAGES` alone. ValueError, in one line, where an earlier one has to be run first."""
+        if stage == FIRST:
+            self._keep()
         STAGES[stage](Work(self.folder, arms, self._processes, self._report, progress))
+        self._keep()  # not before: a stage that is refused leaves nothing behind
+
+    def _keep(self) -> None:
+        keep_conditions(self.folder.path, self.folder.conditions)
+        if self.folder.shared:
+            keep_training(self.folder.shared, self.folder.conditions)
 
     def kept(self) -> dict[str, Any]:
         """The result that the last stage wrote."""

@@ -26,6 +26,7 @@ from sim2real.table.meetings import Meeting
 
 VARIANT = "match-v0"
 FILM = "film.gif"
+KEPT = "conditions.json"
 SHARED = "of_any_table"  # folder that circles of several tables share
 BEFORE = "before"  # name of the player as it is
 TRAINING = ("player", "minutes", "steps", "seed")  # conditions on which training rests
@@ -151,29 +152,65 @@ def missing(folder: Path, what: str, stage: str) -> ValueError:
     return ValueError(f"{folder} has no {what} yet; run the stage '{stage}' first")
 
 
+def refuse_other(folder: Path, conditions: Conditions) -> None:
+    """ValueError, in one line, for a folder of another circle."""
+    _refuse_other(folder, _of_circle(conditions), "a circle")
+
+
 def keep_conditions(folder: Path, conditions: Conditions) -> None:
     """Write down the conditions of a new circle. ValueError, in one line, for a folder of another one."""
-    _keep(folder, {one.name: getattr(conditions, one.name) for one in fields(Conditions)}, "a circle")
+    _keep(folder, _of_circle(conditions), "a circle")
+
+
+def refuse_other_training(folder: Path, conditions: Conditions) -> None:
+    """ValueError, in one line, for a folder, that circles of several tables share, of arms trained otherwise."""
+    _refuse_other(folder, _of_training(conditions), "players")
 
 
 def keep_training(folder: Path, conditions: Conditions) -> None:
-    """The same of a new folder of arms that circles of several tables share, for what their training rests on."""
-    _keep(folder, {name: getattr(conditions, name) for name in TRAINING}, "players")
+    """Write down, in a new folder that circles of several tables share, what the training of its arms rests on.
+    ValueError, in one line, as of `refuse_other_training`."""
+    _keep(folder, _of_training(conditions), "players")
+
+
+def _of_circle(conditions: Conditions) -> dict[str, Any]:
+    return {one.name: getattr(conditions, one.name) for one in fields(Conditions)}
+
+
+def _of_training(conditions: Conditions) -> dict[str, Any]:
+    return {name: getattr(conditions, name) for name in TRAINING}
 
 
 def _keep(folder: Path, conditions: dict[str, Any], of_what: str) -> None:
-    path = folder / "conditions.json"
-    if path.exists():
-        try:
-            kept = json.loads(path.read_text(encoding="utf-8"))
-        except ValueError:
-            kept = None
-        if not isinstance(kept, dict) or kept.keys() != conditions.keys():
-            raise ValueError(f"{path} is not of this version; name another --out")
-        kept = {name: tuple(one) if isinstance(one, list) else one for name, one in kept.items()}
-        if other := [name for name in conditions if kept[name] != conditions[name]]:
-            given = ", ".join(f"{name} {kept[name]}" for name in other)
-            raise ValueError(f"{folder} has {of_what} with {given}; give the same, or name another --out")
-        return
-    folder.mkdir(parents=True, exist_ok=True)
-    write_text_whole(path, json.dumps(conditions, indent=1) + "\n")
+    if not _refuse_other(folder, conditions, of_what):
+        folder.mkdir(parents=True, exist_ok=True)
+        write_text_whole(folder / KEPT, json.dumps(conditions, indent=1) + "\n")
+
+
+def _refuse_other(folder: Path, conditions: dict[str, Any], of_what: str) -> bool:
+    """Whether the folder has conditions. ValueError, in one line, if they are others."""
+    path = folder / KEPT
+    if not path.exists():
+        return False
+    try:
+        kept = json.loads(path.read_text(encoding="utf-8"))
+    except ValueError:
+        kept = None
+    if not isinstance(kept, dict) or kept.keys() != conditions.keys():
+        raise ValueError(f"{path} is not of this version; name another --out")
+    kept = {name: tuple(one) if isinstance(one, list) else one for name, one in kept.items()}
+    if other := [name for name in conditions if kept[name] != conditions[name]]:
+        given = " ".join(filter(None, (_as_option(name, kept[name]) for name in other)))
+        raise ValueError(f"{folder} has {of_what} with {given}; give the same, or name another --out")
+    return True
+
+
+def _as_option(name: str, value: Any) -> str:
+    """A condition as the option that gives it; "" for one that was not given."""
+    if name == "player" or value is None:
+        return value or ""
+    if name == "opponents":
+        return " ".join(f"--opponent {one}" for one in value)
+    if name == "table_contents":
+        return "other contents of the table's file"
+    return f"--{name} {value:g}" if isinstance(value, float) else f"--{name} {value}"

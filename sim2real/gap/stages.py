@@ -130,7 +130,7 @@ def report(work: Work) -> None:
 
 
 STAGES: Mapping[str, Callable[[Work], None]] = {one.__name__: one for one in (play, diagnose, tune, replay, report)}
-LAST = report.__name__
+FIRST, LAST = play.__name__, report.__name__
 
 
 def _run(*words: str) -> None:

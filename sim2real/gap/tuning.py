@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import importlib.util
 import shutil
 import subprocess
 import sys
@@ -15,7 +16,15 @@ from sim2real.gap.arms import ARMS, simulator_of, write_simulator
 from sim2real.gap.circle_folder import VARIANT, CircleFolder
 
 PRESET = "fine_tune"
+ROUND, CRITIC_ROUNDS = 512 * 64 * 10, 3  # of the preset: steps of a round; rounds in which the player stays as it is
+FEWEST_STEPS = (CRITIC_ROUNDS + 1) * ROUND
 LOG = "training.log"
+
+
+def require_training() -> None:
+    """ValueError, in one line, where what training needs is not installed."""
+    if importlib.util.find_spec("rsl_rl") is None:
+        raise ValueError("fine-tuning needs rsl_rl; install it with: pip install 'puckpilot[train]'")
 
 
 def untrained(folder: CircleFolder, arms: Sequence[str]) -> list[str]:

@@ -7,7 +7,7 @@ from typing import Any
 SILENT = {
     "agrees": "Nothing: the simulator explains that play as it is.",
     "parameters_only": "Nothing: the simulator's laws explain that play, with other constants.",
-    "undetermined": "Nothing: that play does not settle whether physics is missing.",
+    "undetermined": "It cannot tell: that play does not settle whether physics is missing.",
 }
 
 

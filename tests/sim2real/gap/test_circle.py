@@ -16,7 +16,7 @@ from puckpilot import main
 from puckpilot_env.options.at_table import AT_TABLE
 from sim2real.gap import film, tuning
 from sim2real.gap.circle import Circle
-from sim2real.gap.circle_folder import Conditions
+from sim2real.gap.circle_folder import Conditions, keep_conditions, keep_training
 from sim2real.table import meetings
 from tests.agents.training.tiny import TINY
 from tests.sim2real.gap.test_against_truth import finding
@@ -92,8 +92,8 @@ def test_an_arm_is_fine_tuned_and_plays_games_of_the_same_seeds(
 
 
 def test_a_folder_of_another_circle_is_refused(tmp_path: Path) -> None:
-    circle(tmp_path)
-    with pytest.raises(ValueError, match=r"has a circle with table none; give the same, or name another --out"):
+    keep_conditions(tmp_path, circle(tmp_path).folder.conditions)
+    with pytest.raises(ValueError, match=r"has a circle with --table none; give the same, or name another --out"):
         circle(tmp_path, table="warp")
 
 
@@ -101,10 +101,11 @@ def test_players_that_several_tables_share_are_of_one_training(tmp_path: Path) -
     def of(table: str, **others: Any) -> None:
         conditions = replace(CONDITIONS, table=table, **others)
         Circle(tmp_path / table, conditions, 1, lambda line: None, tmp_path / "of_any_table")
+        keep_training(tmp_path / "of_any_table", conditions)
 
     of("walls")
     of("warp", games=4)
-    with pytest.raises(ValueError, match=r"of_any_table has players with minutes 1\.0; give the same, or name another"):
+    with pytest.raises(ValueError, match=r"of_any_table has players with --minutes 1; give the same, or name another"):
         of("late", minutes=2.0)
 
 
@@ -123,6 +124,9 @@ def test_a_folder_of_another_version_is_refused(text: str, tmp_path: Path) -> No
         (["--recorded", "50"], "--recorded is 50"),
         (["--minutes", "0"], "--minutes is 0"),
         (["--steps", "0"], "--steps is 0"),
+        (["--steps", "40000"], "--steps is 40,000; expected 1,310,720 or more: in fewer the critic alone learns"),
+        (["--games", "5"], "--games is 5; expected 6 or more, two against each of interceptor, follower, bank_shot"),
+        (["--stage", "tune"], "has no diagnosis yet; run the stage 'diagnose' first"),
         (["--steps", "9", "--minutes", "3"], "--minutes and --steps are both given"),
         (["nobody"], "nobody"),
     ],

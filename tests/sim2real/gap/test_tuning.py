@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 from subprocess import CompletedProcess
@@ -10,9 +11,11 @@ import pytest
 
 pytest.importorskip("unicorn", reason="unicorn is not installed: the program cannot be emulated")
 
+from puckpilot import main
 from sim2real.gap import tuning
 from sim2real.gap.circle_folder import CircleFolder
 from sim2real.gap.tuning import fine_tune, untrained
+from tests.places import ROOT
 from tests.sim2real.gap.test_stages import CONDITIONS
 
 ARMS = ["allowing", "unchanged", "randomized", "truth"]
@@ -67,3 +70,18 @@ def test_a_run_goes_on_for_what_is_left(folder: CircleFolder, commands: list[lis
     fine_tune(folder, ["unchanged"], 1)
     (words,) = commands
     assert "--resume" in words and "--start" not in words and words[words.index("--minutes") + 1] == "0.5"
+
+
+def test_fewer_steps_than_the_preset_needs_to_teach_the_player_are_refused() -> None:
+    preset = tomllib.loads((ROOT / "agents" / "presets" / f"{tuning.PRESET}.toml").read_text())
+    round_steps = preset["round"] * preset["steps"] * preset["tables"]
+    assert (preset["critic_rounds"] + 1) * round_steps == tuning.FEWEST_STEPS
+
+
+def test_training_without_its_packages_is_refused_in_one_line(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    monkeypatch.setattr(tuning.importlib.util, "find_spec", lambda name: None)
+    assert main(["gap", "--arms", "truth", "--out", str(tmp_path / "out")]) == 2
+    assert "needs rsl_rl; install it with: pip install 'puckpilot[train]'" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
