@@ -11,6 +11,7 @@ from sim2real.diagnose.effect_size import effect_size
 from sim2real.diagnose.engine.cross_validation import Selection, select
 from sim2real.diagnose.engine.model_search import without, without_laws
 from sim2real.diagnose.engine.problem import Problem
+from sim2real.diagnose.profile_likelihood import with_profiles
 from sim2real.diagnose.regimes.base import TOO_LITTLE, Evidence, IdentifiedRegime, Known, Regime
 from sim2real.diagnose.result.regime_result import regime_result
 from sim2real.diagnose.result.result import RegimeResult
@@ -32,6 +33,7 @@ def identify_regime(regime: Regime, problem: Problem, evidence: Evidence, known:
     # of what the search leaves of scatter: the noise of a camera alone would make two tables of one with rough walls
     check_consistency(problem, defaults, regime.parts(problem, evidence, known))
     chosen = _drop_small_laws(regime, problem, select(problem, found, premises_hold))
+    chosen = _with_profiles(regime, problem, chosen)
     result = regime_result(regime, problem, chosen, defaults)
     if not premises_hold and (result.unexplained or result.misfit):
         chosen = Selection(chosen.cross_validation, without_laws(chosen.found), {})
@@ -44,6 +46,15 @@ def identify_regime(regime: Regime, problem: Problem, evidence: Evidence, known:
         found.unlisted is None and not found.misfit
     )  # of the search: a law that was rejected later leaves a doubt
     return _illustrated(regime, IdentifiedRegime(problem, result, chosen.found, chosen.without, explained))
+
+
+def _with_profiles(regime: Regime, problem: Problem, chosen: Selection) -> Selection:
+    """The selection with the intervals of parameters by which predictions have kinks, unless a smooth term is beside
+    them, which takes up what differs."""
+    found = chosen.found
+    if not regime.kinked or found.unlisted is not None:
+        return chosen
+    return replace(chosen, found=replace(found, law=with_profiles(problem, found.law, regime.kinked, found.clusters)))
 
 
 def _illustrated(regime: Regime, one: IdentifiedRegime) -> IdentifiedRegime:

@@ -7,7 +7,7 @@ if launches scatter by more than the sensor's noise.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -26,7 +26,8 @@ class LeastSquaresFit:
     """A fitted law: all its `values` by name, the names of the `free` parameters (k) and their `covariance` (k, k).
 
     `loss`: see `robust_loss`; `clusters`: number of fitted launches; `bound`: parameters that ended at a bound of their
-    range.
+    range; `profiles`: ends of 95 % intervals by name, where curvature does not tell
+    them (see `diagnose.profile_likelihood`).
     """
 
     values: Mapping[str, float]
@@ -35,6 +36,7 @@ class LeastSquaresFit:
     loss: float
     clusters: int
     bound: tuple[str, ...]
+    profiles: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     @property
     def directions(self) -> np.ndarray:
@@ -46,6 +48,8 @@ class LeastSquaresFit:
         """Return a free parameter with its 95 % interval, clipped to the parameter's range."""
         value, half = float(self.values[name]), self.reach({name: 1.0})
         row = BY_NAME[name]
+        if name in self.profiles:
+            return Estimate(value, *self.profiles[name], row.unit)
         low, high = max(value - half, min(row.low, value)), min(value + half, max(row.high, value))
         return Estimate(value, low, high, row.unit)
 

@@ -28,6 +28,7 @@ class EngineNumbers:
         1e-3, "of the mean loss of a residual", "rounds without effect", "choice: far below any threshold"
     )
     fit_halvings: int = tuned(3, "halvings", "residual evaluations for useless steps", "choice: an eighth of a step")
+    profile_halvings: int = tuned(5, "halvings", "a coarse end of an interval, or fits", "choice: to a thirtieth")
     exploring_rounds: int = tuned(4, "rounds", "full fits from every start", "choice: a tenth of fit_rounds")
     # forward_selection
     unit_folds: int = tuned(10, "folds", "fits to few data, or many fits", "choice: the usual number")

@@ -7,12 +7,14 @@ from dataclasses import replace
 
 import numpy as np
 
+from puckpilot_env.physics.effects import EFFECTS
 from sim2real.diagnose.engine.model_search import SearchResult
 from sim2real.diagnose.engine.problem import Problem
 from sim2real.diagnose.regimes.base import Evidence, Known
 from sim2real.diagnose.regimes.contact.base import ContactRegime, glides_of, has_glides, holdout_motions, motions
 from sim2real.diagnose.regimes.formula_words import with_formula
 from sim2real.diagnose.regimes.wall import figures
+from sim2real.diagnose.regimes.wall.candidates import FRICTION
 from sim2real.diagnose.regimes.wall.data import wall_contacts
 from sim2real.diagnose.regimes.wall.formula import readable_formula
 from sim2real.diagnose.regimes.wall.problem import WallProblem
@@ -28,6 +30,7 @@ class Wall(ContactRegime):
     lacks = "too few glides to measure bounces"
     more_of = "bounces off all four walls, thirty or more, slow and fast, steep and flat"
     shown_by = "bounces"
+    kinked = EFFECTS[FRICTION].row_names
 
     def problem(self, evidence: Evidence, known: Known) -> WallProblem | None:
         """See `Regime.problem`."""
