@@ -181,7 +181,7 @@ def test_command_in_json_and_exit_codes(capsys):
     [
         ("match-v", "unknown environment 'match-v'; did you mean 'puckpilot/match-v0'?"),
         ("chess", "unknown environment 'chess'; expected an id of the registry or \"module:attribute\""),
-        ("nowhere.at.all:env", "cannot import 'nowhere.at.all:env': No module named 'nowhere'"),
+        ("nowhere.at.all:env", "cannot import 'nowhere.at.all:env': ModuleNotFoundError: No module named 'nowhere'"),
         ("puckpilot_env.match_v0:ENV", "cannot import 'puckpilot_env.match_v0:ENV': .*ENV"),
         ("puckpilot_env.match_v0:VARIANT", "'puckpilot_env.match_v0:VARIANT' is a Variant; expected something"),
         ("puckpilot_env.match_v0:env", "expected a pettingzoo.ParallelEnv; pettingzoo.utils.aec_to_parallel"),
