@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from puckpilot import main
-from sim2real.commands import gap
 from sim2real.gap.overview import overview, read_circle
+from sim2real.gap.report import circle_words
 from sim2real.gap.report.overview_page import overview_page
 from sim2real.gap.report.overview_words import overview_lines
 from sim2real.gap.stages import LAST, STAGES, Work
@@ -144,7 +144,7 @@ def test_the_command_goes_round_several_tables_and_writes_a_page_over_them(
         seen.append((work.folder.path.name, work.folder.shared))
         (work.folder.path / "gap.json").write_text(json.dumps(circle(table, 0, 1.0, corrected=2.0)))
 
-    monkeypatch.setattr(gap, "_lines", lambda result: [])
+    monkeypatch.setattr(circle_words, "circle_lines", lambda result: [])
     for name in STAGES:
         monkeypatch.setitem(cast(dict, STAGES), name, report if name == LAST else lambda work: None)
     tables = ["--table", "walls", "--table", "late"]
