@@ -49,12 +49,14 @@ def identify_regime(regime: Regime, problem: Problem, evidence: Evidence, known:
 
 
 def _with_profiles(regime: Regime, problem: Problem, chosen: Selection) -> Selection:
-    """The selection with the intervals of parameters by which predictions have kinks, unless a smooth term is beside
-    them, which takes up what differs."""
+    """The selection with the intervals of parameters in which predictions are not smooth, unless a smooth term, which
+    takes up what differs, is beside them."""
     found = chosen.found
-    if not regime.kinked or found.unlisted is not None:
+    if not regime.nonsmooth or found.unlisted is not None:
         return chosen
-    return replace(chosen, found=replace(found, law=with_profiles(problem, found.law, regime.kinked, found.clusters)))
+    return replace(
+        chosen, found=replace(found, law=with_profiles(problem, found.law, regime.nonsmooth, found.clusters))
+    )
 
 
 def _illustrated(regime: Regime, one: IdentifiedRegime) -> IdentifiedRegime:

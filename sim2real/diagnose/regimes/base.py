@@ -83,8 +83,8 @@ class Regime:
     `lacks`: the reason to report if the regime was not tested although a camera saw a puck. `more_of`: what to record
     more of. `unit`: the unit that the holdout counts, singular and plural. `shown_by`: the segments whose residuals
     show the regime. `measured_at`: where `size` is measured. `premise`: what the regime depends on, and why that may be
-    wrong, if its `premises` do not hold. `least_size` [m]: the smallest effect that is reported. `kinked`: parameters
-    by which predictions have kinks, so that curvature does not tell their intervals.
+    wrong, if its `premises` do not hold. `least_size` [m]: the smallest effect that is reported. `nonsmooth`:
+    parameters in which predictions are not smooth, so that curvature does not tell their intervals.
     """
 
     name: str
@@ -96,7 +96,7 @@ class Regime:
     measured_at: str = ""
     premise: str = "the model of the glides, which does not fit well enough"
     least_size: float
-    kinked: tuple[str, ...] = ()
+    nonsmooth: tuple[str, ...] = ()
 
     @property
     def more(self) -> str:

@@ -38,7 +38,7 @@ def test_a_table_plays_as_the_environment_of_one(copy: bool) -> None:
             assert infos[agent]["parameters"]["friction"][0] == drawn[agent]["parameters"]["friction"]
         actions = by_agent(envs, step, 3)
         seen, rewards, terminations, truncations, now = envs.step(actions)
-        last, paid, over, cut, told = one.step({agent: actions[agent][0] for agent in AGENTS})
+        last, paid, over, cut, ending = one.step({agent: actions[agent][0] for agent in AGENTS})
         for agent in AGENTS:
             assert (rewards[agent][0], terminations[agent][0]) == (np.float32(paid[agent]), over[agent])
             assert truncations[agent][0] == cut[agent]
@@ -48,8 +48,8 @@ def test_a_table_plays_as_the_environment_of_one(copy: bool) -> None:
             for agent in AGENTS:
                 assert now[agent]["_final_obs"][0] and now[agent]["_outcome"][0]
                 np.testing.assert_array_equal(now[agent]["final_obs"][0], last[agent])
-                assert now[agent]["outcome"][0] == told[agent]["outcome"]
-                assert now[agent]["winner"][0] == told[agent]["winner"]
+                assert now[agent]["outcome"][0] == ending[agent]["outcome"]
+                assert now[agent]["winner"][0] == ending[agent]["winner"]
             expected, drawn = one.reset()
             infos = now
     assert ends >= 3

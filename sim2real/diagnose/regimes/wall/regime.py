@@ -30,7 +30,7 @@ class Wall(ContactRegime):
     lacks = "too few glides to measure bounces"
     more_of = "bounces off all four walls, thirty or more, slow and fast, steep and flat"
     shown_by = "bounces"
-    kinked = EFFECTS[FRICTION].row_names
+    nonsmooth = EFFECTS[FRICTION].row_names
 
     def problem(self, evidence: Evidence, known: Known) -> WallProblem | None:
         """See `Regime.problem`."""
