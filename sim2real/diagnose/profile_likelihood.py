@@ -1,7 +1,7 @@
 """Intervals of parameters in which the prediction is not smooth, as where a contact grips or slides.
 
 Curvature at the optimum says nothing beyond such a place: a loss that is flat to one side of it has an interval that
-reaches as far as the loss, minimized over the other parameters, stays low (Venzon and Moolgavkar, Appl. Stat. 37, 1988).
+reaches as far as the loss, minimized over the other parameters, stays low (Venzon, Moolgavkar, Appl. Stat. 37, 1988).
 """
 
 from __future__ import annotations
