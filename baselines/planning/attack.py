@@ -6,6 +6,7 @@ They differ in `shots`, where they aim.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,10 +32,13 @@ class Attacker(Player):
 
     def decide(self, state: DecodedState) -> NDArray[np.float64]:
         """See `Player.decide`."""
+        return self.plan(state, self.shots)
+
+    def plan(self, state: DecodedState, shots: Sequence[tuple[int, float]]) -> NDArray[np.float64]:
+        """Actions (n, 4): the earliest strike of any of these shots, or a block."""
         actions = np.zeros((len(state.puck), 4))
-        shots = np.array(self.shots, np.float64)
         bounds = self.seat.action_bounds.astype(np.float64)
-        _decide(state.puck, state.mallet, state.gantry_scale, self.seat.nominal, bounds, shots, actions)
+        _decide(state.puck, state.mallet, state.gantry_scale, self.seat.nominal, bounds, np.array(shots), actions)
         return actions
 
 
