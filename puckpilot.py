@@ -34,6 +34,10 @@ COMMANDS = {
     "evaluate": ("agents.commands.evaluate", "how good a player is, and whether it could play on a gantry"),
     "exploit": ("agents.commands.exploit", "how exploitable a player is: a fresh learner meets it alone"),
     "export": ("agents.commands.export", "write a policy as .npz or .onnx"),
+    "benchmark run": ("agents.commands.benchmark_run", "let algorithms learn the benchmark's tasks"),
+    "benchmark report": ("agents.commands.benchmark_report", "tables and figures of what algorithms learnt"),
+    "benchmark enter": ("agents.commands.benchmark_enter", "make a player's entry for the leaderboard"),
+    "benchmark verify": ("agents.commands.benchmark_verify", "does an entry of the leaderboard hold?"),
     "bench": ("puckpilot_env.commands.bench", "how fast the simulator is here"),
     "bench vision": ("sim2real.commands.bench_vision", "how exact and how fast the vision is here"),
     "bench diagnosis": ("sim2real.commands.bench_diagnosis", "what a diagnosis costs here, by the length of the play"),
@@ -63,7 +67,8 @@ COMMANDS = {
 
 
 # Packages that some commands alone need, and by which of the project's extras they come
-EXTRAS = {"unicorn": "emulate", "torch": "train", "rsl_rl": "train", "tensordict": "train", "sklearn": "train"}
+EXTRAS = {"unicorn": "emulate", "torch": "train", "rsl_rl": "train", "tensordict": "train", "sklearn": "train",
+          "stable_baselines3": "benchmark"}  # fmt: skip
 
 
 class _Parser(argparse.ArgumentParser):

@@ -1,0 +1,68 @@
+"""Entries of the leaderboard: what is written can be read, and what is no entry is refused in one line."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from agents.benchmark.entry import digest, read_entry, tasks_claimed, write_entry
+from agents.benchmark.evaluation import Against
+from agents.benchmark.protocol import read_protocol
+from tests.agents.policy.some_policy import made
+
+PROTOCOL = read_protocol()
+ROWS = [Against(one, 10, 7, 2, (5, 1), False) for one in PROTOCOL.evaluated_against(PROTOCOL.tasks["attack-v0"])]
+
+
+@pytest.fixture
+def entry_path(tmp_path: Path) -> Path:
+    player = made().save(tmp_path / "mine.npz")
+    made("attack-v0", seed=2).save(tmp_path / "mine.attack-v0.npz")
+    return write_entry("ours", str(player), 'PPO, "some" steps', PROTOCOL, {"attack-v0": ROWS}, tmp_path / "board")
+
+
+def test_an_entry_is_read_as_it_was_written(entry_path: Path) -> None:
+    entry = read_entry(entry_path)
+    assert (entry.name, entry.trained, entry.protocol) == ("ours", 'PPO, "some" steps', PROTOCOL.hash)
+    assert dict(entry.files) == {name: digest(entry_path.parent / name) for name in ("ours.npz", "ours.attack-v0.npz")}
+    claimed = [(one.opponent, one.games, one.won, one.lost) for one in entry.claims]
+    assert claimed == [(row.opponent, 10, 7, 2) for row in ROWS]
+    assert [task.name for task in tasks_claimed(entry, PROTOCOL)] == ["attack-v0"]
+    assert (entry_path.parent / "ours.npz").read_bytes() == (entry_path.parents[1] / "mine.npz").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("puckpilot-entry/1", "puckpilot-entry/9", "format is 'puckpilot-entry/9'; expected the line"),
+        ('name = "ours"', 'name = "../ours"', "name is '../ours'; expected that of the file, ours"),
+        ('"ours.npz" =', '"../../ours.npz" =', "expected the SHA-256 of ours.npz by its name"),
+        ('"ours.npz" =', '"other.npz" =', "files has no ours.npz, the policy"),
+        ("won = 7", "won = 9", "a claim is of [10, 9, 2] games, won and lost; expected whole numbers that fit"),
+        ("won = 7", "won = 7.5", "a claim is of [10, 7.5, 2] games"),
+        ("won = 7", "win = 7", "unknown entry of a claim 'win'; did you mean 'won'?"),
+        ("lost = 2", "", "a claim has no lost; expected task, opponent, games, won, lost"),
+    ],
+)
+def test_what_is_no_entry_is_refused_in_one_line(old: str, new: str, said: str, entry_path: Path) -> None:
+    text = entry_path.read_text(encoding="utf-8")
+    assert old in text
+    entry_path.write_text(text.replace(old, new, 1), encoding="utf-8")
+    with pytest.raises(ValueError) as error:
+        read_entry(entry_path)
+    assert said in str(error.value) and str(entry_path) in str(error.value) and "\n" not in str(error.value)
+
+
+def test_an_opponent_that_is_left_out_is_refused(entry_path: Path) -> None:
+    entry = read_entry(entry_path)
+    some = type(entry)(entry.name, entry.trained, entry.protocol, entry.files, entry.claims[:-1], entry.folder)
+    with pytest.raises(ValueError, match=r"attack-v0 is claimed against still, goalie, interceptor; expected .*corner"):
+        tasks_claimed(some, PROTOCOL)
+
+
+@pytest.mark.parametrize(("name", "player"), [("a/b", "champion"), ("ours", "nobody")])
+def test_a_name_that_is_none_and_a_player_that_is_no_policy_are_refused(name: str, player: str, tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"--name is 'a/b'|no policy 'nobody'"):
+        write_entry(name, player, "", PROTOCOL, {}, tmp_path / "board")
+    assert not (tmp_path / "board").exists()

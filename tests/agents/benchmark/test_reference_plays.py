@@ -1,0 +1,46 @@
+"""This version plays the protocol's game, and other physics, rules or observations are noticed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from agents.benchmark import reference_plays
+from agents.benchmark.reference_plays import departures, record_plays
+from puckpilot_env.tables import Tables
+
+
+def test_this_version_plays_the_protocols_game() -> None:
+    assert departures() == []
+
+
+def _tables(**options: Any) -> Callable[..., Tables]:
+    return lambda variant, count, seed: Tables(variant, count, seed=seed, **options)
+
+
+@pytest.mark.parametrize(
+    ("options", "named"),
+    [
+        ({"parameters": {"friction": 0.13}}, "observations differ by"),  # physics: 0.125 m/s^2 in the protocol
+        ({"reward": "sparse"}, "rewards differ by"),
+        ({"max_cycles": 40}, "ended differ by"),
+    ],
+)
+def test_another_game_is_noticed(options: dict[str, Any], named: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(reference_plays, "Tables", _tables(**options))
+    found = departures()
+    assert any(line.startswith("match-v0: ") and named in line for line in found)
+
+
+def test_another_observation_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    def seen_otherwise(variant: str, count: int, seed: int) -> Tables:
+        return Tables(variant.replace("match-v0", "match-sensors-v0"), count, seed=seed)
+
+    monkeypatch.setattr(reference_plays, "Tables", seen_otherwise)
+    assert any(line.startswith("match-v0: observations have shape") for line in departures())
+
+
+def test_plays_that_are_recorded_anew_are_followed(tmp_path: Any) -> None:
+    assert departures(record_plays(tmp_path / "plays.npz")) == []

@@ -1,0 +1,147 @@
+"""Honest entries hold; false claims, changed files, another protocol, and policies that do harm do not."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from agents.benchmark.entry import Claim, Entry, digest, read_entry, write_entry
+from agents.benchmark.evaluation import Against
+from agents.benchmark.protocol import read_protocol
+from agents.benchmark.sandbox import Limits
+from agents.benchmark.verify import SIGNIFICANCE, overstated, verify
+from agents.policy.network import Network
+from agents.policy.policy import SHIPPED
+from tests.agents.policy.some_policy import made
+
+PROTOCOL = read_protocol()
+DRILL = PROTOCOL.tasks["attack-v0"]
+GAMES = 100
+# Of 200 episodes the champion wins these against still, goalie, interceptor and corner_shot, as
+# `puckpilot benchmark enter champion --name champion --trained "as it is" --tasks attack-v0` says
+WON = (182, 167, 181, 181)
+
+
+def _rows(won: tuple[int, ...]) -> list[Against]:
+    opponents = PROTOCOL.evaluated_against(DRILL)
+    return [Against(one, 200, hits, 0, (0, 0), False) for one, hits in zip(opponents, won, strict=True)]
+
+
+@pytest.fixture
+def champion(tmp_path: Path) -> Entry:
+    player = str(SHIPPED / "champion.npz")
+    return read_entry(write_entry("champion", player, "shipped", PROTOCOL, {DRILL.name: _rows(WON)}, tmp_path))
+
+
+def _failed(entry: Entry, limits: Limits | None = None, games: int = GAMES) -> dict[str, str]:
+    """What does not hold, and why."""
+    return {one.what: one.words for one in verify(entry, PROTOCOL, games, 99, limits) if not one.holds}
+
+
+@pytest.mark.slow
+def test_an_honest_entry_holds_and_a_false_claim_does_not(champion: Entry) -> None:
+    seen: list[str] = []
+    findings = verify(champion, PROTOCOL, GAMES, 99, report=lambda one: seen.append(one.what))
+    assert all(one.holds for one in findings) and seen == [one.what for one in findings] and len(findings) == 4 + 4
+    weak = made(DRILL.variant).save(champion.policy.with_name("champion.attack-v0.npz"))
+    false = replace(champion, files={**champion.files, weak.name: digest(weak)})
+    failed = _failed(false)
+    assert set(failed) == {f"attack-v0 against {one}" for one in PROTOCOL.evaluated_against(DRILL)}
+    assert failed["attack-v0 against goalie"].startswith("claimed 167 won and 0 lost of 200; played ")
+
+
+def _changed(entry: Entry) -> Entry:
+    entry.policy.write_bytes(entry.policy.read_bytes() + b"0")
+    return entry
+
+
+def _missing(entry: Entry) -> Entry:
+    entry.policy.unlink()
+    return entry
+
+
+def _added(entry: Entry) -> Entry:
+    made().save(entry.folder / "champion.defence-v0.npz")
+    return entry
+
+
+@pytest.mark.parametrize(
+    ("change", "what", "words"),
+    [
+        (lambda one: replace(one, protocol="0" * 16), "protocol", f"{'0' * 16}, here is {PROTOCOL.hash}"),
+        (_changed, "champion.npz", "is not the file that was entered"),
+        (_missing, "champion.npz", "is not there"),
+        (_added, "champion.defence-v0.npz", "is not listed in the entry"),
+    ],
+)
+def test_nothing_is_played_of_another_protocol_or_file(
+    change: Callable[[Entry], Entry], what: str, words: str, champion: Entry, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("agents.benchmark.verify.play_in_sandbox", lambda *args: pytest.fail("it was played"))
+    assert _failed(change(champion)) == {what: words}
+
+
+def test_an_entry_does_not_hold_where_another_game_is_played(champion: Entry, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("agents.benchmark.verify.departures", lambda: ["match-v0: rewards differ"])
+    assert _failed(champion) == {"game": "match-v0: rewards differ"}
+
+
+def _entered(file: Path, save: Callable[[Path], object]) -> Entry:
+    save(file)
+    claims = [Claim(DRILL.name, one, 200, 100, 0) for one in PROTOCOL.evaluated_against(DRILL)]
+    return Entry(file.stem, "", PROTOCOL.hash, {file.name: digest(file)}, claims, file.parent)
+
+
+def _large(file: Path) -> Path:
+    """A policy of eight layers of 2048: 115 MB, and as many multiplications for each decision."""
+    policy, rng = made(DRILL.variant), np.random.default_rng(0)
+    sizes = [policy.network.sizes[0], *[2048] * 8, 4]
+    weights = [rng.normal(0.0, 0.01, (b, a)).astype(np.float32) for a, b in pairwise(sizes)]
+    network = Network(weights, [np.zeros(size, np.float32) for size in sizes[1:]])
+    return replace(policy, network=network).save(file)
+
+
+@pytest.mark.slow
+def test_a_policy_that_hangs_is_ended(tmp_path: Path) -> None:
+    failed = _failed(_entered(tmp_path / "slow.npz", _large), Limits(seconds=15.0), games=10_000)
+    assert failed == {"attack-v0": "did not end within 15 s"}
+
+
+@pytest.mark.slow
+def test_a_policy_that_floods_memory_is_ended(tmp_path: Path) -> None:
+    entry = _entered(tmp_path / "large.npz", _large)
+    most = 700 << 20  # of which Python and the simulator take half
+    assert list(_failed(entry, Limits(memory=most))) == ["attack-v0"]
+    small = _entered(tmp_path / "small.npz", made(DRILL.variant).save)
+    played = [one.what for one in verify(small, PROTOCOL, 2, 99, Limits(memory=most)) if "against" in one.what]
+    assert len(played) == 4  # so it is the policy that took too much
+
+
+@pytest.mark.slow
+def test_a_file_that_unfolds_to_more_than_a_policy_may_have_is_refused(tmp_path: Path) -> None:
+    def bomb(file: Path) -> None:
+        np.savez_compressed(file, head=np.array("{}"), weights_0=np.zeros((1 << 15, 1 << 12), np.float32))
+
+    failed = _failed(_entered(tmp_path / "bomb.npz", bomb))
+    assert failed["attack-v0"].startswith("cannot play: ") and (tmp_path / "bomb.npz").stat().st_size < 1 << 20
+
+
+def test_a_claim_is_refuted_where_it_is_more_than_chance_gives() -> None:
+    level = SIGNIFICANCE / 8
+    assert not overstated((180, 200), (170, 200), False, level)
+    assert overstated((180, 200), (140, 200), False, level)
+    assert not overstated((140, 200), (180, 200), False, level)  # who claims less than is reached is honest
+    assert overstated((160, 200), (120, 200), False, level) and not overstated((160, 200), (120, 200), True, level)
+
+
+def test_honest_claims_are_seldom_refused() -> None:
+    """Drawn anew 4,000 times, at a level at which some are: not more than that."""
+    rng, level = np.random.default_rng(5), 0.02
+    drawn = rng.binomial(200, rng.uniform(0.05, 0.95, (4000, 1)), (4000, 2))
+    refused = sum(overstated((int(a), 200), (int(b), 200), False, level) for a, b in drawn)
+    assert 0 < refused <= level * 4000
