@@ -70,10 +70,7 @@ def scores(outcomes: Sequence[Outcome], kept_out: str, against_kept_out: bool = 
 def task_row(outcomes: Sequence[Outcome], kept_out: str) -> dict[str, Any]:
     """One algorithm on one task: IQM over seeds and opponents, that against the player kept out, and when its learning
     curves reached LEVELS."""
-    one = outcomes[0]
     return {
-        "algorithm": one["algorithm"],
-        "task": one["task"],
         "seeds": len(outcomes),
         "score": _estimate(scores(outcomes, kept_out)),
         "against_kept_out": _estimate(scores(outcomes, kept_out, against_kept_out=True)),
@@ -90,7 +87,6 @@ def overall_row(outcomes: Sequence[Outcome], kept_out: str, tasks: Sequence[str]
         return None
     means = np.column_stack([one.mean(axis=1) for one in of_tasks])
     return {
-        "algorithm": outcomes[0]["algorithm"],
         "seeds": len(means),
         "score": _estimate(means),
         "median": float(np.median(means)),

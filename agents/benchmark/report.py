@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,22 +21,25 @@ HEADINGS = ("algorithm", "seeds", "score", "against the player kept out", "learn
 
 
 def summary(outcomes: Sequence[Outcome], protocol: Protocol) -> dict[str, Any]:
-    """The rows of all tables, as JSON can hold them."""
+    """The rows of all tables, by task and algorithm, as JSON can hold them; `overall` has those algorithms alone that
+    learnt each task as often."""
     tasks = aggregate.tasks_of(outcomes)
     names = aggregate.algorithms_of(outcomes)
     runs_of = {name: aggregate.of_algorithm(outcomes, name) for name in names}
-    per_task = [
-        aggregate.task_row(runs, protocol.kept_out)
+    per_task = {
+        task: {
+            name: aggregate.task_row(runs, protocol.kept_out)
+            for name in names
+            if (runs := aggregate.of_task(runs_of[name], task))
+        }
         for task in tasks
-        for name in names
-        if (runs := aggregate.of_task(runs_of[name], task))
-    ]
-    overall = [aggregate.overall_row(runs, protocol.kept_out, tasks) for runs in runs_of.values()]
+    }
+    overall = {name: aggregate.overall_row(runs, protocol.kept_out, tasks) for name, runs in runs_of.items()}
     return {
         "protocol": protocol.hash,
         "budget": outcomes[0]["budget"],
         "tasks": per_task,
-        "overall": [row for row in overall if row],
+        "overall": {name: row for name, row in overall.items() if row},
     }
 
 
@@ -51,13 +54,12 @@ def write_report(root: Path, outcomes: Sequence[Outcome], found: dict[str, Any])
     return [page, curves, profiles, raw]
 
 
-def rows_of(found: dict[str, Any], task: str) -> list[tuple[str, ...]]:
+def rows_of(found: Mapping[str, Any], task: str) -> list[tuple[str, ...]]:
     """The rows of a task's table, as words under HEADINGS."""
     return [
-        (row["algorithm"], str(row["seeds"]), interval(row["score"]), interval(row["against_kept_out"]),
-         f"{row['seconds']:.0f}")
-        for row in found["tasks"] if row["task"] == task
-    ]  # fmt: skip
+        (name, str(row["seeds"]), interval(row["score"]), interval(row["against_kept_out"]), f"{row['seconds']:.0f}")
+        for name, row in found["tasks"][task].items()
+    ]
 
 
 def interval(estimate: dict[str, Any]) -> str:
@@ -76,12 +78,12 @@ def page_of(found: dict[str, Any]) -> str:
         "a match, of jobs done in a drill. Each figure is the interquartile mean over seeds and opponents, with its "
         "95 % interval by a stratified bootstrap; a single seed has none.", "",
     ]  # fmt: skip
-    for task in dict.fromkeys(row["task"] for row in found["tasks"]):
+    for task in found["tasks"]:
         lines += [f"## {task}", "", *_markdown(HEADINGS, rows_of(found, task)), "", *_reached_words(found, task)]
     if found["overall"]:
         rows = [
-            (row["algorithm"], str(row["seeds"]), interval(row["score"]), f"{100 * row['median']:.1f} %")
-            for row in found["overall"]
+            (name, str(row["seeds"]), interval(row["score"]), f"{100 * row['median']:.1f} %")
+            for name, row in found["overall"].items()
         ]
         lines += ["## All tasks", "", *_markdown(("algorithm", "seeds", "score", "median"), rows), ""]
     lines += ["![Learning curves](curves.png)", "", "![Performance profiles](profiles.png)", ""]
@@ -94,9 +96,9 @@ def _markdown(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> list[st
 
 def _reached_words(found: dict[str, Any], task: str) -> list[str]:
     lines = [
-        f"- {row['algorithm']} reached {100 * float(level):g} % against {opponent} in {at['seeds']} of {row['seeds']} "
+        f"- {name} reached {100 * float(level):g} % against {opponent} in {at['seeds']} of {row['seeds']} "
         f"seeds, after {at['seconds']:.0f} s and {at['steps']:,} steps (medians)"
-        for row in found["tasks"] if row["task"] == task
+        for name, row in found["tasks"][task].items()
         for opponent, levels in row["reached"].items() for level, at in levels.items()
     ]  # fmt: skip
     return [*lines, ""] if lines else []

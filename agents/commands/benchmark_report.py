@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import json
 from pathlib import Path
+from typing import Any
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -37,16 +38,14 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _print(found: dict[str, object]) -> None:
+def _print(found: dict[str, Any]) -> None:
     from rich import box
     from rich.table import Table
 
     from agents.benchmark.report import HEADINGS, rows_of
     from baselines.commands.options import console_for
 
-    rows = found["tasks"]
-    assert isinstance(rows, list)
-    for task in dict.fromkeys(row["task"] for row in rows):
+    for task in found["tasks"]:
         table = Table(title=task, box=box.SIMPLE_HEAD, title_justify="left")
         table.add_column(HEADINGS[0], no_wrap=True)
         for heading in HEADINGS[1:]:

@@ -27,7 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", type=Path, default=OUT, metavar="DIR", help=f"({OUT})")
     parser.add_argument("--workers", type=int, default=1, metavar="K", help="trainings at once (1)")
     parser.add_argument("--cluster", metavar="ADDRESS", help="train on a Ray cluster instead; `local` starts one here")
-    parser.add_argument("--json", action="store_true", help="print the outcomes as one JSON object")
+    parser.add_argument("--json", action="store_true", help="print outcomes and tables as one JSON object")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -39,6 +39,7 @@ def run(args: argparse.Namespace) -> int:
         return 0
     protocol = read_protocol()
     from agents.benchmark.algorithms import algorithm_names
+    from agents.benchmark.report import summary
     from agents.benchmark.training import jobs_of, run_job
     from agents.evaluation.fan_out import fan_out
     from baselines.commands.options import progress_bar
@@ -56,7 +57,7 @@ def run(args: argparse.Namespace) -> int:
             outcomes.append(outcome)
             progress(len(outcomes), len(jobs))
     if args.json:
-        print(json.dumps({"protocol": protocol.hash, "outcomes": outcomes}, indent=1))
+        print(json.dumps({**summary(outcomes, protocol), "outcomes": outcomes}, indent=1))
     else:
         _print(args.out, len(outcomes))
     return 0
