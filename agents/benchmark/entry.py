@@ -141,12 +141,14 @@ def write_entry(
 
 
 def tasks_claimed(entry: Entry, protocol: Protocol) -> list[Task]:
-    """The tasks of the protocol of which the entry claims something. ValueError, in one line, for another, and where
-    an opponent of the evaluation is left out or is none of them."""
+    """The tasks of the protocol of which the entry claims something. ValueError, in one line, for another, where an
+    opponent of the evaluation is left out or is none of them, and for claims of fewer games, which prove nothing."""
     tasks = protocol.chosen(entry.tasks)
     for task in tasks:
         claimed = [claim.opponent for claim in entry.claims_of(task.name)]
         expected = protocol.evaluated_against(task)
         if sorted(claimed) != sorted(expected):
             raise ValueError(f"{task.name} is claimed against {', '.join(claimed)}; expected {', '.join(expected)}")
+        if other := [claim.games for claim in entry.claims_of(task.name) if claim.games != protocol.games]:
+            raise ValueError(f"{task.name} is claimed of {other[0]} games; expected {protocol.games}")
     return tasks

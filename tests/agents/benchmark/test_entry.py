@@ -12,7 +12,7 @@ from agents.benchmark.protocol import read_protocol
 from tests.agents.policy.some_policy import made
 
 PROTOCOL = read_protocol()
-ROWS = [Against(one, 10, 7, 2, (5, 1), False) for one in PROTOCOL.evaluated_against(PROTOCOL.tasks["attack-v0"])]
+ROWS = [Against(one, 200, 70, 20, (50, 10), False) for one in PROTOCOL.evaluated_against(PROTOCOL.tasks["attack-v0"])]
 
 
 @pytest.fixture
@@ -27,7 +27,7 @@ def test_an_entry_is_read_as_it_was_written(entry_path: Path) -> None:
     assert (entry.name, entry.trained, entry.protocol) == ("ours", 'PPO, "some" steps', PROTOCOL.hash)
     assert dict(entry.files) == {name: digest(entry_path.parent / name) for name in ("ours.npz", "ours.attack-v0.npz")}
     claimed = [(one.opponent, one.games, one.won, one.lost) for one in entry.claims]
-    assert claimed == [(row.opponent, 10, 7, 2) for row in ROWS]
+    assert claimed == [(row.opponent, 200, 70, 20) for row in ROWS]
     assert [task.name for task in tasks_claimed(entry, PROTOCOL)] == ["attack-v0"]
     assert (entry_path.parent / "ours.npz").read_bytes() == (entry_path.parents[1] / "mine.npz").read_bytes()
 
@@ -39,10 +39,10 @@ def test_an_entry_is_read_as_it_was_written(entry_path: Path) -> None:
         ('name = "ours"', 'name = "../ours"', "name is '../ours'; expected that of the file, ours"),
         ('"ours.npz" =', '"../../ours.npz" =', "expected the SHA-256 of ours.npz by its name"),
         ('"ours.npz" =', '"other.npz" =', "files has no ours.npz, the policy"),
-        ("won = 7", "won = 9", "a claim is of [10, 9, 2] games, won and lost; expected whole numbers that fit"),
-        ("won = 7", "won = 7.5", "a claim is of [10, 7.5, 2] games"),
-        ("won = 7", "win = 7", "unknown entry of a claim 'win'; did you mean 'won'?"),
-        ("lost = 2", "", "a claim has no lost; expected task, opponent, games, won, lost"),
+        ("won = 70", "won = 190", "a claim is of [200, 190, 20] games, won and lost; expected whole numbers that fit"),
+        ("won = 70", "won = 7.5", "a claim is of [200, 7.5, 20] games"),
+        ("won = 70", "win = 70", "unknown entry of a claim 'win'; did you mean 'won'?"),
+        ("lost = 20", "", "a claim has no lost; expected task, opponent, games, won, lost"),
     ],
 )
 def test_what_is_no_entry_is_refused_in_one_line(old: str, new: str, said: str, entry_path: Path) -> None:
@@ -59,6 +59,13 @@ def test_an_opponent_that_is_left_out_is_refused(entry_path: Path) -> None:
     some = type(entry)(entry.name, entry.trained, entry.protocol, entry.files, entry.claims[:-1], entry.folder)
     with pytest.raises(ValueError, match=r"attack-v0 is claimed against still, goalie, interceptor; expected .*corner"):
         tasks_claimed(some, PROTOCOL)
+
+
+def test_a_claim_of_few_games_is_refused(entry_path: Path) -> None:
+    text = entry_path.read_text(encoding="utf-8").replace("games = 200", "games = 90", 1)
+    entry_path.write_text(text, encoding="utf-8")
+    with pytest.raises(ValueError, match=r"attack-v0 is claimed of 90 games; expected 200"):
+        tasks_claimed(read_entry(entry_path), PROTOCOL)
 
 
 @pytest.mark.parametrize(("name", "player"), [("a/b", "champion"), ("ours", "nobody")])

@@ -15,9 +15,9 @@ from tests.test_command import refused
 
 
 @pytest.fixture
-def short(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Evaluations of four games."""
-    protocol = replace(read_protocol(), games=4)
+def short(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Evaluations of few games."""
+    protocol = replace(read_protocol(), games=getattr(request, "param", 4))
     for module in ("agents.benchmark.protocol", "agents.benchmark.training"):
         monkeypatch.setattr(f"{module}.read_protocol", lambda: protocol)
 
@@ -44,16 +44,17 @@ def test_trainings_are_kept_and_reported(tmp_path: Path, capsys: pytest.CaptureF
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("short")
+@pytest.mark.parametrize("short", [100], indirect=True)
 def test_an_entry_is_made_and_holds_until_it_claims_more(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     player = str(made("attack-v0").save(tmp_path / "mine.npz"))
     words = ["benchmark", "enter", player, "--name", "ours", "--trained", "not at all", "--tasks", "attack-v0"]
     assert puckpilot.main([*words, "--out", str(tmp_path / "board")]) == 0
     entry = tmp_path / "board" / "ours.toml"
     assert str(entry) in capsys.readouterr().out
-    check = ["benchmark", "verify", str(entry.with_suffix("")), "--games", "100", "--seed", "3", "--json"]
+    check = ["benchmark", "verify", str(entry.with_suffix("")), "--seed", "3", "--json"]
     assert puckpilot.main(check) == 0 and json.loads(capsys.readouterr().out)["holds"] is True
-    text = entry.read_text(encoding="utf-8").replace("games = 4\n", "games = 400\n")
-    lines = ["won = 400" if line.startswith("won = ") else line for line in text.splitlines()]
+    text = entry.read_text(encoding="utf-8")
+    lines = ["won = 100" if line.startswith("won = ") else line for line in text.splitlines()]
     lines = ["lost = 0" if line.startswith("lost = ") else line for line in lines]
     entry.write_text("\n".join(lines), encoding="utf-8")
     assert puckpilot.main(check) == 1
