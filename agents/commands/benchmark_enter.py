@@ -26,6 +26,7 @@ def run(args: argparse.Namespace) -> int:
     """0: written. ValueError, in one line, for what cannot be entered."""
     from agents.benchmark.entry import NAME, write_entry
     from agents.benchmark.evaluation import evaluate
+    from agents.benchmark.leaderboard import write_page
     from agents.benchmark.protocol import read_protocol
     from agents.policy.policy import PREFIX, find_policy_player
     from baselines.commands.options import progress_bar
@@ -52,5 +53,6 @@ def run(args: argparse.Namespace) -> int:
     path = write_entry(args.name, args.policy, args.trained, protocol, played, args.out)
     for task, rows in played.items():
         print(f"{task:22} " + ", ".join(f"{row.opponent} {100 * row.score:.1f} %" for row in rows))
-    print(f"wrote {path}; it holds if this says so: puckpilot benchmark verify {path}")
+    page = write_page(args.out, protocol)
+    print(f"wrote {path} and {page}; it holds if this says so: puckpilot benchmark verify {path}")
     return 0
