@@ -1,7 +1,7 @@
 """An entry of the leaderboard: a TOML file beside a policy, with what the policy is claimed to reach.
 
-The policy is data, never code: NAME.npz, and NAME.TASK.npz beside it for tasks that have one of their own, as players
-by name have them (see `agents.policy.policy.variant_file`). The entry has the digest of each.
+The policy is data, never code: NAME.npz or NAME.onnx, and NAME.TASK.npz beside it for tasks that have one of their own,
+as players by name have them (see `agents.policy.policy.variant_file`). The entry has the digest of each.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ FORMAT = "puckpilot-entry/1"
 ENTRIES = ("name", "trained", "protocol", "files", "claim")
 CLAIM = ("task", "opponent", "games", "won", "lost")
 NAME = re.compile(r"[A-Za-z0-9_-]{1,40}")
-FILE = re.compile(r"[A-Za-z0-9_-]{1,40}(\.[a-z0-9-]{1,40})?\.npz")
+FILE = re.compile(r"(?P<name>[A-Za-z0-9_-]{1,40})(\.[a-z0-9-]{1,40})?\.(npz|onnx)")
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class Entry:
     @property
     def policy(self) -> Path:
         """The policy's file, which stands beside the entry's."""
-        return self.folder / f"{self.name}.npz"
+        return self.folder / next(file for file in policy_files(self.name) if file in self.files)
 
     @property
     def tasks(self) -> list[str]:
@@ -83,10 +83,11 @@ def _entry(content: Mapping[str, Any], file: Path) -> Entry:
     if not NAME.fullmatch(content["name"]) or content["name"] != file.stem:
         raise ValueError(f"name is {in_short(content['name'])}; expected that of the file, {file.stem}")
     files = content["files"]
+    whole = policy_files(content["name"])
     if not isinstance(files, Mapping) or not all(FILE.fullmatch(name) for name in files):
-        raise ValueError(f"files is {in_short(files)}; expected the SHA-256 of {content['name']}.npz by its name")
-    if f"{content['name']}.npz" not in files:
-        raise ValueError(f"files has no {content['name']}.npz, the policy")
+        raise ValueError(f"files is {in_short(files)}; expected the SHA-256 of {' or '.join(whole)} by its name")
+    if sum(name in files for name in whole) != 1:
+        raise ValueError(f"files has {in_short(list(files))}; expected either {' or '.join(whole)}, the policy")
     claims = content["claim"]
     if not isinstance(claims, list) or not claims:
         raise ValueError(f"claim is {in_short(claims)}; expected one [[claim]] or more")
@@ -107,6 +108,11 @@ def _claim(one: Any) -> Claim:
     return Claim(str(one["task"]), str(one["opponent"]), *counts)
 
 
+def policy_files(name: str) -> tuple[str, str]:
+    """What the file of an entry's policy may be named."""
+    return f"{name}.npz", f"{name}.onnx"
+
+
 def digest(file: Path) -> str:
     """SHA-256 of a file."""
     return hashlib.sha256(file.read_bytes()).hexdigest()
@@ -120,10 +126,10 @@ def write_entry(
     if not NAME.fullmatch(name):
         raise ValueError(f"--name is {in_short(name)}; expected letters, digits, - and _, at most 40")
     whole = policy_file(player)
-    found = {whole: f"{name}.npz"}
+    found = {whole: f"{name}{whole.suffix}"}
     for task in played:
         own = variant_file(whole, task)
-        found.setdefault(own, f"{name}.{task}.npz")
+        found.setdefault(own, f"{name}.{task}{whole.suffix}")
     folder.mkdir(parents=True, exist_ok=True)
     for source, target in found.items():
         if source.resolve() != (folder / target).resolve():

@@ -29,8 +29,8 @@ def page_of(entries: Sequence[Entry], protocol: Protocol) -> str:
         "# Leaderboard",
         "",
         f"Players by protocol {protocol.version} (`{protocol.hash}`): scores in per cent of points in a match, of jobs "
-        "done in a drill, as their entries claim. `puckpilot benchmark verify leaderboard/NAME` plays anew what one claims; "
-        "`puckpilot benchmark enter` makes an entry, and this page.",
+        "done in a drill, as their entries claim. `puckpilot benchmark verify leaderboard/NAME` plays anew what one "
+        "claims; `puckpilot benchmark enter` makes an entry, and this page.",
         "",
     ]
     for task in protocol.tasks.values():

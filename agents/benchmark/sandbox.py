@@ -17,7 +17,7 @@ from typing import Any
 
 from agents.benchmark.evaluation import Against, evaluate
 from agents.benchmark.protocol import Protocol, Task
-from agents.policy.policy import PolicyPlayer, load_policy
+from agents.policy.policy import find_policy_player
 
 PASSED_ON = ("PATH", "HOME", "XDG_CACHE_HOME", "NUMBA_CACHE_DIR", "PYTHONPATH", "LANG")  # of the environment
 LARGEST_FILE = 1 << 28  # bytes that it may write: compiled code of the simulator
@@ -39,7 +39,8 @@ class Limits:
 def play_in_sandbox(
     policy: Path, task: Task, protocol: Protocol, games: int, seed: int, limits: Limits
 ) -> list[Against]:
-    """Play a policy's file in a task against the protocol's opponents. SandboxError where that does not end well."""
+    """Play a policy's file, or that which is beside it for the task, against the protocol's opponents. SandboxError
+    where that does not end well."""
     request = {
         "policy": str(policy.resolve()), "task": task.name, "variant": task.variant,
         "opponents": protocol.evaluated_against(task), "games": games, "seed": seed,
@@ -71,7 +72,7 @@ def _limit(limits: Limits) -> None:
 
 
 def _play(request: Request) -> list[dict[str, Any]]:
-    player = partial(PolicyPlayer, load_policy(Path(request["policy"])))
+    player = find_policy_player(request["policy"])
     task = Task(request["variant"], ())
     rows = evaluate(player, task, request["opponents"], request["games"], request["seed"])
     return [{name: value for name, value in row.as_dict().items() if name != "score"} for row in rows]

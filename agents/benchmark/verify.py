@@ -14,12 +14,11 @@ from pathlib import Path
 import numpy as np
 from scipy.stats import fisher_exact
 
-from agents.benchmark.entry import Claim, Entry, digest, tasks_claimed
+from agents.benchmark.entry import FILE, Claim, Entry, digest, tasks_claimed
 from agents.benchmark.evaluation import Against
 from agents.benchmark.protocol import Protocol, Task
 from agents.benchmark.reference_plays import departures
 from agents.benchmark.sandbox import Limits, SandboxError, play_in_sandbox
-from agents.policy.policy import variant_file
 
 SIGNIFICANCE = 1e-3  # chance that an honest entry is refused
 TESTS = 2  # of a claim: games won, games not lost
@@ -71,7 +70,8 @@ def _game() -> Finding:
 
 
 def _files(entry: Entry) -> Iterator[Finding]:
-    beside = {one.name for one in entry.folder.glob(f"{entry.name}*.npz") if one.name.split(".")[0] == entry.name}
+    beside = {one.name for one in entry.folder.iterdir() if (match := FILE.fullmatch(one.name)) and
+              match["name"] == entry.name}  # fmt: skip
     for name, expected in entry.files.items():
         path = entry.folder / name
         if not path.is_file():
@@ -84,9 +84,8 @@ def _files(entry: Entry) -> Iterator[Finding]:
 
 
 def _task(entry: Entry, task: Task, protocol: Protocol, games: int, seed: int, limits: Limits) -> Iterator[Finding]:
-    policy = variant_file(entry.policy, task.name)
     try:
-        played = {row.opponent: row for row in play_in_sandbox(policy, task, protocol, games, seed, limits)}
+        played = {row.opponent: row for row in play_in_sandbox(entry.policy, task, protocol, games, seed, limits)}
     except SandboxError as error:
         yield Finding(task.name, False, str(error))
         return

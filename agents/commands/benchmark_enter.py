@@ -15,7 +15,7 @@ LEADERBOARD = Path("leaderboard")
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
-    parser.add_argument("policy", metavar="POLICY", help="by name, .npz file or run's folder")
+    parser.add_argument("policy", metavar="POLICY", help="by name, .npz or .onnx file, or run's folder")
     parser.add_argument("--name", required=True, metavar="NAME", help="of the entry")
     parser.add_argument("--trained", required=True, metavar="WORDS", help="how it was trained: algorithm, steps, seed")
     parser.add_argument("--tasks", nargs="+", default=[], metavar="TASK", help="only these (all of the protocol)")

@@ -21,7 +21,10 @@ VARIANTS = ("match-v0", "match-randomized-v0", "drills")
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
     parser.add_argument(
-        "policies", nargs="+", metavar="POLICY", help="a policy by name, .npz file or run's folder; or a script"
+        "policies",
+        nargs="+",
+        metavar="POLICY",
+        help="a policy by name, .npz or .onnx file, or run's folder; or a script",
     )
     parser.add_argument(
         "--games", type=int, default=100, metavar="N", help="games against each script, half from either seat (100)"

@@ -29,6 +29,7 @@ from puckpilot_env.options.inputs import in_short
 FORMAT = "puckpilot-policy-1"
 SHIPPED = Path(__file__).parents[1] / "policies"  # the folder of shipped policies; NAME.npz there is one, by its name
 PREFIX = "policy:"  # may precede a policy's name; without it a script's name means the script
+ONNX = ".onnx"  # ending of a model of any library
 OUTPUTS = 4  # target x, y and voltages x, y, before squashing
 MOST_BYTES = 1 << 28  # of all arrays; a network of eight layers of 2048 is half of it
 REAL = (np.float32, np.float64)
@@ -62,8 +63,8 @@ class Policy:
 
 def load_policy(path: Path) -> Policy:
     """Read a policy. ValueError, in one line, for a file that is no policy, is truncated, or is inconsistent."""
-    if path.suffix == ".onnx":
-        raise ValueError(f"{path} is for other programs; here the .npz of `puckpilot train` or `export` plays")
+    if path.suffix == ONNX:
+        raise ValueError(f"{path} is an ONNX model, which plays and no more; expected an .npz of `puckpilot train`")
     try:
         arrays = read_arrays(path, MOST_BYTES)
         head = small_file.parse_json(str(arrays["head"]))
@@ -135,7 +136,7 @@ def policy_names() -> list[str]:
 
 def is_policy(name: str) -> bool:
     """Whether a player's name means a policy, existing or not: by the prefix, a shipped name, or a path."""
-    as_path = name.endswith(".npz") or "/" in name or os.sep in name or Path(name).exists()
+    as_path = name.endswith((".npz", ONNX)) or "/" in name or os.sep in name or Path(name).exists()
     return name.startswith(PREFIX) or name in policy_names() or (name != "" and as_path)
 
 
@@ -164,11 +165,12 @@ def policy_file(name: str) -> Path:
 
 
 def variant_file(file: Path, variant: str) -> Path:
-    """The file to play `variant` with: NAME.VARIANT.npz in the folder of `file` (NAME.npz) if it exists, else `file`.
+    """The file to play `variant` with: NAME.VARIANT.npz in the folder of `file` (NAME.npz) if it exists, else `file`;
+    and so for .onnx.
 
     For example champion.attack-v0.npz plays attack-v0 for champion.npz.
     """
-    own = file.with_name(f"{file.stem}.{variant.rsplit('/', 1)[-1]}.npz")
+    own = file.with_name(f"{file.stem}.{variant.rsplit('/', 1)[-1]}{file.suffix}")
     return own if own.exists() else file
 
 
@@ -180,12 +182,19 @@ def find_policy(name: str) -> Policy:
 def find_policy_player(name: str) -> Callable[[Seat], Player]:
     """A function that makes the policy's player for a seat, with the file for the seat's variant (see `variant_file`).
 
-    `name` is as in `policy_file`. ValueError, in one line, if the policy cannot be loaded.
+    `name` is as in `policy_file`, or an ONNX model of any library (see `onnx_player`). ValueError, in one line, if the
+    policy cannot be loaded.
     """
     file = policy_file(name)
-    load_policy(file)  # so that a broken file is refused before any game
+    if file.suffix != ONNX:
+        load_policy(file)  # so that a broken file is refused before any game
     return partial(_make_player, file)
 
 
 def _make_player(file: Path, seat: Seat) -> Player:
-    return PolicyPlayer(load_policy(variant_file(file, seat.variant)), seat)
+    own = variant_file(file, seat.variant)
+    if own.suffix == ONNX:
+        from agents.policy.onnx_player import OnnxPlayer
+
+        return OnnxPlayer(own, seat)
+    return PolicyPlayer(load_policy(own), seat)

@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
     parser.add_argument(
-        "first", metavar="A", help="a script; a policy by name, .npz file or run's folder; or module:Class of your own"
+        "first",
+        metavar="A",
+        help="a script; a policy by name, .npz or .onnx file, or run's folder; or module:Class of your own",
     )
     parser.add_argument("second", metavar="B", help="its opponent, named likewise")
     parser.add_argument(

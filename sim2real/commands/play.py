@@ -32,7 +32,9 @@ OTHERS = {"table": "person", "replay": "recording"}  # who has the other seat, w
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
-    parser.add_argument("player", metavar="PLAYER", help="a script, or a policy by name, .npz file or run's folder")
+    parser.add_argument(
+        "player", metavar="PLAYER", help="a script, or a policy by name, .npz or .onnx file, or run's folder"
+    )
     parser.add_argument("--backend", default="twin", metavar="NAME", help="twin (default), table or replay")
     parser.add_argument("--opponent", metavar="PLAYER", help="who has the other seat of a twin (default interceptor)")
     parser.add_argument("--camera", metavar="KIND", help="of a twin: places (default) or pictures, rendered and seen")

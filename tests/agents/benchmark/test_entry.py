@@ -37,8 +37,8 @@ def test_an_entry_is_read_as_it_was_written(entry_path: Path) -> None:
     [
         ("puckpilot-entry/1", "puckpilot-entry/9", "format is 'puckpilot-entry/9'; expected the line"),
         ('name = "ours"', 'name = "../ours"', "name is '../ours'; expected that of the file, ours"),
-        ('"ours.npz" =', '"../../ours.npz" =', "expected the SHA-256 of ours.npz by its name"),
-        ('"ours.npz" =', '"other.npz" =', "files has no ours.npz, the policy"),
+        ('"ours.npz" =', '"../../ours.npz" =', "expected the SHA-256 of ours.npz or ours.onnx by its name"),
+        ('"ours.npz" =', '"other.npz" =', "expected either ours.npz or ours.onnx, the policy"),
         ("won = 70", "won = 190", "a claim is of [200, 190, 20] games, won and lost; expected whole numbers that fit"),
         ("won = 70", "won = 7.5", "a claim is of [200, 7.5, 20] games"),
         ("won = 70", "win = 70", "unknown entry of a claim 'win'; did you mean 'won'?"),

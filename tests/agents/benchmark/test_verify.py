@@ -8,7 +8,9 @@ from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
+import onnx
 import pytest
+from onnx import TensorProto, helper, numpy_helper
 
 from agents.benchmark.entry import Claim, Entry, digest, read_entry, write_entry
 from agents.benchmark.evaluation import Against
@@ -129,6 +131,59 @@ def test_a_file_that_unfolds_to_more_than_a_policy_may_have_is_refused(tmp_path:
 
     failed = _failed(_entered(tmp_path / "bomb.npz", bomb))
     assert failed["attack-v0"].startswith("cannot play: ") and (tmp_path / "bomb.npz").stat().st_size < 1 << 20
+
+
+def _looping(file: Path) -> None:
+    """An ONNX model that goes round for ever before it acts."""
+    inside = helper.make_graph(
+        [helper.make_node("Identity", [one], [f"{one}_out"]) for one in ("going", "kept")],
+        "inside",
+        [helper.make_tensor_value_info(name, kind, shape) for name, kind, shape in
+         (("round", TensorProto.INT64, []), ("going", TensorProto.BOOL, []), ("kept", TensorProto.FLOAT, ["n", 4]))],
+        [helper.make_tensor_value_info("going_out", TensorProto.BOOL, []),
+         helper.make_tensor_value_info("kept_out", TensorProto.FLOAT, ["n", 4])],
+    )  # fmt: skip
+    weights = np.zeros((17, 4), np.float32)
+    constants = {"w": weights, "rounds": np.array(1 << 62), "true": np.array(True)}
+    nodes = [
+        helper.make_node("MatMul", ["seen", "w"], ["first"]),
+        helper.make_node("Loop", ["rounds", "true", "first"], ["action"], body=inside),
+    ]
+    _save(file, nodes, constants)
+
+
+def _flooding(file: Path) -> None:
+    """An ONNX model of a few bytes that wants 16 GB."""
+    constants = {"w": np.zeros((17, 4), np.float32), "size": np.array([1 << 32]), "axis": np.array([0])}
+    nodes = [
+        helper.make_node("ConstantOfShape", ["size"], ["all"]),
+        helper.make_node("ReduceSum", ["all", "axis"], ["sum"]),
+        helper.make_node("MatMul", ["seen", "w"], ["first"]),
+        helper.make_node("Add", ["first", "sum"], ["action"]),
+    ]
+    _save(file, nodes, constants)
+
+
+def _save(file: Path, nodes: list[onnx.NodeProto], constants: dict[str, np.ndarray]) -> None:
+    ends = [helper.make_tensor_value_info(name, TensorProto.FLOAT, ["n", size])
+            for name, size in (("seen", 17), ("action", 4))]  # fmt: skip
+    held = [numpy_helper.from_array(array, name) for name, array in constants.items()]
+    graph = helper.make_graph(nodes, "g", ends[:1], ends[1:], held)
+    onnx.save(helper.make_model(graph, opset_imports=[helper.make_opsetid("", 17)], ir_version=8), str(file))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("save", "limits", "said"),
+    [
+        (_looping, Limits(seconds=15.0), "did not end within 15 s"),
+        (_flooding, Limits(), "needs more memory than it may have"),
+    ],
+)
+def test_an_onnx_model_that_hangs_or_floods_memory_is_ended(
+    save: Callable[[Path], None], limits: Limits, said: str, tmp_path: Path
+) -> None:
+    assert _failed(_entered(tmp_path / "model.onnx", save), limits, games=4) == {"attack-v0": said}
 
 
 def test_a_claim_is_refuted_where_it_is_more_than_chance_gives() -> None:
