@@ -1,7 +1,7 @@
 """Players by name. A file in `baselines/players/` is a scripted player, and its name is the player's name.
 
 Any other player is a class of the caller's own, `module:Class`, or a policy, which the package above this one finds:
-`policy:champion`, an .npz or .onnx file, or a run's folder; `agents.policy.policy.policy_file` says how one may be named.
+`policy:champion`, an .npz or .onnx file, or a run's folder; `agents.policy.policy.policy_file` says how one is named.
 
 - `player`: what a player is and what it knows; `observation_decoder`: present positions and velocities out of an
   observation.

@@ -7,18 +7,22 @@ NeurIPS 2021, as in `agents.evaluation.over_seeds`.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import norm, t, trim_mean
 
 from agents.benchmark.protocol import Protocol
 from agents.benchmark.training import read_outcome
-from agents.evaluation.over_seeds import iqm_estimate
+from agents.evaluation.over_seeds import QUARTER, RESAMPLES, iqm, iqm_estimate
 
 Outcome = Mapping[str, Any]
+CURVE_STEPS = 5  # parts of the budget, for marl-eval
 LEVELS = (0.7, 0.95)  # scores that a learning curve may reach
+TAIL = 0.025  # beyond either end of an interval
 THRESHOLDS = np.linspace(0.0, 1.0, 101)  # of a performance profile
 
 
@@ -32,11 +36,19 @@ def read_outcomes(root: Path, protocol: Protocol) -> list[Outcome]:
         if one["protocol"] != protocol.hash:
             where = f"{one['algorithm']}/{one['task']}/seed_{one['seed']}"
             raise ValueError(f"{where} is of protocol {one['protocol']}, not of {protocol.hash}, which is played here")
-    budgets = sorted({one["budget"] for one in found})
+    budgets = sorted({one["budget"] for one in found if one["budget"]})
     if len(budgets) > 1:
-        raise ValueError(f"{root} has outcomes of budgets {budgets}; expected one: they cannot be compared")
+        words = "they cannot be compared; remove some of its folders, or run each budget in an --out of its own"
+        raise ValueError(f"{root} has outcomes of budgets {budgets}: {words}")
     order = list(protocol.tasks)
+    if other := [one["task"] for one in found if one["task"] not in order]:
+        raise ValueError(f"{root} has outcomes of {other[0]}, which is no task of the protocol")
     return sorted(found, key=lambda one: (one["algorithm"], order.index(one["task"]), one["seed"]))
+
+
+def budget_of(outcomes: Iterable[Outcome]) -> int:
+    """The budget of those that learnt; 0 where none did."""
+    return max(one["budget"] for one in outcomes)
 
 
 def of_algorithm(outcomes: Iterable[Outcome], algorithm: str) -> list[Outcome]:
@@ -72,8 +84,8 @@ def task_row(outcomes: Sequence[Outcome], kept_out: str) -> dict[str, Any]:
     curves reached LEVELS."""
     return {
         "seeds": len(outcomes),
-        "score": _estimate(scores(outcomes, kept_out)),
-        "against_kept_out": _estimate(scores(outcomes, kept_out, against_kept_out=True)),
+        "score": seeds_estimate(scores(outcomes, kept_out)),
+        "against_kept_out": seeds_estimate(scores(outcomes, kept_out, against_kept_out=True)),
         "seconds": float(np.median([each["seconds"] for each in outcomes])),
         "reached": _reached(outcomes),
     }
@@ -81,14 +93,15 @@ def task_row(outcomes: Sequence[Outcome], kept_out: str) -> dict[str, Any]:
 
 def overall_row(outcomes: Sequence[Outcome], kept_out: str, tasks: Sequence[str]) -> dict[str, Any] | None:
     """One algorithm over all tasks: the IQM over seeds and tasks of the mean score against opponents, and the median
-    over all; None if it did not learn each task with as many seeds."""
+    over all, with an interval stratified by task, of which each was learnt by itself; None for a single seed, and if it
+    did not learn each task with as many."""
     of_tasks = [scores(of_task(outcomes, task), kept_out) for task in tasks]
-    if any(one.ndim < 2 or len(one) != len(of_tasks[0]) for one in of_tasks):
+    if any(one.ndim < 2 or len(one) != len(of_tasks[0]) or len(one) < 2 for one in of_tasks):
         return None
     means = np.column_stack([one.mean(axis=1) for one in of_tasks])
     return {
         "seeds": len(means),
-        "score": _estimate(means),
+        "score": iqm_estimate(means).as_dict(),
         "median": float(np.median(means)),
     }
 
@@ -99,22 +112,33 @@ def profile(outcomes: Sequence[Outcome], kept_out: str) -> NDArray[np.float64]:
     return np.mean(means[:, None] > THRESHOLDS, axis=0)
 
 
-def _estimate(of_seeds: NDArray[np.float64]) -> dict[str, float | None]:
-    """The IQM of scores (seeds, opponents or tasks) with its interval, whose ends are None for a single seed."""
-    found = iqm_estimate(of_seeds).as_dict()
-    return found if len(of_seeds) > 1 else {**found, "low": None, "high": None}
+def seeds_estimate(of_seeds: NDArray[np.float64]) -> dict[str, float | None]:
+    """The IQM of scores (seeds, opponents) with a 95 % interval, whose ends are None for a single seed.
+
+    A bootstrap of whole seeds, since the scores of a player against several opponents go together; widened by Student's
+    t and the degrees of freedom, as a bootstrap of few is too narrow.
+    """
+    count = len(of_seeds)
+    value = iqm(of_seeds)
+    if count == 1:
+        return {"value": value, "low": None, "high": None}
+    drawn = np.random.default_rng(0).integers(count, size=(RESAMPLES, count))
+    resampled = trim_mean(of_seeds[drawn].reshape(RESAMPLES, -1), QUARTER, axis=1)
+    low, high = np.quantile(resampled, [TAIL, 1.0 - TAIL])
+    widen = np.sqrt(count / (count - 1)) * t.ppf(1.0 - TAIL, count - 1) / norm.ppf(1.0 - TAIL)
+    ends = np.clip([value + widen * (low - value), value + widen * (high - value)], 0.0, 1.0)
+    return {"value": value, "low": float(ends[0]), "high": float(ends[1])}
 
 
 def _reached(outcomes: Sequence[Outcome]) -> dict[str, dict[str, dict[str, float | int]]]:
-    """For each opponent and each of LEVELS: in how many seeds the curve reached it, and the median of these seeds'
-    seconds of learning and agent steps. None is there for a level that no seed reached."""
+    """For each opponent and each of LEVELS: in how many seeds the curve reached it, at two points in a row, and the
+    median over these seeds of the seconds of learning and the agent steps at the first. None is there for a level that
+    no seed reached."""
     found: dict[str, dict[str, dict[str, float | int]]] = {}
     opponents = outcomes[0]["curve"][0]["scores"] if outcomes[0]["curve"] else {}
     for opponent in opponents:
         for level in LEVELS:
-            first = [
-                next((point for point in one["curve"] if point["scores"][opponent] >= level), None) for one in outcomes
-            ]
+            first = [_first(one["curve"], opponent, level) for one in outcomes]
             there = [point for point in first if point]
             if there:
                 found.setdefault(opponent, {})[f"{level:g}"] = {
@@ -125,20 +149,33 @@ def _reached(outcomes: Sequence[Outcome]) -> dict[str, dict[str, dict[str, float
     return found
 
 
-def as_marl_eval(outcomes: Sequence[Outcome]) -> dict[str, Any]:
+def _first(curve: Sequence[Mapping[str, Any]], opponent: str, level: float) -> Mapping[str, Any] | None:
+    both = (two for two in pairwise(curve) if min(point["scores"][opponent] for point in two) >= level)
+    return next(both, (None, None))[0]
+
+
+def as_marl_eval(outcomes: Sequence[Outcome], kept_out: str) -> dict[str, Any]:
     """The outcomes as the JSON that marl-eval reads (Gorsane et al., NeurIPS 2022): environment, task, algorithm, seed,
-    steps; the metric `score` has a value for each opponent."""
+    steps. The metric `score` has a value for each opponent, `score_kept_out` that against the player kept out.
+
+    It wants the same steps of every run, so these are parts of the budget, CURVE_STEPS, with the newest point of the
+    curve by then; what has no curve is left out.
+    """
     tree: dict[str, Any] = {}
     for one in outcomes:
+        if not one["curve"]:
+            continue
         runs = tree.setdefault(one["task"], {}).setdefault(one["algorithm"], {})
-        run = {
-            f"step_{number}": {
-                "step_count": point["steps"],
-                "elapsed_time": point["seconds"],
-                "score": list(point["scores"].values()),
-            }
-            for number, point in enumerate(one["curve"])
+        run: dict[str, Any] = {f"step_{k}": _part(one, k + 1) for k in range(CURVE_STEPS)}
+        run["absolute_metrics"] = {
+            "score": scores([one], kept_out)[0].tolist(),
+            "score_kept_out": scores([one], kept_out, against_kept_out=True)[0].tolist(),
         }
-        run["absolute_metrics"] = {"score": [row["score"] for row in one["evaluation"]]}
         runs[f"seed_{one['seed']}"] = run
     return {"puckpilot": tree}
+
+
+def _part(outcome: Outcome, part: int) -> dict[str, Any]:
+    steps = outcome["budget"] * part // CURVE_STEPS
+    point = next((each for each in reversed(outcome["curve"]) if each["steps"] <= steps), outcome["curve"][0])
+    return {"step_count": steps, "elapsed_time": point["seconds"], "score": list(point["scores"].values())}

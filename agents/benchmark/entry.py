@@ -9,17 +9,17 @@ from __future__ import annotations
 import hashlib
 import json
 import re
-import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from agents.benchmark.evaluation import Against
 from agents.benchmark.protocol import Protocol, Task
-from agents.policy.policy import policy_file, variant_file
+from agents.policy.policy import MOST_BYTES, policy_file, variant_file
+from puckpilot_env.files.small_file import check_regular
 from puckpilot_env.files.toml_file import check_format, read_toml, refuse_unknown
-from puckpilot_env.files.whole_file import write_text_whole
+from puckpilot_env.files.whole_file import write_text_whole, write_whole
 from puckpilot_env.options.inputs import in_short
 
 FORMAT = "puckpilot-entry/1"
@@ -113,42 +113,69 @@ def policy_files(name: str) -> tuple[str, str]:
     return f"{name}.npz", f"{name}.onnx"
 
 
-def digest(file: Path) -> str:
-    """SHA-256 of a file."""
-    return hashlib.sha256(file.read_bytes()).hexdigest()
+def digest(content: bytes) -> str:
+    """SHA-256 of a file's content."""
+    return hashlib.sha256(content).hexdigest()
 
 
-def write_entry(
-    name: str, player: str, trained: str, protocol: Protocol, played: Mapping[str, Sequence[Against]], folder: Path
-) -> Path:
-    """Write an entry, and beside it the policy of a player with its files for the tasks that were `played`; the
-    entry's path. ValueError, in one line, for a name that is none, and for a player that is no policy."""
+def read_policy_file(file: Path) -> bytes:
+    """The content of a file of a policy. ValueError for one that is too large, a link, a device or a pipe; OSError
+    where it cannot be read."""
+    if file.is_symlink():
+        raise ValueError(f"{file} is a link")
+    check_regular(file, MOST_BYTES)
+    return file.read_bytes()
+
+
+def copy_policy(player: str, name: str, tasks: Iterable[Task], folder: Path) -> dict[str, bytes]:
+    """Copy a player's policy, and its files for these tasks, into a folder, as those of an entry of this name; their
+    contents by name. ValueError, in one line, for a name that is none, and for a player that is no policy."""
     if not NAME.fullmatch(name):
         raise ValueError(f"--name is {in_short(name)}; expected letters, digits, - and _, at most 40")
     whole = policy_file(player)
-    found = {whole: f"{name}{whole.suffix}"}
-    for task in played:
-        own = variant_file(whole, task)
-        found.setdefault(own, f"{name}.{task}{whole.suffix}")
+    sources = {f"{name}{whole.suffix}": whole}
+    for task in tasks:
+        own = variant_file(whole, task.name)
+        if own != whole:
+            sources[f"{name}.{task.name}{whole.suffix}"] = own
+    contents = {target: source.read_bytes() for target, source in sources.items()}
+    for target, content in contents.items():
+        write_whole(folder / target, lambda draft, content=content: draft.write_bytes(content))
+    return contents
+
+
+def write_entry(
+    name: str, trained: str, protocol: Protocol, played: Mapping[str, Sequence[Against]], contents: Mapping[str, bytes],
+    folder: Path,
+) -> Path:  # fmt: skip
+    """Write an entry with its policy's files, by name, and what was `played` of each task; the entry's path. Files of
+    an earlier policy of this name are removed."""
     folder.mkdir(parents=True, exist_ok=True)
-    for source, target in found.items():
-        if source.resolve() != (folder / target).resolve():
-            shutil.copyfile(source, folder / target)
+    for old in files_of(name, folder) - set(contents):
+        (folder / old).unlink()
+    for target, content in contents.items():
+        write_whole(folder / target, lambda draft, content=content: draft.write_bytes(content))
     lines = [f'format = "{FORMAT}"', f"name = {json.dumps(name)}", f"trained = {json.dumps(trained)}"]
     lines += [f'protocol = "{protocol.hash}"', "", "[files]"]
-    lines += [f'"{target}" = "{digest(folder / target)}"' for target in found.values()]
+    lines += [f'"{target}" = "{digest(content)}"' for target, content in contents.items()]
     for task, rows in played.items():
         for row in rows:
             lines += ["", "[[claim]]", f'task = "{task}"', f'opponent = "{row.opponent}"']
             lines += [f"{part} = {getattr(row, part)}" for part in ("games", "won", "lost")]
-    path = folder / f"{name}.toml"
-    write_text_whole(path, "\n".join(lines) + "\n")
-    return path
+    return write_text_whole(folder / f"{name}.toml", "\n".join(lines) + "\n")
+
+
+def files_of(name: str, folder: Path) -> set[str]:
+    """Names of the files in a folder that would play as the policy of this name."""
+    found = {one.name: FILE.fullmatch(one.name) for one in folder.iterdir()}
+    return {one for one, match in found.items() if match and match["name"] == name}
 
 
 def tasks_claimed(entry: Entry, protocol: Protocol) -> list[Task]:
     """The tasks of the protocol of which the entry claims something. ValueError, in one line, for another, where an
     opponent of the evaluation is left out or is none of them, and for claims of fewer games, which prove nothing."""
+    for name in entry.tasks:
+        refuse_unknown([name], protocol.tasks, "task")
     tasks = protocol.chosen(entry.tasks)
     for task in tasks:
         claimed = [claim.opponent for claim in entry.claims_of(task.name)]

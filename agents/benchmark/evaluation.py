@@ -6,7 +6,7 @@ episodes that ended with the job done.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -39,29 +39,19 @@ class Against:
         return {**asdict(self), "goals": list(self.goals), "score": self.score}
 
 
-def evaluate(
-    player: Contestant,
-    task: Task,
-    opponents: Iterable[str],
-    games: int,
-    seed: int,
-    progress: Callable[[], None] | None = None,
-) -> list[Against]:
-    """Play `games`, of a match half from either seat, against each of the opponents; `progress` is called after each.
-    ValueError, in one line, for a player that cannot play."""
+def evaluate(player: Contestant, task: Task, opponents: Iterable[str], games: int, seed: int) -> list[Against]:
+    """Play `games`, of a match half from either seat, against each of the opponents. ValueError, in one line, for a
+    player that cannot play."""
     rows = []
     for opponent in opponents:
         result = play(task.variant, player, opponent, games, seed, exchange=task.is_match)
         rows.append(_of_match(opponent, result) if task.is_match else _of_drill(task, opponent, result))
-        if progress:
-            progress()
     return rows
 
 
-def evaluate_by(protocol: Protocol, player: Contestant, task: Task, seed: int | None = None) -> list[Against]:
-    """The protocol's evaluation, of its own seed or another."""
-    seed = protocol.evaluation_seed if seed is None else seed
-    return evaluate(player, task, protocol.evaluated_against(task), protocol.games, seed)
+def evaluate_by(protocol: Protocol, player: Contestant, task: Task) -> list[Against]:
+    """The protocol's evaluation."""
+    return evaluate(player, task, protocol.evaluated_against(task), protocol.games, protocol.evaluation_seed)
 
 
 def mean_score(rows: Iterable[Against]) -> float:

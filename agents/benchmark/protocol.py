@@ -21,7 +21,7 @@ from puckpilot_env.variants import Variant, find_variant
 
 FORMAT = "puckpilot-protocol/1"
 FILE = Path(__file__).with_name("protocol_v1.toml")
-ENTRIES = ("version", "seeds", "steps", "minutes", "games", "evaluation_seed", "kept_out", "task")
+ENTRIES = ("version", "seeds", "steps", "games", "evaluation_seed", "kept_out", "task")
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,6 @@ class Protocol:
     version: int
     seeds: int
     steps: tuple[int, ...]
-    minutes: float
     games: int
     evaluation_seed: int
     kept_out: str

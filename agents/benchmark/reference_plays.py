@@ -1,8 +1,9 @@
 """Reference plays: actions on every registered table and what followed, by which a protocol knows its game again.
 
 A digest of source code would change with a comment, and one of a state's bits with the processor. So actions and what
-players saw at some steps are kept in a file; the file's digest is part of the protocol's hash, and a version of the
-code plays the protocol's game if it still follows the file, within TOLERANCE.
+players saw at some steps are kept in a file, with what each opponent of an evaluation does there; the file's digest is
+part of the protocol's hash, and a version of the code plays the protocol's game if it still follows the file, within
+TOLERANCE. Half of the tables of a match are shortly before its end.
 """
 
 from __future__ import annotations
@@ -18,13 +19,17 @@ from baselines import make_player
 from baselines.player import Seat
 from puckpilot_env.files.npz_file import read_arrays
 from puckpilot_env.files.whole_file import write_whole
+from puckpilot_env.game.start import MATCH
 from puckpilot_env.tables import Tables
 from puckpilot_env.variants import all_variants
 
 PLAYS = Path(__file__).with_name("protocol_v1.npz")
 MOST_BYTES = 1 << 26
 TABLES, STEPS, EVERY, SEED = 12, 60, 10, 1  # of each variant; what is seen is kept after every tenth step
-PLAYERS = ("interceptor", "follower")  # of the first half of the tables; the other half is played at random
+PLAYERS = ("interceptor", "follower")  # of the even tables; the others are played at random
+OPPONENTS = ("still", "goalie", "interceptor", "veteran", "corner_shot")  # whose decisions in seat 1 are kept
+PARTS = ("actions", "decisions", "observations", "rewards", "ended")
+SECONDS_LEFT, POINTS = 3.0, 6  # of half of the matches, which end in the plays: by the clock, or by the next goal
 TOLERANCE = 1e-3  # in the observation's units; what processors round otherwise grows to less in six seconds
 
 Play = Mapping[str, NDArray[np.float32]]
@@ -51,7 +56,7 @@ def departures(file: Path = PLAYS) -> list[str]:
     kept = _read(file)
     found = []
     for variant in sorted({name.rsplit(".", 1)[0] for name in kept}):
-        expected = {part: kept[f"{variant}.{part}"] for part in ("actions", "observations", "rewards", "ended")}
+        expected = {part: kept[f"{variant}.{part}"] for part in PARTS}
         if f"puckpilot/{variant}" not in all_variants():
             found.append(f"{variant} is not registered")
             continue
@@ -59,7 +64,7 @@ def departures(file: Path = PLAYS) -> list[str]:
         for part, array in expected.items():
             if played[part].shape != array.shape:
                 found.append(f"{variant}: {part} have shape {played[part].shape}, in the protocol {array.shape}")
-            elif (most := float(np.abs(played[part] - array).max())) > TOLERANCE:
+            elif not (most := float(np.abs(played[part] - array).max())) <= TOLERANCE:  # NaN is no agreement
                 found.append(f"{variant}: {part} differ by up to {most:.3g} from the protocol's")
     return found
 
@@ -72,30 +77,56 @@ def _read(file: Path) -> dict[str, NDArray[np.float32]]:
 
 
 def _choose(variant: str) -> NDArray[np.float32]:
-    """Actions (STEPS, TABLES, 2, 4): of players at the first half of the tables, drawn at random at the others."""
-    tables, rng = Tables(variant, TABLES, seed=SEED), np.random.default_rng(SEED)
+    """Actions (STEPS, TABLES, 2, 4): of players at the even tables, drawn at random at the others."""
+    tables, rng = _begun(variant, TABLES), np.random.default_rng(SEED)
     players = [make_player(name, Seat.from_tables(tables)) for name in PLAYERS]
     low, high = tables.action_bounds
     actions = rng.uniform(low, high, (STEPS, TABLES, 2, 4)).astype(np.float32)
     for step in range(STEPS):
         for seat, player in enumerate(players):
-            actions[step, : TABLES // 2, seat] = player.act(tables.observations[:, seat])[: TABLES // 2]
+            actions[step, ::2, seat] = player.act(tables.observations[:, seat])[::2]
         tables.step(actions[step])
     return actions
 
 
 def _played(variant: str, actions: NDArray[np.float32]) -> Play:
-    """What follows of actions (steps, tables, 2, 4): observations (steps / EVERY, tables, 2, d) after every EVERY-th
-    step, rewards (tables, 2) and the number of ended episodes (tables,), summed over all steps."""
-    tables = Tables(variant, actions.shape[1], seed=SEED)
-    seen, rewards, ended = [], np.zeros((len(tables), 2), np.float32), np.zeros(len(tables), np.float32)
+    """What follows of actions (steps, tables, 2, 4).
+
+    After every EVERY-th step observations (steps / EVERY, tables, 2, d), and of each of OPPONENTS what it does then,
+    decisions (steps / EVERY, opponents, tables, 4); summed over all steps, rewards (tables, 2) and the number of ended
+    episodes (tables,).
+    """
+    tables = _begun(variant, actions.shape[1])
+    opponents = [make_player(name, Seat.from_tables(tables)) for name in OPPONENTS]
+    seen, decisions = [], []
+    rewards, ended = np.zeros((len(tables), 2), np.float32), np.zeros(len(tables), np.float32)
     for step, chosen in enumerate(actions, 1):
+        decided = [opponent.act(tables.observations[:, 1]) for opponent in opponents]
         tables.step(chosen)
         rewards += tables.rewards
         ended += tables.terminated | tables.truncated
         if step % EVERY == 0:
             seen.append(tables.observations.copy())
-    return {"actions": actions, "observations": np.array(seen), "rewards": rewards, "ended": ended}
+            decisions.append(decided)
+    return {
+        "actions": actions,
+        "decisions": np.array(decisions, np.float32),
+        "observations": np.array(seen),
+        "rewards": rewards,
+        "ended": ended,
+    }
+
+
+def _begun(variant: str, count: int) -> Tables:
+    """Tables of which, in a match, every fourth is shortly before the clock runs out and every fourth before the last
+    point."""
+    tables = Tables(variant, count, seed=SEED)
+    if tables.variant.game == MATCH:
+        late = tables.variant.match_time - SECONDS_LEFT
+        tables.states["time"][::4] = late
+        tables.states["steps"][::4] = round(late / tables.variant.period)
+        tables.states["score"][1::4] = POINTS
+    return tables
 
 
 def _short(variant: str) -> str:

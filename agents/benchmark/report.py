@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -37,21 +38,36 @@ def summary(outcomes: Sequence[Outcome], protocol: Protocol) -> dict[str, Any]:
     overall = {name: aggregate.overall_row(runs, protocol.kept_out, tasks) for name, runs in runs_of.items()}
     return {
         "protocol": protocol.hash,
-        "budget": outcomes[0]["budget"],
+        "budget": aggregate.budget_of(outcomes),
+        "departs": _departs(outcomes, protocol),
         "tasks": per_task,
         "overall": {name: row for name, row in overall.items() if row},
     }
 
 
-def write_report(root: Path, outcomes: Sequence[Outcome], found: dict[str, Any]) -> list[Path]:
+def _departs(outcomes: Sequence[Outcome], protocol: Protocol) -> str:
+    """In what trainings are not the protocol's, in words; "" where they are."""
+    words = []
+    budget = aggregate.budget_of(outcomes)
+    if budget and budget not in protocol.steps:
+        words.append(f"{budget:,} agent steps")
+    runs = Counter((one["algorithm"], one["task"]) for one in outcomes if one["budget"])
+    if runs and min(runs.values()) < protocol.seeds:
+        words.append(f"{min(runs.values())} of {protocol.seeds} seeds")
+    return " and ".join(words)
+
+
+def write_report(root: Path, outcomes: Sequence[Outcome], found: dict[str, Any], kept_out: str) -> list[Path]:
     """Write report.md, curves.png, profiles.png and marl_eval.json into the folder; their paths."""
     page, raw = root / "report.md", root / "marl_eval.json"
     write_text_whole(page, page_of(found))
-    write_text_whole(raw, json.dumps(aggregate.as_marl_eval(outcomes), indent=1) + "\n")
+    write_text_whole(raw, json.dumps(aggregate.as_marl_eval(outcomes, kept_out), indent=1) + "\n")
     tasks = aggregate.tasks_of(outcomes)
-    curves = _draw(root / "curves.png", len(tasks), lambda axes: _curves(axes, outcomes, tasks))
-    profiles = _draw(root / "profiles.png", 1, lambda axes: _profiles(axes[0], outcomes))
-    return [page, curves, profiles, raw]
+    curves = _draw(root / "curves.png", len(tasks), lambda axes: _curves(axes, outcomes, tasks, kept_out))
+    compared = [one for one in outcomes if one["algorithm"] in found["overall"]]
+    if not compared:
+        return [page, curves, raw]
+    return [page, curves, _draw(root / "profiles.png", 1, lambda axes: _profiles(axes[0], compared, kept_out)), raw]
 
 
 def rows_of(found: Mapping[str, Any], task: str) -> list[tuple[str, ...]]:
@@ -72,11 +88,13 @@ def interval(estimate: dict[str, Any]) -> str:
 
 def page_of(found: dict[str, Any]) -> str:
     """The page, in Markdown."""
+    departs = f"**Not by the protocol: {found['departs']}.** " if found["departs"] else ""
     lines = [
         "# Benchmark", "",
-        f"Protocol {found['protocol']}, {found['budget']:,} agent steps of training. A score is the share of points in "
-        "a match, of jobs done in a drill. Each figure is the interquartile mean over seeds and opponents, with its "
-        "95 % interval by a stratified bootstrap; a single seed has none.", "",
+        f"Protocol {found['protocol']}, {found['budget']:,} agent steps of training. {departs}A score is the share of "
+        "points in a match, of jobs done in a drill. A figure of a task is the interquartile mean over seeds and "
+        "opponents, with its 95 % interval by a bootstrap of whole seeds; a single seed has none. Seconds of learning "
+        "include, of the first training of a process, those of compilation.", "",
     ]  # fmt: skip
     for task in found["tasks"]:
         lines += [f"## {task}", "", *_markdown(HEADINGS, rows_of(found, task)), "", *_reached_words(found, task)]
@@ -85,8 +103,17 @@ def page_of(found: dict[str, Any]) -> str:
             (name, str(row["seeds"]), interval(row["score"]), f"{100 * row['median']:.1f} %")
             for name, row in found["overall"].items()
         ]
-        lines += ["## All tasks", "", *_markdown(("algorithm", "seeds", "score", "median"), rows), ""]
-    lines += ["![Learning curves](curves.png)", "", "![Performance profiles](profiles.png)", ""]
+        lines += [
+            "## All tasks",
+            "",
+            "Of the means over opponents the interquartile mean over tasks and seeds, and the median.",
+            "",
+            *_markdown(("algorithm", "seeds", "score", "median"), rows),
+            "",
+        ]
+    lines += ["![Learning curves](curves.png)", ""]
+    if found["overall"]:
+        lines += ["![Performance profiles](profiles.png)", ""]
     return "\n".join(lines)
 
 
@@ -104,7 +131,7 @@ def _reached_words(found: dict[str, Any], task: str) -> list[str]:
     return [*lines, ""] if lines else []
 
 
-def _curves(axes: Sequence[Axes], outcomes: Sequence[Outcome], tasks: Sequence[str]) -> None:
+def _curves(axes: Sequence[Axes], outcomes: Sequence[Outcome], tasks: Sequence[str], kept_out: str) -> None:
     for one, task in zip(axes, tasks, strict=True):
         for name in aggregate.algorithms_of(outcomes):
             runs = aggregate.of_task(aggregate.of_algorithm(outcomes, name), task)
@@ -112,18 +139,19 @@ def _curves(axes: Sequence[Axes], outcomes: Sequence[Outcome], tasks: Sequence[s
                 continue
             colour = f"C{aggregate.algorithms_of(outcomes).index(name)}"
             if not runs[0]["curve"]:
-                level = np.mean([row["score"] for run in runs for row in run["evaluation"]])
+                level = aggregate.scores(runs, kept_out).mean()
                 one.axhline(float(level), color=colour, linestyle=":", label=name)
             for number, run in enumerate(run for run in runs if run["curve"]):
                 steps = [1e-6 * point["steps"] for point in run["curve"]]
                 means = [np.mean(list(point["scores"].values())) for point in run["curve"]]
                 one.plot(steps, means, color=colour, alpha=0.7, label="" if number else name)
-        one.set(title=task, xlabel="agent steps, million", ylabel="score", ylim=(-0.02, 1.02))
+        one.set(
+            title=task, xlabel="agent steps, million", ylabel="score, mean of the task's opponents", ylim=(-0.02, 1.02)
+        )
     axes[0].legend(fontsize=7)
 
 
-def _profiles(axes: Axes, outcomes: Sequence[Outcome]) -> None:
-    kept_out = outcomes[0]["evaluation"][-1]["opponent"]
+def _profiles(axes: Axes, outcomes: Sequence[Outcome], kept_out: str) -> None:
     for name in aggregate.algorithms_of(outcomes):
         axes.plot(aggregate.THRESHOLDS, aggregate.profile(aggregate.of_algorithm(outcomes, name), kept_out), label=name)
     axes.set(xlabel="score τ", ylabel="share of runs with a score above τ", ylim=(-0.02, 1.02))

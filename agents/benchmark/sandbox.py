@@ -42,7 +42,7 @@ def play_in_sandbox(
     """Play a policy's file, or that which is beside it for the task, against the protocol's opponents. SandboxError
     where that does not end well."""
     request = {
-        "policy": str(policy.resolve()), "task": task.name, "variant": task.variant,
+        "policy": str(policy.resolve()), "variant": task.variant,
         "opponents": protocol.evaluated_against(task), "games": games, "seed": seed,
     }  # fmt: skip
     environment = {name: os.environ[name] for name in PASSED_ON if name in os.environ}
@@ -55,6 +55,8 @@ def play_in_sandbox(
         )  # fmt: skip
     except subprocess.TimeoutExpired:
         raise SandboxError(f"did not end within {limits.seconds:g} s") from None
+    except (OSError, subprocess.SubprocessError) as error:
+        raise SandboxError(f"no process could be begun: {error}") from None
     if done.returncode:
         last = (done.stderr.strip().splitlines() or [f"ended with {done.returncode}"])[-1]
         raise SandboxError(last[:200])
@@ -68,7 +70,9 @@ def _limit(limits: Limits) -> None:
         (resource.RLIMIT_AS, limits.memory), (resource.RLIMIT_CPU, seconds), (resource.RLIMIT_FSIZE, LARGEST_FILE),
         (resource.RLIMIT_CORE, 0),
     ):  # fmt: skip
-        resource.setrlimit(kind, (most, most))
+        _, hard = resource.getrlimit(kind)
+        least = most if hard == resource.RLIM_INFINITY else min(most, hard)
+        resource.setrlimit(kind, (least, least))
 
 
 def _play(request: Request) -> list[dict[str, Any]]:
@@ -81,7 +85,7 @@ def _play(request: Request) -> list[dict[str, Any]]:
 if __name__ == "__main__":
     try:
         print(json.dumps(_play(json.loads(sys.argv[1]))))
-    except MemoryError:
+    except (MemoryError, ImportError):  # of a library for which there is no room any more
         raise SystemExit("needs more memory than it may have") from None
     except ValueError as error:
         raise SystemExit(f"cannot play: {error}") from None

@@ -10,11 +10,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 from scipy.stats import fisher_exact
 
-from agents.benchmark.entry import FILE, Claim, Entry, digest, tasks_claimed
+from agents.benchmark.entry import Claim, Entry, digest, files_of, read_policy_file, tasks_claimed
 from agents.benchmark.evaluation import Against
 from agents.benchmark.protocol import Protocol, Task
 from agents.benchmark.reference_plays import departures
@@ -49,13 +50,15 @@ def verify(
         findings.append(finding)
         report(finding)
 
-    for finding in (_protocol(entry, protocol), _game(), *_files(entry)):
-        add(finding)
-    if not all(one.holds for one in findings):
-        return findings
-    for task in tasks:
-        for finding in _task(entry, task, protocol, games, seed, limits or Limits()):
+    with TemporaryDirectory(prefix="puckpilot-entry-") as private:
+        for finding in (_protocol(entry, protocol), _game(), *_files(entry, Path(private))):
             add(finding)
+        if not all(one.holds for one in findings):
+            return findings
+        for task in tasks:
+            policy = Path(private) / entry.policy.name
+            for finding in _task(entry, policy, task, protocol, games, seed, limits or Limits()):
+                add(finding)
     return findings
 
 
@@ -69,23 +72,27 @@ def _game() -> Finding:
     return Finding("game", not found, found[0] if found else "this version plays the protocol's")
 
 
-def _files(entry: Entry) -> Iterator[Finding]:
-    beside = {one.name for one in entry.folder.iterdir() if (match := FILE.fullmatch(one.name)) and
-              match["name"] == entry.name}  # fmt: skip
+def _files(entry: Entry, private: Path) -> Iterator[Finding]:
+    """Copy the files as they are now, so that those which are played are those which were looked at."""
     for name, expected in entry.files.items():
-        path = entry.folder / name
-        if not path.is_file():
-            yield Finding(name, False, "is not there")
-        else:
-            same = digest(path) == expected
-            yield Finding(name, same, "as it was entered" if same else "is not the file that was entered")
-    for name in sorted(beside - set(entry.files)):
+        try:
+            content = read_policy_file(entry.folder / name)
+        except (OSError, ValueError) as error:
+            reason = error.strerror if isinstance(error, OSError) else error
+            yield Finding(name, False, f"cannot be read: {reason}")
+            continue
+        same = digest(content) == expected
+        (private / name).write_bytes(content)
+        yield Finding(name, same, "as it was entered" if same else "is not the file that was entered")
+    for name in sorted(files_of(entry.name, entry.folder) - set(entry.files)):
         yield Finding(name, False, "is not listed in the entry")
 
 
-def _task(entry: Entry, task: Task, protocol: Protocol, games: int, seed: int, limits: Limits) -> Iterator[Finding]:
+def _task(
+    entry: Entry, policy: Path, task: Task, protocol: Protocol, games: int, seed: int, limits: Limits
+) -> Iterator[Finding]:
     try:
-        played = {row.opponent: row for row in play_in_sandbox(entry.policy, task, protocol, games, seed, limits)}
+        played = {row.opponent: row for row in play_in_sandbox(policy, task, protocol, games, seed, limits)}
     except SandboxError as error:
         yield Finding(task.name, False, str(error))
         return

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 LEADERBOARD = Path("leaderboard")
 
@@ -24,33 +25,25 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """0: written. ValueError, in one line, for what cannot be entered."""
-    from agents.benchmark.entry import NAME, write_entry
-    from agents.benchmark.evaluation import evaluate
+    from agents.benchmark.entry import copy_policy, write_entry
+    from agents.benchmark.evaluation import evaluate_by
     from agents.benchmark.leaderboard import write_page
     from agents.benchmark.protocol import read_protocol
-    from agents.policy.policy import PREFIX, find_policy_player
     from baselines.commands.options import progress_bar
-    from puckpilot_env.options.inputs import in_short
+    from puckpilot_env.files.whole_file import check_folder
 
-    if not NAME.fullmatch(args.name):
-        raise ValueError(f"--name is {in_short(args.name)}; expected letters, digits, - and _, at most 40")
     protocol = read_protocol()
     tasks = protocol.chosen(args.tasks)
-    find_policy_player(args.policy)
-    player, played, done = f"{PREFIX}{args.policy.removeprefix(PREFIX)}", {}, 0
-    with progress_bar("matches") as progress:
-        total = sum(len(protocol.evaluated_against(task)) for task in tasks)
-
-        def one_more() -> None:
-            nonlocal done
-            done += 1
-            progress(done, total)
-
+    check_folder(args.out)
+    if (args.out / f"{args.name}.toml").exists():
+        raise ValueError(f"{args.out} has an entry '{args.name}'; choose another --name, or remove {args.name}.toml")
+    played = {}
+    with TemporaryDirectory(prefix="puckpilot-entry-") as private, progress_bar("tasks") as progress:
+        contents = copy_policy(args.policy, args.name, tasks, Path(private))  # a run that goes on writes others
         for task in tasks:
-            opponents = protocol.evaluated_against(task)
-            seed = protocol.evaluation_seed
-            played[task.name] = evaluate(player, task, opponents, protocol.games, seed, one_more)
-    path = write_entry(args.name, args.policy, args.trained, protocol, played, args.out)
+            played[task.name] = evaluate_by(protocol, str(Path(private) / next(iter(contents))), task)
+            progress(len(played), len(tasks))
+    path = write_entry(args.name, args.trained, protocol, played, contents, args.out)
     for task, rows in played.items():
         print(f"{task:22} " + ", ".join(f"{row.opponent} {100 * row.score:.1f} %" for row in rows))
     page = write_page(args.out, protocol)

@@ -1,7 +1,7 @@
 """Tables and figures of what algorithms learnt in `puckpilot benchmark run`.
 
-For each task and over all: the interquartile mean of the scores over seeds and opponents, with a 95 % interval by a
-stratified bootstrap, and when learning curves reached 70 and 95 % against each script. The folder gets report.md with
+For each task: the interquartile mean of the scores over seeds and opponents, with a 95 % interval by a bootstrap of
+whole seeds, and when learning curves reached 70 and 95 % against each script, if they did; and a mean over all tasks. The folder gets report.md with
 these tables, curves.png, profiles.png (performance profiles) and marl_eval.json, all raw scores as marl-eval reads
 them.
 """
@@ -29,10 +29,12 @@ def run(args: argparse.Namespace) -> int:
     protocol = read_protocol()
     outcomes = read_outcomes(args.folder, protocol)
     found = summary(outcomes, protocol)
-    written = write_report(args.folder, outcomes, found)
+    written = write_report(args.folder, outcomes, found, protocol.kept_out)
     if args.json:
         print(json.dumps(found, indent=1))
         return 0
+    if found["departs"]:
+        print(f"not by the protocol: {found['departs']}\n")
     _print(found)
     print(f"wrote {', '.join(map(str, written))}")
     return 0

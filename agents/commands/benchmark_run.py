@@ -2,15 +2,17 @@
 
 Every training plays by the protocol: so many agent steps against any player but the one that is kept out, then games
 against the task's opponents and that one, of seeds that nobody trains on. Each is kept in a folder of its own when it
-is done, and the same command goes on with those that are not. `puckpilot benchmark report` makes tables and figures of
-them.
+is done, and the same command goes on with those that are not; one that was stopped midway begins anew. A script learns
+nothing, and is played once. `puckpilot benchmark report` makes tables and figures of them.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 OUT = Path("out/benchmark")
 
@@ -40,7 +42,7 @@ def run(args: argparse.Namespace) -> int:
     protocol = read_protocol()
     from agents.benchmark.algorithms import algorithm_names
     from agents.benchmark.report import summary
-    from agents.benchmark.training import jobs_of, run_job
+    from agents.benchmark.training import jobs_of, kept_outcome, run_job
     from agents.evaluation.fan_out import fan_out
     from baselines.commands.options import progress_bar
 
@@ -51,6 +53,8 @@ def run(args: argparse.Namespace) -> int:
         if value is not None and value < 1:
             raise ValueError(f"--{name} is {value:g}; expected 1 or more")
     jobs = jobs_of(dict.fromkeys(args.algorithms), protocol.chosen(args.tasks), seeds, steps, args.out.resolve())
+    for job in jobs:
+        kept_outcome(job, protocol)  # so that a folder of another budget is refused before anything is trained
     outcomes = []
     with progress_bar("trainings") as progress:
         for outcome in fan_out(run_job, jobs, workers=args.workers, cluster=args.cluster):
@@ -59,12 +63,15 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print(json.dumps({**summary(outcomes, protocol), "outcomes": outcomes}, indent=1))
     else:
-        _print(args.out, len(outcomes))
+        _print(args.out, outcomes)
     return 0
 
 
-def _print(out: Path, count: int) -> None:
-    print(f"{count} trainings are in {out}; tables and figures of them: puckpilot benchmark report {out}")
+def _print(out: Path, outcomes: Sequence[Mapping[str, Any]]) -> None:
+    for one in outcomes:
+        scores = ", ".join(f"{row['opponent']} {100 * row['score']:.1f} %" for row in one["evaluation"])
+        print(f"{one['algorithm']}, {one['task']}, seed {one['seed']}: {scores}")
+    print(f"tables and figures of all in {out}: puckpilot benchmark report {out}")
 
 
 def _print_list() -> None:
@@ -75,7 +82,7 @@ def _print_list() -> None:
     print(f"protocol {protocol.version}, {protocol.hash}")
     budgets = " or ".join(f"{1e-6 * steps:g} M" for steps in protocol.steps)
     print(
-        f"  {budgets} agent steps, or {protocol.minutes:g} minutes of two cores; {protocol.seeds} seeds; "
+        f"  {budgets} agent steps; {protocol.seeds} seeds; "
         f"{protocol.games} games against each opponent; {protocol.kept_out} is kept out of training"
     )
     print("tasks")

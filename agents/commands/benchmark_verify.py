@@ -13,13 +13,14 @@ import secrets
 from dataclasses import asdict
 from pathlib import Path
 
+MOST_GAMES = 100_000
 OWN_SEEDS = 1 << 24  # so many seeds, above all that the protocol uses
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
     parser.add_argument("entry", type=Path, metavar="ENTRY", help="leaderboard/NAME.toml")
-    parser.add_argument("--games", type=int, metavar="N", help="of each claim (the protocol's); an even number")
+    parser.add_argument("--games", type=int, metavar="N", help="of each claim, no fewer than the protocol's (200)")
     parser.add_argument("--seed", type=int, metavar="SEED", help="of these games (drawn anew, and printed)")
     parser.add_argument("--seconds", type=float, default=1200.0, metavar="S", help="that a task may take (1200)")
     parser.add_argument("--memory", type=float, default=4.0, metavar="GB", help="that a process may take (4)")
@@ -32,14 +33,17 @@ def run(args: argparse.Namespace) -> int:
     from agents.benchmark.protocol import read_protocol
     from agents.benchmark.sandbox import Limits
     from agents.benchmark.verify import Finding, entry_file, verify
+    from puckpilot_env.options.inputs import seed_number
 
     protocol = read_protocol()
     games = protocol.games if args.games is None else args.games
-    if games < 2 or games % 2:
-        raise ValueError(f"--games is {games}; expected an even number, 2 or more: each start is played twice")
-    for name in ("seconds", "memory"):
-        if not getattr(args, name) > 0:
-            raise ValueError(f"--{name} is {getattr(args, name):g}; expected more than 0")
+    if not protocol.games <= games <= MOST_GAMES or games % 2:
+        raise ValueError(f"--games is {games}; expected an even number from {protocol.games} to {MOST_GAMES}")
+    for name, most in (("seconds", 1e6), ("memory", 1e3)):
+        if not 0 < getattr(args, name) <= most:
+            raise ValueError(f"--{name} is {getattr(args, name):g}; expected more than 0, up to {most:g}")
+    if args.seed is not None:
+        seed_number(args.seed)
     entry = read_entry(entry_file(args.entry))
     seed = protocol.evaluation_seed + 1 + secrets.randbelow(OWN_SEEDS) if args.seed is None else args.seed
 

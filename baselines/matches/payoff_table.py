@@ -40,7 +40,8 @@ def counts_text(payoff: Payoff, i: int, j: int, width: int = 1) -> str:
 
 def rating_table(ratings: Ratings) -> Table:
     """Players from the best to the worst, with Elo ratings and their 95 % intervals."""
-    table = Table(title="ratings, Elo points around a mean of 0", box=box.SIMPLE_HEAD, title_justify="left")
+    zero = f"above {ratings.anchor}" if ratings.anchor else "around a mean of 0"
+    table = Table(title=f"ratings, Elo points {zero}", box=box.SIMPLE_HEAD, title_justify="left")
     table.add_column("player", no_wrap=True)
     for heading in ("rating", "95 % from", "to"):
         table.add_column(heading, justify="right", no_wrap=True)

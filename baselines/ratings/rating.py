@@ -1,7 +1,8 @@
 """Ratings of players from all their games with each other, on the Elo scale, with 95 % intervals.
 
 The model is Davidson's (`davidson.py`): a draw is an outcome of its own and never half a win. Of two players, one
-that is rated 400 points above the other wins ten games for each it loses. The mean rating of a tournament is 0.
+that is rated 400 points above the other wins ten games for each it loses. The script ANCHOR is rated 0 wherever it
+plays, so that a player has the same rating in any company, within its interval; without it the mean rating is 0.
 
 A player that won every game has no finite maximum-likelihood rating. So ratings are maximum a posteriori under a weak
 prior: normal with a standard deviation of `PRIOR_SD`. For two players 400 points apart with 1,000 games it changes the
@@ -11,7 +12,7 @@ difference by less than one point.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,8 @@ from baselines.ratings.intervals import LEVEL
 
 ELO = 400.0 / math.log(10.0)
 """Elo points in one unit of log strength."""
+ANCHOR = "interceptor"
+"""The script whose rating is 0."""
 PRIOR_SD = 700.0
 """Standard deviation of the prior of a rating, Elo points."""
 
@@ -32,7 +35,8 @@ PRIOR_SD = 700.0
 class Ratings:
     """`elo`, in the order of `players`, with 95 % intervals [`low`, `high`].
 
-    `low` and `high` are None from `fit_ratings`, and where there are too few pairs of games for intervals.
+    `low` and `high` are None from `fit_ratings`, and where there are too few pairs of games for intervals. `anchor`:
+    the player that is rated 0; "" where the mean is 0.
     `draw` is Davidson's nu: players of equal strength draw nu games for each two that they decide.
     """
 
@@ -41,6 +45,7 @@ class Ratings:
     low: tuple[float, ...] | None
     high: tuple[float, ...] | None
     draw: float
+    anchor: str = ""
 
     def ranking(self) -> list[int]:
         """Indices of the players, the best first."""
@@ -50,7 +55,11 @@ class Ratings:
         """As JSON can hold it; a row for each player."""
         lows, highs = (bound or (None,) * len(self.elo) for bound in (self.low, self.high))
         rows = zip(self.players, self.elo, lows, highs, strict=True)
-        return {"draw": self.draw, "players": [dict(zip(("name", "elo", "low", "high"), r, strict=True)) for r in rows]}
+        return {
+            "draw": self.draw,
+            "anchor": self.anchor,
+            "players": [dict(zip(("name", "elo", "low", "high"), r, strict=True)) for r in rows],
+        }
 
 
 def fit_ratings(payoff: Payoff, prior_sd: float = PRIOR_SD) -> Ratings:
@@ -78,12 +87,12 @@ def fit_ratings_from_pairs(results: Results, seed: int = 0, resamples: int = 100
     Sci. Comput. 36, 2014), which widens the end of the interval that no game bounds. And where a group of players won
     all its games against the rest, each resample is fitted again with a fraction of an upset (`unseen_upsets`), which
     bounds the other end; the interval spans both. Intervals from small samples are widened by Student's t and the
-    degrees of freedom.
+    degrees of freedom. Ratings are differences to that of ANCHOR where it played, and so are their intervals.
     """
     if resamples < 40:
         raise ValueError(f"resamples must be at least 40 for the ends of a 95 % interval; given {resamples}")
     payoff = count_games(results)
-    point = fit_ratings(payoff)
+    point = _anchored(fit_ratings(payoff))
     players, pairs = len(payoff.players), sum(len(np.asarray(outcome)) for outcome in results.values())
     freedom = pairs - players  # degrees of freedom: strengths of mean 0 and the draw parameter are as many as players
     if freedom < 1:
@@ -97,11 +106,22 @@ def fit_ratings_from_pairs(results: Results, seed: int = 0, resamples: int = 100
         # Half a pair whose two games end alike, Gamma(1/2): Jeffreys' prior.
         wins[:, upsets] += 2.0 * rng.gamma(0.5, size=(resamples, int(upsets.sum())))
         samples.append(fit_davidson(wins, draws, centre, PRIOR_SD / ELO)[0])
+    if point.anchor:
+        at = point.players.index(point.anchor)
+        samples = [one - one[:, at : at + 1] for one in samples]
     lows, highs = ELO * np.quantile(samples, [tail, 1.0 - tail], axis=1)
     widen = math.sqrt(pairs / freedom) * float(t.ppf(1.0 - tail, freedom) / norm.ppf(1.0 - tail))
     low = np.minimum(elo + widen * (lows.min(axis=0) - elo), elo)
     high = np.maximum(elo + widen * (highs.max(axis=0) - elo), elo)
-    return Ratings(point.players, point.elo, _tuple(low), _tuple(high), point.draw)
+    return replace(point, low=_tuple(low), high=_tuple(high))
+
+
+def _anchored(ratings: Ratings) -> Ratings:
+    """The same with ANCHOR at 0, if it is among the players."""
+    if ANCHOR not in ratings.players:
+        return ratings
+    zero = ratings.elo[ratings.players.index(ANCHOR)]
+    return replace(ratings, elo=tuple(one - zero for one in ratings.elo), anchor=ANCHOR)
 
 
 def unseen_upsets(payoff: Payoff, elo: NDArray[np.float64]) -> NDArray[np.bool_]:

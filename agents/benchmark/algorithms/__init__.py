@@ -1,7 +1,8 @@
 """Algorithms by name: a file each, which defines `ALGORITHM`.
 
-An algorithm learns one task with one seed, within so many agent steps, through what anyone can import. While it learns
-it reports the player that it has become, and of this the learning curve is made.
+An algorithm learns one task with one seed, within so many agent steps, those of every seat that it learns from, through
+what anyone can import. While it learns it reports the player that it has become, the last time at its end, and of this
+the learning curve is made.
 """
 
 from __future__ import annotations

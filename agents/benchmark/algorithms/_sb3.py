@@ -19,19 +19,23 @@ from baselines.sb3_vec_env import make_sb3_vec_env
 from puckpilot_env.tables import Tables
 
 Layers = Callable[[Any], Iterable[torch.nn.Module]]
-REPORTS = 5  # of a learning curve
+PARTS = 10  # of a training, after each of which there is a point of the learning curve
 
 
 def learn_with_sb3(
-    assignment: Assignment, report: Report, tables: int, make: Callable[[VecNormalize], BaseAlgorithm],
+    assignment: Assignment, report: Report, tables: int, rollout: int, make: Callable[[VecNormalize], BaseAlgorithm],
     layers: Layers, squash: str,
 ) -> Policy:  # fmt: skip
-    """Let a learner that `make` makes learn at so many tables, with observations and rewards normalized as users do.
+    """Let a learner that `make` makes learn at so many tables, with observations and rewards normalized as users do, in
+    as many rollouts, of `rollout` steps at each table, as fit into the budget.
 
     layers: of the network that acts, from its policy; squash: what brings its outputs into -1 to 1.
     """
     torch.set_num_threads(1)
     task = assignment.task
+    steps = assignment.steps // (tables * rollout) * tables * rollout
+    if not steps:
+        raise ValueError(f"it takes {tables * rollout:,} steps for an update; {assignment.steps:,} are too few")
     seat = "alternate" if task.is_match else 0
     envs = make_sb3_vec_env(task.variant, tables, opponent=list(task.opponents), seat=seat)
     envs.seed(assignment.seed)
@@ -43,8 +47,9 @@ def learn_with_sb3(
         about = {"variant": task.variant, "seed": assignment.seed, "steps": model.num_timesteps}
         return as_policy(described, normalized, layers(model.policy), squash, about)
 
-    model.learn(assignment.steps, callback=_Reports(assignment.steps, lambda steps: report(steps, policy())))
+    model.learn(steps, callback=_Reports(steps, lambda: report(model.num_timesteps, policy())))
     normalized.close()
+    report(model.num_timesteps, policy())
     return policy()
 
 
@@ -64,14 +69,16 @@ def as_policy(
 
 
 class _Reports(BaseCallback):
-    """Calls `report` with the steps so far, REPORTS times in `steps`."""
+    """Calls `report` before the first rollout after each part of `steps`, of which there are PARTS."""
 
-    def __init__(self, steps: int, report: Callable[[int], None]) -> None:
+    def __init__(self, steps: int, report: Callable[[], None]) -> None:
         super().__init__()
-        self._every, self._report, self._next = steps / REPORTS, report, steps / REPORTS
+        self._every, self._report, self._next = steps / PARTS, report, steps / PARTS
 
-    def _on_step(self) -> bool:
+    def _on_rollout_start(self) -> None:
         if self.num_timesteps >= self._next:
             self._next += self._every
-            self._report(self.num_timesteps)
+            self._report()
+
+    def _on_step(self) -> bool:
         return True

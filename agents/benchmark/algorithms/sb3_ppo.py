@@ -9,7 +9,7 @@ from agents.benchmark.algorithms import Algorithm, Assignment, Report
 from agents.benchmark.algorithms._sb3 import learn_with_sb3
 from agents.policy.policy import Policy
 
-TABLES = 64
+TABLES, ROLLOUT = 64, 128
 
 
 def learn(assignment: Assignment, report: Report) -> Policy:
@@ -18,8 +18,9 @@ def learn(assignment: Assignment, report: Report) -> Policy:
         assignment,
         report,
         TABLES,
+        ROLLOUT,
         lambda envs: PPO(
-            "MlpPolicy", envs, n_steps=128, batch_size=1024, n_epochs=5, gamma=0.98, gae_lambda=0.9,
+            "MlpPolicy", envs, n_steps=ROLLOUT, batch_size=1024, n_epochs=5, gamma=0.98, gae_lambda=0.9,
             seed=assignment.seed, policy_kwargs={"net_arch": [64, 64], "activation_fn": ReLU}, device="cpu",
         ),
         lambda policy: [*policy.mlp_extractor.policy_net, policy.action_net],

@@ -17,6 +17,7 @@ def learn(assignment: Assignment, report: Report) -> Policy:
         assignment,
         report,
         TABLES,
+        1,
         lambda envs: SAC(
             "MlpPolicy", envs, gamma=0.98, batch_size=256, learning_starts=5_000, gradient_steps=TABLES // 4,
             seed=assignment.seed, policy_kwargs={"net_arch": [128, 128]}, device="cpu",

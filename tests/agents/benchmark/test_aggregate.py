@@ -54,7 +54,18 @@ def test_a_tasks_row() -> None:
     assert row["score"]["value"] == pytest.approx(0.525)
     assert row["against_kept_out"]["value"] == pytest.approx(0.3)
     assert row["score"]["low"] < 0.525 < row["score"]["high"] and row["seeds"] == 2
-    assert row["reached"] == {"goalie": {"0.7": {"seeds": 2, "seconds": 3.0, "steps": 200}}}  # of 1.5 and 4.5 s
+    assert row["reached"] == {"goalie": {"0.7": {"seeds": 1, "seconds": 1.5, "steps": 100}}}  # a last point is no proof
+
+
+@pytest.mark.parametrize("together", [0.0, 1.0])
+def test_intervals_of_few_seeds_hold_the_truth(together: float) -> None:
+    """400 draws of five seeds, whose scores against three opponents go together, or do not."""
+    rng, held = np.random.default_rng(3), 0
+    for _ in range(400):
+        common, own = rng.uniform(0.2, 0.8, (5, 1)), rng.uniform(0.2, 0.8, (5, 3))
+        found = aggregate.seeds_estimate(together * common + (1.0 - together) * own)
+        held += found["low"] <= 0.5 <= found["high"]
+    assert held >= 0.92 * 400
 
 
 def test_a_single_seed_has_no_interval() -> None:
@@ -68,6 +79,7 @@ def test_all_tasks_are_summed_up_where_each_was_learnt_as_often() -> None:
     assert row is not None and row["median"] == pytest.approx(0.5)  # means 0.5, 0.5; 0.4, 0.6
     assert aggregate.overall_row(RUNS[:3], PROTOCOL.kept_out, tasks) is None
     assert aggregate.overall_row(RUNS[4:], PROTOCOL.kept_out, tasks) is None
+    assert aggregate.overall_row(RUNS[4:], PROTOCOL.kept_out, tasks[:1]) is None  # a single seed
 
 
 def test_a_performance_profile_falls_from_all_runs_to_none() -> None:
@@ -79,12 +91,16 @@ def test_a_performance_profile_falls_from_all_runs_to_none() -> None:
     assert (np.diff(found) <= 0.0).all()
 
 
-def test_marl_eval_finds_every_score() -> None:
-    tree = aggregate.as_marl_eval(RUNS)["puckpilot"]
-    run = tree["match-v0"]["a"]["seed_1"]
-    assert run["absolute_metrics"] == {"score": [0.9, 0.6, 0.0, 0.4]}
-    assert run["step_2"] == {"step_count": 300, "elapsed_time": 4.5, "score": [0.8]}
+def test_marl_eval_finds_every_score_at_the_same_steps_of_every_run() -> None:
+    tree = aggregate.as_marl_eval([*RUNS, {**RUNS[4], "algorithm": "c", "curve": []}], PROTOCOL.kept_out)["puckpilot"]
+    assert tree["match-v0"]["a"]["seed_1"]["absolute_metrics"] == {"score": [0.9, 0.6, 0.0], "score_kept_out": [0.4]}
     assert set(tree["match-v0"]) == {"a", "b"} and set(tree["attack-v0"]["a"]) == {"seed_0", "seed_1"}
+    names = {f"step_{k}" for k in range(5)} | {"absolute_metrics"}
+    for runs in (run for task in tree.values() for seeds in task.values() for run in seeds.values()):
+        assert set(runs) == names
+        assert [runs[f"step_{k}"]["step_count"] for k in range(5)] == [60, 120, 180, 240, 300]
+    # the curve has points at 100, 200 and 300 steps, 0.8 from the third on
+    assert [tree["match-v0"]["a"]["seed_1"][f"step_{k}"]["score"] for k in (0, 3, 4)] == [[0.1], [0.1], [0.8]]
 
 
 def test_outcomes_are_read_in_the_protocols_order(tmp_path: Path) -> None:
@@ -98,7 +114,8 @@ def test_outcomes_are_read_in_the_protocols_order(tmp_path: Path) -> None:
     ("other", "said"),
     [
         ({"protocol": "0" * 16}, f"c/match-v0/seed_0 is of protocol {'0' * 16}, not of {PROTOCOL.hash}"),
-        ({"budget": 999}, "has outcomes of budgets [300, 999]; expected one"),
+        ({"budget": 999}, "has outcomes of budgets [300, 999]: they cannot be compared; remove some"),
+        ({"task": "match-v9"}, "has outcomes of match-v9, which is no task of the protocol"),
         ({"format": "else"}, "is no outcome of puckpilot benchmark run; expected the format puckpilot-outcome/1"),
     ],
 )
@@ -117,9 +134,11 @@ def test_an_empty_folder_is_refused(tmp_path: Path) -> None:
 def test_the_report_has_tables_figures_and_raw_scores(tmp_path: Path) -> None:
     root = _write(tmp_path, RUNS)
     found = summary(aggregate.read_outcomes(root, PROTOCOL), PROTOCOL)
-    written = write_report(root, RUNS, found)
+    assert found["departs"] == "300 agent steps and 1 of 5 seeds"
+    written = write_report(root, RUNS, found, PROTOCOL.kept_out)
     assert [path.name for path in written] == ["report.md", "curves.png", "profiles.png", "marl_eval.json"]
     assert all(path.stat().st_size > 200 for path in written)
     page = page_of(found)
     assert "| a | 2 | 52.5 % (" in page and "| b | 1 | 0.0 % | 0.0 % | 4 |" in page
-    assert "- a reached 70 % against goalie in 2 of 2 seeds, after 3 s and 200 steps (medians)" in page
+    assert "- a reached 70 % against goalie in 1 of 2 seeds, after 2 s and 100 steps (medians)" in page
+    assert "**Not by the protocol: 300 agent steps and 1 of 5 seeds.**" in page

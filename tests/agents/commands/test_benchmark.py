@@ -73,10 +73,12 @@ def test_an_entry_is_made_and_holds_until_it_claims_more(tmp_path: Path, capsys:
         (["run", "random", "--steps", "-1"], "--steps is -1; expected 1 or more"),
         (["report", "nowhere"], "nowhere has no outcomes; expected the --out of puckpilot benchmark run"),
         (["enter", "interceptor", "--name", "x", "--trained", ""], "no policy 'interceptor'; expected 'champion', "),
+        (["enter", "champion", "--name", "champion", "--trained", ""], "leaderboard has an entry 'champion'; choose"),
         (["enter", "champion", "--name", "x y", "--trained", ""], "--name is 'x y'; expected letters, digits, - and _"),
         (["verify", "nowhere"], "cannot read an entry from 'nowhere.toml': No such file or directory; expected"),
-        (["verify", "nowhere", "--games", "3"], "--games is 3; expected an even number, 2 or more"),
-        (["verify", "nowhere", "--memory", "0"], "--memory is 0; expected more than 0"),
+        (["verify", "nowhere", "--games", "100"], "--games is 100; expected an even number from 200 to 100000"),
+        (["verify", "nowhere", "--seed", "-1"], "seed is -1"),
+        (["verify", "nowhere", "--memory", "0"], "--memory is 0; expected more than 0, up to 1000"),
     ],
 )
 def test_a_wrong_input_is_one_line(words: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:

@@ -11,7 +11,7 @@ import pytest
 from scipy.optimize import minimize
 
 from baselines.matches.payoff import Payoff, count_games
-from baselines.ratings.rating import ELO, fit_ratings, fit_ratings_from_pairs, unseen_upsets
+from baselines.ratings.rating import ANCHOR, ELO, fit_ratings, fit_ratings_from_pairs, unseen_upsets
 
 
 def two_players(wins: int, draws: int, losses: int) -> Payoff:
@@ -115,6 +115,27 @@ def test_rating_intervals_have_the_right_coverage(elo, correlation, highest):
         ratings = fit_ratings_from_pairs(play(elo, 0.5, 40, correlation, rng), tournament, resamples=120)
         held += np.mean((np.array(ratings.low) <= elo) & (elo <= np.array(ratings.high)))
     assert 0.92 <= held / 200 <= highest
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("company", [[1, 0, 2, 3], [1, 0], [1, 0, 3]])
+def test_a_player_has_the_same_rating_above_the_anchor_in_any_company(company):
+    """200 tournaments, 40 pairs for each two players: intervals hold the true gap to the anchor, p1."""
+    rng, elo = np.random.default_rng(12), np.array([300.0, 100.0, 0.0, -400.0])
+    held, found = [], []
+    for tournament in range(200):
+        played = play(elo[company].tolist(), 0.5, 40, 0.4, rng)
+        named = {tuple(ANCHOR if name == "p0" else name for name in names): pairs for names, pairs in played.items()}
+        ratings = fit_ratings_from_pairs(named, tournament, resamples=120)
+        assert ratings.anchor == ANCHOR and (ratings.elo[0], ratings.low[0], ratings.high[0]) == (0.0, 0.0, 0.0)
+        held.append(ratings.low[1] <= 200.0 <= ratings.high[1])
+        found.append(ratings.elo[1])
+    assert np.mean(held) >= 0.92 and np.mean(found) == pytest.approx(200.0, abs=15.0)
+
+
+def test_without_the_anchor_the_mean_rating_is_0():
+    ratings = fit_ratings_from_pairs(play([300.0, 0.0, -100.0], 0.5, 40, 0.0, np.random.default_rng(1)))
+    assert ratings.anchor == "" and sum(ratings.elo) == pytest.approx(0.0, abs=1e-6)
 
 
 def test_player_that_won_all_has_a_finite_rating_with_a_wide_interval():
