@@ -1,9 +1,9 @@
 """Tables and figures of what algorithms learnt in `puckpilot benchmark run`.
 
 For each task: the interquartile mean of the scores over seeds and opponents, with a 95 % interval by a bootstrap of
-whole seeds, and when learning curves reached 70 and 95 % against each script, if they did; and a mean over all tasks. The folder gets report.md with
-these tables, curves.png, profiles.png (performance profiles) and marl_eval.json, all raw scores as marl-eval reads
-them.
+whole seeds, and when learning curves reached 70 and 95 % against each script, if they did; and a mean over all tasks.
+The folder gets report.md with these tables, curves.png, profiles.png (performance profiles, where each algorithm
+learnt every task with several seeds) and marl_eval.json, all raw scores as marl-eval reads them.
 """
 
 from __future__ import annotations

@@ -27,7 +27,7 @@ def _tables(**options: Any) -> Callable[..., Tables]:
     [
         ({"parameters": {"friction": 0.13}}, "observations differ by"),  # physics: 0.125 m/s^2 in the protocol
         ({"reward": "sparse"}, "rewards differ by"),
-        ({"max_cycles": 1790}, "ended differ by"),
+        ({"max_cycles": 1790}, "observations differ by"),
     ],
 )
 def test_another_game_is_noticed(options: dict[str, Any], named: str, monkeypatch: pytest.MonkeyPatch) -> None:

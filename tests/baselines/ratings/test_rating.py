@@ -118,16 +118,18 @@ def test_rating_intervals_have_the_right_coverage(elo, correlation, highest):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("company", [[1, 0, 2, 3], [1, 0], [1, 0, 3]])
+@pytest.mark.parametrize("company", [[1, 0, 2, 3], [1, 0, 3]])
 def test_a_player_has_the_same_rating_above_the_anchor_in_any_company(company):
     """200 tournaments, 40 pairs for each two players: intervals hold the true gap to the anchor, p1."""
     rng, elo = np.random.default_rng(12), np.array([300.0, 100.0, 0.0, -400.0])
     held, found = [], []
     for tournament in range(200):
         played = play(elo[company].tolist(), 0.5, 40, 0.4, rng)
-        named = {tuple(ANCHOR if name == "p0" else name for name in names): pairs for names, pairs in played.items()}
+        names: dict[str, str] = {"p0": ANCHOR}
+        named = {(str(names.get(a, a)), str(names.get(b, b))): pairs for (a, b), pairs in played.items()}
         ratings = fit_ratings_from_pairs(named, tournament, resamples=120)
-        assert ratings.anchor == ANCHOR and (ratings.elo[0], ratings.low[0], ratings.high[0]) == (0.0, 0.0, 0.0)
+        assert ratings.anchor == ANCHOR and ratings.low and ratings.high
+        assert (ratings.elo[0], ratings.low[0], ratings.high[0]) == (0.0, 0.0, 0.0)
         held.append(ratings.low[1] <= 200.0 <= ratings.high[1])
         found.append(ratings.elo[1])
     assert np.mean(held) >= 0.92 and np.mean(found) == pytest.approx(200.0, abs=15.0)
