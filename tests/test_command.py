@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
 import os
-import signal
 import subprocess
 import sys
 
@@ -227,29 +225,6 @@ def test_mistakes_get_one_line(words, expected, capsys):
     assert refused(words, capsys) == expected
 
 
-def test_an_interrupt_while_a_command_is_loaded_ends_in_one_line(monkeypatch, capsys):
-    def interrupted(name: str) -> None:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(puckpilot.importlib, "import_module", interrupted)
-    assert puckpilot.main(["envs"]) == 130
-    assert capsys.readouterr().err == "puckpilot envs: stopped\n"
-
-
-def test_a_library_that_fails_of_an_interrupt_ends_in_one_line(monkeypatch, capsys):
-    """numba's compiler asks in callbacks that lose the interrupt, and fails afterwards."""
-
-    def failing(name: str) -> None:
-        with contextlib.suppress(KeyboardInterrupt):
-            signal.raise_signal(signal.SIGTERM)
-        raise RuntimeError("no compiled object yet")
-
-    monkeypatch.setattr(puckpilot.importlib, "import_module", failing)
-    assert puckpilot.main(["envs"]) == 143
-    assert capsys.readouterr().err == "puckpilot envs: stopped\n"
-    assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
-
-
 @pytest.mark.parametrize(("package", "extra"), [("unicorn.arm_const", "emulate"), ("torch", "train")])
 def test_a_package_of_an_extra_that_is_missing_is_said_in_one_line(package, extra, monkeypatch, capsys):
     def lacking(name: str) -> None:
@@ -278,24 +253,6 @@ def test_a_reader_that_has_seen_enough_ends_the_overview_quietly():
     words = f'"{sys.executable}" -c "{code}" | true'
     done = subprocess.run(["sh", "-c", words], cwd=ROOT, capture_output=True, text=True)
     assert done.stderr == ""
-
-
-def test_what_a_callback_lost_of_an_interrupt_is_not_printed(monkeypatch, capsys):
-    """The emulator's callbacks cannot raise it, and report it as ignored."""
-
-    class Lost:
-        def __del__(self) -> None:
-            raise RuntimeError("ignored")
-
-    def losing(name: str) -> None:
-        with contextlib.suppress(KeyboardInterrupt):
-            signal.raise_signal(signal.SIGTERM)
-        Lost()
-        raise RuntimeError("stopped in between")
-
-    monkeypatch.setattr(puckpilot.importlib, "import_module", losing)
-    assert puckpilot.main(["envs"]) == 143
-    assert capsys.readouterr().err == "puckpilot envs: stopped\n"
 
 
 @pytest.mark.parametrize("name", OPTIONS)

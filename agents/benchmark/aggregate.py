@@ -13,16 +13,14 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import norm, t, trim_mean
 
 from agents.benchmark.protocol import Protocol
 from agents.benchmark.training import read_outcome
-from agents.evaluation.over_seeds import QUARTER, RESAMPLES, iqm, iqm_estimate
+from agents.evaluation.over_seeds import iqm_estimate
 
 Outcome = Mapping[str, Any]
 CURVE_STEPS = 5  # parts of the budget, for marl-eval
 LEVELS = (0.7, 0.95)  # scores that a learning curve may reach
-TAIL = 0.025  # beyond either end of an interval
 THRESHOLDS = np.linspace(0.0, 1.0, 101)  # of a performance profile
 
 
@@ -84,8 +82,8 @@ def task_row(outcomes: Sequence[Outcome], kept_out: str) -> dict[str, Any]:
     curves reached LEVELS."""
     return {
         "seeds": len(outcomes),
-        "score": seeds_estimate(scores(outcomes, kept_out)),
-        "against_kept_out": seeds_estimate(scores(outcomes, kept_out, against_kept_out=True)),
+        "score": _of_seeds(scores(outcomes, kept_out)),
+        "against_kept_out": _of_seeds(scores(outcomes, kept_out, against_kept_out=True)),
         "seconds": float(np.median([each["seconds"] for each in outcomes])),
         "reached": _reached(outcomes),
     }
@@ -101,7 +99,7 @@ def overall_row(outcomes: Sequence[Outcome], kept_out: str, tasks: Sequence[str]
     means = np.column_stack([one.mean(axis=1) for one in of_tasks])
     return {
         "seeds": len(means),
-        "score": iqm_estimate(means).as_dict(),
+        "score": iqm_estimate(means, separately=True).as_dict(),
         "median": float(np.median(means)),
     }
 
@@ -112,22 +110,10 @@ def profile(outcomes: Sequence[Outcome], kept_out: str) -> NDArray[np.float64]:
     return np.mean(means[:, None] > THRESHOLDS, axis=0)
 
 
-def seeds_estimate(of_seeds: NDArray[np.float64]) -> dict[str, float | None]:
-    """The IQM of scores (seeds, opponents) with a 95 % interval, whose ends are None for a single seed.
-
-    A bootstrap of whole seeds, since the scores of a player against several opponents go together; widened by Student's
-    t and the degrees of freedom, as a bootstrap of few is too narrow.
-    """
-    count = len(of_seeds)
-    value = iqm(of_seeds)
-    if count == 1:
-        return {"value": value, "low": None, "high": None}
-    drawn = np.random.default_rng(0).integers(count, size=(RESAMPLES, count))
-    resampled = trim_mean(of_seeds[drawn].reshape(RESAMPLES, -1), QUARTER, axis=1)
-    low, high = np.quantile(resampled, [TAIL, 1.0 - TAIL])
-    widen = np.sqrt(count / (count - 1)) * t.ppf(1.0 - TAIL, count - 1) / norm.ppf(1.0 - TAIL)
-    ends = np.clip([value + widen * (low - value), value + widen * (high - value)], 0.0, 1.0)
-    return {"value": value, "low": float(ends[0]), "high": float(ends[1])}
+def _of_seeds(scores_of_seeds: NDArray[np.float64]) -> dict[str, float | None]:
+    """The IQM of scores (seeds, opponents) with its interval, whose ends are None for a single seed."""
+    found = iqm_estimate(scores_of_seeds).as_dict()
+    return found if len(scores_of_seeds) > 1 else {**found, "low": None, "high": None}
 
 
 def _reached(outcomes: Sequence[Outcome]) -> dict[str, dict[str, dict[str, float | int]]]:

@@ -1,7 +1,7 @@
 """Let algorithms learn the benchmark's tasks, each with several seeds, and evaluate what they learnt.
 
 Every training plays by the protocol: so many agent steps against any player but the one that is kept out, then games
-against the task's opponents and that one, of seeds that nobody trains on. Each is kept in a folder of its own when it
+against the task's opponents and that one, of seeds of their own. Each is kept in a folder of its own when it
 is done, and the same command goes on with those that are not; one that was stopped midway begins anew. A script learns
 nothing, and is played once. `puckpilot benchmark report` makes tables and figures of them.
 """

@@ -11,12 +11,13 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.stats import trim_mean
+from scipy.stats import norm, t, trim_mean
 
 from baselines.ratings.intervals import IntervalEstimate
 
 RESAMPLES = 2000  # of the bootstrap
 QUARTER = 0.25
+TAIL = 0.025  # beyond either end of an interval
 
 
 def iqm(scores: ArrayLike) -> float:
@@ -24,13 +25,23 @@ def iqm(scores: ArrayLike) -> float:
     return float(trim_mean(np.ravel(np.asarray(scores, float)), QUARTER))
 
 
-def iqm_estimate(scores: ArrayLike, seed: int = 0) -> IntervalEstimate:
-    """The IQM of scores (runs, tasks) with its 95 % interval, by a bootstrap over runs, stratified by task."""
+def iqm_estimate(scores: ArrayLike, seed: int = 0, *, separately: bool = False) -> IntervalEstimate:
+    """The IQM of scores (runs, columns), shares, with its 95 % interval; of a single run the interval is 0 to 1.
+
+    A bootstrap of whole runs, since the scores of one policy against several opponents go together; `separately`
+    resamples each column by itself, for tasks of which each had runs of its own. It is widened by Student's t and the
+    degrees of freedom, as a bootstrap of few runs is too narrow.
+    """
     scores, rng = np.atleast_2d(np.asarray(scores, float)), np.random.default_rng(seed)
-    runs, tasks = scores.shape
-    resampled = scores[rng.integers(runs, size=(RESAMPLES, runs, tasks)), np.arange(tasks)]
-    low, high = np.quantile(trim_mean(resampled.reshape(RESAMPLES, -1), QUARTER, axis=1), [0.025, 0.975])
-    return IntervalEstimate(iqm(scores), float(low), float(high))
+    runs, columns = scores.shape
+    value = iqm(scores)
+    if runs == 1:
+        return IntervalEstimate(value, 0.0, 1.0)
+    drawn = rng.integers(runs, size=(RESAMPLES, runs, columns if separately else 1))
+    resampled = trim_mean(scores[drawn, np.arange(columns)].reshape(RESAMPLES, -1), QUARTER, axis=1)
+    widen = np.sqrt(runs / (runs - 1)) * t.ppf(1.0 - TAIL, runs - 1) / norm.ppf(1.0 - TAIL)
+    low, high = value + widen * (np.quantile(resampled, [TAIL, 1.0 - TAIL]) - value)
+    return IntervalEstimate(value, float(np.clip(low, 0.0, value)), float(np.clip(high, value, 1.0)))
 
 
 def rows_over_seeds(matchup_rows: Mapping[str, Sequence[Mapping[str, Any]]], seed: int) -> list[dict[str, Any]]:

@@ -57,18 +57,6 @@ def test_a_tasks_row() -> None:
     assert row["reached"] == {"goalie": {"0.7": {"seeds": 1, "seconds": 1.5, "steps": 100}}}  # a last point is no proof
 
 
-@pytest.mark.parametrize("together", [0.0, 1.0])
-def test_intervals_of_few_seeds_hold_the_truth(together: float) -> None:
-    """400 draws of five seeds, whose scores against three opponents go together, or do not."""
-    rng, held = np.random.default_rng(3), 0
-    for _ in range(400):
-        common, own = rng.uniform(0.2, 0.8, (5, 1)), rng.uniform(0.2, 0.8, (5, 3))
-        found = aggregate.seeds_estimate(together * common + (1.0 - together) * own)
-        low, high = found["low"], found["high"]
-        held += low is not None and high is not None and low <= 0.5 <= high
-    assert held >= 0.92 * 400
-
-
 def test_a_single_seed_has_no_interval() -> None:
     row = aggregate.task_row(RUNS[4:], PROTOCOL.kept_out)
     assert row["score"] == {"value": 0.0, "low": None, "high": None} and row["reached"] == {}
