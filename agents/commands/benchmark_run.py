@@ -90,5 +90,9 @@ def _print_list() -> None:
         print(f"  {name:22} against {', '.join(task.opponents)}")
     print("algorithms")
     for name in algorithm_names():
-        algorithm = find_algorithm(name)
-        print(f"  {name:22} {algorithm.words} ({algorithm.library})")
+        try:
+            algorithm = find_algorithm(name)
+        except ModuleNotFoundError as error:
+            print(f"  {name:22} needs {error.name}: pip install 'puckpilot[train,benchmark]'")
+        else:
+            print(f"  {name:22} {algorithm.words} ({algorithm.library})")

@@ -29,6 +29,17 @@ def test_the_list_has_the_protocol_its_tasks_and_all_algorithms(capsys: pytest.C
     assert "  defence-randomized-v0  against still, goalie, interceptor\n" in printed and "sb3_sac" in printed
 
 
+def test_the_list_says_what_an_algorithm_needs(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def find(name: str) -> object:
+        raise ModuleNotFoundError("No module named 'torch'", name="torch")
+
+    monkeypatch.setattr("agents.benchmark.algorithms.find_algorithm", find)
+    assert puckpilot.main(["benchmark", "run", "--list"]) == 0
+    assert "  sb3_ppo                needs torch: pip install 'puckpilot[train,benchmark]'" in capsys.readouterr().out
+
+
 @pytest.mark.usefixtures("short")
 def test_trainings_are_kept_and_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     words = ["benchmark", "run", "random", "interceptor", "--tasks", "attack-v0", "--out", str(tmp_path), "--json"]
