@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
 
 import numpy as np
@@ -81,9 +83,12 @@ class GantryResiduals:
         r, sign = _path(runs, p, friction), np.concatenate([self._sign[k] for k in of_runs])
         coupled = any(part.any() for part in friction)
         jacobian = np.empty((len(r), len(free)))
+        mirrored = {} if coupled else {name: MIRRORED[name] for name in free if MIRRORED.get(name) in free}
+        apart = [name for name in free if name not in mirrored]
+        with ThreadPoolExecutor(os.cpu_count()) as pool:  # kernels, of which one with friction takes long
+            slopes = dict(zip(apart, pool.map(lambda name: _slope(runs, p, name, r), apart), strict=True))
         for k, name in enumerate(free):
-            mirror = None if coupled else MIRRORED.get(name)
-            jacobian[:, k] = sign * jacobian[:, free.index(mirror)] if mirror in free else _slope(runs, p, name, r)
+            jacobian[:, k] = slopes[name] if name in slopes else sign * slopes[mirrored[name]]
         centre = np.array([self.defaults(name) for name in PRIOR_PARAMETERS])
         weight = 1.0 / (GANTRY_FIT.prior_share * np.abs(centre)) / np.sqrt(self.clusters)
         off = np.array([p[name] for name in PRIOR_PARAMETERS]) - centre

@@ -1,6 +1,6 @@
 """The change of the mallet's path by dry friction of motors and axes, whose direction is that of the motors' motion.
 
-Under constant volts an axis has a closed form; friction is held for a small step at a time.
+Under constant volts an axis has a closed form; friction is held for a step at a time.
 """
 
 from __future__ import annotations
@@ -11,12 +11,13 @@ import numpy as np
 
 from puckpilot_env.kernel import array_kernel, kernel
 from puckpilot_env.physics.effects.motor_friction import EFFECT
+from sim2real.diagnose.regimes.gantry.path.friction_step import friction_step
 from sim2real.diagnose.regimes.gantry.path.response import axis_of, drive_on, place
 from sim2real.diagnose.regimes.gantry.tuned import GANTRY_DATA
 from sim2real.diagnose.regimes.gantry.windows import StreamWindows
 
 ROWS = EFFECT.row_names
-STEP, FASTEST, CREEP, RUN_IN, SHOWN, FEWEST, ROUNDS = range(7)  # of the tuned numbers that the kernels take
+RUN_IN, SHOWN, FEWEST, ROUNDS = range(5, 9)  # of the tuned numbers that the kernels take, after those of a step
 
 
 def path_of_friction(
@@ -31,8 +32,9 @@ def path_of_friction(
     sizes = np.array([float(p[row]) for row in ROWS])
     if sizes.any():
         tuned = GANTRY_DATA
-        start = (tuned.start_shown, tuned.start_samples, tuned.start_rounds)
-        numbers = np.array([tuned.dry_step, tuned.fastest, tuned.dry_speed, tuned.run_in, *start])
+        step = (tuned.dry_step, tuned.dry_longest, tuned.dry_saturated, tuned.dry_speed, tuned.dry_agreed)
+        start = (tuned.run_in, tuned.start_shown, tuned.start_samples, tuned.start_rounds)
+        numbers = np.array([*step, *start])
         cut = (windows.begin, windows.end, windows.parted)
         _change(p, sizes, changes, volts, unknown, t, observed, velocity, *cut, numbers, path)
     return path
@@ -75,16 +77,13 @@ def _change(p, sizes, changes, volts, unknown, t, observed, velocity, begin, end
 def _drive(x, y, sizes, changes, volts, now, moment, until, at_x, at_y, numbers):
     """The number of the volts in use and the states of both axes at `until` [s], from those at `moment` [s]; x, y: the
     axes' constants."""
-    frictionless = sizes[0] == sizes[1] == sizes[2] == sizes[3] == 0.0
     while moment < until - 1e-9:
-        vx, vy = _speed(x, at_x, volts[now, 0]), _speed(y, at_y, volts[now, 1])
-        held = until if frictionless else min(moment + _held(vx, vy, numbers), until)
-        if now + 1 < len(changes):
-            held = min(held, max(changes[now + 1], moment))
-        lost_x, lost_y = _lost(sizes, vx, vy, numbers[CREEP])
-        at_x = drive_on(x, at_x, volts[now, 0] - lost_x, held - moment)
-        at_y = drive_on(y, at_y, volts[now, 1] - lost_y, held - moment)
-        moment = held
+        end = max(min(until, changes[now + 1]), moment) if now + 1 < len(changes) else until
+        most = end - moment
+        held, lost_x, lost_y = friction_step(x, y, sizes, at_x, at_y, volts[now, 0], volts[now, 1], most, numbers)
+        at_x = drive_on(x, at_x, volts[now, 0] - lost_x, held)
+        at_y = drive_on(y, at_y, volts[now, 1] - lost_y, held)
+        moment = end if held == most else moment + held
         while now + 1 < len(changes) and changes[now + 1] <= moment:
             now += 1
     return now, at_x, at_y
@@ -125,30 +124,8 @@ def _slope(sums):
 
 
 @kernel
-def _held(vx, vy, numbers):
-    """How long [s] friction is held, whose direction may turn where a speed is small: a short step there, and less than
-    a speed takes to vanish elsewhere."""
-    least = min(abs(vx), abs(vy), abs(vx - vy), abs(vx + vy))
-    return max(numbers[STEP], 0.5 * least / numbers[FASTEST])
-
-
-@kernel
 def _start(c, velocity, volts):
     """The state at 0 with a velocity [m/s], whose fast mode is as long constant `volts` [V] leave it."""
     slow_rate, _, rest_gain, slow_gain, fast_gain = c[:5]
     slow = (rest_gain * volts - velocity) / slow_rate - slow_gain * volts
     return -slow - fast_gain * volts, slow, fast_gain * volts, 0.0, velocity
-
-
-@kernel
-def _speed(c, state, volts):
-    """The speed [m/s] of an axis under `volts` [V]: that of its modes, of which the fast one follows the volts."""
-    return c[2] * volts - c[0] * (state[1] + c[3] * volts) - c[1] * (state[2] - c[4] * volts)
-
-
-@kernel
-def _lost(sizes, vx, vy, creep):
-    """The volts that friction of the left and right motor and of the x and y axis takes from both axes."""
-    left, right = sizes[0] * math.tanh((vx - vy) / creep), sizes[1] * math.tanh((-vx - vy) / creep)
-    along_x, along_y = sizes[2] * math.tanh(vx / creep), sizes[3] * math.tanh(vy / creep)
-    return left - right + along_x, -left - right + along_y  # V_x = left - right, V_y = -(left + right)
