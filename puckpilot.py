@@ -68,7 +68,7 @@ COMMANDS = {
 
 # Packages that some commands alone need, and by which of the project's extras they come
 EXTRAS = {"unicorn": "emulate", "torch": "train", "rsl_rl": "train", "tensordict": "train", "sklearn": "train",
-          "stable_baselines3": "benchmark"}  # fmt: skip
+          "stable_baselines3": "benchmark", "torchrl": "benchmark"}  # fmt: skip
 
 
 class _Parser(argparse.ArgumentParser):

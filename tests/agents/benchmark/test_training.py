@@ -33,7 +33,7 @@ def _short(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_every_algorithm_says_what_it_is() -> None:
-    assert {"random", "interceptor", "league_ppo", "sb3_ppo", "sb3_sac"} <= set(algorithm_names())
+    assert {"random", "interceptor", "league_ppo", "sb3_ppo", "sb3_sac", "torchrl_ippo"} <= set(algorithm_names())
     assert all(find_algorithm(name).words and find_algorithm(name).library for name in algorithm_names())
     with pytest.raises(ValueError, match=r"unknown algorithm 'sb3_pp'; did you mean 'sb3_ppo'\?"):
         find_algorithm("sb3_pp")
@@ -77,7 +77,9 @@ def test_who_takes_more_steps_than_the_budget_is_refused(tmp_path: Path, monkeyp
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("algorithm", "steps"), [("sb3_ppo", 20_000), ("league_ppo", 40_000)])
+@pytest.mark.parametrize(
+    ("algorithm", "steps"), [("sb3_ppo", 20_000), ("league_ppo", 40_000), ("torchrl_mappo", 20_000)]
+)
 def test_a_learner_leaves_its_curve_and_its_policy(algorithm: str, steps: int, tmp_path: Path) -> None:
     job = TrainingJob(algorithm, DRILL, 1, steps, tmp_path)
     outcome = run_job(job)

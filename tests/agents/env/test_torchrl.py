@@ -7,7 +7,6 @@ from typing import Any
 import pettingzoo
 import pytest
 import torch
-from pettingzoo.utils.wrappers import BaseParallelWrapper
 from torch import nn
 
 import puckpilot_env  # noqa: F401 - registers the ids
@@ -93,21 +92,3 @@ def test_ppo_learns_in_both_seats():
                 nn.utils.clip_grad_norm_(loss.parameters(), 0.5)
                 optimizer.step()
     assert _evaluate(env, actor) > before + BETTER
-
-
-class Quiet(BaseParallelWrapper):
-    """As the README has it: TorchRL's wrapper takes no infos that hold more than numbers."""
-
-    def reset(self, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, Any]:
-        observations, infos = super().reset(seed, options)
-        return observations, {agent: {} for agent in infos}
-
-
-@pytest.mark.filterwarnings("ignore")
-def test_randomized_ids_play_without_their_infos():
-    env = envs.PettingZooWrapper(Quiet(pettingzoo.make("parallel", "puckpilot/attack-randomized-v0")))
-    env.set_seed(0)
-    steps = env.rollout(300, break_when_any_done=False)
-    seen, rewards = steps[OBSERVATION], steps["next", "player", "reward"]
-    assert steps["next", "player", "done"].sum() > 4  # episodes end and begin anew
-    assert seen.shape[:2] == (300, 2) and torch.isfinite(seen).all() and rewards.abs().sum() > 0.0
