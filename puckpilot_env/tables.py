@@ -152,14 +152,9 @@ class Tables:
     def step(self, actions: ArrayLike) -> None:
         """Play one step with `actions` (n, 2, 4) float32, each in its player's own frame and in the action space.
 
-        Raises ValueError, having changed nothing, for a wrong shape, NaN, or a number outside the space.
+        Raises ValueError, having changed nothing, for what `checked` refuses.
         """
-        actions = np.ascontiguousarray(real_numbers(actions, "the array of actions"), np.float32)
-        if actions.shape != (len(self.states), 2, 4):
-            raise ValueError(f"actions have shape {actions.shape}; expected {(len(self.states), 2, 4)}")
-        bad = kernels.first_outside(actions, self._taken)
-        if bad >= 0:
-            raise ValueError(self._describe_bad_action(actions, bad))
+        actions = self.checked(actions)
         if not self._stepped:
             announce_compilation("step_range-" if self._team is None else "step_ranges-")
             self._stepped = True
@@ -169,6 +164,17 @@ class Tables:
         else:
             self._actions[:] = actions
             self._team.run()
+
+    def checked(self, actions: ArrayLike) -> NDArray[np.float32]:
+        """The actions of a step as float32. ValueError, in one line, for a wrong shape, NaN, or a number outside the
+        action space."""
+        checked = np.ascontiguousarray(real_numbers(actions, "the array of actions"), np.float32)
+        if checked.shape != (len(self.states), 2, 4):
+            raise ValueError(f"actions have shape {checked.shape}; expected {(len(self.states), 2, 4)}")
+        bad = kernels.first_outside(checked, self._taken)
+        if bad >= 0:
+            raise ValueError(self._describe_bad_action(checked, bad))
+        return checked
 
     def _arrays(self, actions: NDArray[np.float32]) -> tuple[Any, ...]:
         """What a step of `batch` works on."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import secrets
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from gymnasium.spaces import Box
@@ -21,6 +21,10 @@ from puckpilot_env.options.real_numbers import real_numbers
 from puckpilot_env.tables import ACTION_COLUMNS, Tables
 from puckpilot_env.variants import Variant
 
+if TYPE_CHECKING:
+    from puckpilot_env.rendering.film import Film
+    from puckpilot_env.rendering.window import Window
+
 STATE_HIGH = 60.0  # bound of every number of `state()`, in SI units
 
 
@@ -32,11 +36,12 @@ def fresh_seed() -> int:
 class TableEnv(ParallelEnv):
     """Two agents on one table. Observations, actions and rewards are described on the variant's page.
 
-    Every array handed out is the caller's own: no later step changes it.
+    Every array handed out is the caller's own: no later step changes it. The render mode "human" shows the game in a
+    window, at the table's own speed; "rgb_array" makes a picture when it is asked for.
     """
 
     metadata = {  # noqa: RUF012 - upstream looks for it on the class
-        "render_modes": ["rgb_array"],
+        "render_modes": ["human", "rgb_array"],
         "render_fps": 10,
         "is_parallelizable": True,
         "refuses_bad_actions": True,  # see `check`
@@ -80,6 +85,11 @@ class TableEnv(ParallelEnv):
         self._action_spaces = {agent: Box(low, high, dtype=np.float32) for agent in AGENTS}
         self.state_space = Box(-STATE_HIGH, STATE_HIGH, (12,), np.float64)
         self._actions = np.zeros((1, 2, 4), np.float32)
+        self._shown: tuple[Film, Window] | None = None
+        if render_mode == "human":
+            from puckpilot_env.rendering.window import film_in_window
+
+            self._shown = film_in_window(self._tables, AGENTS)
 
     @property
     def tables(self) -> Tables:
@@ -119,6 +129,8 @@ class TableEnv(ParallelEnv):
             raise ValueError("the episode is over (or has not begun); call reset() before step()")
         self._take(actions)
         tables = self._tables
+        if self._shown is not None:
+            self._shown[0].step(tables.checked(self._actions))
         tables.step(self._actions)
         rewards = tables.rewards[0].tolist()
         terminated, truncated = bool(tables.terminated[0]), bool(tables.truncated[0])
@@ -167,8 +179,8 @@ class TableEnv(ParallelEnv):
         return np.clip(everything, -STATE_HIGH, STATE_HIGH)
 
     def render(self) -> NDArray[np.uint8] | None:
-        """A picture of the table, (height, width, 3) uint8; None without a render mode."""
-        if self.render_mode is None:
+        """A picture of the table, (height, width, 3) uint8, in the mode "rgb_array"; None in others."""
+        if self.render_mode != "rgb_array":
             return None
         from puckpilot_env.rendering.drawing import draw
 
@@ -176,8 +188,10 @@ class TableEnv(ParallelEnv):
         return draw(tables.states[0], tables.params[0], rules=tables.variant.rules()[0], names=AGENTS)
 
     def close(self) -> None:
-        """Nothing is held open."""
+        """Close the window, if there is one."""
         self._tables.close()
+        if self._shown is not None:
+            self._shown[1].close()
 
 
 def _action_names() -> str:

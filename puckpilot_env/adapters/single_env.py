@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import gymnasium
 import numpy as np
@@ -16,14 +16,19 @@ from puckpilot_env.options.inputs import one_of, reset_options
 from puckpilot_env.options.real_numbers import real_numbers
 from puckpilot_env.tables import Tables
 
-RENDER_MODES = ["rgb_array"]
+if TYPE_CHECKING:
+    from puckpilot_env.rendering.window import Window
+
+PICTURES = ["rgb_array"]
+RENDER_MODES = ["human", *PICTURES]
 
 
 class SingleEnv(gymnasium.Env[NDArray[Any], NDArray[Any]]):
     """Observation, action and reward of one seat, as described on the variant's page.
 
     Every array handed out is the caller's own: no later step changes it. At the end of an episode the info tells how
-    it ended (`infos.outcome_info`), at the beginning what was drawn for it (`infos.drawn_info`).
+    it ended (`infos.outcome_info`), at the beginning what was drawn for it (`infos.drawn_info`). The render mode
+    "human" shows the game in a window, at the table's own speed; "rgb_array" makes a picture when it is asked for.
     """
 
     metadata = {"render_modes": RENDER_MODES, "render_fps": 10}  # noqa: RUF012 - upstream looks for it on the class
@@ -40,6 +45,11 @@ class SingleEnv(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         self.render_mode = render_mode
         self.metadata = {**self.metadata, "render_fps": round(1.0 / tables.variant.period)}
         self.observation_space, self.action_space = seat_spaces(tables)
+        self._window: Window | None = None
+        if render_mode == "human":
+            from puckpilot_env.rendering.window import film_in_window
+
+            self._seats.film, self._window = film_in_window(tables, names_of(seat))
 
     @one_thread
     def reset(
@@ -70,12 +80,14 @@ class SingleEnv(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         return self._seats.mine(self.tables.observations)[0].copy()
 
     def render(self) -> NDArray[np.uint8] | None:  # pyright: ignore[reportIncompatibleMethodOverride] - the base promises a frame in each mode
-        """A picture of the table, (height, width, 3) uint8; None without a render mode."""
-        return None if self.render_mode is None else draw_table(self.tables, 0, int(self._seats.own[0]))
+        """A picture of the table, (height, width, 3) uint8, in the mode "rgb_array"; None in others."""
+        return draw_table(self.tables, 0, int(self._seats.own[0])) if self.render_mode in PICTURES else None
 
     def close(self) -> None:
-        """Nothing is held open."""
+        """Close the window, if there is one."""
         self.tables.close()
+        if self._window is not None:
+            self._window.close()
 
 
 def seat_spaces(tables: Tables) -> tuple[Box, Box]:
@@ -90,5 +102,9 @@ def draw_table(tables: Tables, table: int, seat: int) -> NDArray[np.uint8]:
     """A picture of one table, (height, width, 3) uint8; `seat` is the agent's."""
     from puckpilot_env.rendering.drawing import draw
 
-    names = ("agent", "opponent") if seat == 0 else ("opponent", "agent")
-    return draw(tables.states[table], tables.params[table], rules=tables.variant.rules()[0], names=names)
+    return draw(tables.states[table], tables.params[table], rules=tables.variant.rules()[0], names=names_of(seat))
+
+
+def names_of(seat: int) -> tuple[str, str]:
+    """Who plays, in pictures of a table where the agent has this seat."""
+    return ("agent", "opponent") if seat == 0 else ("opponent", "agent")

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from puckpilot_env.adapters.infos import drawn_info, masked, outcome_info
 from puckpilot_env.adapters.seats import Opponent, Seats
-from puckpilot_env.adapters.single_env import RENDER_MODES, draw_table, seat_spaces
+from puckpilot_env.adapters.single_env import PICTURES, draw_table, seat_spaces
 from puckpilot_env.batch.one_thread import one_thread
 from puckpilot_env.batch.snapshot import Snapshot
 from puckpilot_env.options.inputs import one_of, reset_options, truth
@@ -49,7 +49,7 @@ class TablesVectorEnv(VectorEnv[Arrays, Arrays, Arrays]):
         """
         if not isinstance(tables, Tables) or not tables.autoreset:
             raise ValueError("expected Tables with autoreset=True")
-        one_of(render_mode, "render_mode", None, *RENDER_MODES)
+        one_of(render_mode, "render_mode", None, *PICTURES)
         self._seats = Seats(tables, opponent, seat)
         self._copy = truth(copy, "copy")
         mode = autoreset_mode.value if isinstance(autoreset_mode, AutoresetMode) else autoreset_mode
@@ -63,7 +63,7 @@ class TablesVectorEnv(VectorEnv[Arrays, Arrays, Arrays]):
         self.num_envs = len(tables)
         self.render_mode = render_mode
         self.metadata = {
-            "render_modes": RENDER_MODES,
+            "render_modes": PICTURES,
             "render_fps": round(1.0 / tables.variant.period),
             "autoreset_mode": mode,
         }

@@ -221,7 +221,7 @@ def test_pictures() -> None:
         (lambda: make_seat("match-v0", opponent=3), "opponent is 3; expected"),  # pyright: ignore[reportArgumentType] - what is refused
         (lambda: make_seat("match-v0", seat=2), "seat is 2; expected 0 or 1"),
         (lambda: make_seats("match-v0", 2, seat="both"), "seat is 'both'; expected 0, 1 or 'alternate'"),
-        (lambda: make_seat("match-v0", render_mode="human"), "render_mode is 'human'"),
+        (lambda: make_seats("match-v0", render_mode="human"), "render_mode is 'human'"),
         (lambda: make_seats("match-v0", 0), "num_envs is 0"),
         (lambda: make_seats("match-v0", 2).reset(seed=[1, 2]), r"seed is \[1, 2\]"),  # pyright: ignore[reportArgumentType] - what is refused
         (lambda: make_seats("match-v0", 2).reset(options={"reset_mask": np.ones(2, bool)}), "reset_mask"),
