@@ -6,3 +6,7 @@
 - `entry`, `sandbox`, `verify`: an entry of `leaderboard/`, played anew in a process with limits of time and memory;
   `leaderboard`: the page over all entries.
 """
+
+from pathlib import Path
+
+LEADERBOARD = Path("leaderboard")  # folder of the entries, in a clone of the project

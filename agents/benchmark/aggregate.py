@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from agents.benchmark.protocol import Protocol
 from agents.benchmark.training import read_outcome
-from agents.evaluation.over_seeds import iqm_estimate
+from agents.evaluation.over_seeds import RESAMPLES, TAIL, iqm_estimate
 
 Outcome = Mapping[str, Any]
 CURVE_STEPS = 5  # parts of the budget, for marl-eval
@@ -108,6 +108,17 @@ def profile(outcomes: Sequence[Outcome], kept_out: str) -> NDArray[np.float64]:
     """The share (thresholds,) of runs, over tasks and seeds alike, whose mean score is above each of THRESHOLDS."""
     means = np.array([scores([one], kept_out).mean() for one in outcomes])
     return np.mean(means[:, None] > THRESHOLDS, axis=0)
+
+
+def profile_band(outcomes: Sequence[Outcome], kept_out: str, seed: int = 0) -> NDArray[np.float64]:
+    """Ends (2, thresholds) of pointwise 95 % intervals of `profile`, by a bootstrap of the runs of each task."""
+    means = [scores(of_task(outcomes, task), kept_out).mean(axis=1) for task in tasks_of(outcomes)]
+    rng, above = np.random.default_rng(seed), []
+    for of_one in means:
+        drawn = of_one[rng.integers(len(of_one), size=(RESAMPLES, len(of_one)))]
+        above.append((drawn[:, :, None] > THRESHOLDS).sum(axis=1))
+    shares = np.sum(above, axis=0) / sum(map(len, means))
+    return np.quantile(shares, [TAIL, 1.0 - TAIL], axis=0)
 
 
 def _of_seeds(scores_of_seeds: NDArray[np.float64]) -> dict[str, float | None]:

@@ -113,7 +113,10 @@ def page_of(found: dict[str, Any]) -> str:
         ]
     lines += ["![Learning curves](curves.png)", ""]
     if found["overall"]:
-        lines += ["![Performance profiles](profiles.png)", ""]
+        words = (
+            "The share of runs above each score; shaded, pointwise 95 % intervals by a bootstrap of each task's runs."
+        )
+        lines += [words, "", "![Performance profiles](profiles.png)", ""]
     return "\n".join(lines)
 
 
@@ -153,7 +156,10 @@ def _curves(axes: Sequence[Axes], outcomes: Sequence[Outcome], tasks: Sequence[s
 
 def _profiles(axes: Axes, outcomes: Sequence[Outcome], kept_out: str) -> None:
     for name in aggregate.algorithms_of(outcomes):
-        axes.plot(aggregate.THRESHOLDS, aggregate.profile(aggregate.of_algorithm(outcomes, name), kept_out), label=name)
+        runs = aggregate.of_algorithm(outcomes, name)
+        (line,) = axes.plot(aggregate.THRESHOLDS, aggregate.profile(runs, kept_out), label=name)
+        band = aggregate.profile_band(runs, kept_out)
+        axes.fill_between(aggregate.THRESHOLDS, *band, color=line.get_color(), alpha=0.15, linewidth=0.0)
     axes.set(xlabel="score τ", ylabel="share of runs with a score above τ", ylim=(-0.02, 1.02))
     axes.legend(fontsize=8)
 

@@ -15,6 +15,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from scipy.stats import fisher_exact
 
+from agents.benchmark import LEADERBOARD
 from agents.benchmark.entry import Claim, Entry, digest, files_of, read_policy_file, tasks_claimed
 from agents.benchmark.evaluation import Against
 from agents.benchmark.protocol import Protocol, Task
@@ -122,5 +123,7 @@ def overstated(claimed: tuple[int, int], played: tuple[int, int], paired: bool, 
 
 
 def entry_file(name: Path) -> Path:
-    """The entry's file of a path, with or without its ending."""
-    return name if name.suffix == ".toml" else name.with_suffix(".toml")
+    """The entry's file of a path, with or without its ending, or of an entry's name in `leaderboard/` here."""
+    file = name if name.suffix == ".toml" else name.with_name(f"{name.name}.toml")
+    in_leaderboard = LEADERBOARD / file
+    return in_leaderboard if len(file.parts) == 1 and not file.exists() and in_leaderboard.exists() else file

@@ -11,7 +11,7 @@ import argparse
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-LEADERBOARD = Path("leaderboard")
+from agents.benchmark import LEADERBOARD
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

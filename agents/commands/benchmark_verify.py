@@ -19,7 +19,7 @@ OWN_SEEDS = 1 << 24  # so many seeds, above all that the protocol uses
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
-    parser.add_argument("entry", type=Path, metavar="ENTRY", help="leaderboard/NAME.toml")
+    parser.add_argument("entry", type=Path, metavar="ENTRY", help="leaderboard/NAME.toml, or NAME")
     parser.add_argument("--games", type=int, metavar="N", help="of each claim, no fewer than the protocol's (200)")
     parser.add_argument("--seed", type=int, metavar="SEED", help="of these games (drawn anew, and printed)")
     parser.add_argument("--seconds", type=float, default=1200.0, metavar="S", help="that a task may take (1200)")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import os
+import socket
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
@@ -11,6 +12,7 @@ from typing import TypeVar
 
 Job = TypeVar("Job")
 Result = TypeVar("Result")
+CONNECTING = 5.0  # s until a cluster's address counts as wrong
 
 
 def fan_out(
@@ -37,6 +39,7 @@ def _on_ray(work: Callable[[Job], Result], jobs: Sequence[Job], cluster: str) ->
         import ray
     except ImportError:
         raise ValueError("--cluster needs Ray; install it with: pip install 'puckpilot[cluster]'") from None
+    _refuse_unreachable(cluster)
     try:
         ray.init(address=None if cluster == "local" else cluster, log_to_driver=False, logging_level=logging.ERROR)
     except (ConnectionError, RuntimeError, ValueError) as error:
@@ -47,3 +50,14 @@ def _on_ray(work: Callable[[Job], Result], jobs: Sequence[Job], cluster: str) ->
         yield from (ray.get(one) for one in [remote.remote(job) for job in jobs])
     finally:
         ray.shutdown()
+
+
+def _refuse_unreachable(cluster: str) -> None:
+    """ValueError, in one line, if nothing listens at an address host:port; Ray itself asks for two minutes."""
+    host, colon, port = cluster.removeprefix("ray://").rpartition(":")
+    if not colon:
+        return  # a word that Ray knows, as `local`
+    try:
+        socket.create_connection((host, int(port)), CONNECTING).close()
+    except (OSError, ValueError, OverflowError) as error:
+        raise ValueError(f"no Ray cluster at {cluster}: {error}; expected host:port, or local") from None

@@ -80,6 +80,16 @@ def test_a_performance_profile_falls_from_all_runs_to_none() -> None:
     assert (np.diff(found) <= 0.0).all()
 
 
+def test_the_band_of_a_profile_is_as_wide_as_runs_of_one_task_differ() -> None:
+    low, high = aggregate.profile_band(RUNS[:4], PROTOCOL.kept_out)
+    at = {round(float(threshold), 2): k for k, threshold in enumerate(aggregate.THRESHOLDS)}
+    # between 0.5 and 0.6 only one of two runs of the attack is above: of two draws none to both, of four runs
+    assert (low[at[0.55]], high[at[0.55]]) == (0.0, 0.5)
+    # at 0.45 both of the match are above, always, and of the attack none to both
+    assert (low[at[0.45]], high[at[0.45]]) == (0.5, 1.0)
+    assert (low[at[0.3]], high[at[0.3]]) == (1.0, 1.0)
+
+
 def test_marl_eval_finds_every_score_at_the_same_steps_of_every_run() -> None:
     tree = aggregate.as_marl_eval([*RUNS, {**RUNS[4], "algorithm": "c", "curve": []}], PROTOCOL.kept_out)["puckpilot"]
     assert tree["match-v0"]["a"]["seed_1"]["absolute_metrics"] == {"score": [0.9, 0.6, 0.0], "score_kept_out": [0.4]}

@@ -16,7 +16,7 @@ from agents.benchmark.entry import Claim, Entry, copy_policy, digest, read_entry
 from agents.benchmark.evaluation import Against
 from agents.benchmark.protocol import read_protocol
 from agents.benchmark.sandbox import Limits
-from agents.benchmark.verify import SIGNIFICANCE, overstated, verify
+from agents.benchmark.verify import SIGNIFICANCE, entry_file, overstated, verify
 from agents.policy.network import Network
 from agents.policy.policy import SHIPPED
 from tests.agents.policy.some_policy import made
@@ -55,6 +55,18 @@ def test_an_honest_entry_holds_and_a_false_claim_does_not(champion: Entry) -> No
     failed = _failed(false)
     assert set(failed) == {f"attack-v0 against {one}" for one in PROTOCOL.evaluated_against(DRILL)}
     assert failed["attack-v0 against goalie"].startswith("claimed 167 won and 0 lost of 200; played ")
+
+
+def test_an_entry_is_found_by_its_file_and_one_of_the_leaderboard_by_its_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "leaderboard").mkdir()
+    (tmp_path / "leaderboard" / "ours.toml").touch()
+    assert entry_file(Path("ours")) == entry_file(Path("ours.toml")) == Path("leaderboard/ours.toml")
+    assert entry_file(Path("elsewhere/ours")) == Path("elsewhere/ours.toml")
+    (tmp_path / "ours.toml").touch()
+    assert entry_file(Path("ours")) == Path("ours.toml")
 
 
 def _changed(entry: Entry) -> Entry:

@@ -25,6 +25,12 @@ def test_a_cluster_gives_the_same_in_order():
     assert list(fan_out(math.isqrt, [16, 4, 9, 1], cluster="local")) == [4, 2, 3, 1]
 
 
+@pytest.mark.parametrize("address", ["127.0.0.1:1", "ray://127.0.0.1:1", "127.0.0.1:port", "no.such.host.invalid:6379"])
+def test_a_wrong_address_is_refused_in_one_line(address: str):
+    with pytest.raises(ValueError, match=f"no Ray cluster at {address}: .*; expected host:port, or local"):
+        list(fan_out(_square, [1], cluster=address))
+
+
 def _fails(number: int) -> int:
     raise ValueError(f"no {number}")
 
