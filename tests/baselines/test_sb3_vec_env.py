@@ -2,16 +2,25 @@
 
 from __future__ import annotations
 
+import gymnasium
 import numpy as np
 import pytest
 import torch
 from stable_baselines3 import PPO
+from stable_baselines3.common.env_checker import check_env
 from stable_baselines3.common.vec_env import VecMonitor
 
 from baselines.gymnasium_seat import make_seats
 from baselines.sb3_vec_env import SB3VecEnv, make_sb3_vec_env
+from puckpilot_env import all_variants
 
 DRILL = "puckpilot/defence-randomized-v0"
+
+
+@pytest.mark.filterwarnings("ignore")  # that actions in metres and volts want RescaleAction
+@pytest.mark.parametrize("variant", list(all_variants()))
+def test_the_librarys_own_check_passes(variant: str) -> None:
+    check_env(gymnasium.make(variant).unwrapped)
 
 
 def test_the_episodes_are_those_of_the_tables() -> None:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import torch
 
+from puckpilot_env import all_variants
 from puckpilot_env.tables import Tables
 
 MISSING = "TorchRL is not installed; it comes with pip install '.[test]'"
@@ -18,7 +19,7 @@ pytestmark = pytest.mark.filterwarnings("ignore")  # TorchRL's own, of versions 
 SEAT = "player"
 
 
-@pytest.mark.parametrize("variant", ["match-v0", "attack-randomized-v0", "match-sensors-v0"])
+@pytest.mark.parametrize("variant", list(all_variants()))
 def test_the_check_of_the_library_passes(variant: str) -> None:
     checks.check_env_specs(torchrl_env.torchrl_env(variant, 3))
 
