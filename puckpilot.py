@@ -58,6 +58,7 @@ COMMANDS = {
     "identify gantry": ("sim2real.commands.identify_gantry", "the gantry's constants, from logs of its motors"),
     "identify puck": ("sim2real.commands.identify_puck", "friction, drag and restitution, from recordings of the puck"),
     "track": ("sim2real.commands.track", "puck and opponent in a camera's pictures, as a recording"),
+    "arena": ("sim2real.commands.arena", "play in a browser, or watch two players"),
     "firmware info": ("sim2real.commands.firmware_info", "the microcontroller's program: protocol, size, speed"),
     "firmware build": ("sim2real.commands.firmware_build", "compile the microcontroller's program"),
     "firmware emulate": ("sim2real.commands.firmware_emulate", "run the microcontroller's program without a board"),
@@ -68,7 +69,7 @@ COMMANDS = {
 
 # Packages that some commands alone need, and by which of the project's extras they come
 EXTRAS = {"unicorn": "emulate", "torch": "train", "rsl_rl": "train", "tensordict": "train", "sklearn": "train",
-          "stable_baselines3": "benchmark", "torchrl": "benchmark"}  # fmt: skip
+          "stable_baselines3": "benchmark", "torchrl": "benchmark", "aiohttp": "arena"}  # fmt: skip
 
 
 class _Parser(argparse.ArgumentParser):

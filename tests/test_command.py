@@ -50,6 +50,7 @@ OPTIONS = {
         "--json",
     ],
     "export": ["--out"],
+    "arena": ["--seat", "--host", "--port", "--seed"],
     "benchmark run": ["--list", "--tasks", "--seeds", "--steps", "--out", "--workers", "--cluster", "--json"],
     "benchmark report": ["--json"],
     "benchmark enter": ["--name", "--trained", "--tasks", "--out"],
@@ -196,6 +197,11 @@ def test_a_word_of_several_commands_tells_them(more, code, capsys):
         (
             ["bench", "--tables", "many"],
             "puckpilot bench: argument --tables: invalid int value: 'many'; see puckpilot bench --help",
+        ),
+        (["arena", "goaly"], "puckpilot arena: unknown player 'goaly'; did you mean 'goalie'?"),
+        (
+            ["arena", "still", "still", "still"],
+            "puckpilot arena: 3 players are given; expected one to play against, or two to watch",
         ),
         (
             ["bench", "mach-v0"],

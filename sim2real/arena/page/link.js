@@ -1,0 +1,48 @@
+// The WebSocket to the server: it comes back by itself, into the same game, and measures the round trip.
+const PING_EVERY = 1000; // ms
+const FIRST_WAIT = 250, LONGEST_WAIT = 5000; // ms before it is tried again
+
+export class Link {
+  constructor(heard) {
+    this.heard = heard;
+    this.id = sessionStorage.getItem("game") ?? ""; // so that a page that is loaded anew comes back into its game
+    this.wait = FIRST_WAIT;
+    this.roundTrip = null;
+    this.open();
+    setInterval(() => this.say({ kind: "ping", sent: performance.now() }), PING_EVERY);
+  }
+
+  open() {
+    const address = new URL("game", location.href);
+    address.protocol = location.protocol === "https:" ? "wss:" : "ws:";
+    address.searchParams.set("token", new URLSearchParams(location.search).get("token") ?? "");
+    address.searchParams.set("id", this.id);
+    this.socket = new WebSocket(address);
+    this.socket.onmessage = (event) => this.take(JSON.parse(event.data));
+    this.socket.onclose = (event) => this.closed(event);
+  }
+
+  take(message) {
+    if (message.kind === "pong") {
+      this.roundTrip = performance.now() - message.sent;
+      return;
+    }
+    if (message.kind === "welcome") {
+      this.id = message.id;
+      sessionStorage.setItem("game", this.id);
+      this.wait = FIRST_WAIT;
+    }
+    this.heard(message);
+  }
+
+  closed(event) {
+    this.roundTrip = null;
+    this.heard({ kind: "closed", reason: event.reason || "connection lost, trying again" });
+    setTimeout(() => this.open(), this.wait);
+    this.wait = Math.min(2 * this.wait, LONGEST_WAIT);
+  }
+
+  say(message) {
+    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+  }
+}

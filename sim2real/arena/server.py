@@ -1,0 +1,84 @@
+"""The arena's server: a page for those who know the token, and a WebSocket for each page."""
+
+from __future__ import annotations
+
+import asyncio
+import hmac
+from collections.abc import Callable
+from pathlib import Path
+
+from aiohttp import WSCloseCode, web
+
+from sim2real.arena.lobby import FullError, Lobby
+from sim2real.arena.messages import MOST_BYTES
+
+PAGE = Path(__file__).with_name("page")
+TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript"}
+HEADERS = {
+    "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'",
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cache-Control": "no-cache",
+}
+LOBBY = web.AppKey("lobby", Lobby)
+TOKEN = web.AppKey("token", str)
+
+
+def make_app(lobby: Lobby, token: str) -> web.Application:
+    """The application that serves the page and its WebSockets."""
+    app = web.Application(client_max_size=1024)
+    app[LOBBY], app[TOKEN] = lobby, token
+    app.router.add_get("/", _index)
+    app.router.add_get("/game", _game)
+    for file in sorted(PAGE.iterdir()):
+        if file.suffix in TYPES and file.name != "index.html":
+            app.router.add_get(f"/{file.name}", _file)
+    app.on_shutdown.append(_close)
+    return app
+
+
+async def serve(app: web.Application, host: str, port: int, say: Callable[[int], None]) -> None:
+    """Serve until cancelled; `say` is called with the port once pages can come. OSError where it cannot listen."""
+    runner = web.AppRunner(app, handle_signals=False, access_log=None, shutdown_timeout=1.0)
+    await runner.setup()
+    try:
+        await web.TCPSite(runner, host, port).start()
+        say(runner.addresses[0][1])
+        await asyncio.Event().wait()
+    finally:
+        await runner.cleanup()
+
+
+async def _index(request: web.Request) -> web.Response:
+    _refuse_strangers(request)
+    return _response(PAGE / "index.html")
+
+
+async def _file(request: web.Request) -> web.Response:
+    return _response(PAGE / request.path[1:])
+
+
+async def _game(request: web.Request) -> web.StreamResponse:
+    _refuse_strangers(request)
+    if request.headers.get("Origin") != f"{request.scheme}://{request.host}":
+        raise web.HTTPForbidden(text="a page of another origin")
+    socket = web.WebSocketResponse(heartbeat=10.0, max_msg_size=4 * MOST_BYTES, compress=False)
+    await socket.prepare(request)
+    try:
+        await request.app[LOBBY].join(socket, request.query.get("id", ""))
+    except FullError:
+        await socket.close(code=WSCloseCode.TRY_AGAIN_LATER, message=b"the arena is full")
+    return socket
+
+
+def _refuse_strangers(request: web.Request) -> None:
+    if not hmac.compare_digest(request.query.get("token", "").encode(), request.app[TOKEN].encode()):
+        raise web.HTTPForbidden(text="the address needs the token that puckpilot arena printed")
+
+
+def _response(file: Path) -> web.Response:
+    return web.Response(body=file.read_bytes(), content_type=TYPES[file.suffix], charset="utf-8", headers=HEADERS)
+
+
+async def _close(app: web.Application) -> None:
+    app[LOBBY].close()

@@ -1,0 +1,63 @@
+"""A match of the arena: what a player does there is what it does in the variant, and a person's mallet goes where it
+is pointed at."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from puckpilot_env.batch.motion import mallet_motion, puck_motion
+from puckpilot_env.tables import Tables
+from sim2real.arena.game import PERSON, TICKS, Game
+from sim2real.arena.seats import PersonChair
+
+
+def test_twelve_ticks_of_held_decisions_are_a_step_of_the_variant() -> None:
+    """Against the variant's own step of 0.1 s, until the puck is touched first; each tick plans anew."""
+    game = Game(("interceptor", "goalie"), 7)
+    tables = Tables("match-v0", 1, seed=7, autoreset=False)
+    steps = 0
+    for _ in range(6):
+        held = np.stack([chair.action(game.tables.observations[0, k], 0) for k, chair in enumerate(game.chairs)])
+        tables.step(held[None])
+        for _ in range(12):
+            game.tick()
+        np.testing.assert_allclose(mallet_motion(game.tables.states), mallet_motion(tables.states), atol=2e-4)
+        np.testing.assert_allclose(puck_motion(game.tables.states), puck_motion(tables.states), atol=2e-3)
+        steps += 1
+    assert steps == 6 and game.view().time == pytest.approx(0.6)
+
+
+@pytest.mark.parametrize("seat", [0, 1])
+def test_a_persons_mallet_comes_to_the_pointer_and_stays_in_its_half(seat: int) -> None:
+    game = Game((PERSON, "still") if seat == 0 else ("still", PERSON), 1)
+    person = game.chairs[seat]
+    assert isinstance(person, PersonChair) and game.person is person
+    length = float(game.tables.params["length"][0])
+    x = 0.3 if seat == 0 else length - 0.3
+    person.aim(x, 0.25)
+    for _ in range(TICKS):
+        game.tick()
+    assert game.view().mallets[seat] == pytest.approx((x, 0.25), abs=2e-3)
+    person.aim(length - x, 0.75)  # in the other's half
+    for _ in range(TICKS):
+        game.tick()
+    there, y = game.view().mallets[seat]
+    assert y == pytest.approx(0.75, abs=2e-3) and (there < 0.5 * length) == (seat == 0)
+
+
+def test_a_goal_is_counted_and_the_match_ends_once() -> None:
+    """The champion scores against one who does not move."""
+    game = Game((PERSON, "policy:champion"), 3)
+    for _ in range(200 * TICKS):
+        game.tick()
+    view = game.view()
+    assert game.over and view.score[1] == 7 > view.score[0] and view.ending == "points"
+    ticks = game.ticks
+    game.tick()
+    assert game.ticks == ticks
+
+
+def test_an_unknown_player_is_refused() -> None:
+    with pytest.raises(ValueError, match="unknown player 'goaly'"):
+        Game((PERSON, "goaly"), 0)

@@ -1,0 +1,46 @@
+"""Deadlines, by a clock of the test's own."""
+
+from __future__ import annotations
+
+import asyncio
+
+import pytest
+
+from sim2real.arena import ticking
+from sim2real.arena.ticking import Ticking
+
+
+def played(monkeypatch: pytest.MonkeyPatch, costs: list[float], rate: float = 100.0) -> tuple[list[float], Ticking]:
+    """When each step came [s], if the n-th takes `costs[n]` [s] and nothing else any time."""
+    clock, came = [0.0], []
+
+    class Loop:
+        def time(self) -> float:
+            return clock[0]
+
+    async def sleep(seconds: float) -> None:
+        clock[0] += seconds
+
+    def step() -> None:
+        came.append(clock[0])
+        clock[0] += costs[len(came) - 1]
+        if len(came) == len(costs):
+            raise asyncio.CancelledError
+
+    monkeypatch.setattr(ticking.asyncio, "get_running_loop", Loop)
+    monkeypatch.setattr(ticking.asyncio, "sleep", sleep)
+    ticks = Ticking(step, rate)
+    with pytest.raises(asyncio.CancelledError):
+        ticks.run().send(None)
+    return came, ticks
+
+
+def test_a_slow_step_is_made_up_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    came, ticks = played(monkeypatch, [0.001, 0.025, 0.001, 0.001, 0.001, 0.0])
+    assert came == pytest.approx([0.0, 0.01, 0.035, 0.036, 0.04, 0.05])
+    assert ticks.late == 1  # the third, 15 ms
+
+
+def test_a_machine_that_slept_does_not_race(monkeypatch: pytest.MonkeyPatch) -> None:
+    came, _ = played(monkeypatch, [10.0, 0.001, 0.001, 0.0])
+    assert came == pytest.approx([0.0, 10.0, 10.01, 10.02])
