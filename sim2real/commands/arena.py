@@ -24,6 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Serve until Ctrl-C. ValueError, in one line, for an unknown player or a port that is taken."""
     import asyncio
+    import os
     import secrets
 
     from baselines import find_player
@@ -50,5 +51,6 @@ def run(args: argparse.Namespace) -> int:
     try:
         asyncio.run(serve(app, args.host, args.port, say))
     except OSError as error:
-        raise ValueError(f"cannot listen on {args.host}:{args.port} ({error.strerror}); give another --port") from None
+        why = os.strerror(error.errno) if (error.errno or 0) > 0 else error.strerror  # asyncio's own words are long
+        raise ValueError(f"cannot listen on {args.host}:{args.port}: {why}; give another --host or --port") from None
     return 0
