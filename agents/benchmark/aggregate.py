@@ -110,9 +110,12 @@ def profile(outcomes: Sequence[Outcome], kept_out: str) -> NDArray[np.float64]:
     return np.mean(means[:, None] > THRESHOLDS, axis=0)
 
 
-def profile_band(outcomes: Sequence[Outcome], kept_out: str, seed: int = 0) -> NDArray[np.float64]:
-    """Ends (2, thresholds) of pointwise 95 % intervals of `profile`, by a bootstrap of the runs of each task."""
+def profile_band(outcomes: Sequence[Outcome], kept_out: str, seed: int = 0) -> NDArray[np.float64] | None:
+    """Ends (2, thresholds) of pointwise 95 % intervals of `profile`, by a bootstrap of the runs of each task; None
+    where a task has a single one."""
     means = [scores(of_task(outcomes, task), kept_out).mean(axis=1) for task in tasks_of(outcomes)]
+    if min(map(len, means)) < 2:
+        return None
     rng, above = np.random.default_rng(seed), []
     for of_one in means:
         drawn = of_one[rng.integers(len(of_one), size=(RESAMPLES, len(of_one)))]

@@ -159,7 +159,8 @@ def _profiles(axes: Axes, outcomes: Sequence[Outcome], kept_out: str) -> None:
         runs = aggregate.of_algorithm(outcomes, name)
         (line,) = axes.plot(aggregate.THRESHOLDS, aggregate.profile(runs, kept_out), label=name)
         band = aggregate.profile_band(runs, kept_out)
-        axes.fill_between(aggregate.THRESHOLDS, *band, color=line.get_color(), alpha=0.15, linewidth=0.0)
+        if band is not None:
+            axes.fill_between(aggregate.THRESHOLDS, *band, color=line.get_color(), alpha=0.15, linewidth=0.0)
     axes.set(xlabel="score τ", ylabel="share of runs with a score above τ", ylim=(-0.02, 1.02))
     axes.legend(fontsize=8)
 

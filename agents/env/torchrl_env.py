@@ -59,7 +59,7 @@ class TorchRLEnv(EnvBase):
         wanted = None if tensordict is None else tensordict.get("_reset", None)
         every = np.ones(len(self.tables), np.bool_)
         rows = every if wanted is None else wanted.reshape(len(every), -1)[:, 0].numpy()
-        if rows.all():
+        if rows.all() and not (self._ended.all() and self._seed is None):
             self.tables.reset(self._seed)
             self._seed = None
         elif (rows & ~self._ended).any():

@@ -58,6 +58,6 @@ def _refuse_unreachable(cluster: str) -> None:
     if not colon:
         return  # a word that Ray knows, as `local`
     try:
-        socket.create_connection((host, int(port)), CONNECTING).close()
+        socket.create_connection((host.strip("[]"), int(port)), CONNECTING).close()
     except (OSError, ValueError, OverflowError) as error:
         raise ValueError(f"no Ray cluster at {cluster}: {error}; expected host:port, or local") from None

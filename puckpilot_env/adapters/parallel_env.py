@@ -22,8 +22,7 @@ from puckpilot_env.tables import ACTION_COLUMNS, Tables
 from puckpilot_env.variants import Variant
 
 if TYPE_CHECKING:
-    from puckpilot_env.rendering.film import Film
-    from puckpilot_env.rendering.window import Window
+    from puckpilot_env.rendering.window import ShownGame
 
 STATE_HIGH = 60.0  # bound of every number of `state()`, in SI units
 
@@ -85,11 +84,11 @@ class TableEnv(ParallelEnv):
         self._action_spaces = {agent: Box(low, high, dtype=np.float32) for agent in AGENTS}
         self.state_space = Box(-STATE_HIGH, STATE_HIGH, (12,), np.float64)
         self._actions = np.zeros((1, 2, 4), np.float32)
-        self._shown: tuple[Film, Window] | None = None
+        self._shown: ShownGame | None = None
         if render_mode == "human":
-            from puckpilot_env.rendering.window import film_in_window
+            from puckpilot_env.rendering.window import ShownGame
 
-            self._shown = film_in_window(self._tables, AGENTS)
+            self._shown = ShownGame(self._tables, AGENTS)
 
     @property
     def tables(self) -> Tables:
@@ -130,7 +129,7 @@ class TableEnv(ParallelEnv):
         self._take(actions)
         tables = self._tables
         if self._shown is not None:
-            self._shown[0].step(tables.checked(self._actions))
+            self._shown.step(tables.checked(self._actions))
         tables.step(self._actions)
         rewards = tables.rewards[0].tolist()
         terminated, truncated = bool(tables.terminated[0]), bool(tables.truncated[0])
@@ -191,7 +190,7 @@ class TableEnv(ParallelEnv):
         """Close the window, if there is one."""
         self._tables.close()
         if self._shown is not None:
-            self._shown[1].close()
+            self._shown.close()
 
 
 def _action_names() -> str:

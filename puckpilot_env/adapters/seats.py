@@ -12,7 +12,7 @@ from puckpilot_env.options.real_numbers import real_numbers
 from puckpilot_env.tables import ACTION_COLUMNS, Tables
 
 if TYPE_CHECKING:
-    from puckpilot_env.rendering.film import Film
+    from puckpilot_env.rendering.window import ShownGame
 
 ALTERNATE = "alternate"
 Number = TypeVar("Number", bound=np.generic)
@@ -48,7 +48,7 @@ class Seats:
         self._theirs = (count, 1 - self.own) if seat == ALTERNATE else (slice(None), 1 - int(seat))
         self._actions = np.zeros((len(tables), 2, 4), np.float32)
         self._answered = False  # whether the opponent's actions for the coming step are in `_actions`
-        self.film: Film | None = None  # of each step that is about to be played
+        self.shown: ShownGame | None = None  # in a window, each step as it is about to be played
 
     def mine(self, array: NDArray[Number]) -> NDArray[Number]:
         """The caller's rows (n, ...) of an array (n, 2, ...); a view where the seat is the same at all tables."""
@@ -82,8 +82,8 @@ class Seats:
             self._actions[self._theirs] = answer
             self._answered = True
         self._actions[self._mine] = actions
-        if self.film is not None:
-            self.film.step(self.tables.checked(self._actions))
+        if self.shown is not None:
+            self.shown.step(self.tables.checked(self._actions))
         self.tables.step(self._actions)
         self._answered = False
         ended = self.tables.terminated | self.tables.truncated

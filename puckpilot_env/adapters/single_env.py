@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import gymnasium
 import numpy as np
@@ -15,9 +15,6 @@ from puckpilot_env.batch.one_thread import one_thread
 from puckpilot_env.options.inputs import one_of, reset_options
 from puckpilot_env.options.real_numbers import real_numbers
 from puckpilot_env.tables import Tables
-
-if TYPE_CHECKING:
-    from puckpilot_env.rendering.window import Window
 
 PICTURES = ["rgb_array"]
 RENDER_MODES = ["human", *PICTURES]
@@ -45,11 +42,10 @@ class SingleEnv(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         self.render_mode = render_mode
         self.metadata = {**self.metadata, "render_fps": round(1.0 / tables.variant.period)}
         self.observation_space, self.action_space = seat_spaces(tables)
-        self._window: Window | None = None
         if render_mode == "human":
-            from puckpilot_env.rendering.window import film_in_window
+            from puckpilot_env.rendering.window import ShownGame
 
-            self._seats.film, self._window = film_in_window(tables, names_of(seat))
+            self._seats.shown = ShownGame(tables, names_of(seat))
 
     @one_thread
     def reset(
@@ -86,8 +82,8 @@ class SingleEnv(gymnasium.Env[NDArray[Any], NDArray[Any]]):
     def close(self) -> None:
         """Close the window, if there is one."""
         self.tables.close()
-        if self._window is not None:
-            self._window.close()
+        if self._seats.shown is not None:
+            self._seats.shown.close()
 
 
 def seat_spaces(tables: Tables) -> tuple[Box, Box]:

@@ -44,8 +44,12 @@ class Window:
         if self._screen is None:
             self._screen = pygame.display.set_mode(size)
             pygame.display.set_caption(self._title)
-        self._screen.blit(pygame.image.frombuffer(np.ascontiguousarray(frame).tobytes(), size, "RGB"), (0, 0))
-        pygame.display.flip()
+        try:
+            self._screen.blit(pygame.image.frombuffer(np.ascontiguousarray(frame).tobytes(), size, "RGB"), (0, 0))
+            pygame.display.flip()
+        except pygame.error:  # pygame has one window alone, which another environment closed
+            self.closed = True
+            return
         self._clock.tick(self.fps)
         if any(event.type == pygame.QUIT for event in pygame.event.get()):
             self.close()
@@ -57,7 +61,18 @@ class Window:
             self._pygame.display.quit()
 
 
-def film_in_window(tables: Tables, names: Sequence[str]) -> tuple[Film, Window]:
-    """A film of the first table in a window of its own, and the window. ValueError as of `Window`."""
-    window = Window(tables.variant.id)
-    return Film(tables, window, names=names), window
+class ShownGame:
+    """A film of the first table in a window of its own, until that is closed. ValueError as of `Window`."""
+
+    def __init__(self, tables: Tables, names: Sequence[str]) -> None:
+        self._window = Window(tables.variant.id)
+        self._film = Film(tables, self._window, names=names)
+
+    def step(self, actions: NDArray[np.float32]) -> None:
+        """Show the step that `tables.step(actions)` is about to play."""
+        if not self._window.closed:
+            self._film.step(actions)
+
+    def close(self) -> None:
+        """Close the window."""
+        self._window.close()

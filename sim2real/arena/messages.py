@@ -9,7 +9,7 @@ from typing import Any
 
 from sim2real.arena.game import View
 
-MOST_BYTES = 256  # of what a page says
+MOST_CHARACTERS = 256  # of what a page says
 FARTHEST = 10.0  # m that a pointer may be from the table's corner
 
 
@@ -40,8 +40,8 @@ KINDS: dict[str, type[Said]] = {"aim": Aim, "ping": Ping, "again": Again}
 
 def parse(text: str) -> Said:
     """What a page said. ValueError, in one line, for anything else."""
-    if len(text) > MOST_BYTES:
-        raise ValueError(f"a message of {len(text)} characters; expected {MOST_BYTES} at most")
+    if len(text) > MOST_CHARACTERS:
+        raise ValueError(f"a message of {len(text)} characters; expected {MOST_CHARACTERS} at most")
     try:
         content = json.loads(text)
     except (ValueError, RecursionError):

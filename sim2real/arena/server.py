@@ -10,7 +10,7 @@ from pathlib import Path
 from aiohttp import WSCloseCode, web
 
 from sim2real.arena.lobby import FullError, Lobby
-from sim2real.arena.messages import MOST_BYTES
+from sim2real.arena.messages import MOST_CHARACTERS
 
 PAGE = Path(__file__).with_name("page")
 TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript"}
@@ -20,6 +20,7 @@ HEADERS = {
     "Referrer-Policy": "no-referrer",
     "Cache-Control": "no-cache",
 }
+HEARTBEAT, CLOSING = 10.0, 0.2  # s: between two signs of life, and that a page has to say goodbye
 LOBBY = web.AppKey("lobby", Lobby)
 TOKEN = web.AppKey("token", str)
 
@@ -62,10 +63,15 @@ async def _game(request: web.Request) -> web.StreamResponse:
     _refuse_strangers(request)
     if request.headers.get("Origin") != f"{request.scheme}://{request.host}":
         raise web.HTTPForbidden(text="a page of another origin")
-    socket = web.WebSocketResponse(heartbeat=10.0, max_msg_size=4 * MOST_BYTES, compress=False)
+    # without autoping every message counts, and no flood of them keeps the loop from the games
+    socket = web.WebSocketResponse(
+        timeout=CLOSING, heartbeat=HEARTBEAT, max_msg_size=4 * MOST_CHARACTERS, compress=False, autoping=False
+    )
     await socket.prepare(request)
+    transport = request.transport
+    assert isinstance(transport, asyncio.Transport)
     try:
-        await request.app[LOBBY].join(socket, request.query.get("id", ""))
+        await request.app[LOBBY].join(socket, transport, request.query.get("id", ""))
     except FullError:
         await socket.close(code=WSCloseCode.TRY_AGAIN_LATER, message=b"the arena is full")
     return socket

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import secrets
+import sys
 import time
 from collections import deque
 
@@ -21,8 +22,8 @@ STALE = 5.0  # s that one message may take to go out
 class Listener:
     """A page that looks on: it is sent the newest state, and skips those for which it is too slow."""
 
-    def __init__(self, socket: web.WebSocketResponse) -> None:
-        self.socket = socket
+    def __init__(self, socket: web.WebSocketResponse, transport: asyncio.Transport) -> None:
+        self.socket, self.transport = socket, transport
         self._newest, self._due, self._first = "", asyncio.Event(), deque[str](maxlen=8)
 
     def show(self, state: str) -> None:
@@ -36,14 +37,23 @@ class Listener:
         self._due.set()
 
     async def send(self) -> None:
-        """Send what there is until the page is gone, or takes nothing."""
-        while not self.socket.closed:
-            await self._due.wait()
-            self._due.clear()
-            waiting = [self._first.popleft() for _ in range(len(self._first))]
-            newest, self._newest = self._newest, ""
-            for message in (*waiting, *filter(None, [newest])):
-                await asyncio.wait_for(self.socket.send_str(message), STALE)
+        """Send what there is until the page is gone; one that takes nothing is let go."""
+        try:
+            while not self.socket.closed:
+                await self._due.wait()
+                self._due.clear()
+                waiting = [self._first.popleft() for _ in range(len(self._first))]
+                newest, self._newest = self._newest, ""
+                for message in (*waiting, *filter(None, [newest])):
+                    await asyncio.wait_for(self.socket.send_str(message), STALE)
+        except (ConnectionError, TimeoutError):
+            self.transport.abort()
+
+    async def dismiss(self, code: int, why: str) -> None:
+        """Close the line, without listening to what is still being said."""
+        self.transport.pause_reading()
+        await self.socket.close(code=code, message=why.encode()[:120])
+        self.transport.abort()
 
 
 class Session:
@@ -55,12 +65,15 @@ class Session:
         self.game = Game(names, seed)
         self.listeners: set[Listener] = set()
         self.left_at = time.monotonic()  # when the last listener went
+        self.failed = False  # whether it stopped because a player failed
         self._aim = 0.0
         self.ticking = Ticking(self._tick, TICKS)
         self._task = asyncio.create_task(self.ticking.run())
+        self._task.add_done_callback(self._stopped)
+        self._dismissals: set[asyncio.Task[None]] = set()
 
     def _tick(self) -> None:
-        if not self.listeners:
+        if not self.listeners or self.game.over:
             return  # a game that nobody sees stands still
         self.game.tick()
         if self.game.ticks % STATE_EVERY == 0 or self.game.over:
@@ -68,10 +81,26 @@ class Session:
             for listener in self.listeners:
                 listener.show(state)
 
-    async def serve(self, socket: web.WebSocketResponse) -> None:
+    def _stopped(self, task: asyncio.Task[None]) -> None:
+        """Say why the game stopped, if a player failed in it, and let the pages go."""
+        if task.cancelled() or (error := task.exception()) is None:
+            return
+        print(f"puckpilot arena: a game stopped, {type(error).__name__}: {error}", file=sys.stderr, flush=True)
+        self.failed = True
+        self.dismiss_all(WSCloseCode.INTERNAL_ERROR, "a player failed")
+
+    def dismiss_all(self, code: int, why: str) -> None:
+        """Let all pages go."""
+        for listener in self.listeners:
+            dismissal = asyncio.create_task(listener.dismiss(code, why))
+            self._dismissals.add(dismissal)
+            dismissal.add_done_callback(self._dismissals.discard)
+
+    async def serve(self, socket: web.WebSocketResponse, transport: asyncio.Transport) -> None:
         """Let a page look on, and play if there is a person's seat, until it is gone."""
-        listener = Listener(socket)
+        listener = Listener(socket, transport)
         listener.tell(self._welcome())
+        listener.show(messages.state(self.game.view(), self._aim))
         self.listeners.add(listener)
         sender = asyncio.create_task(listener.send())
         try:
@@ -86,14 +115,17 @@ class Session:
         async for message in listener.socket:
             now = int(time.monotonic())
             second, said = now, said + 1 if now == second else 1
-            if message.type != WSMsgType.TEXT or said > MOST_SAID:
-                await listener.socket.close(code=WSCloseCode.POLICY_VIOLATION, message=b"too much, or not text")
-                return
-            try:
-                self._act_on(messages.parse(message.data), listener)
-            except ValueError as error:
-                await listener.socket.close(code=WSCloseCode.POLICY_VIOLATION, message=str(error).encode()[:120])
-                return
+            if said > MOST_SAID:
+                return await listener.dismiss(WSCloseCode.POLICY_VIOLATION, f"over {MOST_SAID} messages in a second")
+            if message.type == WSMsgType.PING:
+                await listener.socket.pong(message.data)
+            elif message.type == WSMsgType.TEXT:
+                try:
+                    self._act_on(messages.parse(message.data), listener)
+                except ValueError as error:
+                    return await listener.dismiss(WSCloseCode.POLICY_VIOLATION, str(error))
+            elif message.type != WSMsgType.PONG:
+                return await listener.dismiss(WSCloseCode.UNSUPPORTED_DATA, "a message that is no text")
 
     def _act_on(self, said: messages.Said, listener: Listener) -> None:
         if isinstance(said, messages.Ping):

@@ -28,11 +28,12 @@ def run(args: argparse.Namespace) -> int:
     import secrets
 
     from baselines import find_player
-    from puckpilot_env.options.inputs import seed_number
+    from puckpilot_env.options.inputs import seed_number, whole_number
     from sim2real.arena.game import PERSON, Game
     from sim2real.arena.lobby import Lobby
     from sim2real.arena.server import make_app, serve
 
+    whole_number(args.port, "--port", 0, 65535)
     players = args.players or ["policy:champion"]
     if len(players) > 2:
         raise ValueError(f"{len(players)} players are given; expected one to play against, or two to watch")
@@ -46,11 +47,13 @@ def run(args: argparse.Namespace) -> int:
     app = make_app(Lobby(names, args.seed), token)
 
     def say(port: int) -> None:
-        print(f"http://{args.host}:{port}/?token={token}    Ctrl-C ends", flush=True)
+        host = f"[{args.host}]" if ":" in args.host else args.host
+        print(f"http://{host}:{port}/?token={token}    Ctrl-C ends", flush=True)
 
     try:
         asyncio.run(serve(app, args.host, args.port, say))
     except OSError as error:
-        why = os.strerror(error.errno) if (error.errno or 0) > 0 else error.strerror  # asyncio's own words are long
+        number = error.errno or 0  # asyncio's own words are long; negative ones are of names
+        why = os.strerror(number) if number > 0 else error.strerror
         raise ValueError(f"cannot listen on {args.host}:{args.port}: {why}; give another --host or --port") from None
     return 0

@@ -24,7 +24,7 @@ export class Drawing {
     this.density = density;
   }
 
-  // The place [px] of a point [m], and the other way round; the reader's own side is at the left, or below.
+  // The place [px] of a point [m], and the other way round; player 0 is at the left, or below.
   pixel([x, y]) {
     const { length, width } = this.table;
     return this.upright

@@ -1,5 +1,6 @@
 // The WebSocket to the server: it comes back by itself, into the same game, and measures the round trip.
 const PING_EVERY = 1000; // ms
+const TAKEN_OVER = 4001; // another page has the game, see lobby.py
 const FIRST_WAIT = 250, LONGEST_WAIT = 5000; // ms before it is tried again
 
 export class Link {
@@ -37,12 +38,17 @@ export class Link {
 
   closed(event) {
     this.roundTrip = null;
+    if (event.code === TAKEN_OVER) {
+      this.heard({ kind: "closed", reason: event.reason });
+      return;
+    }
     this.heard({ kind: "closed", reason: event.reason || "connection lost, trying again" });
     setTimeout(() => this.open(), this.wait);
     this.wait = Math.min(2 * this.wait, LONGEST_WAIT);
   }
 
   say(message) {
-    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+    const held = message.kind === "aim" && this.socket.bufferedAmount > 0; // a line that stands still gets no backlog
+    if (this.socket.readyState === WebSocket.OPEN && !held) this.socket.send(JSON.stringify(message));
   }
 }

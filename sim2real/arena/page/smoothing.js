@@ -17,10 +17,13 @@ export class Smoothing {
   }
 
   add(state, now) {
+    if (this.states.length && state.time <= this.states.at(-1).time) return;
     this.states.push(state);
     while (state.time - this.states[0].time > KEPT) this.states.shift();
+    const late = Math.max(this.offset - (state.time - now), 0);
+    if (late > MOST_DELAY) this.offset = -Infinity; // the server dropped time, which does not come back
     this.offset = Math.max(this.offset, state.time - now);
-    this.delay = Math.min(Math.max(this.delay, LEAST_DELAY + this.offset - (state.time - now)), MOST_DELAY);
+    this.delay = Math.max(this.delay, LEAST_DELAY + Math.min(late, MOST_DELAY - LEAST_DELAY));
   }
 
   // The state that is to be shown at the page's time `now` [s]; null before there is one.

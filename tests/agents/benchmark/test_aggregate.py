@@ -81,7 +81,10 @@ def test_a_performance_profile_falls_from_all_runs_to_none() -> None:
 
 
 def test_the_band_of_a_profile_is_as_wide_as_runs_of_one_task_differ() -> None:
-    low, high = aggregate.profile_band(RUNS[:4], PROTOCOL.kept_out)
+    assert aggregate.profile_band(RUNS[:3], PROTOCOL.kept_out) is None  # a single run of the attack
+    band = aggregate.profile_band(RUNS[:4], PROTOCOL.kept_out)
+    assert band is not None
+    low, high = band
     at = {round(float(threshold), 2): k for k, threshold in enumerate(aggregate.THRESHOLDS)}
     # between 0.5 and 0.6 only one of two runs of the attack is above: of two draws none to both, of four runs
     assert (low[at[0.55]], high[at[0.55]]) == (0.0, 0.5)

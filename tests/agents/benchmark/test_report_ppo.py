@@ -64,8 +64,11 @@ def test_what_is_kept_acts_as_the_librarys_actor_and_counts_both_seats() -> None
     policy = report_ppo.learn(Assignment(TASK, 3, 500, Path()), lambda steps, _: reported.append(steps))
     assert reported == [160, 320, 480] and policy.about["steps"] == 480
     learner = Learner(Assignment(TASK, 3, 0, Path()), 2)
+    before = learner.policy().network
     for batch in learner.batches:
         learner.learn(batch)
+    after = learner.policy().network
+    assert not any(np.array_equal(*pair) for pair in zip(before.weights, after.weights, strict=True))
     tables = Tables(TASK.variant, 40, seed=3)
     seen = tables.observations[:, 0].copy()
     with torch.no_grad(), set_exploration_type(ExplorationType.DETERMINISTIC):

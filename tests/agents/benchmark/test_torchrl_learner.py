@@ -35,8 +35,11 @@ def seen_by(learnt: Learner, observations: np.ndarray) -> TensorDict:
 @pytest.mark.parametrize("task", ["attack-v0", "match-v0"])
 def test_a_policy_acts_as_the_actor_of_the_library_does(task: str) -> None:
     learnt = learner(task, central_critic=False)
+    before = learnt.network_of(0)
     for batch in learnt.batches(2):
         learnt.update(batch)
+    moved = [not np.array_equal(*pair) for pair in zip(before.weights, learnt.network_of(0).weights, strict=True)]
+    assert all(moved)
     tables = Tables(PROTOCOL.tasks[task].variant, 50, seed=3)
     player = PolicyPlayer(learnt.policy(), Seat.from_tables(tables))
     with torch.no_grad(), set_exploration_type(ExplorationType.DETERMINISTIC):

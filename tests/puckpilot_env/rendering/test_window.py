@@ -11,6 +11,7 @@ import pytest
 
 from baselines.gymnasium_seat import make_seat
 from puckpilot_env import match_v0
+from puckpilot_env.rendering.film import Film
 from puckpilot_env.rendering.window import Window
 
 pygame = pytest.importorskip("pygame", reason="pygame is not installed; it comes with pip install '.[test]'")
@@ -60,16 +61,30 @@ def test_pictures_come_at_the_speed_of_the_table(monkeypatch: pytest.MonkeyPatch
     assert len(shown) == 1 + 20 * 0.1 * 50
 
 
-def test_a_closed_window_stays_closed_and_the_game_goes_on() -> None:
+def test_a_closed_window_stays_closed_and_the_game_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
     env: Any = match_v0.parallel_env(render_mode="human")
     env.reset(seed=1)
     low = {agent: env.action_space(agent).low for agent in env.agents}
     env.step(low)
     pygame.event.post(pygame.event.Event(pygame.QUIT))
     env.step(low)
+    monkeypatch.setattr(Film, "step", lambda film, actions: pytest.fail("a film is drawn that nobody sees"))
     env.step(low)
     assert pygame.display.get_surface() is None
     env.close()
+
+
+def test_of_two_environments_the_second_goes_on_when_the_first_closes_the_window() -> None:
+    one, other = (match_v0.parallel_env(render_mode="human") for _ in range(2))
+    low: Any = {}
+    for env in (one, other):
+        env.reset(seed=1)
+        low = {agent: env.action_space(agent).low for agent in env.agents}  # pyright: ignore[reportAttributeAccessIssue]
+        env.step(low)
+    one.close()
+    other.step(low)
+    other.step(low)
+    other.close()
 
 
 def test_a_wrong_action_is_refused_before_it_is_shown() -> None:

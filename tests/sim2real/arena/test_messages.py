@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sim2real.arena.game import View
-from sim2real.arena.messages import MOST_BYTES, Again, Aim, Ping, parse, state
+from sim2real.arena.messages import MOST_CHARACTERS, Again, Aim, Ping, parse, state
 
 
 def test_the_three_kinds() -> None:
@@ -31,7 +31,7 @@ def test_the_three_kinds() -> None:
         ('{"kind":"ping","sent":true}', "of kind ping"),
         ('{"kind":"ping","sent":1e999}', "of kind ping"),
         ('{"kind":"aim","x":11,"y":0,"sent":0}', "an aim at 11, 0; expected 10 m at most"),
-        (" " * (MOST_BYTES + 1), f"of {MOST_BYTES + 1} characters"),
+        (" " * (MOST_CHARACTERS + 1), f"of {MOST_CHARACTERS + 1} characters"),
     ],
 )
 def test_anything_else_is_refused_in_one_line(text: str, words: str) -> None:

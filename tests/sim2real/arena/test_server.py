@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import json
 from collections.abc import Awaitable, Callable
 from typing import Any
@@ -12,6 +13,7 @@ import pytest
 aiohttp = pytest.importorskip("aiohttp", reason="it comes with pip install '.[test]'")
 from aiohttp.test_utils import TestClient, TestServer  # noqa: E402
 
+from baselines.players.goalie import Goalie  # noqa: E402
 from sim2real.arena import lobby as lobby_module  # noqa: E402
 from sim2real.arena.game import PERSON  # noqa: E402
 from sim2real.arena.lobby import Lobby  # noqa: E402
@@ -87,10 +89,39 @@ def test_who_comes_back_finds_the_same_game_where_it_stood() -> None:
         again = await joined(client, id=first)
         assert (await heard(again, "welcome"))["id"] == first
         assert time < (await heard(again, "state"))["time"] < time + 0.4
-        other = await joined(client, id=first)  # while the first is there
-        assert (await heard(other, "welcome"))["id"] != first
+        newest = await joined(client, id=first)  # while the one before is there, whose line may be dead
+        assert (await heard(newest, "welcome"))["id"] == first
+        while not again.closed:
+            await again.receive()
+        assert again.close_code == lobby_module.TAKEN_OVER
+        assert (await heard(await joined(client), "welcome"))["id"] != first
 
     served(check)
+
+
+class Stumbling(Goalie):
+    """Fails at its third decision."""
+
+    decisions = 0
+
+    def act(self, observation: Any) -> Any:
+        self.decisions += 1
+        if self.decisions == 3:
+            raise RuntimeError("it fell")
+        return super().act(observation)
+
+
+def test_a_player_that_fails_ends_its_game_with_a_word(capsys: pytest.CaptureFixture) -> None:
+    async def check(client: Any, lobby: Lobby) -> None:
+        socket = await joined(client)
+        id_ = (await heard(socket, "welcome"))["id"]
+        while not socket.closed:
+            await socket.receive()
+        assert socket.close_code == aiohttp.WSCloseCode.INTERNAL_ERROR
+        assert (await heard(await joined(client), "welcome"))["id"] != id_
+
+    served(check, (PERSON, f"{__name__}:Stumbling"))
+    assert "puckpilot arena: a game stopped, RuntimeError: it fell" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("said", ["{", '{"kind":"aim","x":1e9,"y":0,"sent":0}', "x" * 500, "x" * 100_000, b"\x00" * 10])
@@ -101,7 +132,11 @@ def test_nonsense_ends_its_own_connection_alone(said: str | bytes) -> None:
         await (bad.send_bytes(said) if isinstance(said, bytes) else bad.send_str(said))
         while not bad.closed:
             await bad.receive()
-        assert bad.close_code in (aiohttp.WSCloseCode.POLICY_VIOLATION, aiohttp.WSCloseCode.MESSAGE_TOO_BIG)
+        assert bad.close_code in (
+            aiohttp.WSCloseCode.POLICY_VIOLATION,
+            aiohttp.WSCloseCode.MESSAGE_TOO_BIG,
+            aiohttp.WSCloseCode.UNSUPPORTED_DATA,
+        )
         before = (await heard(good, "state"))["time"]
         while (await heard(good, "state"))["time"] < before + 0.2:
             pass
@@ -109,19 +144,29 @@ def test_nonsense_ends_its_own_connection_alone(said: str | bytes) -> None:
     served(check)
 
 
-def test_a_flood_ends_its_own_connection() -> None:
+async def until_closed(socket: Any) -> None:
+    """Listen until the other side closes."""
+    while not socket.closed:
+        await socket.receive()
+
+
+@pytest.mark.parametrize("kind", ["text", "ping", "pong"])
+def test_a_flood_ends_its_own_connection_and_another_game_goes_on(kind: str) -> None:
     async def check(client: Any, lobby: Lobby) -> None:
-        socket = await joined(client)
-        for _ in range(10 * MOST_SAID):
-            if socket.closed:
-                break
-            try:
-                await socket.send_str('{"kind":"ping","sent":1}')
-            except ConnectionError:
-                break
-        while not socket.closed:
-            await socket.receive()
-        assert socket.close_code == aiohttp.WSCloseCode.POLICY_VIOLATION
+        good, bad = await joined(client), await joined(client)
+        say = {"text": lambda: bad.send_str('{"kind":"ping","sent":1}'), "ping": bad.ping, "pong": bad.pong}[kind]
+        said, gone = 0, asyncio.create_task(until_closed(bad))
+        with contextlib.suppress(ConnectionError):
+            while said < 100 * MOST_SAID and not gone.done():
+                await say()
+                said += 1
+                if said % 50 == 0:
+                    await asyncio.sleep(0.001)
+        await gone
+        assert said < 100 * MOST_SAID
+        before = (await heard(good, "state"))["time"]
+        while (await heard(good, "state"))["time"] < before + 0.2:
+            pass
 
     served(check)
 
@@ -156,7 +201,8 @@ def test_all_watch_one_game_of_two_players() -> None:
         one, other = await joined(client), await joined(client)
         first, second = await heard(one, "welcome"), await heard(other, "welcome")
         assert first == second and first["seat"] is None and first["names"] == ["still", "goalie"]
-        assert (await heard(one, "state"))["time"] > 0.0
+        while (await heard(one, "state"))["time"] < 0.1:
+            pass
 
     served(check, ("still", "goalie"))
 

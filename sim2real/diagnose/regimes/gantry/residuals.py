@@ -85,7 +85,8 @@ class GantryResiduals:
         jacobian = np.empty((len(r), len(free)))
         mirrored = {} if coupled else {name: MIRRORED[name] for name in free if MIRRORED.get(name) in free}
         apart = [name for name in free if name not in mirrored]
-        with ThreadPoolExecutor(os.cpu_count()) as pool:  # kernels, of which one with friction takes long
+        threads = min(os.cpu_count() or 1, len(apart)) if coupled else 1  # with friction a kernel takes long
+        with ThreadPoolExecutor(max(threads, 1)) as pool:
             slopes = dict(zip(apart, pool.map(lambda name: _slope(runs, p, name, r), apart), strict=True))
         for k, name in enumerate(free):
             jacobian[:, k] = slopes[name] if name in slopes else sign * slopes[mirrored[name]]
