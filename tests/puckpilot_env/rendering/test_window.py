@@ -38,7 +38,7 @@ def test_both_interfaces_show_the_game_as_it_is() -> None:
     for shown, drawn in both:
         for env in (shown, drawn):
             env.reset(seed=3)
-        space = shown.action_space
+        space: Any = shown.action_space
         for _ in range(8):
             actions = {agent: space(agent).low for agent in shown.agents} if callable(space) else space.low
             for env in (shown, drawn):
