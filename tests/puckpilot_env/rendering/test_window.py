@@ -40,7 +40,7 @@ def test_both_interfaces_show_the_game_as_it_is() -> None:
             env.reset(seed=3)
         space: Any = shown.action_space
         for _ in range(8):
-            actions = {agent: space(agent).low for agent in shown.agents} if callable(space) else space.low
+            actions = space.low if hasattr(space, "low") else {agent: space(agent).low for agent in shown.agents}
             for env in (shown, drawn):
                 env.step(actions)
         picture = drawn.render()
