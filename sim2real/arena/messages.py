@@ -1,4 +1,4 @@
-"""What a page may say, checked, and what it is told, as JSON."""
+"""What a page may send, checked, and what the server sends, as JSON."""
 
 from __future__ import annotations
 
@@ -62,14 +62,14 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
-def told(kind: str, **content: Any) -> str:
+def encode(kind: str, **content: Any) -> str:
     """A message to a page."""
     return json.dumps({"kind": kind, **content}, separators=(",", ":"), allow_nan=False)
 
 
 def state(view: View, aim: float) -> str:
     """What there is to see; aim: the stamp of the newest aim that was acted on, in the page's clock [ms]."""
-    return told(
+    return encode(
         "state", time=round(view.time, 4), puck=_rounded(view.puck), mallets=[_rounded(one) for one in view.mallets],
         score=view.score, left=round(view.left, 1), ending=view.ending, aim=aim,
     )  # fmt: skip

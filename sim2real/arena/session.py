@@ -129,7 +129,7 @@ class Session:
 
     def _act_on(self, said: messages.Said, listener: Listener) -> None:
         if isinstance(said, messages.Ping):
-            listener.tell(messages.told("pong", sent=said.sent))
+            listener.tell(messages.encode("pong", sent=said.sent))
         elif isinstance(said, messages.Aim) and self.game.person is not None:
             self.game.person.aim(said.x, said.y)
             self._aim = said.sent
@@ -142,7 +142,7 @@ class Session:
     def _welcome(self) -> str:
         p = self.game.tables.params[0]
         sizes = ("length", "width", "goal_width", "puck_radius", "mallet_radius")
-        return messages.told(
+        return messages.encode(
             "welcome", id=self.id, names=list(self.names), table={name: float(p[name]) for name in sizes},
             seat=self.names.index(PERSON) if PERSON in self.names else None,
         )  # fmt: skip

@@ -9,11 +9,10 @@ MOST_BEHIND = 0.25  # s; what lags farther behind is not made up for, so that a 
 
 
 class Ticking:
-    """Calls `step` so many times a second until it is stopped. late: how often one came over 10 ms after it was due."""
+    """Calls `step` so many times a second until it is stopped."""
 
     def __init__(self, step: Callable[[], None], rate: float) -> None:
         self._step, self._period = step, 1.0 / rate
-        self.late, self.steps = 0, 0
 
     async def run(self) -> None:
         """Go on until cancelled."""
@@ -23,8 +22,6 @@ class Ticking:
             behind = loop.time() - due
             if behind > MOST_BEHIND:
                 due += behind
-            self.late += behind > 0.010
             self._step()
-            self.steps += 1
             due += self._period
             await asyncio.sleep(max(due - loop.time(), 0.0))

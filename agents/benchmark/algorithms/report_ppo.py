@@ -1,8 +1,8 @@
 """The recipe of the robot's report (its appendix K), in the library that it used: TorchRL's PPO out of a replay buffer.
 
 Left as it is: networks of raw observations in SI units, collections of 102,400 transitions, a buffer of 200,000, out of
-which 250 batches of 1,024 and their mirror images are learned from. One network plays both seats, told by the
-observation whether it defends. 2048 x 50 transitions are said to be all: these are 1,024 tables of two agents. The
+which 250 batches of 1,024 and their mirror images are learned from. One network plays both seats; the
+observation says whether it defends. 2048 x 50 transitions are said to be all: these are 1,024 tables of two agents. The
 scale of an action's distribution is negative as printed, and bounded here; random impulses have no number there.
 """
 

@@ -10,7 +10,7 @@ const canvas = part("table");
 const drawing = new Drawing(canvas);
 const pointer = new Pointer(canvas, drawing);
 const smoothing = new Smoothing();
-let seat = null, newest = null, sent = 0, before = performance.now();
+let seat = null, newest = null, sent = 0, acted = 0, lag = null, before = performance.now();
 
 const hear = {
   welcome(message) {
@@ -26,6 +26,7 @@ const hear = {
   },
   state(message) {
     newest = message;
+    if (message.aim !== acted) [acted, lag] = [message.aim, performance.now() - message.aim];
     smoothing.add(message, performance.now() / 1000);
     part("score").textContent = message.score.join(" : ");
     const left = Math.ceil(message.left);
@@ -46,6 +47,12 @@ function ended({ score, ending }) {
   part("again").hidden = false;
 }
 
+// The round trip, and from where a person pointed to the first state that came of it.
+function latency() {
+  const line = `${link.roundTrip.toFixed(0)} ms`;
+  return lag === null ? line : `${line}, pointer ${lag.toFixed(0)} ms`;
+}
+
 function frame(time) {
   requestAnimationFrame(frame);
   const state = smoothing.at(time / 1000);
@@ -58,7 +65,7 @@ function frame(time) {
   }
   before = time;
   if (state) drawing.draw(state, seat === null ? null : pointer.place);
-  part("latency").textContent = link.roundTrip === null ? "" : `${link.roundTrip.toFixed(0)} ms`;
+  part("latency").textContent = link.roundTrip === null ? "" : latency();
   if (newest) [canvas.dataset.shown, canvas.dataset.mallet] = [newest.time, JSON.stringify(newest.mallets[seat ?? 0])];
 }
 requestAnimationFrame(frame);

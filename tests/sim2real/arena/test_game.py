@@ -16,7 +16,6 @@ def test_twelve_ticks_of_held_decisions_are_a_step_of_the_variant() -> None:
     """Against the variant's own step of 0.1 s, until the puck is touched first; each tick plans anew."""
     game = Game(("interceptor", "goalie"), 7)
     tables = Tables("match-v0", 1, seed=7, autoreset=False)
-    steps = 0
     for _ in range(6):
         held = np.stack([chair.action(game.tables.observations[0, k], 0) for k, chair in enumerate(game.chairs)])
         tables.step(held[None])
@@ -24,8 +23,7 @@ def test_twelve_ticks_of_held_decisions_are_a_step_of_the_variant() -> None:
             game.tick()
         np.testing.assert_allclose(mallet_motion(game.tables.states), mallet_motion(tables.states), atol=2e-4)
         np.testing.assert_allclose(puck_motion(game.tables.states), puck_motion(tables.states), atol=2e-3)
-        steps += 1
-    assert steps == 6 and game.view().time == pytest.approx(0.6)
+    assert game.view().time == pytest.approx(0.6)
 
 
 @pytest.mark.parametrize("seat", [0, 1])

@@ -10,7 +10,7 @@ from sim2real.arena import ticking
 from sim2real.arena.ticking import Ticking
 
 
-def played(monkeypatch: pytest.MonkeyPatch, costs: list[float], rate: float = 100.0) -> tuple[list[float], Ticking]:
+def played(monkeypatch: pytest.MonkeyPatch, costs: list[float], rate: float = 100.0) -> list[float]:
     """When each step came [s], if the n-th takes `costs[n]` [s] and nothing else any time."""
     clock, came = [0.0], []
 
@@ -32,15 +32,14 @@ def played(monkeypatch: pytest.MonkeyPatch, costs: list[float], rate: float = 10
     ticks = Ticking(step, rate)
     with pytest.raises(asyncio.CancelledError):
         ticks.run().send(None)
-    return came, ticks
+    return came
 
 
 def test_a_slow_step_is_made_up_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    came, ticks = played(monkeypatch, [0.001, 0.025, 0.001, 0.001, 0.001, 0.0])
+    came = played(monkeypatch, [0.001, 0.025, 0.001, 0.001, 0.001, 0.0])
     assert came == pytest.approx([0.0, 0.01, 0.035, 0.036, 0.04, 0.05])
-    assert ticks.late == 1  # the third, 15 ms
 
 
 def test_a_machine_that_slept_does_not_race(monkeypatch: pytest.MonkeyPatch) -> None:
-    came, _ = played(monkeypatch, [10.0, 0.001, 0.001, 0.0])
+    came = played(monkeypatch, [10.0, 0.001, 0.001, 0.0])
     assert came == pytest.approx([0.0, 10.0, 10.01, 10.02])

@@ -84,10 +84,10 @@ class GantryResiduals:
         coupled = any(part.any() for part in friction)
         jacobian = np.empty((len(r), len(free)))
         mirrored = {} if coupled else {name: MIRRORED[name] for name in free if MIRRORED.get(name) in free}
-        apart = [name for name in free if name not in mirrored]
-        threads = min(os.cpu_count() or 1, len(apart)) if coupled else 1  # with friction a kernel takes long
+        separate = [name for name in free if name not in mirrored]
+        threads = min(os.cpu_count() or 1, len(separate)) if coupled else 1  # with friction a kernel takes long
         with ThreadPoolExecutor(max(threads, 1)) as pool:
-            slopes = dict(zip(apart, pool.map(lambda name: _slope(runs, p, name, r), apart), strict=True))
+            slopes = dict(zip(separate, pool.map(lambda name: _slope(runs, p, name, r), separate), strict=True))
         for k, name in enumerate(free):
             jacobian[:, k] = slopes[name] if name in slopes else sign * slopes[mirrored[name]]
         centre = np.array([self.defaults(name) for name in PRIOR_PARAMETERS])
