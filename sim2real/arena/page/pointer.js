@@ -6,6 +6,7 @@ export class Pointer {
   constructor(canvas, drawing) {
     this.drawing = drawing;
     this.place = null;
+    this.pointed = null;
     this.down = new Set();
     canvas.addEventListener("pointermove", (event) => this.point(canvas, event));
     canvas.addEventListener("pointerdown", (event) => this.point(canvas, event));
@@ -15,9 +16,8 @@ export class Pointer {
   }
 
   point(canvas, event) {
-    if (!this.drawing.table) return;
     const box = canvas.getBoundingClientRect();
-    this.place = this.inside(this.drawing.metres(event.clientX - box.left, event.clientY - box.top));
+    this.pointed = [event.clientX - box.left, event.clientY - box.top]; // until the next picture, or there is a table
   }
 
   key(event, pressed) {
@@ -27,9 +27,12 @@ export class Pointer {
     else this.down.delete(event.key);
   }
 
-  // Move on by the keys that are pressed for `seconds`; `mallet`: from where, if nothing was pointed at yet.
+  // Move to where was pointed, or on by the keys pressed for `seconds`; `mallet`: from where, if there is no place yet.
   move(seconds, mallet) {
-    if (!this.down.size || !this.drawing.table) return;
+    if (!this.drawing.table) return;
+    if (this.pointed) this.place = this.inside(this.drawing.metres(...this.pointed));
+    this.pointed = null;
+    if (!this.down.size) return;
     const [across, down] = this.drawing.pixel(this.place ?? mallet);
     const step = KEY_SPEED * seconds * this.drawing.scale;
     const sum = [...this.down].map((key) => KEYS[key]).reduce((a, b) => [a[0] + b[0], a[1] + b[1]]);
