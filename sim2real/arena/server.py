@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import hmac
+import signal
 from collections.abc import Callable
 from pathlib import Path
 
@@ -21,6 +22,7 @@ HEADERS = {
     "Cache-Control": "no-cache",
 }
 HEARTBEAT, CLOSING = 10.0, 0.2  # s: between two signs of life, and that a page has to say goodbye
+ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 LOBBY = web.AppKey("lobby", Lobby)
 TOKEN = web.AppKey("token", str)
 
@@ -38,16 +40,37 @@ def make_app(lobby: Lobby, token: str) -> web.Application:
     return app
 
 
-async def serve(app: web.Application, host: str, port: int, say: Callable[[int], None]) -> None:
-    """Serve until cancelled; `say` is called with the port once pages can come. OSError where it cannot listen."""
+async def serve(app: web.Application, host: str, port: int, say: Callable[[int], None]) -> int:
+    """Serve until a signal asks for the end; its number. `say` is called with the port once pages can come. OSError
+    where it cannot listen."""
     runner = web.AppRunner(app, handle_signals=False, access_log=None, shutdown_timeout=1.0)
     await runner.setup()
     try:
         await web.TCPSite(runner, host, port).start()
         say(runner.addresses[0][1])
-        await asyncio.Event().wait()
+        return await _signal()
     finally:
         await runner.cleanup()
+
+
+async def _signal() -> int:
+    """Wait for a signal that asks for the end; its number. It comes between two steps of the loop: raised in the midst
+    of one, asyncio and aiohttp may lose it. A second one has its usual effect."""
+    loop = asyncio.get_running_loop()
+    asked: asyncio.Future[int] = loop.create_future()
+
+    def end(number: int) -> None:
+        if not asked.done():
+            asked.set_result(number)
+
+    numbers = [number for number in ENDING if signal.getsignal(number) is not signal.SIG_IGN]  # nohup ignores one
+    for number in numbers:
+        loop.add_signal_handler(number, end, number)
+    try:
+        return await asked
+    finally:
+        for number in numbers:
+            loop.remove_signal_handler(number)
 
 
 async def _index(request: web.Request) -> web.Response:

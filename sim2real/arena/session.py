@@ -45,7 +45,8 @@ class Listener:
                 waiting = [self._first.popleft() for _ in range(len(self._first))]
                 newest, self._newest = self._newest, ""
                 for message in (*waiting, *filter(None, [newest])):
-                    await asyncio.wait_for(self.socket.send_str(message), STALE)
+                    async with asyncio.timeout(STALE):
+                        await self.socket.send_str(message)
         except (ConnectionError, TimeoutError):
             self.transport.abort()
 

@@ -8,6 +8,7 @@ listens on this machine alone unless --host says otherwise.
 from __future__ import annotations
 
 import argparse
+from typing import NoReturn
 
 PORT = 8420
 
@@ -21,8 +22,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", type=int, default=0, metavar="SEED", help="of the games (0)")
 
 
-def run(args: argparse.Namespace) -> int:
-    """Serve until Ctrl-C. ValueError, in one line, for an unknown player or a port that is taken."""
+def run(args: argparse.Namespace) -> NoReturn:
+    """Serve until Ctrl-C, and say so by KeyboardInterrupt. ValueError, in one line, for an unknown player or a port that
+    is taken."""
     import asyncio
     import os
     import secrets
@@ -51,9 +53,9 @@ def run(args: argparse.Namespace) -> int:
         print(f"http://{host}:{port}/?token={token}    Ctrl-C ends", flush=True)
 
     try:
-        asyncio.run(serve(app, args.host, args.port, say))
+        ended_by = asyncio.run(serve(app, args.host, args.port, say))
     except OSError as error:
         number = error.errno or 0  # asyncio's own words are long; negative ones are of names
         why = os.strerror(number) if number > 0 else error.strerror
         raise ValueError(f"cannot listen on {args.host}:{args.port}: {why}; give another --host or --port") from None
-    return 0
+    raise KeyboardInterrupt(ended_by)

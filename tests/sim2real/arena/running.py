@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -16,5 +17,7 @@ def arena(*options: str) -> Iterator[str]:
         assert process.stdout is not None
         try:
             yield process.stdout.readline().split()[0]
-        finally:
             process.terminate()
+            assert process.wait(20.0) == 128 + signal.SIGTERM
+        finally:
+            process.kill()
