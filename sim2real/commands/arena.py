@@ -23,8 +23,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> NoReturn:
-    """Serve until Ctrl-C, and say so by KeyboardInterrupt. ValueError, in one line, for an unknown player or a port that
-    is taken."""
+    """Serve until Ctrl-C, and say so by KeyboardInterrupt. ValueError, in one line, for an unknown player or a port
+    that is taken."""
     import asyncio
     import os
     import secrets
