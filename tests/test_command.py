@@ -17,7 +17,7 @@ OPTIONS = {
     "envs": ["--json", "--write-pages"],
     "check": ["--steps", "--seed", "--json"],
     "match": ["--games", "--video", "--variant", "--seed", "--threads", "--json"],
-    "tournament": ["--games", "--out", "--variant", "--seed", "--threads", "--json"],
+    "tournament": ["--games", "--out", "--played", "--variant", "--seed", "--threads", "--json"],
     "train": [
         "--show-preset",
         "--preset",
@@ -50,7 +50,7 @@ OPTIONS = {
         "--json",
     ],
     "export": ["--out"],
-    "arena": ["--seat", "--host", "--port", "--seed"],
+    "arena": ["--seat", "--host", "--port", "--out", "--name", "--seed"],
     "benchmark run": ["--list", "--tasks", "--seeds", "--steps", "--out", "--workers", "--cluster", "--json"],
     "benchmark report": ["--json"],
     "benchmark enter": ["--name", "--trained", "--tasks", "--out"],

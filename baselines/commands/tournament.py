@@ -23,22 +23,28 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--out", default="out/tournament", metavar="DIR", help="folder for the files (default out/tournament)"
     )
+    parser.add_argument(
+        "--played", type=Path, metavar="FILE", help="games.jsonl of puckpilot arena: persons are rated along"
+    )
     add_options(parser)
 
 
 def run(args: argparse.Namespace) -> int:
     """Play, write and print. 0: played. ValueError, in one line, for what cannot be played."""
     from baselines import player_names
+    from baselines.matches.played_games import read_pairs
     from baselines.matches.tournament import play_tournament
     from baselines.matches.tournament_files import write_tournament
 
     folder = Path(args.out)
     if folder.exists() and not folder.is_dir():
         raise ValueError(f"cannot write to {args.out!r}: it is a file; give a folder")
+    played = read_pairs(args.played) if args.played else None
     with progress_bar("tournament") as progress:
         tournament = play_tournament(
             args.variant, args.players or player_names(), args.games, args.seed, parameters=parse_values(args.set),
             effects=args.effects, draws=args.draws, threads=args.threads, progress=progress,
+            played=played,
         )  # fmt: skip
     written = write_tournament(folder, tournament)
     if args.json:

@@ -11,7 +11,7 @@ from itertools import combinations
 
 from baselines import find_player
 from baselines.matches.match import MatchResult, Progress, play
-from baselines.matches.payoff import Payoff, count_games
+from baselines.matches.payoff import Payoff, Results, count_games
 from baselines.matches.role import Role, roles_of
 from baselines.ratings.intervals import paired_win_rate
 from baselines.ratings.rating import Ratings, fit_ratings_from_pairs
@@ -101,10 +101,12 @@ def play_tournament(
     draws: Draws | None = None,
     threads: int = 1,
     progress: Progress | None = None,
+    played: Results | None = None,
 ) -> Tournament:
     """Play `games` games, an even number, of `variant` (an id) between every two of `players` (names).
 
-    The other arguments are those of `match.play`. All matches start from the same pucks, so the result of a match does
+    `played`: results that persons had with some of the players, with whom they are rated. The other arguments are those
+    of `match.play`. All matches start from the same pucks, so the result of a match does
     not depend on who else takes part. ValueError, in one line, for what cannot be played.
     """
     found = find_variant(variant)
@@ -114,6 +116,9 @@ def play_tournament(
         raise ValueError(f"players are {', '.join(players) or 'none'}; expected two or more, each named once")
     if games < 2 or games % 2:
         raise ValueError(f"games is {games!r}; expected an even number >= 2: every start is played from both seats")
+    for pair in played or {}:
+        if not set(pair) & set(players):
+            raise ValueError(f"{' and '.join(pair)} played, of whom neither takes part; name the one that is no person")
     pairs = list(combinations(players, 2))
     matches = []
     for number, (first, second) in enumerate(pairs):
@@ -139,7 +144,7 @@ def play_tournament(
     )
     if roles:
         return Tournament(found.id, seed, games, order, tuple(matches), None, None, tuple(roles))
-    results = {match.players: match.results for match in matches}
+    results = {match.players: match.results for match in matches} | dict(played or {})
     payoff, ratings = count_games(results), fit_ratings_from_pairs(results, seed)
     return Tournament(found.id, seed, games, payoff.players, tuple(matches), payoff, ratings, ())
 

@@ -42,7 +42,7 @@ class Game:
             _chair(names[0], self.tables, 0, held, seed),
             _chair(names[1], self.tables, 1, held, seed + 1),
         )
-        self.ticks, self.over = 0, False
+        self.names, self.ticks, self.over = names, 0, False
         self._match_time = float(self.tables.variant.rules()[0]["match_time"])
         self._actions = np.zeros((1, 2, 4), np.float32)
 

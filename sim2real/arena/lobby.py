@@ -8,6 +8,7 @@ import time
 from aiohttp import web
 
 from sim2real.arena.game import PERSON
+from sim2real.arena.records import Records
 from sim2real.arena.session import Session
 
 MOST_SESSIONS = 8
@@ -23,8 +24,8 @@ class FullError(Exception):
 class Lobby:
     """Games of the same two names; where one is a person each page has its own, else all watch one."""
 
-    def __init__(self, names: tuple[str, str], seed: int) -> None:
-        self._names, self._seed = names, seed
+    def __init__(self, names: tuple[str, str], seed: int, records: Records) -> None:
+        self._names, self._seed, self._records = names, seed, records
         self._sessions: dict[str, Session] = {}
 
     async def join(self, socket: web.WebSocketResponse, transport: asyncio.Transport, known: str) -> None:
@@ -46,7 +47,7 @@ class Lobby:
         if len(self._sessions) >= MOST_SESSIONS:
             raise FullError
         self._seed = (self._seed + 1000) % (1 << 63)
-        session = Session(self._names, self._seed)
+        session = Session(self._names, self._seed, self._records)
         self._sessions[session.id] = session
         return session
 

@@ -1,17 +1,19 @@
-"""The arena's server: a page for those who know the token, and a WebSocket for each page."""
+"""The arena's server: pages for those who know the token, a WebSocket for each of a game, and recordings."""
 
 from __future__ import annotations
 
 import asyncio
 import hmac
 import signal
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from pathlib import Path
 
 from aiohttp import WSCloseCode, web
 
 from sim2real.arena.lobby import FullError, Lobby
 from sim2real.arena.messages import MOST_CHARACTERS
+from sim2real.arena.reader import Reader, UnreadableError
+from sim2real.arena.records import Records
 
 PAGE = Path(__file__).with_name("page")
 TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript"}
@@ -23,18 +25,24 @@ HEADERS = {
 }
 HEARTBEAT, CLOSING = 10.0, 0.2  # s: between two signs of life, and that a page has to say goodbye
 ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+PAGES = {"/": "index.html", "/replay": "replay.html"}  # by address
 LOBBY = web.AppKey("lobby", Lobby)
 TOKEN = web.AppKey("token", str)
+RECORDS = web.AppKey("records", Records)
+READER = web.AppKey("reader", Reader)
 
 
-def make_app(lobby: Lobby, token: str) -> web.Application:
-    """The application that serves the page and its WebSockets."""
+def make_app(lobby: Lobby, records: Records, token: str) -> web.Application:
+    """The application that serves the pages, their WebSockets, and recordings."""
     app = web.Application(client_max_size=1024)
-    app[LOBBY], app[TOKEN] = lobby, token
-    app.router.add_get("/", _index)
+    app[LOBBY], app[RECORDS], app[TOKEN] = lobby, records, token
+    app[READER] = Reader()
+    for address, page in PAGES.items():
+        app.router.add_get(address, _page(page))
     app.router.add_get("/game", _game)
+    app.router.add_get("/recording", _recording)
     for file in sorted(PAGE.iterdir()):
-        if file.suffix in TYPES and file.name != "index.html":
+        if file.suffix in TYPES and file.name not in PAGES.values():
             app.router.add_get(f"/{file.name}", _file)
     app.on_shutdown.append(_close)
     return app
@@ -73,13 +81,32 @@ async def _signal() -> int:
             loop.remove_signal_handler(number)
 
 
-async def _index(request: web.Request) -> web.Response:
-    _refuse_strangers(request)
-    return _response(PAGE / "index.html")
+def _page(name: str) -> Callable[[web.Request], Awaitable[web.Response]]:
+    async def page(request: web.Request) -> web.Response:
+        _refuse_strangers(request)
+        return _response(PAGE / name)
+
+    return page
 
 
 async def _file(request: web.Request) -> web.Response:
     return _response(PAGE / request.path[1:])
+
+
+async def _recording(request: web.Request) -> web.Response:
+    """A recording by its name; what is wrong with it is said in a line."""
+    _refuse_strangers(request)
+    name = request.query.get("name", "")
+    folder = request.app[RECORDS].find(name)
+    if folder is None:
+        raise web.HTTPNotFound(text=f"there is no recording {name[:80]!r} here")
+    try:
+        text = await request.app[READER].read(folder)
+    except UnreadableError as error:
+        raise web.HTTPUnprocessableEntity(text=str(error)) from None
+    response = web.Response(text=text, content_type="application/json", headers=HEADERS)
+    response.enable_compression()
+    return response
 
 
 async def _game(request: web.Request) -> web.StreamResponse:

@@ -7,11 +7,14 @@ import secrets
 import sys
 import time
 from collections import deque
+from collections.abc import Coroutine
 
 from aiohttp import WSCloseCode, WSMsgType, web
 
 from sim2real.arena import messages
 from sim2real.arena.game import PERSON, TICKS, Game
+from sim2real.arena.game_recorder import GameRecorder
+from sim2real.arena.records import Records
 from sim2real.arena.ticking import Ticking
 
 STATE_EVERY = 2  # ticks between two states, of which 60 a second are sent
@@ -60,27 +63,53 @@ class Listener:
 class Session:
     """A game, its clock and its listeners; `id` is known to those who joined, and lets them come back."""
 
-    def __init__(self, names: tuple[str, str], seed: int) -> None:
+    def __init__(self, names: tuple[str, str], seed: int, records: Records) -> None:
         """ValueError, in one line, for an unknown player."""
-        self.id, self.names, self._seed = secrets.token_urlsafe(9), names, seed
+        self.id, self.names, self._seed, self._records = secrets.token_urlsafe(9), names, seed, records
         self.game = Game(names, seed)
         self.listeners: set[Listener] = set()
         self.left_at = time.monotonic()  # when the last listener went
         self.failed = False  # whether it stopped because a player failed
+        self._recorder: GameRecorder | None = None  # once there is something to record
+        self._recorded = ""  # the name of the recording, once it is complete
         self._aim = 0.0
         self.ticking = Ticking(self._tick, TICKS)
         self._task = asyncio.create_task(self.ticking.run())
         self._task.add_done_callback(self._stopped)
-        self._dismissals: set[asyncio.Task[None]] = set()
+        self._beside: set[asyncio.Task[None]] = set()
 
     def _tick(self) -> None:
         if not self.listeners or self.game.over:
             return  # a game that nobody sees stands still
+        if self._recorder is None:
+            self._recorder = self._records.begin(self.game, self._seed)
         self.game.tick()
+        view = self.game.view()
+        self._recorder.add(view)
         if self.game.ticks % STATE_EVERY == 0 or self.game.over:
-            state = messages.state(self.game.view(), self._aim)
+            state = messages.state(view, self._aim)
             for listener in self.listeners:
                 listener.show(state)
+        if self.game.over:
+            self._do(self._keep(self._recorder, self.game, self._seed))
+
+    async def _keep(self, recorder: GameRecorder, game: Game, seed: int) -> None:
+        """Complete the recording of a match that is over, and say where it is."""
+        try:
+            await asyncio.to_thread(self._records.keep, recorder, game, seed)
+        except (OSError, ValueError) as error:
+            print(f"puckpilot arena: a game is not recorded, {error}", file=sys.stderr, flush=True)
+            return
+        if game is self.game:
+            self._recorded = recorder.name
+            for listener in self.listeners:
+                listener.tell(messages.encode("recorded", name=recorder.name))
+
+    def _do(self, work: Coroutine[None, None, None]) -> None:
+        """Let something go on beside the game."""
+        task = asyncio.create_task(work)
+        self._beside.add(task)
+        task.add_done_callback(self._beside.discard)
 
     def _stopped(self, task: asyncio.Task[None]) -> None:
         """Say why the game stopped, if a player failed in it, and let the pages go."""
@@ -93,14 +122,14 @@ class Session:
     def dismiss_all(self, code: int, why: str) -> None:
         """Let all pages go."""
         for listener in self.listeners:
-            dismissal = asyncio.create_task(listener.dismiss(code, why))
-            self._dismissals.add(dismissal)
-            dismissal.add_done_callback(self._dismissals.discard)
+            self._do(listener.dismiss(code, why))
 
     async def serve(self, socket: web.WebSocketResponse, transport: asyncio.Transport) -> None:
         """Let a page look on, and play if there is a person's seat, until it is gone."""
         listener = Listener(socket, transport)
         listener.tell(self._welcome())
+        if self._recorded:
+            listener.tell(messages.encode("recorded", name=self._recorded))
         listener.show(messages.state(self.game.view(), self._aim))
         self.listeners.add(listener)
         sender = asyncio.create_task(listener.send())
@@ -136,7 +165,7 @@ class Session:
             self._aim = said.sent
         elif isinstance(said, messages.Again) and self.game.over:
             self._seed += 1
-            self.game = Game(self.names, self._seed)
+            self.game, self._recorder, self._recorded = Game(self.names, self._seed), None, ""
             for each in self.listeners:
                 each.tell(self._welcome())
 
@@ -149,6 +178,8 @@ class Session:
         )  # fmt: skip
 
     def close(self) -> None:
-        """End the game."""
+        """End the game; what was played of it is a recording."""
         self._task.cancel()
+        if self._recorder is not None and not self.game.over:
+            self._recorder.finish()
         self.game.tables.close()

@@ -1,61 +1,105 @@
-"""Play air hockey in a browser, or watch two players.
+"""Play air hockey in a browser, watch two players, or look at a recording beside the simulator.
 
 With one player you play against it, with mouse, finger or arrow keys; your mallet has the limits of the gantry. With
-two they play, and you watch. The address that is printed holds a token, without which nobody gets in; the server
-listens on this machine alone unless --host says otherwise.
+two they play, and you watch. Each game becomes a recording in --out, which its page can replay; puckpilot tournament
+--played rates you. With the folder of a recording, of any table, you see it beside the simulator's prediction. The
+address that is printed holds a token, without which nobody gets in; the server listens on this machine alone unless
+--host says otherwise.
 """
 
 from __future__ import annotations
 
 import argparse
-from typing import NoReturn
+import os
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+from urllib.parse import quote
+
+if TYPE_CHECKING:
+    from aiohttp import web
 
 PORT = 8420
+OPPONENT = "policy:champion"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
-    parser.add_argument("players", nargs="*", metavar="PLAYER", help="one to play against (policy:champion), or two")
+    parser.add_argument(
+        "players", nargs="*", metavar="PLAYER",
+        help="one to play against (policy:champion), or two; or the folder of a recording",
+    )  # fmt: skip
     parser.add_argument("--seat", type=int, choices=(0, 1), default=0, help="yours (0, which is drawn at the left)")
     parser.add_argument("--host", default="127.0.0.1", metavar="HOST", help="to listen on (127.0.0.1)")
     parser.add_argument("--port", type=int, default=PORT, metavar="PORT", help=f"({PORT}); 0: any that is free")
+    parser.add_argument("--out", type=Path, default=Path("out/arena"), metavar="DIR", help="for recordings (out/arena)")
+    parser.add_argument("--name", default="guest", metavar="NAME", help="yours in records and ratings (guest)")
     parser.add_argument("--seed", type=int, default=0, metavar="SEED", help="of the games (0)")
 
 
 def run(args: argparse.Namespace) -> NoReturn:
-    """Serve until Ctrl-C, and say so by KeyboardInterrupt. ValueError, in one line, for an unknown player or a port
-    that is taken."""
-    import asyncio
-    import os
+    """Serve until Ctrl-C, and say so by KeyboardInterrupt. ValueError, in one line, for an unknown player, a recording
+    that cannot be read, or a port that is taken."""
     import secrets
 
-    from baselines import find_player
     from puckpilot_env.options.inputs import seed_number, whole_number
     from sim2real.arena.game import PERSON, Game
     from sim2real.arena.lobby import Lobby
-    from sim2real.arena.server import make_app, serve
+    from sim2real.arena.records import Records
+    from sim2real.arena.server import make_app
 
     whole_number(args.port, "--port", 0, 65535)
-    players = args.players or ["policy:champion"]
+    if not re.fullmatch(r"[\w-]{1,30}", args.name):
+        raise ValueError(f"--name is {args.name!r}; expected up to 30 letters, digits, _ and -")
+    recordings, names = _recordings(args.players), (PERSON, OPPONENT)
+    if not recordings:
+        names = _seated(args.players or [OPPONENT], args.seat)
+        Game(names, seed_number(args.seed)).tick()  # compiles before anyone waits for it
+    token, records = secrets.token_urlsafe(12), Records(args.out, recordings, args.name)
+    app = make_app(Lobby(names, args.seed, records), records, token)
+    page = f"replay?name={quote(recordings[0].resolve().name)}&token={token}" if recordings else f"?token={token}"
+    raise KeyboardInterrupt(_serve(app, args.host, args.port, page))
+
+
+def _recordings(given: list[str]) -> list[Path]:
+    """The recording that is given in place of players, if one is. ValueError, in one line, if it cannot be shown."""
+    from sim2real.recording.folder import read_recording
+
+    folders = [Path(name) for name in given if os.sep in name or (Path(name) / "meta.json").exists()]
+    found = [folder for folder in folders if folder.is_dir()]
+    if found and len(given) > 1:
+        raise ValueError(f"{len(given)} are given, with the recording {found[0]}; expected one recording alone")
+    for recording in found:
+        read_recording(recording)
+    return found
+
+
+def _seated(players: list[str], seat: int) -> tuple[str, str]:
+    """Who plays: both players, or a person at the `seat` and one player. ValueError, in one line, if one is unknown."""
+    from baselines import find_player
+    from sim2real.arena.game import PERSON
+
     if len(players) > 2:
         raise ValueError(f"{len(players)} players are given; expected one to play against, or two to watch")
     for name in players:
         find_player(name)
-    names = (players[0], players[1]) if len(players) == 2 else (PERSON, players[0])
-    if len(players) == 1 and args.seat == 1:
-        names = (players[0], PERSON)
-    Game(names, seed_number(args.seed)).tick()  # compiles before anyone waits for it
-    token = secrets.token_urlsafe(12)
-    app = make_app(Lobby(names, args.seed), token)
+    if len(players) == 2:
+        return players[0], players[1]
+    return (PERSON, players[0]) if seat == 0 else (players[0], PERSON)
+
+
+def _serve(app: web.Application, host: str, port: int, page: str) -> int:
+    """Serve, and print a page's address; the signal that ended it. ValueError, in one line, if it cannot listen."""
+    import asyncio
+
+    from sim2real.arena.server import serve
 
     def say(port: int) -> None:
-        host = f"[{args.host}]" if ":" in args.host else args.host
-        print(f"http://{host}:{port}/?token={token}    Ctrl-C ends", flush=True)
+        print(f"http://{f'[{host}]' if ':' in host else host}:{port}/{page}    Ctrl-C ends", flush=True)
 
     try:
-        ended_by = asyncio.run(serve(app, args.host, args.port, say))
+        return asyncio.run(serve(app, host, port, say))
     except OSError as error:
         number = error.errno or 0  # asyncio's own words are long; negative ones are of names
         why = os.strerror(number) if number > 0 else error.strerror
-        raise ValueError(f"cannot listen on {args.host}:{args.port}: {why}; give another --host or --port") from None
-    raise KeyboardInterrupt(ended_by)
+        raise ValueError(f"cannot listen on {host}:{port}: {why}; give another --host or --port") from None

@@ -20,14 +20,17 @@ ROUNDS = 4  # of Gauss-Newton
 class GlideError:
     """A glide and its prediction, from a start fitted to its first `fitted` frames with the same law.
 
-    `t` (n,) [s] since the start; `x`, `y` (n,) [m] recorded; `error` (n, 2) [m] along and across the motion, recorded
-    minus predicted; `std` (n, 2) [m]: its standard deviation due to noise and calibration error, including the error of
-    the fitted start; `speed` [m/s] at the start.
+    `begins` [s]: the start, on the camera's clock; `t` (n,) [s] since then; `x`, `y` (n,) [m] recorded; `path` (n, 2)
+    [m] predicted; `error` (n, 2) [m] along and across the motion, recorded minus predicted; `std` (n, 2) [m]: its
+    standard deviation due to noise and calibration error, including the error of the fitted start; `speed` [m/s] at the
+    start.
     """
 
+    begins: float
     t: np.ndarray
     x: np.ndarray
     y: np.ndarray
+    path: np.ndarray
     error: np.ndarray
     std: np.ndarray
     fitted: int
@@ -63,7 +66,8 @@ def predict_glide(segment: Glide, noise: MotionNoise, map_error: MapError, frict
     sigma = noise.std(np.array([speed, 0.0]))
     by_map = np.einsum("nim,ik->nkm", map_error.of_places(place), axes)
     std = np.stack([_spread(slopes[:, k], fitted, sigma[k], correlation, by_map[:, k]) for k in (0, 1)], axis=1)
-    return GlideError(t, segment.x, segment.y, (place - path) @ axes, std, fitted, speed)
+    begins = float(segment.t[0])
+    return GlideError(begins, t, segment.x, segment.y, path, (place - path) @ axes, std, fitted, speed)
 
 
 def _law(

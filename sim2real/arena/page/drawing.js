@@ -58,7 +58,29 @@ export class Drawing {
       this.disc(mallet, table.mallet_radius, colour(k ? "two" : "one"));
       this.disc(mallet, 0.45 * table.mallet_radius, colour("ice"));
     });
-    if (aim) this.disc(aim, 0.008, colour("muted"));
+    this.disc(aim, 0.008, colour("muted"));
+  }
+
+  // A line through places [m], of a colour by name; a place that is null interrupts it.
+  line(places, name, width = 2) {
+    const { context } = this;
+    context.strokeStyle = getComputedStyle(document.documentElement).getPropertyValue(`--${name}`);
+    context.lineWidth = width;
+    context.beginPath();
+    places.forEach((place, k) => {
+      if (place) context[k && places[k - 1] ? "lineTo" : "moveTo"](...this.pixel(place));
+    });
+    context.stroke();
+  }
+
+  // A circle around a place [m], of a colour by name.
+  ring(place, radius, name) {
+    if (!place) return;
+    this.context.strokeStyle = getComputedStyle(document.documentElement).getPropertyValue(`--${name}`);
+    this.context.lineWidth = 2;
+    this.context.beginPath();
+    this.context.arc(...this.pixel(place), radius * this.scale, 0, 2 * Math.PI);
+    this.context.stroke();
   }
 
   box(from, to, colour) {
@@ -67,7 +89,9 @@ export class Drawing {
     this.context.fillRect(Math.min(a[0], b[0]), Math.min(a[1], b[1]), Math.abs(a[0] - b[0]), Math.abs(a[1] - b[1]));
   }
 
+  // Nothing is drawn of a place that is not known.
   disc(place, radius, colour) {
+    if (!place) return;
     const [x, y] = this.pixel(place);
     this.context.fillStyle = colour;
     this.context.beginPath();

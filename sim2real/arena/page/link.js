@@ -6,6 +6,7 @@ const FIRST_WAIT = 250, LONGEST_WAIT = 5000; // ms before it is tried again
 export class Link {
   constructor(heard) {
     this.heard = heard;
+    this.token = new URLSearchParams(location.search).get("token") ?? "";
     this.id = sessionStorage.getItem("game") ?? ""; // so that a page that is loaded anew comes back into its game
     this.wait = FIRST_WAIT;
     this.roundTrip = null;
@@ -16,7 +17,7 @@ export class Link {
   open() {
     const address = new URL("game", location.href);
     address.protocol = location.protocol === "https:" ? "wss:" : "ws:";
-    address.searchParams.set("token", new URLSearchParams(location.search).get("token") ?? "");
+    address.searchParams.set("token", this.token);
     address.searchParams.set("id", this.id);
     this.socket = new WebSocket(address);
     this.socket.onmessage = (event) => this.take(JSON.parse(event.data));

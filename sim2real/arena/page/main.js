@@ -20,7 +20,7 @@ const hear = {
     smoothing.clear();
     message.names.forEach((name, k) => { part(`name-${k}`).textContent = k === seat ? "you" : name; });
     part("note").textContent = seat === null ? "watching" : "";
-    part("again").hidden = true;
+    part("again").hidden = part("replay").hidden = true;
     canvas.style.cursor = seat === null ? "default" : "none";
     if (seat !== null) canvas.focus();
   },
@@ -32,6 +32,12 @@ const hear = {
     const left = Math.ceil(message.left);
     part("clock").textContent = `${Math.floor(left / 60)}:${String(left % 60).padStart(2, "0")}`;
     if (message.ending) ended(message);
+  },
+  recorded(message) {
+    const address = new URL("replay", location.href);
+    address.search = new URLSearchParams({ name: message.name, token: link.token });
+    part("replay").href = address;
+    part("replay").hidden = false;
   },
   closed(message) {
     part("note").textContent = message.reason;

@@ -49,7 +49,7 @@ function between(a, b, share) {
   };
 }
 
-function mix(a, b, share) {
+export function mix(a, b, share) {
   if (Math.hypot(b[0] - a[0], b[1] - a[1]) > FARTHEST) return share < 0.5 ? a : b;
   return [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])];
 }

@@ -81,10 +81,23 @@ def refuse_existing(folder: Path) -> None:
     finished before."""
     if not (folder.exists() or folder.is_symlink()):
         return
-    for meta in folder.glob(".*.tmp/meta.json"):
-        draft = meta.parent
-        _finish_left(draft, folder / draft.name.removeprefix(".").removesuffix(".tmp"))
+    for draft, place in _left_in(folder):
+        _finish_left(draft, place)
     raise RecordingError(folder, "exists already; choose another name or remove it")
+
+
+def finish_left_in(folder: Path) -> None:
+    """Finish the recordings that a killed run left in a folder of several; what another run records, or cannot be read
+    back, is left alone."""
+    for draft, place in _left_in(folder):
+        with suppress(RecordingError):
+            _finish_left(draft, place)
+
+
+def _left_in(folder: Path) -> list[tuple[Path, Path]]:
+    """Drafts in a folder of several recordings, and the places that they were meant for."""
+    drafts = [meta.parent for meta in folder.glob(".*.tmp/meta.json")]
+    return [(draft, folder / draft.name.removeprefix(".").removesuffix(".tmp")) for draft in drafts]
 
 
 def columns(stream: str) -> tuple[str, ...]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import signal
+from pathlib import Path
 from typing import Any, cast
 
 import pytest
@@ -11,12 +12,13 @@ import pytest
 pytest.importorskip("aiohttp", reason="it comes with pip install '.[test]'")
 
 from sim2real.arena.lobby import Lobby
+from sim2real.arena.records import Records
 from sim2real.arena.server import make_app, serve
 from sim2real.arena.session import Listener
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_a_signal_in_the_midst_of_a_step_that_lets_nothing_out_ends_it(number: signal.Signals) -> None:
+def test_a_signal_in_the_midst_of_a_step_that_lets_nothing_out_ends_it(number: signal.Signals, tmp_path: Path) -> None:
     def step() -> None:
         try:
             signal.raise_signal(number)
@@ -27,7 +29,8 @@ def test_a_signal_in_the_midst_of_a_step_that_lets_nothing_out_ends_it(number: s
     def say(port: int) -> None:
         asyncio.get_running_loop().call_later(0.05, step)
 
-    app = make_app(Lobby(("still", "goalie"), 0), "a-token")
+    records = Records(tmp_path)
+    app = make_app(Lobby(("still", "goalie"), 0, records), records, "a-token")
     assert asyncio.run(asyncio.wait_for(serve(app, "127.0.0.1", 0, say), 10.0)) == number
 
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
+import tempfile
 from collections.abc import Awaitable, Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -13,10 +15,12 @@ import pytest
 aiohttp = pytest.importorskip("aiohttp", reason="it comes with pip install '.[test]'")
 from aiohttp.test_utils import TestClient, TestServer  # noqa: E402
 
+import sim2real  # noqa: E402
 from baselines.players.goalie import Goalie  # noqa: E402
 from sim2real.arena import lobby as lobby_module  # noqa: E402
 from sim2real.arena.game import PERSON  # noqa: E402
 from sim2real.arena.lobby import Lobby  # noqa: E402
+from sim2real.arena.records import Records  # noqa: E402
 from sim2real.arena.server import PAGE, make_app  # noqa: E402
 from sim2real.arena.session import MOST_SAID  # noqa: E402
 
@@ -28,11 +32,14 @@ def served(check: Check, names: tuple[str, str] = (PERSON, "still")) -> None:
     """Run a check against a server of the test's own."""
 
     async def run() -> None:
-        lobby = Lobby(names, 0)
-        async with TestClient(TestServer(make_app(lobby, TOKEN))) as client:
+        records = Records(folder)
+        lobby = Lobby(names, 0, records)
+        async with TestClient(TestServer(make_app(lobby, records, TOKEN))) as client:
             await check(client, lobby)
 
-    asyncio.run(asyncio.wait_for(run(), 60.0))
+    with tempfile.TemporaryDirectory() as made:
+        folder = Path(made)
+        asyncio.run(asyncio.wait_for(run(), 60.0))
 
 
 async def joined(client: Any, **query: str) -> Any:
@@ -211,3 +218,38 @@ def test_the_page_is_light_and_its_code_short() -> None:
     files = list(PAGE.iterdir())
     assert sum(file.stat().st_size for file in files) < 150_000
     assert sum(len(file.read_text(encoding="utf-8").splitlines()) for file in files if file.suffix == ".js") < 1500
+
+
+def test_a_recording_is_for_those_who_know_the_token_and_its_name(tmp_path: Path) -> None:
+    demo = Path(sim2real.__file__).with_name("demo_recording")
+    (broken := tmp_path / "broken").mkdir()
+    (broken / "meta.json").write_text("{}")
+
+    async def run() -> None:
+        records = Records(tmp_path / "out", [demo, broken])
+        async with TestClient(TestServer(make_app(Lobby((PERSON, "still"), 0, records), records, TOKEN))) as client:
+            assert (await client.get("/replay")).status == 403
+            assert (await client.get("/replay", params={"token": TOKEN})).status == 200
+            assert (await client.get("/recording", params={"name": demo.name})).status == 403
+            gone = await client.get("/recording", params={"name": "../demo_recording", "token": TOKEN})
+            assert gone.status == 404 and "no recording '../demo_recording'" in await gone.text()
+            bad = await client.get("/recording", params={"name": "broken", "token": TOKEN})
+            assert bad.status == 422 and "format" in await bad.text()
+            found = await (await client.get("/recording", params={"name": demo.name, "token": TOKEN})).json()
+            assert found["name"] == demo.name and len(found["glides"]) > 10 and len(found["contacts"]) > 10
+
+    asyncio.run(asyncio.wait_for(run(), 120.0))
+
+
+def test_a_match_that_is_over_says_where_its_recording_is() -> None:
+    async def check(client: Any, lobby: Lobby) -> None:
+        socket = await joined(client)
+        welcome = await heard(socket, "welcome")
+        session = lobby._sessions[welcome["id"]]
+        session.game.tables.states["steps"] = 180 * 120 - 20  # of a match of three minutes
+        name = (await heard(socket, "recorded"))["name"]
+        assert name.endswith("_human-guest_still")
+        assert (await heard(await joined(client, id=welcome["id"]), "recorded"))["name"] == name
+        await socket.close()
+
+    served(check)

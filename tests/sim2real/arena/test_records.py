@@ -1,0 +1,98 @@
+"""Every game of the arena becomes a recording that holds what was played, and a line that says how it ended."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+pytest.importorskip("aiohttp", reason="it comes with pip install '.[test]'")
+
+from baselines.matches.played_games import read_pairs
+from sim2real.arena.game import PERSON, Game
+from sim2real.arena.records import GAMES, Records
+from sim2real.arena.session import Session
+from sim2real.recording.folder import read_recording
+
+
+def played(records: Records, ticks: int, names: tuple[str, str] = ("interceptor", "still")) -> tuple[str, np.ndarray]:
+    """The name of a recorded game, and rows (ticks + 1, 7) of time, puck and both mallets as its tables had them."""
+    game, rows = Game(names, 5), []
+    recorder = records.begin(game, 5)
+    for tick in range(ticks + 1):
+        if tick:
+            game.tick()
+            recorder.add(game.view())
+        table = game.tables.states[0]
+        axes = [table["mallets"][k][axis] for k in (0, 1) for axis in ("x", "y")]
+        mallets = [float(axis["rest"] + axis["slow"] + axis["fast"]) for axis in axes]  # the three parts of its motion
+        rows.append([game.ticks / 120, float(table["puck"]["x"]), float(table["puck"]["y"]), *mallets])
+    records.keep(recorder, game, 5)
+    return recorder.name, np.array(rows)
+
+
+def test_a_recording_holds_what_was_played(tmp_path: Path) -> None:
+    name, rows = played(Records(tmp_path), 300)
+    recording = read_recording(tmp_path / name)
+    assert recording.frames is not None and recording.mallet is not None
+    seen = [recording.frames[key] for key in ("t", "puck_x", "puck_y", "opponent_x", "opponent_y")]
+    np.testing.assert_allclose(np.column_stack(seen), rows[:, [0, 1, 2, 5, 6]], atol=1e-6)
+    robot = [recording.mallet[key] for key in ("t", "mallet_x", "mallet_y")]
+    np.testing.assert_allclose(np.column_stack(robot), rows[:, [0, 3, 4]], atol=1e-6)
+    assert recording.nominal("table", "length_m") == pytest.approx(2.0)
+
+
+def test_how_matches_ended_is_a_line_each_under_the_names_of_persons(tmp_path: Path) -> None:
+    records = Records(tmp_path, person="ann")
+    names = [played(records, 5, (PERSON, "still"))[0], played(records, 5, ("still", PERSON))[0]]
+    assert len(set(names)) == 2 and all("human-ann" in name for name in names)
+    lines = [json.loads(line) for line in (tmp_path / GAMES).read_text().splitlines()]
+    assert [line["players"] for line in lines] == [["human:ann", "still"], ["still", "human:ann"]]
+    assert [line["recording"] for line in lines] == names and lines[0]["score"] == [0, 0]
+    assert read_pairs(tmp_path / GAMES) == {("human:ann", "still"): [[0, 0]]}
+
+
+def test_recordings_are_found_by_name_and_nothing_else_is(tmp_path: Path) -> None:
+    (other := tmp_path / "elsewhere" / "a table").mkdir(parents=True)
+    records = Records(tmp_path / "kept", [other])
+    name, _ = played(records, 5)
+    assert records.find(name) == tmp_path / "kept" / name and records.find("a table") == other
+    (tmp_path / "secret").mkdir()
+    (tmp_path / "secret" / "meta.json").write_text("{}")
+    for asked in ("", ".", "..", "../secret", "secret", str(tmp_path / "secret"), f"{name}/", f".{name}.tmp", GAMES):
+        assert records.find(asked) is None
+
+
+def test_a_game_that_is_left_is_kept_as_far_as_it_was_played(tmp_path: Path) -> None:
+    async def play() -> None:
+        session = Session(("interceptor", "still"), 3, Records(tmp_path))
+        session.listeners.add(cast(Any, type("Looker", (), {"show": lambda self, state: None})()))
+        while session.game.ticks < 30:
+            await asyncio.sleep(0.01)
+        session.close()
+
+    asyncio.run(play())
+    (meta,) = tmp_path.glob("*/meta.json")
+    recording = read_recording(meta.parent)
+    assert recording.frames is not None and recording.frames.rows >= 30 and not (tmp_path / GAMES).exists()
+
+
+def test_what_a_killed_server_left_is_finished_by_the_next(tmp_path: Path) -> None:
+    records = Records(tmp_path)
+    game = Game(("interceptor", "still"), 1)
+    recorder = records.begin(game, 1)
+    for _ in range(150):
+        game.tick()
+        recorder.add(game.view())
+    assert records.find(recorder.name) is None
+    Records(tmp_path)  # the first still has it
+    assert records.find(recorder.name) is None
+    del recorder  # as the end of a process does, it gives up the lock
+    Records(tmp_path)
+    (meta,) = tmp_path.glob("[!.]*/meta.json")
+    frames = read_recording(meta.parent).frames
+    assert frames is not None and frames.rows == 120
