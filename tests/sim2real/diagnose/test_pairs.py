@@ -16,7 +16,7 @@ from sim2real.study.independent_table.recorder.record import make_recording
     ("number", "names"),
     [
         (20, ["tangential_restitution", "wall_to_wall_restitution"]),
-        (44, ["motor_deadband", "voltage_sag"]),
+        pytest.param(44, ["motor_deadband", "voltage_sag"], marks=pytest.mark.long),
     ],
 )
 def test_both_are_named(tmp_path: Path, number: int, names: list[str]) -> None:

@@ -116,6 +116,7 @@ def test_the_wall_contacts_of_one_recording_predict_another() -> None:
     assert final[0] < refitted[0] and final[1] < 0.4 * refitted[1]
 
 
+@pytest.mark.long
 def test_the_recordings_are_of_one_table() -> None:
     """Bounces that scatter, of a puck whose spin nobody knows, must not make two tables of one."""
     recordings = [part(name).recording for name in ("play_a", "puck_a")]

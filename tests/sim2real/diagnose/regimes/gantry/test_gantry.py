@@ -97,6 +97,7 @@ def test_other_numbers_are_no_missing_physics(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_an_unlisted_law_is_named_by_what_it_depends_on(tmp_path: Path) -> None:
     found = diagnosed(recorded(tmp_path, Law(rough=0.2, rough_length=0.4)))
     assert [(one.mechanism, one.depends_on) for one in found.findings] == [("unlisted", ("position",))]
