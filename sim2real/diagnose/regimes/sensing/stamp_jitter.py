@@ -67,6 +67,8 @@ def identify_stamps(
     errors = _errors(known)
     if chance > SIGNIFICANCE_LEVEL or errors is None or errors.before < STAMPS.worse * errors.after:
         return StampResult()
+    if np.sqrt(max(errors.proof.before_m**2 - errors.proof.after_m**2, 0.0)) < STAMPS.least_size:
+        return StampResult()  # it is sure, and moves nothing
     period, deviation = _estimates([one for one in recordings if _is_long(one)])
     parameters, where = {"period_s": period, "std_s": deviation}, {"stream": "frames"}
     finding = Finding("sensing", MECHANISM, (), (), FORMULA, parameters, max(chance, 1e-300), where=where)

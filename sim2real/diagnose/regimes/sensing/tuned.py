@@ -242,6 +242,10 @@ class StampNumbers:
         "in which a clock does not wander: less follows the jitter, more misses a clock that is set",
         "choice: a few hundred frames",
     )
+    least_size: float = tuned(
+        5e-5, "m", "stamps rounded to microseconds are named (small), or a jitter that moves places is missed (large)",
+        "choice: as of the gantry's paths",
+    )  # fmt: skip
     fewest_frames: int = tuned(
         60,
         "frames",

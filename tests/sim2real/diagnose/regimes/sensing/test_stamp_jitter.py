@@ -134,6 +134,16 @@ def test_regular_exposures_with_their_own_stamps_are_left_alone(tmp_path) -> Non
     assert identified(read_recording(tmp_path)).finding is None
 
 
+def test_stamps_that_are_rounded_to_microseconds_are_left_alone(tmp_path) -> None:
+    """As an exact recording shows them: it is sure that they are rounded, and it moves a fast puck by a micrometre."""
+    exact = replace(REGULAR, noise=1e-7)
+    make_recording(tmp_path / "exact", Law(), "launches", 3, 60.0, exact, dt=5e-5)
+    recording = read_recording(tmp_path / "exact")
+    assert recording.frames is not None
+    columns = {**recording.frames.columns, "t": np.round(recording.frames.t, 6)}
+    assert identified(replace(recording, frames=Stream(columns))).finding is None
+
+
 def test_what_a_frame_saw_at_an_unsure_time_is_not_used(launches) -> None:
     assert launches.frames is not None
     stamps = launches.frames.t.copy()
