@@ -70,7 +70,9 @@ part("play").onclick = () => {
   playing = !playing;
   drawn = null;
 };
-new ResizeObserver(() => { drawn = null; }).observe(document.body);
+const resized = new ResizeObserver(() => { drawn = null; }); // which empties a canvas
+resized.observe(part("table").parentElement);
+resized.observe(part("chart"));
 matchMedia("(prefers-color-scheme: dark)").onchange = () => { drawn = null; };
 part("time").oninput = () => move(Number(part("time").value));
 document.addEventListener("keydown", (event) => {

@@ -16,6 +16,9 @@ from tests.sim2real.arena.running import arena
 playwright = pytest.importorskip("playwright.sync_api", reason="it comes with pip install '.[test]'")
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 
+# Whether the middle of the table, which is a line across it, has a colour
+PAINTED = "table.getContext('2d').getImageData(table.width / 2, table.height / 2, 1, 1).data[3] > 0"
+
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(BROWSER is None, reason="no Chromium is installed")]
 
 
@@ -131,5 +134,8 @@ def test_a_recording_is_shown_beside_the_simulator(browser: Any) -> None:
     with arena(str(ROOT / "sim2real" / "demo_recording")) as address:
         page = replayed(browser.new_page(viewport={"width": 390, "height": 800}), address, 14.0)
         assert "mm from the prediction" in page.inner_text("#what")
+        assert page.evaluate("document.documentElement.scrollWidth") <= 390
+        page.set_viewport_size({"width": 900, "height": 700})  # which empties what was drawn
+        until(page, lambda: page.evaluate(PAINTED))
         puck, expected = (json.loads(page.get_attribute("#table", f"data-{name}")) for name in ("puck", "expected"))
         assert 0.005 < abs(puck[0] - expected[0]) + abs(puck[1] - expected[1]) < 0.05  # the demo's table is tilted
