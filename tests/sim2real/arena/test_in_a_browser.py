@@ -121,7 +121,7 @@ def test_a_goal_is_counted_and_the_replay_equals_the_game(browser: Any, tmp_path
     (recording,) = tmp_path.glob("[!.]*/meta.json")
     with arena(str(recording.parent), "--out", str(tmp_path)) as address:
         page = browser.new_page(viewport={"width": 1000, "height": 700})
-        for time, mallet in seen[:: len(seen) // 4]:
+        for time, mallet in seen[:: -(len(seen) // 3)]:  # the earliest last, from where it can go on
             again = json.loads(replayed(page, address, time).get_attribute("#table", "data-mallet"))
             assert again == pytest.approx(mallet, abs=1e-3)
         page.keyboard.press("ArrowRight")
