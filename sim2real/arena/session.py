@@ -98,8 +98,7 @@ class Session:
         try:
             await asyncio.to_thread(self._records.keep, recorder, game, seed)
         except (OSError, ValueError) as error:
-            print(f"puckpilot arena: a game is not recorded, {error}", file=sys.stderr, flush=True)
-            return
+            return _lost(error)
         if game is self.game:
             self._recorded = recorder.name
             for listener in self.listeners:
@@ -180,6 +179,14 @@ class Session:
     def close(self) -> None:
         """End the game; what was played of it is a recording."""
         self._task.cancel()
-        if self._recorder is not None and not self.game.over:
-            self._recorder.finish()
+        try:
+            if self._recorder is not None and not self.game.over:
+                self._recorder.finish()
+        except (OSError, ValueError) as error:
+            _lost(error)
         self.game.tables.close()
+
+
+def _lost(error: Exception) -> None:
+    """Say that a game is no recording; its draft stays."""
+    print(f"puckpilot arena: a game is not recorded, {error}", file=sys.stderr, flush=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, cast
 
@@ -67,15 +68,33 @@ def test_recordings_are_found_by_name_and_nothing_else_is(tmp_path: Path) -> Non
         assert records.find(asked) is None
 
 
-def test_a_game_that_is_left_is_kept_as_far_as_it_was_played(tmp_path: Path) -> None:
+def left(folder: Path, after: Callable[[], object] = lambda: None) -> None:
+    """Play a game that one page looks on to, and end it in the midst, `after` something happened."""
+
     async def play() -> None:
-        session = Session(("interceptor", "still"), 3, Records(tmp_path))
+        session = Session(("interceptor", "still"), 3, Records(folder))
         session.listeners.add(cast(Any, type("Looker", (), {"show": lambda self, state: None})()))
         while session.game.ticks < 30:
             await asyncio.sleep(0.01)
+        after()
         session.close()
 
     asyncio.run(play())
+
+
+def test_a_recording_that_cannot_be_completed_is_said_in_a_line(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    def taken() -> None:
+        (draft,) = tmp_path.glob(".*.tmp")
+        (tmp_path / draft.name[1:].removesuffix(".tmp")).mkdir()
+
+    left(tmp_path, taken)
+    said = capsys.readouterr().err
+    assert said.startswith("puckpilot arena: a game is not recorded, ") and said.count("\n") == 1
+    assert len(list(tmp_path.glob(".*.tmp/frames.csv"))) == 1
+
+
+def test_a_game_that_is_left_is_kept_as_far_as_it_was_played(tmp_path: Path) -> None:
+    left(tmp_path)
     (meta,) = tmp_path.glob("*/meta.json")
     recording = read_recording(meta.parent)
     assert recording.frames is not None and recording.frames.rows >= 30 and not (tmp_path / GAMES).exists()
