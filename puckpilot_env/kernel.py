@@ -133,7 +133,11 @@ def inlined_kernel(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def array_kernel(function: Callable[..., Any]) -> Callable[..., Any]:
-    """`kernel` for a function that makes arrays, or assigns whole ones."""
+    """`kernel` for a function that makes arrays, or assigns whole ones.
+
+    It may not make arrays of records: numba frees an array after its last use by name, while a record taken out of it
+    is still read. They come from the caller, who holds them.
+    """
     return _compiled(function, _nrt=True)
 
 

@@ -38,19 +38,21 @@ class Attacker(Player):
         """Actions (n, 4): the earliest strike of any of these shots, or a block."""
         actions = np.zeros((len(state.puck), 4))
         bounds = self.seat.action_bounds.astype(np.float64)
-        _decide(state.puck, state.mallet, state.gantry_scale, self.seat.nominal, bounds, np.array(shots), actions)
+        mallets = np.zeros(1, MALLET)
+        _decide(
+            state.puck, state.mallet, state.gantry_scale, self.seat.nominal, bounds, np.array(shots), mallets, actions
+        )
         return actions
 
 
 @array_kernel
-def _decide(pucks, mallets, scales, nominal, bounds, shots, actions):
-    """Write every table's action into `actions` (n, 4)."""
-    p = nominal[0]
-    mallet = np.zeros(1, MALLET)[0]
+def _decide(pucks, owns, scales, nominal, bounds, shots, mallets, actions):
+    """Write every table's action into `actions` (n, 4). `mallets`: one record, to compute with."""
+    p, mallet = nominal[0], mallets[0]
     for i in range(pucks.shape[0]):
-        fill_mallet(mallet, p, scales[i], mallets[i])
-        if not strike_or_nothing(pucks[i], mallets[i], p, mallet, bounds, shots, actions[i]):
-            block(pucks[i], mallets[i], p, mallet, bounds, actions[i])
+        fill_mallet(mallet, p, scales[i], owns[i])
+        if not strike_or_nothing(pucks[i], owns[i], p, mallet, bounds, shots, actions[i]):
+            block(pucks[i], owns[i], p, mallet, bounds, actions[i])
 
 
 @array_kernel

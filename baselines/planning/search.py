@@ -90,16 +90,15 @@ def _best_candidate(puck, own, opponent, held, last, p, weights, scene, bounds, 
 
 @array_kernel
 def search_actions(
-    pucks, owns, opponents, helds, lasts, scales, nominal, value_weights, bounds, shots, variations, actions
+    pucks, owns, opponents, helds, lasts, scales, nominal, value_weights, bounds, shots, variations, scenes, actions
 ):
     """Write the best action found on every table into `actions` (n, 4).
 
     `pucks`, `owns`, `opponents` (n, 4), `helds` (n,), `scales` (n, 2, 3): as in `DecodedState`. `lasts` (n, 4): the
     previous actions. `value_weights`: (1,) record of `rollout.VALUE_WEIGHTS`. `shots` (m, 2): see `attack.Attacker`.
-    `variations` (k, 4): added to the best action in turn.
+    `variations` (k, 4): added to the best action in turn. `scenes`: one record of SCENE, to compute with.
     """
-    p, weights = nominal[0], value_weights[0]
-    scene = np.zeros(1, SCENE)[0]
+    p, weights, scene = nominal[0], value_weights[0], scenes[0]
     park_opponent(scene.mallets[1])
     scratch = (np.zeros((0, EVENT_COLUMNS)), np.zeros((MOST_CANDIDATES, 4)), np.zeros(4))
     for i in range(pucks.shape[0]):

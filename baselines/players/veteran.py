@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from baselines.observation_decoder import DecodedState
 from baselines.planning.aim import BANK_LEFT, BANK_RIGHT, DIRECT
 from baselines.planning.rollout import VALUE_WEIGHTS
-from baselines.planning.search import search_actions
+from baselines.planning.search import SCENE, search_actions
 from baselines.player import Player, Seat
 
 SHOTS = tuple((path, share) for path in (DIRECT, BANK_RIGHT, BANK_LEFT) for share in (-0.8, 0.0, 0.8))
@@ -44,7 +44,7 @@ class Veteran(Player):
         actions = np.zeros((len(state.puck), 4))
         search_actions(
             state.puck, state.mallet, state.opponent, state.held, self._last, state.gantry_scale, self.seat.nominal,
-            self._weights, self._bounds, self._shots, self._variations, actions,
+            self._weights, self._bounds, self._shots, self._variations, np.zeros(1, SCENE), actions,
         )  # fmt: skip
         self._last[:] = actions
         return actions

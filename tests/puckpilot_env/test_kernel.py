@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+import importlib
 import importlib.util
 import os
 import re
@@ -164,6 +166,26 @@ def test_only_kernels_that_make_arrays_count_references(copied, decorator, count
     assert out.tolist() == [0.0, 2.0, 4.0]
     (code,) = compiled.inspect_llvm().values()
     assert ("NRT_" in code) == counts
+
+
+def makes_records(path: Path) -> list[str]:
+    """The kernels of a file that make an array of records."""
+    module, found = importlib.import_module(".".join(path.with_suffix("").parts)), []
+    for function in ast.walk(ast.parse((REPOSITORY / path).read_text())):
+        if isinstance(function, ast.FunctionDef) and any("kernel" in ast.dump(one) for one in function.decorator_list):
+            calls = [node for node in ast.walk(function) if isinstance(node, ast.Call)]
+            words = [
+                ast.unparse(word) for call in calls if ast.unparse(call.func).startswith("np.") for word in call.args
+            ]
+            if any(isinstance(getattr(module, word, None), np.dtype) for word in words):
+                found.append(f"{path}: {function.name}")
+    return found
+
+
+@pytest.mark.parametrize("path", COMPILED + ABOVE, ids=str)
+def test_no_kernel_makes_records(path):
+    """What is taken out of an array of records does not hold the array, which is freed after its last use by name."""
+    assert makes_records(path) == []
 
 
 def test_the_running_folder_is_that_of_these_sources():
