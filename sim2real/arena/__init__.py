@@ -4,5 +4,6 @@
 - `ticking`: steps on absolute deadlines of a monotonic clock.
 - `messages`: what a page may send, and what the server sends.
 - `session`, `lobby`: a game with those who look on, and all of them, within limits.
+- `recordings/`: every game becomes one, and any is shown beside the simulator.
 - `server`: pages and WebSockets, for those who know the token; `page/`: what the browser runs.
 """

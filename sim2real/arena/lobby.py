@@ -8,7 +8,7 @@ import time
 from aiohttp import web
 
 from sim2real.arena.game import PERSON
-from sim2real.arena.records import Records
+from sim2real.arena.recordings.records import Records
 from sim2real.arena.session import Session
 
 MOST_SESSIONS = 8

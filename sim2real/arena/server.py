@@ -12,8 +12,8 @@ from aiohttp import WSCloseCode, web
 
 from sim2real.arena.lobby import FullError, Lobby
 from sim2real.arena.messages import MOST_CHARACTERS
-from sim2real.arena.reader import Reader, UnreadableError
-from sim2real.arena.records import Records
+from sim2real.arena.recordings.reader import Reader, UnreadableError
+from sim2real.arena.recordings.records import Records
 
 PAGE = Path(__file__).with_name("page")
 TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript"}

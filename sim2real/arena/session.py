@@ -13,8 +13,8 @@ from aiohttp import WSCloseCode, WSMsgType, web
 
 from sim2real.arena import messages
 from sim2real.arena.game import PERSON, TICKS, Game
-from sim2real.arena.game_recorder import GameRecorder
-from sim2real.arena.records import Records
+from sim2real.arena.recordings.game_recorder import GameRecorder
+from sim2real.arena.recordings.records import Records
 from sim2real.arena.ticking import Ticking
 
 STATE_EVERY = 2  # ticks between two states, of which 60 a second are sent

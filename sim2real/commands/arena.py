@@ -45,7 +45,7 @@ def run(args: argparse.Namespace) -> NoReturn:
     from puckpilot_env.options.inputs import seed_number, whole_number
     from sim2real.arena.game import PERSON, Game
     from sim2real.arena.lobby import Lobby
-    from sim2real.arena.records import Records
+    from sim2real.arena.recordings.records import Records
     from sim2real.arena.server import make_app
 
     whole_number(args.port, "--port", 0, 65535)

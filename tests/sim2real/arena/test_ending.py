@@ -12,7 +12,7 @@ import pytest
 pytest.importorskip("aiohttp", reason="it comes with pip install '.[test]'")
 
 from sim2real.arena.lobby import Lobby
-from sim2real.arena.records import Records
+from sim2real.arena.recordings.records import Records
 from sim2real.arena.server import make_app, serve
 from sim2real.arena.session import Listener
 

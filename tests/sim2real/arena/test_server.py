@@ -20,7 +20,7 @@ from baselines.players.goalie import Goalie  # noqa: E402
 from sim2real.arena import lobby as lobby_module  # noqa: E402
 from sim2real.arena.game import PERSON  # noqa: E402
 from sim2real.arena.lobby import Lobby  # noqa: E402
-from sim2real.arena.records import Records  # noqa: E402
+from sim2real.arena.recordings.records import Records  # noqa: E402
 from sim2real.arena.server import PAGE, make_app  # noqa: E402
 from sim2real.arena.session import MOST_SAID  # noqa: E402
 

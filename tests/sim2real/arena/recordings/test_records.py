@@ -15,7 +15,7 @@ pytest.importorskip("aiohttp", reason="it comes with pip install '.[test]'")
 
 from baselines.matches.played_games import read_pairs
 from sim2real.arena.game import PERSON, Game
-from sim2real.arena.records import GAMES, Records
+from sim2real.arena.recordings.records import GAMES, Records
 from sim2real.arena.session import Session
 from sim2real.recording.folder import read_recording
 

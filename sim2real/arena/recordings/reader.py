@@ -33,7 +33,7 @@ class Reader:
 
 async def _read(folder: Path) -> str:
     pipe = asyncio.subprocess.PIPE
-    command = (sys.executable, "-m", "sim2real.arena.replay", str(folder))
+    command = (sys.executable, "-m", "sim2real.arena.recordings.replay", str(folder))
     process = await asyncio.create_subprocess_exec(*command, stdout=pipe, stderr=pipe, start_new_session=True)
     try:
         text, errors = await process.communicate()

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim2real.arena.replay import replay_of
+from sim2real.arena.recordings.replay import replay_of
 from sim2real.recording.folder import Recording, Stream, write_recording
 
 RATE, NOISE = 120.0, 2e-4

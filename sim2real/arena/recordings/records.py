@@ -9,7 +9,7 @@ from pathlib import Path
 from baselines.matches.played_games import add_game
 from puckpilot_env.files.whole_file import check_folder
 from sim2real.arena.game import PERSON, Game
-from sim2real.arena.game_recorder import GameRecorder
+from sim2real.arena.recordings.game_recorder import GameRecorder
 from sim2real.table.recorder.draft import finish_left_in
 
 GAMES = "games.jsonl"  # a line for each match that was played to its end

@@ -1,0 +1,1 @@
+"""Games of the arena as recordings, and recordings for its page."""
