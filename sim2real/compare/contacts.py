@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from puckpilot_env.physics.contacts import bounce
-from puckpilot_env.physics.contacts import contact as collision
+from puckpilot_env.physics.advance import PUCK
+from puckpilot_env.physics.contacts.rebound import rebound, strike
 from sim2real.compare.map_error import MapError
+from sim2real.diagnose.regimes.wall.data import KINDS
 from sim2real.segmentation.events import ContactEvent
 from sim2real.segmentation.mallet_path import MalletPath
 from sim2real.segmentation.velocity_jumps import VelocityJump
@@ -24,7 +25,7 @@ class ContactError:
     """A contact and its prediction; velocities (2,) [m/s] along the normal and the tangent.
 
     `before`, `after`: recorded velocities, relative to the mallet for a mallet contact; `predicted`: predicted velocity
-    after; `std`: standard deviation of `error` due to noise alone.
+    after; `std`: standard deviation of `error` due to noise alone; `spin`: predicted spin after [rad/s].
     """
 
     contact: ContactEvent
@@ -32,6 +33,7 @@ class ContactError:
     after: np.ndarray
     predicted: np.ndarray
     std: np.ndarray
+    spin: float
 
     @property
     def error(self) -> np.ndarray:
@@ -39,38 +41,47 @@ class ContactError:
         return self.after - self.predicted
 
 
-def predict_wall(jump: VelocityJump, restitution: float, map_error: MapError) -> ContactError:
-    """Predict the velocity after a wall contact from the velocity before."""
-    normal = jump.contact.normal
+def predict_wall(jump: VelocityJump, p: np.void, map_error: MapError, spin: float = 0.0) -> ContactError:
+    """Predict the velocity after a wall contact from the velocity before, and the puck's `spin` [rad/s] before.
+
+    `p`: the simulator's parameters, with those of effects.
+    """
+    normal, kind, pucks = jump.contact.normal, KINDS[jump.contact.where], np.zeros(1, PUCK)
 
     def after(inputs: np.ndarray) -> np.ndarray:
-        return np.array(bounce.reflect(*map(float, inputs[V_IN]), *map(float, normal), restitution))
+        _place(pucks[0], inputs, spin)
+        rebound(pucks[0], p, jump.t, kind, *map(float, normal))
+        return np.array([pucks[0]["vx"], pucks[0]["vy"]])
 
     inputs, spread = np.zeros(INPUTS), np.zeros((INPUTS, INPUTS))
     inputs[:7], spread[:7, :7] = jump.state, jump.covariance
     axes = _axes(normal)
     by_map = _by_map(inputs, map_error, seen_by_camera=False)
     std = _std(lambda z: axes @ (z[V_OUT] - after(z)), inputs, spread + by_map @ by_map.T)
-    return ContactError(jump.contact, axes @ jump.v_in, axes @ jump.v_out, axes @ after(inputs), std)
+    predicted = axes @ after(inputs)
+    return ContactError(jump.contact, axes @ jump.v_in, axes @ jump.v_out, predicted, std, float(pucks[0]["spin"]))
 
 
 def predict_mallet(
-    jump: VelocityJump, mallet: MalletPath, restitution: float, map_error: MapError
+    jump: VelocityJump, mallet: MalletPath, p: np.void, map_error: MapError, spin: float = 0.0
 ) -> ContactError | None:
     """Predict the velocity after a mallet contact from those of puck and mallet before; all relative to the mallet.
 
-    The normal is the line of centres. None if too few samples show the mallet.
+    The normal is the line of centres; `p` and `spin` as of `predict_wall`. None if too few samples show the mallet.
     """
     motion = mallet.motion(jump.t)
     if motion is None:
         return None
     (place, velocity, acceleration), covariance = motion
+    pucks = np.zeros(1, PUCK)
 
     def after(inputs: np.ndarray) -> np.ndarray:
         later = inputs[TIME] - jump.t  # the mallet moves during an error of the contact's time
         m, m_v = inputs[MALLET] + later * velocity, inputs[MALLET_V] + later * acceleration
         normal = (inputs[PLACE] - m) / np.linalg.norm(inputs[PLACE] - m)
-        return np.array(collision.reflect(*map(float, (*inputs[V_IN], *m_v, *normal)), restitution))
+        _place(pucks[0], inputs, spin)
+        strike(pucks[0], p, jump.t, *map(float, (*m_v, *normal)))
+        return np.array([pucks[0]["vx"], pucks[0]["vy"]])
 
     inputs, spread = np.concatenate([jump.state, place, velocity]), np.zeros((INPUTS, INPUTS))
     spread[:7, :7] = jump.covariance
@@ -81,7 +92,14 @@ def predict_mallet(
     by_map = _by_map(inputs, map_error, seen_by_camera=jump.contact.where == "opponent")
     std = _std(lambda z: axes @ (z[V_OUT] - after(z)), inputs, spread + by_map @ by_map.T)
     before, measured, predicted = (axes @ (v - velocity) for v in (jump.v_in, jump.v_out, after(inputs)))
-    return ContactError(jump.contact, before, measured, predicted, std)
+    return ContactError(jump.contact, before, measured, predicted, std, float(pucks[0]["spin"]))
+
+
+def _place(puck: np.void, inputs: np.ndarray, spin: float) -> None:
+    """Place a puck just before a contact."""
+    puck["x"], puck["y"] = inputs[PLACE]
+    puck["vx"], puck["vy"] = inputs[V_IN]
+    puck["spin"] = spin
 
 
 def _axes(normal: np.ndarray) -> np.ndarray:

@@ -6,9 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from puckpilot_env.physics.advance import PUCK
 from puckpilot_env.physics.sliding import glide
 from sim2real.compare.map_error import MapError
 from sim2real.compare.tuned import COMPARISON
+from sim2real.diagnose.regimes.sliding.trajectory import trace
 from sim2real.segmentation.segments import Glide
 from sim2real.segmentation.sensor_noise import MotionNoise
 from sim2real.statistics.whitening import decorrelated
@@ -45,23 +47,23 @@ def why_not_usable(segment: Glide) -> str:
     return f"slower than {COMPARISON.slowest} m/s" if speed < COMPARISON.slowest else ""
 
 
-def predict_glide(segment: Glide, noise: MotionNoise, map_error: MapError, friction: float, drag: float) -> GlideError:
+def predict_glide(segment: Glide, noise: MotionNoise, map_error: MapError, p: np.void) -> GlideError:
     """Fit place and velocity of the start to the first part of the glide, then predict to its end.
 
-    `friction` [m/s^2] and `drag` [1/m]: s' = -(friction + drag s^2) of the speed s.
+    `p`: the simulator's parameters, with those of effects: the puck slides as in the simulator, without spin.
     """
     t, place = segment.t - segment.t[0], np.stack([segment.x, segment.y], axis=1)
     fitted = max(COMPARISON.fewest_fitted, int(COMPARISON.fitted_part * len(t)))
     p0, v0 = segment.entry.place, segment.entry.velocity
     correlation = noise.correlation(t)
     for _ in range(ROUNDS):
-        path, axes, slopes = _law(t, p0, v0, friction, drag)
+        path, axes, slopes = _law(segment.t, p0, v0, p)
         rest = (place - path) @ axes
         weights = [_weights(slopes[:fitted, k], correlation) for k in (0, 1)]
         solved = [weights[k] @ rest[:fitted, k] for k in (0, 1)]
         p0 = p0 + axes @ [solved[0][0], solved[1][0]]
         v0 = v0 + axes @ [solved[0][1], solved[1][1]]
-    path, axes, slopes = _law(t, p0, v0, friction, drag)
+    path, axes, slopes = _law(segment.t, p0, v0, p)
     speed = float(np.linalg.norm(v0))
     sigma = noise.std(np.array([speed, 0.0]))
     by_map = np.einsum("nim,ik->nkm", map_error.of_places(place), axes)
@@ -70,18 +72,21 @@ def predict_glide(segment: Glide, noise: MotionNoise, map_error: MapError, frict
     return GlideError(begins, t, segment.x, segment.y, path, (place - path) @ axes, std, fitted, speed)
 
 
-def _law(
-    t: np.ndarray, p0: np.ndarray, v0: np.ndarray, friction: float, drag: float
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _law(t: np.ndarray, p0: np.ndarray, v0: np.ndarray, p: np.void) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Simulate the path (n, 2) [m]; return it, its axes (2, 2), along and across in columns, and its derivatives (n, 2)
-    [s] along and across by the start's velocity along and across. Derivatives by the start's place are 1."""
+    [s] along and across by the start's velocity along and across. Derivatives by the start's place are 1. The
+    derivatives are those without effects, which change little in the part that is fitted."""
     speed = max(float(np.linalg.norm(v0)), 1e-6)
     along = v0 / speed
     step = 1e-4 * speed
-    s = np.array([glide.distance(speed, float(at), friction, drag) for at in t])
-    faster = np.array([glide.distance(speed + step, float(at), friction, drag) for at in t])
+    path = np.empty((len(t), 4))
+    trace(p, np.array([0, len(t)]), t, np.array([[*p0, *v0, 0.0]]), np.zeros(1, PUCK), path)
+    friction, drag = float(p["friction"]), float(p["drag"])
+    s, faster = (
+        np.array([glide.distance(v, float(at - t[0]), friction, drag) for at in t]) for v in (speed, speed + step)
+    )
     axes = np.stack([along, [-along[1], along[0]]], axis=1)
-    return p0 + s[:, None] * along, axes, np.stack([(faster - s) / step, s / speed], axis=1)
+    return path[:, :2], axes, np.stack([(faster - s) / step, s / speed], axis=1)
 
 
 def _design(slope: np.ndarray) -> np.ndarray:

@@ -10,12 +10,13 @@ import numpy as np
 from sim2real.compare.contacts import ContactError, predict_mallet, predict_wall
 from sim2real.compare.glides import GlideError, predict_glide, why_not_usable
 from sim2real.compare.map_error import MapError
+from sim2real.diagnose.engine.problem import record_of
 from sim2real.diagnose.split import glides_of
 from sim2real.recording.folder import Recording
 from sim2real.segmentation.mallet_path import opponent_path, robot_path
 from sim2real.segmentation.segments import Segments
 from sim2real.segmentation.sensor_noise import MotionNoise
-from sim2real.segmentation.velocity_jumps import velocity_jumps
+from sim2real.segmentation.velocity_jumps import VelocityJump, velocity_jumps
 
 UNEXPLAINED = "unexplained events"
 
@@ -31,18 +32,18 @@ class Comparison:
 
 
 def compare_segments(recording: Recording, segments: Segments, values: dict[str, float]) -> Comparison:
-    """Predict every usable segment of `recording` with the parameters `values`, by name."""
+    """Predict every usable segment of `recording` with the parameters `values`, by name, with those of effects."""
     unusable: dict[str, Counter] = {"glide": Counter(), "wall": Counter(), "mallet": Counter(), "other": Counter()}
     size = np.array([values["length"], values["width"]])
     noise = glides_of(recording, segments).noise[0].uniform
     map_error = MapError(size, recording.nominal("camera", "place_std_m") or 0.0)
-    glides = []
+    glides, p = [], record_of(values)
     for segment in segments.glides:
         reason = why_not_usable(segment)
         if reason:
             unusable["glide"][reason] += 1
         else:
-            glides.append(predict_glide(segment, noise, map_error, values["friction"], values["drag"]))
+            glides.append(predict_glide(segment, noise, map_error, p))
     walls, mallets = _contacts(recording, segments, values, noise, map_error, unusable)
     return Comparison(tuple(glides), tuple(walls), tuple(mallets), unusable)
 
@@ -61,20 +62,32 @@ def _contacts(
     touched = {contact.where for contact in segments.of_kind("mallet")}
     read = {"robot": robot_path, "opponent": opponent_path}
     paths = {who: read[who](recording) for who in touched}
-    walls, mallets = [], []
+    walls, mallets, p = [], [], record_of(values)
+    last: tuple[VelocityJump, ContactError] | None = None
     for contact in segments.contacts:
+        jump, found = by_contact.get(id(contact)), None
         if contact.kind not in ("wall", "mallet"):
             name = UNEXPLAINED if contact.kind == "unexplained" else "goal post contacts, not compared"
             unusable["other"][name] += 1
-        elif not contact.clean or (jump := by_contact.get(id(contact))) is None:
+        elif not contact.clean or jump is None:
             unusable[contact.kind]["too few frames beside another event"] += 1
         elif contact.kind == "wall":
-            walls.append(predict_wall(jump, values["wall_restitution"], map_error))
+            found = predict_wall(jump, p, map_error, _spin(last, jump, values))
+            walls.append(found)
         else:
             path = paths[contact.where]
-            found = path and predict_mallet(jump, path, values["mallet_restitution"], map_error)
+            found = path and predict_mallet(jump, path, p, map_error, _spin(last, jump, values))
             if found is None:
                 unusable["mallet"]["mallet not seen"] += 1
             else:
                 mallets.append(found)
+        last = (jump, found) if jump and found else None
     return walls, mallets
+
+
+def _spin(last: tuple[VelocityJump, ContactError] | None, jump: VelocityJump, values: dict[str, float]) -> float:
+    """The spin [rad/s] with which the puck comes to a contact: what the `last` one, of the same launch, left of it by
+    its prediction; none where that is not known."""
+    if last is None or last[0].launch != jump.launch:
+        return 0.0
+    return last[1].spin * float(np.exp(-values["spin_decay"] * (jump.t - last[0].t)))

@@ -16,6 +16,7 @@ from sim2real.compare.glides import predict_glide
 from sim2real.compare.map_error import MapError
 from sim2real.compare.predict import compare_segments
 from sim2real.compare.summary import summarize
+from sim2real.diagnose.engine.problem import record_of
 from sim2real.recording.folder import Recording, Stream, read_recording, write_recording
 from sim2real.recording.table_parameters import parameters
 from sim2real.segmentation.segments import segment
@@ -82,7 +83,7 @@ def test_glides_of_another_law_show_its_distance():
     recording = glides(0.4, 0.125, noise=0.0002)
     segments = segment(recording)
     for one in segments.glides:
-        off = predict_glide(one, Noise(0.0002, 0.0), MapError(SIZE, 0.0), 0.125, 0.125)
+        off = predict_glide(one, Noise(0.0002, 0.0), MapError(SIZE, 0.0), record_of({}))
         ahead = off.t[-1] - off.t[off.fitted - 1]
         # 0.275 m/s^2 more: the start's fit, centred in its part, splits the parabola as least squares does
         part = off.t[off.fitted - 1]
