@@ -10,7 +10,6 @@ effects.toml, so give both files if there are some.
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
 
 
@@ -30,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Diagnose. Returns 0 for every verdict; raises ValueError or OSError, in one line, if that is impossible."""
     from puckpilot_env.files.whole_file import check_folder
-    from sim2real.diagnose.output.files import as_dict, write
+    from sim2real.diagnose.output.files import write
     from sim2real.diagnose.pipeline import diagnose
     from sim2real.diagnose.result.context import ReportContext
     from sim2real.progress_bar import progress_bar
@@ -49,7 +48,7 @@ def run(args: argparse.Namespace) -> int:
         progress("writing", 0.95)
         written = write(diagnosis, args.out, context)
     if args.json:
-        print(json.dumps(as_dict(diagnosis), indent=1, allow_nan=False))
+        print((args.out / "diagnosis.json").read_text(encoding="utf-8"), end="")
     else:
         from sim2real.diagnose.report.summary import summary
 

@@ -103,10 +103,12 @@ def write(diagnosis: Diagnosis, folder: Path, context: ReportContext = PLAIN) ->
     """Write all files into `folder`, each atomically, and return their paths; diagnosis.json comes last, so that where
     it is, the others are, too."""
     from sim2real.diagnose.report.page import page
+    from sim2real.diagnose.report.summary import what_was_found
 
     folder.mkdir(parents=True, exist_ok=True)
+    content = as_dict(diagnosis) | {"summary": what_was_found(diagnosis, context)}
     texts = {
-        "diagnosis.json": json.dumps(as_dict(diagnosis), indent=1, allow_nan=False) + "\n",
+        "diagnosis.json": json.dumps(content, indent=1, allow_nan=False) + "\n",
         "report.html": page(diagnosis, context),
         "effects.toml": effects_toml(diagnosis),
         "draws.toml": draws_toml(diagnosis, context),

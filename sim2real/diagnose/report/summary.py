@@ -77,7 +77,12 @@ def _name(one: Finding) -> str:
 
 
 def summary(diagnosis: Diagnosis, written: Sequence[Path], context: ReportContext = PLAIN) -> list[str]:
-    """Return the lines: verdict, findings, holdout residuals, next recording, notes, baseline, `written` files.
+    """Return the lines of `what_was_found`, and one of the `written` files."""
+    return [*what_was_found(diagnosis, context), "wrote " + ", ".join(map(str, written))]
+
+
+def what_was_found(diagnosis: Diagnosis, context: ReportContext = PLAIN) -> list[str]:
+    """Return the lines: verdict, findings, holdout residuals, next recording, notes, baseline.
 
     Baseline parameters are shown as far as MOST_LINES allow.
     """
@@ -93,7 +98,7 @@ def summary(diagnosis: Diagnosis, written: Sequence[Path], context: ReportContex
         fitted = fitted[: max(room - 1, 0)]
         others = [each.regime for each in diagnosis.regime_results if each.baseline][len(fitted) :]
         fitted.append(f"  refitted parameters of {', '.join(others)}: see report.html")
-    return [*lines, *fitted, "wrote " + ", ".join(map(str, written))]
+    return [*lines, *fitted]
 
 
 def _numbers(one: Finding) -> str:
