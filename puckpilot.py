@@ -43,6 +43,7 @@ COMMANDS = {
     "bench diagnosis": ("sim2real.commands.bench_diagnosis", "what a diagnosis costs here, by the length of the play"),
     "bench table": ("sim2real.commands.bench_table", "how fast this machine reacts at a table, in real time"),
     "bench twin": ("sim2real.commands.bench_twin", "how fast the twin is here, and whether it plays as the simulator"),
+    "bench arena": ("sim2real.commands.bench_arena", "how quick the arena is here, behind bad lines and under load"),
     "play": ("sim2real.commands.play", "a player at the robot's seat of a table: firmware, camera and all, on a twin"),
     "table check": ("sim2real.commands.table_check", "bring a table up, step by step: what works, and what to mend"),
     "table drill": ("sim2real.commands.table_drill", "faults at random moments on a twin: does the mallet stop?"),

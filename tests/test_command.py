@@ -50,13 +50,14 @@ OPTIONS = {
         "--json",
     ],
     "export": ["--out"],
-    "arena": ["--seat", "--host", "--port", "--out", "--name", "--seed"],
+    "arena": ["--seat", "--host", "--port", "--out", "--name", "--seed", "--concealed", "--diagnosis"],
     "benchmark run": ["--list", "--tasks", "--seeds", "--steps", "--out", "--workers", "--cluster", "--json"],
     "benchmark report": ["--json"],
     "benchmark enter": ["--name", "--trained", "--tasks", "--out"],
     "benchmark verify": ["--games", "--seed", "--seconds", "--memory", "--json"],
     "bench": ["--tables", "--threads", "--seconds", "--against", "--dicts", "--startup", "--json"],
     "bench diagnosis": ["--seconds", "--mechanism", "--seed", "--json"],
+    "bench arena": ["--leaps", "--seconds", "--seed", "--json"],
     "bench table": ["--seconds", "--period", "--json"],
     "bench twin": ["--opponent", "--variant", "--games", "--seconds", "--processes", "--folder", "--seed", "--json"],
     "table check": ["--home", "--example", "--json"],
@@ -74,6 +75,8 @@ OPTIONS = {
         "--record",
         "--seed",
         "--view",
+        "--arena",
+        "--port",
         "--json",
     ],
     "record": [
@@ -200,8 +203,17 @@ def test_a_word_of_several_commands_tells_them(more, code, capsys):
         ),
         (["arena", "goaly"], "puckpilot arena: unknown player 'goaly'; did you mean 'goalie'?"),
         (
-            ["arena", "still", "still", "still"],
-            "puckpilot arena: 3 players are given; expected one to play against, or two to watch",
+            ["arena", "still", "goalie", "still"],
+            "puckpilot arena: players are still, goalie, still; expected each named once where more than two meet",
+        ),
+        (
+            ["play", "still", "--port", "8000"],
+            "puckpilot play: --port is given without --arena, of which it is; give both or none",
+        ),
+        (
+            ["arena", "still", "--diagnosis", "x"],
+            "puckpilot arena: --diagnosis is given without a recording; expected puckpilot arena RECORDING --diagnosis "
+            "DIR",
         ),
         (
             ["bench", "mach-v0"],

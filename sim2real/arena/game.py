@@ -10,21 +10,23 @@ from puckpilot_env.batch.motion import mallet_motion, puck_motion
 from puckpilot_env.game.rules import ENDING_NAMES
 from puckpilot_env.tables import Tables
 from puckpilot_env.variants import find_variant
+from sim2real.arena.concealed import Concealed, draw
 from sim2real.arena.seats import Chair, PersonChair, PlayerChair
 
 VARIANT = "puckpilot/match-v0"
 TICKS = 120  # a second
 PERSON = "person"  # in place of a player's name
+Place = tuple[float, float]  # m
 
 
 @dataclass(frozen=True)
 class View:
-    """What there is to see: `time` [s] of play, `puck` (2,) and `mallets` (2, 2) [m], `score`, seconds `left`, and how
-    the match ended, "" before."""
+    """What there is to see: `time` [s] of it, `puck` and both `mallets` [m], None where one is not known, `score`,
+    seconds of play `left`, and how the match ended, "" before."""
 
     time: float
-    puck: tuple[float, float]
-    mallets: tuple[tuple[float, float], tuple[float, float]]
+    puck: Place | None
+    mallets: tuple[Place | None, Place | None]
     score: tuple[int, int]
     left: float
     ending: str
@@ -33,10 +35,11 @@ class View:
 class Game:
     """A match between two of whom each is a player's name or PERSON."""
 
-    def __init__(self, names: tuple[str, str], seed: int) -> None:
-        """ValueError, in one line, for an unknown player."""
-        variant = find_variant(VARIANT)
-        self.tables = Tables(variant, 1, seed=seed, period=1.0 / TICKS, autoreset=False)
+    def __init__(self, names: tuple[str, str], seed: int, concealed: Concealed | None = None) -> None:
+        """concealed: what is in the table beyond the variant. ValueError, in one line, for an unknown player."""
+        variant, self.concealed = find_variant(VARIANT), concealed
+        parameters = concealed.parameters if concealed else None
+        self.tables = Tables(variant, 1, seed=seed, period=1.0 / TICKS, autoreset=False, parameters=parameters)
         held = round(TICKS * variant.period)
         self.chairs: tuple[Chair, Chair] = (
             _chair(names[0], self.tables, 0, held, seed),
@@ -60,6 +63,8 @@ class Game:
             self._actions[0, k] = chair.action(seen[k], self.ticks)
         self.tables.step(self._actions)
         self.ticks += 1
+        if self.person is not None:
+            self.person.ticked()
         self.over = bool(self.tables.terminated[0] or self.tables.truncated[0])
 
     def view(self) -> View:
@@ -71,6 +76,11 @@ class Game:
         ending = ENDING_NAMES[table["ending"]] if self.over else ""
         one, two = ((mallet[0], mallet[1]) for mallet in mallets)
         return View(self.ticks / TICKS, (x, y), (one, two), score, left, ending)
+
+
+def concealed_game(names: tuple[str, str], seed: int) -> Game:
+    """A match on a table that is drawn by the seed, of `concealed.TABLES`. ValueError as of `Game`."""
+    return Game(names, seed, draw(seed))
 
 
 def _chair(name: str, tables: Tables, seat: int, ticks: int, seed: int) -> Chair:

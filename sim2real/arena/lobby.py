@@ -4,50 +4,81 @@ from __future__ import annotations
 
 import asyncio
 import time
+from collections.abc import Callable
 
-from aiohttp import web
+from aiohttp import WSCloseCode, web
 
 from sim2real.arena.game import PERSON
 from sim2real.arena.recordings.records import Records
 from sim2real.arena.session import Session
+from sim2real.arena.ticking import Lateness
 
 MOST_SESSIONS = 8
-MOST_LISTENERS = 64
-TAKEN_OVER = 4001  # code with which a page is let go whose game another one has; it does not come back
+MOST_WATCHERS = 64
+# Codes with which a page is let go that does not come back: another page has its game, or it ended
+TAKEN_OVER, GONE = 4001, 4002
+Begin = Callable[[int, Lateness], Session]  # with a seed; steps are counted with those of the other games
 KEPT = 30.0  # s that a game waits for its person to come back
 
 
-class FullError(Exception):
-    """There is no room for another."""
+class RefusedError(Exception):
+    """A page cannot get in: the `code` and reason with which it is let go."""
+
+    def __init__(self, code: int, why: str) -> None:
+        super().__init__(why)
+        self.code = code
 
 
 class Lobby:
     """Games of the same two names; where one is a person each page has its own, else all watch one."""
 
-    def __init__(self, names: tuple[str, str], seed: int, records: Records) -> None:
-        self._names, self._seed, self._records = names, seed, records
+    def __init__(self, names: tuple[str, str], seed: int, records: Records, begin: Begin | None = None) -> None:
+        """begin: makes the session of a game with a seed; by default, one of the names."""
+        self._names, self._seed = names, seed
+        self._begin = begin or (lambda seed, lateness: Session(names, seed, records, lateness))
         self._sessions: dict[str, Session] = {}
+        self._ending: set[asyncio.Task[None]] = set()
+        self.lateness = Lateness()  # of all games
 
-    async def join(self, socket: web.WebSocketResponse, transport: asyncio.Transport, known: str) -> None:
-        """Let a page into its game, the one that it knows by its id or another, until it is gone. FullError where there
-        are too many. A person's game that is known by its id is taken over from the page that had it, whose line may be
-        dead."""
-        if sum(len(session.listeners) for session in self._sessions.values()) >= MOST_LISTENERS:
-            raise FullError
-        session = self._session(known)
-        if PERSON in self._names:
-            session.dismiss_all(TAKEN_OVER, "this game goes on in another page")
-        await session.serve(socket, transport)
+    async def join(
+        self, socket: web.WebSocketResponse, transport: asyncio.Transport, known: str, watch: str = ""
+    ) -> None:
+        """Let a page into its game until it is gone: the one that it knows by its id, or another; or one that it
+        watches. RefusedError if that cannot be. A person's game that is known by its id is taken over from the page
+        that had it, whose line may be dead."""
+        self._forget()
+        plays = PERSON in self._names and not watch
+        if not plays and self.watchers >= MOST_WATCHERS:
+            raise RefusedError(WSCloseCode.TRY_AGAIN_LATER, "the arena is full")
+        session = self._watched(watch) if watch else self._session(known)
+        if plays:
+            session.free_seat(TAKEN_OVER, "this game goes on in another page")
+        await session.serve(socket, transport, plays)
+
+    @property
+    def games(self) -> int:
+        """How many there are."""
+        return len(self._sessions)
+
+    @property
+    def watchers(self) -> int:
+        """How many pages look on, and do not play."""
+        return sum(session.watchers for session in self._sessions.values())
+
+    def _watched(self, name: str) -> Session:
+        for session in self._sessions.values():
+            if session.watched_as == name:
+                return session
+        raise RefusedError(GONE, "there is no such game any more")
 
     def _session(self, known: str) -> Session:
-        self._forget()
         for session in self._sessions.values():
             if session.id == known or PERSON not in self._names:
                 return session
         if len(self._sessions) >= MOST_SESSIONS:
-            raise FullError
+            raise RefusedError(WSCloseCode.TRY_AGAIN_LATER, "the arena is full")
         self._seed = (self._seed + 1000) % (1 << 63)
-        session = Session(self._names, self._seed, self._records)
+        session = self._begin(self._seed, self.lateness)
         self._sessions[session.id] = session
         return session
 
@@ -55,10 +86,19 @@ class Lobby:
         """End games whose person did not come back."""
         now = time.monotonic()
         for session in list(self._sessions.values()):
-            if session.failed or (not session.listeners and now - session.left_at > KEPT):
-                self._sessions.pop(session.id).close()
+            if session.failed or (not session.is_seen and now - session.left_at > KEPT):
+                session.dismiss(session.listeners, GONE, "the game ended")
+                self._end(session)
 
-    def close(self) -> None:
+    def _end(self, session: Session) -> None:
+        """End a game beside the others."""
+        del self._sessions[session.id]
+        task = asyncio.create_task(session.close())
+        self._ending.add(task)
+        task.add_done_callback(self._ending.discard)
+
+    async def close(self) -> None:
         """End all games."""
-        while self._sessions:
-            self._sessions.popitem()[1].close()
+        for session in list(self._sessions.values()):
+            self._end(session)
+        await asyncio.gather(*self._ending)

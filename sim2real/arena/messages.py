@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from sim2real.arena.game import View
+import numpy as np
+
+from sim2real.arena.game import Place, View
 
 MOST_CHARACTERS = 256  # of what a page says
 FARTHEST = 10.0  # m that a pointer may be from the table's corner
@@ -67,14 +70,21 @@ def encode(kind: str, **content: Any) -> str:
     return json.dumps({"kind": kind, **content}, separators=(",", ":"), allow_nan=False)
 
 
-def state(view: View, aim: float) -> str:
-    """What there is to see; aim: the stamp of the newest aim that was acted on, in the page's clock [ms]."""
+def welcome(p: np.void, names: Sequence[str], again: bool, **own: Any) -> str:
+    """What a page needs to know before the first state of a match: the table's sizes, of its parameters, who plays, and
+    whether it may ask for another match; own: what it knows besides who plays, and not who looks on."""
+    table = {name: float(p[name]) for name in ("length", "width", "goal_width", "puck_radius", "mallet_radius")}
+    return encode("welcome", names=list(names), table=table, again=again, **{"seat": None, **own})
+
+
+def state(view: View, followed: Mapping[str, Any]) -> str:
+    """What there is to see; followed: of a person's mallet, see `seats.PersonChair.followed`, or nothing."""
     return encode(
         "state", time=round(view.time, 4), puck=_rounded(view.puck), mallets=[_rounded(one) for one in view.mallets],
-        score=view.score, left=round(view.left, 1), ending=view.ending, aim=aim,
+        score=view.score, left=round(view.left, 1), ending=view.ending, **followed,
     )  # fmt: skip
 
 
-def _rounded(place: tuple[float, float]) -> list[float]:
+def _rounded(place: Place | None) -> list[float] | None:
     """To a tenth of a millimetre."""
-    return [round(place[0], 4), round(place[1], 4)]
+    return None if place is None else [round(place[0], 4), round(place[1], 4)]

@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+import math
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from baselines import make_player
 from baselines.player import Seat
+from puckpilot_env.batch.motion import mallet_motion
+from puckpilot_env.game import mirror
+from puckpilot_env.physics.gantry.plan import SMALLEST_VOLTAGE
 from puckpilot_env.tables import Tables
+
+JUMP = 0.06  # m in a 120th of a second, twice what the gantry can: a mallet that went farther was placed anew
+CONSTANTS = ("slow_rate", "fast_rate", "rest_gain", "slow_gain", "fast_gain")  # of an axis
+MODES = ("rest", "slow", "fast")
 
 
 class Chair(Protocol):
@@ -43,17 +51,58 @@ class PersonChair:
     """A person's pointer, in the table's frame; the mallet goes there as fast as the gantry may."""
 
     def __init__(self, name: str, tables: Tables, seat: int) -> None:
-        self.name, self._seat = name, seat
+        """`law`: by what a page moves the mallet; see `_law`."""
+        self.name, self._seat, self._tables = name, seat, tables
         self._low, self._high = tables.action_bounds
         self._size = np.array([tables.params["length"][0], tables.params["width"][0]])
         self._target = np.array([0.25 * self._size[0], 0.5 * self._size[1]])
+        self._stamp, self._acted, self._age = 0.0, 0.0, 0  # of the aim; of that acted on, and for how many ticks
+        self._place, self._placed = self._now(), 0
+        self.law = _law(tables, seat)
 
-    def aim(self, x: float, y: float) -> None:
-        """Where the pointer is [m]."""
+    def aim(self, x: float, y: float, stamp: float = 0.0) -> None:
+        """Where the pointer is [m], and was at `stamp`, by the page's clock [ms]."""
         place = np.array([x, y])
-        self._target = place if self._seat == 0 else self._size - place
+        self._target, self._stamp = place if self._seat == 0 else self._size - place, stamp
+
+    def forget_stamp(self) -> None:
+        """Another page comes, whose clock is another one."""
+        self._stamp = self._acted = 0.0
 
     def action(self, observation: NDArray[np.float32], tick: int) -> NDArray[np.float32]:
         """See `Chair`."""
+        if self._stamp != self._acted:
+            self._acted, self._age = self._stamp, 0
         action = np.array([*self._target, *self._high[2:]], np.float32)
         return np.clip(action, self._low, self._high)
+
+    def ticked(self) -> None:
+        """The action of `action` was played."""
+        self._age += 1
+        before, self._place = self._place, self._now()
+        self._placed += math.dist(before, self._place) > JUMP
+
+    def _now(self) -> tuple[float, float]:
+        x, y = mallet_motion(self._tables.states[0])[self._seat, :2].tolist()
+        return x, y
+
+    def followed(self) -> dict[str, Any]:
+        """What a page needs to correct the mallet that it moves by itself: the stamp of the aim that was acted on, for
+        how many ticks, the modes [m] of x and y, and how often the mallet was placed anew."""
+        axes = self._tables.states[0]["mallets"][self._seat]
+        own = [[round(float(axes[axis][mode]), 6) for mode in MODES] for axis in "xy"]
+        return {"aim": self._acted, "age": self._age, "own": own, "placed": self._placed}
+
+
+def _law(tables: Tables, seat: int) -> dict[str, Any]:
+    """By what a page moves the mallet: constants of x and y, volts, and the least and greatest targets [m]."""
+    p, axes = tables.params[0], tables.states[0]["mallets"][seat]
+    constants = [{name: float(axes[axis][name]) for name in CONSTANTS} for axis in "xy"]
+    limit = 2.0 * (float(p["max_voltage"]) - SMALLEST_VOLTAGE)
+    margins = [2.0 * one["fast_gain"] * limit for one in constants]  # as in `plan.settle_voltages`
+    area = mirror.area(seat, p)
+    return {
+        "axes": constants, "volts": min(float(tables.action_bounds[1][2]), 0.5 * limit),
+        "low": [float(area[2 * a]) + margins[a] for a in range(2)],
+        "high": [float(area[2 * a + 1]) - margins[a] for a in range(2)],
+    }  # fmt: skip

@@ -1,4 +1,4 @@
-"""A game of the arena with those who look on: what they say goes into it, and what there is to see goes to them."""
+"""A game of the arena with those who look on: what a person says goes into it, and what there is to see goes to all."""
 
 from __future__ import annotations
 
@@ -6,92 +6,95 @@ import asyncio
 import secrets
 import sys
 import time
-from collections import deque
-from collections.abc import Coroutine
+from collections.abc import Callable, Coroutine
 
-from aiohttp import WSCloseCode, WSMsgType, web
+from aiohttp import WSCloseCode, web
 
 from sim2real.arena import messages
-from sim2real.arena.game import PERSON, TICKS, Game
+from sim2real.arena.game import PERSON, TICKS, Game, View
+from sim2real.arena.listener import Listener
 from sim2real.arena.recordings.game_recorder import GameRecorder
 from sim2real.arena.recordings.records import Records
-from sim2real.arena.ticking import Ticking
+from sim2real.arena.ticking import Lateness, Ticking
 
 STATE_EVERY = 2  # ticks between two states, of which 60 a second are sent
-MOST_SAID = 240  # messages a second that a page may send
-STALE = 5.0  # s that one message may take to go out
-
-
-class Listener:
-    """A page that looks on: it is sent the newest state, and skips those for which it is too slow."""
-
-    def __init__(self, socket: web.WebSocketResponse, transport: asyncio.Transport) -> None:
-        self.socket, self.transport = socket, transport
-        self._newest, self._due, self._first = "", asyncio.Event(), deque[str](maxlen=8)
-
-    def show(self, state: str) -> None:
-        """A newer state takes the place of one that was not sent."""
-        self._newest = state
-        self._due.set()
-
-    def tell(self, message: str) -> None:
-        """What is sent before the next state."""
-        self._first.append(message)
-        self._due.set()
-
-    async def send(self) -> None:
-        """Send what there is until the page is gone; one that takes nothing is let go."""
-        try:
-            while not self.socket.closed:
-                await self._due.wait()
-                self._due.clear()
-                waiting = [self._first.popleft() for _ in range(len(self._first))]
-                newest, self._newest = self._newest, ""
-                for message in (*waiting, *filter(None, [newest])):
-                    async with asyncio.timeout(STALE):
-                        await self.socket.send_str(message)
-        except (ConnectionError, TimeoutError):
-            self.transport.abort()
-
-    async def dismiss(self, code: int, why: str) -> None:
-        """Close the line, without listening to what is still being said."""
-        self.transport.pause_reading()
-        await self.socket.close(code=code, message=why.encode()[:120])
-        self.transport.abort()
+MakeGame = Callable[[tuple[str, str], int], Game]  # of both names and a seed
 
 
 class Session:
-    """A game, its clock and its listeners; `id` is known to those who joined, and lets them come back."""
+    """A game, its clock and its listeners; `id` is known to the page that plays, and lets it come back; `watched_as` to
+    those who look on."""
 
-    def __init__(self, names: tuple[str, str], seed: int, records: Records) -> None:
+    again = True  # whether a page may ask for another match
+
+    def __init__(
+        self,
+        names: tuple[str, str],
+        seed: int,
+        records: Records,
+        lateness: Lateness | None = None,
+        make_game: MakeGame = Game,
+    ) -> None:
         """ValueError, in one line, for an unknown player."""
-        self.id, self.names, self._seed, self._records = secrets.token_urlsafe(9), names, seed, records
-        self.game = Game(names, seed)
+        self.id, self.watched_as = secrets.token_urlsafe(9), secrets.token_urlsafe(6)
+        self.names, self._seed, self._records, self._make_game = names, seed, records, make_game
+        self.game = make_game(names, seed)
         self.listeners: set[Listener] = set()
-        self.left_at = time.monotonic()  # when the last listener went
+        self._player: Listener | None = None  # that sits at the person's seat
+        self.left_at = time.monotonic()  # when the last listener went, or who plays
         self.failed = False  # whether it stopped because a player failed
-        self._recorder: GameRecorder | None = None  # once there is something to record
+        self._recorder: GameRecorder | None = None
+        self._looked = False  # whether there is a recorder, or room for none
         self._recorded = ""  # the name of the recording, once it is complete
-        self._aim = 0.0
-        self.ticking = Ticking(self._tick, TICKS)
-        self._task = asyncio.create_task(self.ticking.run())
+        self._task = asyncio.create_task(Ticking(self._tick, TICKS, lateness).run())
         self._task.add_done_callback(self._stopped)
         self._beside: set[asyncio.Task[None]] = set()
 
+    @property
+    def is_seen(self) -> bool:
+        """Whether who plays is there, or who looks on where two players play; else the game stands still."""
+        return self._player is not None if PERSON in self.names else bool(self.listeners)
+
+    @property
+    def watchers(self) -> int:
+        """How many pages look on, and do not play."""
+        return len(self.listeners - {self._player})
+
     def _tick(self) -> None:
-        if not self.listeners or self.game.over:
-            return  # a game that nobody sees stands still
-        if self._recorder is None:
-            self._recorder = self._records.begin(self.game, self._seed)
+        if not self.is_seen or self.game.over:
+            return
+        if not self._looked:
+            self._begin_recording()
         self.game.tick()
         view = self.game.view()
-        self._recorder.add(view)
+        self._record(view)
         if self.game.ticks % STATE_EVERY == 0 or self.game.over:
-            state = messages.state(view, self._aim)
+            state = self._state()
             for listener in self.listeners:
                 listener.show(state)
-        if self.game.over:
+        if self.game.over and self._recorder is not None:
             self._do(self._keep(self._recorder, self.game, self._seed))
+
+    def _state(self) -> str:
+        person = self.game.person
+        return messages.state(self.game.view(), {} if person is None else person.followed())
+
+    def _begin_recording(self) -> None:
+        """Begin the recording, if there is room for it."""
+        self._looked = True
+        try:
+            self._recorder = self._records.begin(self.game, self._seed)
+        except (OSError, ValueError) as error:
+            _lost(error)
+
+    def _record(self, view: View) -> None:
+        """Record what there is to see, as long as that can be: the game goes on in any case."""
+        try:
+            if self._recorder is not None:
+                self._recorder.add(view)
+        except (OSError, ValueError) as error:
+            self._recorder = None
+            _lost(error)
 
     async def _keep(self, recorder: GameRecorder, game: Game, seed: int) -> None:
         """Complete the recording of a match that is over, and say where it is."""
@@ -116,72 +119,78 @@ class Session:
             return
         print(f"puckpilot arena: a game stopped, {type(error).__name__}: {error}", file=sys.stderr, flush=True)
         self.failed = True
-        self.dismiss_all(WSCloseCode.INTERNAL_ERROR, "a player failed")
+        self.dismiss(self.listeners, WSCloseCode.INTERNAL_ERROR, "a player failed")
 
-    def dismiss_all(self, code: int, why: str) -> None:
-        """Let all pages go."""
-        for listener in self.listeners:
+    def dismiss(self, listeners: set[Listener], code: int, why: str) -> None:
+        """Let pages go."""
+        for listener in listeners:
             self._do(listener.dismiss(code, why))
 
-    async def serve(self, socket: web.WebSocketResponse, transport: asyncio.Transport) -> None:
-        """Let a page look on, and play if there is a person's seat, until it is gone."""
+    def free_seat(self, code: int, why: str) -> None:
+        """Let the page go that plays, if one does: another one comes."""
+        if self._player is not None:
+            self.dismiss({self._player}, code, why)
+        self._player = None
+        if self.game.person is not None:
+            self.game.person.forget_stamp()
+
+    async def serve(self, socket: web.WebSocketResponse, transport: asyncio.Transport, plays: bool) -> None:
+        """Let a page look on, and play at the person's seat if it `plays`, until it is gone."""
         listener = Listener(socket, transport)
-        listener.tell(self._welcome())
-        if self._recorded:
-            listener.tell(messages.encode("recorded", name=self._recorded))
-        listener.show(messages.state(self.game.view(), self._aim))
         self.listeners.add(listener)
+        if plays:
+            self._player = listener
+        for message in self._greeting(listener):
+            listener.tell(message)
+        listener.show(self._state())
         sender = asyncio.create_task(listener.send())
         try:
-            await self._hear(listener)
+            await listener.hear(lambda said: self._act_on(said, listener))
         finally:
             sender.cancel()
+            was_seen = self.is_seen
             self.listeners.discard(listener)
-            self.left_at = time.monotonic()
-
-    async def _hear(self, listener: Listener) -> None:
-        second, said = 0, 0
-        async for message in listener.socket:
-            now = int(time.monotonic())
-            second, said = now, said + 1 if now == second else 1
-            if said > MOST_SAID:
-                return await listener.dismiss(WSCloseCode.POLICY_VIOLATION, f"over {MOST_SAID} messages in a second")
-            if message.type == WSMsgType.PING:
-                await listener.socket.pong(message.data)
-            elif message.type == WSMsgType.TEXT:
-                try:
-                    self._act_on(messages.parse(message.data), listener)
-                except ValueError as error:
-                    return await listener.dismiss(WSCloseCode.POLICY_VIOLATION, str(error))
-            elif message.type != WSMsgType.PONG:
-                return await listener.dismiss(WSCloseCode.UNSUPPORTED_DATA, "a message that is no text")
+            if listener is self._player:
+                self._player = None
+            if was_seen and not self.is_seen:
+                self.left_at = time.monotonic()
 
     def _act_on(self, said: messages.Said, listener: Listener) -> None:
         if isinstance(said, messages.Ping):
             listener.tell(messages.encode("pong", sent=said.sent))
+        elif PERSON in self.names and listener is not self._player:
+            return  # who looks on does not play
         elif isinstance(said, messages.Aim) and self.game.person is not None:
-            self.game.person.aim(said.x, said.y)
-            self._aim = said.sent
-        elif isinstance(said, messages.Again) and self.game.over:
-            self._seed += 1
-            self.game, self._recorder, self._recorded = Game(self.names, self._seed), None, ""
-            for each in self.listeners:
-                each.tell(self._welcome())
+            self.game.person.aim(said.x, said.y, said.sent)
+        elif isinstance(said, messages.Again) and self.game.over and self.again:
+            self._begin(self.names, self._seed + 1)
 
-    def _welcome(self) -> str:
-        p = self.game.tables.params[0]
-        sizes = ("length", "width", "goal_width", "puck_radius", "mallet_radius")
-        return messages.encode(
-            "welcome", id=self.id, names=list(self.names), table={name: float(p[name]) for name in sizes},
-            seat=self.names.index(PERSON) if PERSON in self.names else None,
-        )  # fmt: skip
+    def _begin(self, names: tuple[str, str], seed: int) -> None:
+        """Begin another match."""
+        self.game.tables.close()
+        self.names, self._seed = names, seed
+        self.game, self._recorder = self._make_game(names, seed), None
+        self._looked, self._recorded = False, ""
+        for each in self.listeners:
+            each.tell(self._welcome(each))
 
-    def close(self) -> None:
+    def _greeting(self, listener: Listener) -> list[str]:
+        """What a page that comes is sent before the first state."""
+        recorded = [messages.encode("recorded", name=self._recorded)] if self._recorded else []
+        return [self._welcome(listener), *recorded]
+
+    def _welcome(self, listener: Listener) -> str:
+        own, person = {}, self.game.person
+        if listener is self._player and person is not None:
+            own = {"seat": self.names.index(PERSON), "id": self.id, "watch": self.watched_as, "law": person.law}
+        return messages.welcome(self.game.tables.params[0], self.names, self.again, **own)
+
+    async def close(self) -> None:
         """End the game; what was played of it is a recording."""
         self._task.cancel()
         try:
             if self._recorder is not None and not self.game.over:
-                self._recorder.finish()
+                await asyncio.to_thread(self._records.leave, self._recorder)
         except (OSError, ValueError) as error:
             _lost(error)
         self.game.tables.close()

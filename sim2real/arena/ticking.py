@@ -4,15 +4,35 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
+from dataclasses import dataclass
 
 MOST_BEHIND = 0.25  # s; what lags farther behind is not made up for, so that a machine that slept does not race
+
+
+@dataclass
+class Lateness:
+    """How far steps were behind their deadlines: of `steps`, `late` by over a period, the `latest` by so much [s];
+    `lost` [s] was not made up for."""
+
+    steps: int = 0
+    late: int = 0
+    latest: float = 0.0
+    lost: float = 0.0
+
+    def add(self, behind: float, period: float) -> None:
+        """Count a step that is `behind` its deadline [s]."""
+        self.steps += 1
+        self.late += behind > period
+        self.latest = max(self.latest, behind)
 
 
 class Ticking:
     """Calls `step` so many times a second until it is stopped."""
 
-    def __init__(self, step: Callable[[], None], rate: float) -> None:
+    def __init__(self, step: Callable[[], None], rate: float, lateness: Lateness | None = None) -> None:
+        """lateness: where steps are counted, with those of others."""
         self._step, self._period = step, 1.0 / rate
+        self.lateness = lateness or Lateness()
 
     async def run(self) -> None:
         """Go on until cancelled."""
@@ -20,8 +40,10 @@ class Ticking:
         due = loop.time()
         while True:
             behind = loop.time() - due
+            self.lateness.add(behind, self._period)
             if behind > MOST_BEHIND:
                 due += behind
+                self.lateness.lost += behind
             self._step()
             due += self._period
             await asyncio.sleep(max(due - loop.time(), 0.0))

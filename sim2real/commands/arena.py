@@ -1,10 +1,12 @@
-"""Play air hockey in a browser, watch two players, or look at a recording beside the simulator.
+"""Play air hockey in a browser, watch players, or look at a recording beside the simulator.
 
-With one player you play against it, with mouse, finger or arrow keys; your mallet has the limits of the gantry. With
-two they play, and you watch. Each game becomes a recording in --out, which its page can replay; puckpilot tournament
---played rates you. With the folder of a recording, of any table, you see it beside the simulator's prediction. The
-address that is printed holds a token, without which nobody gets in; the server listens on this machine alone unless
---host says otherwise.
+With one player you play against it, with mouse, finger or arrow keys; your mallet has the limits of the gantry, and
+friends can watch by a link of your page. With two they play, and you watch. With more they meet in turn, every two from
+both seats, and the page shows ratings. Each game becomes a recording in --out, which its page can replay; puckpilot
+tournament --played rates you. With the folder of a recording, of any table, you see it beside the simulator's
+prediction; its page diagnoses it, and shows the prediction with what was found. With --concealed the table has an
+effect for you to guess. The address that is printed holds a token, without which nobody gets in; the server listens on
+this machine alone unless --host says otherwise.
 """
 
 from __future__ import annotations
@@ -12,6 +14,7 @@ from __future__ import annotations
 import argparse
 import os
 import re
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 from urllib.parse import quote
@@ -19,15 +22,19 @@ from urllib.parse import quote
 if TYPE_CHECKING:
     from aiohttp import web
 
+    from sim2real.arena.lobby import Begin
+    from sim2real.arena.recordings.records import Records
+
 PORT = 8420
 OPPONENT = "policy:champion"
+MOST_PLAYERS = 16
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
     parser.add_argument(
         "players", nargs="*", metavar="PLAYER",
-        help="one to play against (policy:champion), or two; or the folder of a recording",
+        help="one to play against (policy:champion), or those to watch; or the folder of a recording",
     )  # fmt: skip
     parser.add_argument("--seat", type=int, choices=(0, 1), default=0, help="yours (0, which is drawn at the left)")
     parser.add_argument("--host", default="127.0.0.1", metavar="HOST", help="to listen on (127.0.0.1)")
@@ -35,6 +42,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", type=Path, default=Path("out/arena"), metavar="DIR", help="for recordings (out/arena)")
     parser.add_argument("--name", default="guest", metavar="NAME", help="yours in records and ratings (guest)")
     parser.add_argument("--seed", type=int, default=0, metavar="SEED", help="of the games (0)")
+    parser.add_argument(
+        "--concealed", action="store_true",
+        help="play on tables with an effect that is drawn by --seed, and shown once the recording is diagnosed",
+    )  # fmt: skip
+    parser.add_argument(
+        "--diagnosis", type=Path, metavar="DIR", help="of the recording, as puckpilot diagnose --out DIR wrote it"
+    )
 
 
 def run(args: argparse.Namespace) -> NoReturn:
@@ -52,11 +66,15 @@ def run(args: argparse.Namespace) -> NoReturn:
     if not re.fullmatch(r"[\w-]{1,30}", args.name):
         raise ValueError(f"--name is {args.name!r}; expected up to 30 letters, digits, _ and -")
     recordings, names = _recordings(args.players), (PERSON, OPPONENT)
+    diagnoses = _diagnoses(args.diagnosis, recordings)
+    if recordings and args.concealed:
+        raise ValueError("--concealed is given with a recording; expected a player to play against")
     if not recordings:
         names = _seated(args.players or [OPPONENT], args.seat)
-        Game(names, seed_number(args.seed)).tick()  # compiles before anyone waits for it
+        for one in {names, *pairwise(args.players)}:
+            Game(one, seed_number(args.seed)).tick()  # compiles before anyone waits for it
     token, records = secrets.token_urlsafe(12), Records(args.out, recordings, args.name)
-    app = make_app(Lobby(names, args.seed, records), records, token)
+    app = make_app(Lobby(names, args.seed, records, _begin(args, names, records)), records, token, diagnoses)
     page = f"replay?name={quote(recordings[0].resolve().name)}&token={token}" if recordings else f"?token={token}"
     raise KeyboardInterrupt(_serve(app, args.host, args.port, page))
 
@@ -74,18 +92,53 @@ def _recordings(given: list[str]) -> list[Path]:
     return found
 
 
+def _diagnoses(folder: Path | None, recordings: list[Path]) -> dict[str, Path]:
+    """The diagnosis that is given, by the name of its recording. ValueError, in one line, if it cannot be shown."""
+    from sim2real.arena.recordings.found import read_diagnosis
+
+    if folder is None:
+        return {}
+    if not recordings:
+        raise ValueError("--diagnosis is given without a recording; expected puckpilot arena RECORDING --diagnosis DIR")
+    read_diagnosis(folder)
+    return {recordings[0].resolve().name: folder}
+
+
 def _seated(players: list[str], seat: int) -> tuple[str, str]:
-    """Who plays: both players, or a person at the `seat` and one player. ValueError, in one line, if one is unknown."""
+    """Who plays first: two players, or a person at the `seat` and one player. ValueError, in one line, for an unknown
+    one, and for more that cannot meet."""
     from baselines import find_player
     from sim2real.arena.game import PERSON
 
-    if len(players) > 2:
-        raise ValueError(f"{len(players)} players are given; expected one to play against, or two to watch")
+    if len(players) > MOST_PLAYERS:
+        raise ValueError(f"{len(players)} players are given; expected {MOST_PLAYERS} at most")
     for name in players:
         find_player(name)
-    if len(players) == 2:
+    if len(players) > 2 and len(set(players)) < len(players):
+        raise ValueError(f"players are {', '.join(players)}; expected each named once where more than two meet")
+    if len(players) >= 2:
         return players[0], players[1]
     return (PERSON, players[0]) if seat == 0 else (players[0], PERSON)
+
+
+def _begin(args: argparse.Namespace, names: tuple[str, str], records: Records) -> Begin:
+    """What makes the session of a game; of more than two players one that goes on from match to match, to which those
+    in the folder of `records` count. ValueError, in one line, if its file of them is none."""
+    from baselines.matches.played_games import read_games
+    from sim2real.arena.game import Game, concealed_game
+    from sim2real.arena.recordings.records import GAMES
+    from sim2real.arena.session import Session
+    from sim2real.arena.tournament.standings import among
+    from sim2real.arena.tournament.tour import Tour
+
+    if len(args.players) <= 2:
+        make_game = concealed_game if args.concealed else Game
+        return lambda seed, lateness: Session(names, seed, records, lateness, make_game)
+    if args.concealed:
+        raise ValueError(f"--concealed is given with {len(args.players)} players; expected one to play against, or two")
+    file = records.folder / GAMES
+    games = among(args.players, read_games(file)) if file.exists() else []
+    return lambda _, lateness: Tour(args.players, games, args.seed, records, lateness)
 
 
 def _serve(app: web.Application, host: str, port: int, page: str) -> int:

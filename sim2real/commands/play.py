@@ -6,7 +6,8 @@
   and what to do are said on the terminal. Any doubt stops the mallet; Enter clears it, Ctrl-C ends.
 - `replay`, a recording: the player sees what was seen, and its plans go nowhere.
 
-Goals and fouls are printed as they happen, results, late decisions and what the line did at the end."""
+Goals and fouls are printed as they happen, results, late decisions and what the line did at the end. With --arena an
+address is printed, where browsers watch what the robot's side knows as it plays; a twin plays in real time then."""
 
 from __future__ import annotations
 
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from sim2real.table.game.robot_seat import RobotSeat
 
 INTERCEPTOR = "interceptor"
+PORT = 8420
 OTHERS = {"table": "person", "replay": "recording"}  # who has the other seat, where that is not chosen
 
 
@@ -50,6 +52,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--seed", type=int, default=0, help="of serves, noise and players (default 0)")
     parser.add_argument("--view", action="store_true", help="show what is seen, planned and late while it plays")
+    parser.add_argument("--arena", action="store_true", help="let browsers watch; a twin plays in real time then")
+    parser.add_argument("--port", type=int, metavar="PORT", help=f"of --arena ({PORT}); 0: any that is free")
     parser.add_argument("--json", action="store_true", help="print the results as JSON alone")
 
 
@@ -61,17 +65,20 @@ def run(args: argparse.Namespace) -> int:
     whole_number(args.games, "--games", 1, 1000)
     if args.seconds is not None and not args.seconds > 0.0:
         raise ValueError(f"--seconds is {args.seconds:g}; expected more than 0")
+    if args.port is not None and not args.arena:
+        raise ValueError("--port is given without --arena, of which it is; give both or none")
     _refuse_record(args)
     env, other, logs = seat(args), OTHERS.get(args.backend) or args.opponent or INTERCEPTOR, []
     try:
-        for game in range(args.games):
-            with _recorded(args, env, game), _reports(args) as (report, show):
-                seed = seed_number(args.seed) + game
-                logs.append(play_game(env, args.player, seed, args.seconds, report, _may_clear(args), show))
-            if not args.json:
-                print("\n".join(_of_game(args, game, logs[-1], other)))
-            if logs[-1].interrupted or logs[-1].fault:
-                break
+        with _watched(args, env, other):
+            for game in range(args.games):
+                with _recorded(args, env, game), _reports(args) as (report, show):
+                    seed = seed_number(args.seed) + game
+                    logs.append(play_game(env, args.player, seed, args.seconds, report, _may_clear(args), show))
+                if not args.json:
+                    print("\n".join(_of_game(args, game, logs[-1], other)))
+                if logs[-1].interrupted or logs[-1].fault:
+                    break
     finally:
         env.close()
     result = _result(args, env.tables.variant.id, other, logs)
@@ -126,6 +133,21 @@ def _refuse_record(args: argparse.Namespace) -> None:
         if args.backend == "replay":
             raise ValueError("--record is given with --backend replay, where nothing moves; leave one of them")
         refuse_existing(args.record)
+
+
+@contextmanager
+def _watched(args: argparse.Namespace, env: RobotSeat, other: str) -> Iterator[None]:
+    """Lets browsers watch what happens inside, if that was asked for, and prints the address for them."""
+    if not args.arena:
+        yield
+        return
+    from puckpilot_env.options.inputs import whole_number
+    from sim2real.arena.watching.live_view import watched
+
+    port = PORT if args.port is None else whole_number(args.port, "--port", 0, 65535)
+    with watched(env, (args.player, other), port, args.backend != "table") as address:
+        print(f"watch at {address}", file=sys.stderr if args.json else None, flush=True)
+        yield
 
 
 def _recorded(args: argparse.Namespace, env: RobotSeat, game: int) -> AbstractContextManager[object]:

@@ -1,12 +1,14 @@
 // The WebSocket to the server: it comes back by itself, into the same game, and measures the round trip.
 const PING_EVERY = 1000; // ms
-const TAKEN_OVER = 4001; // another page has the game, see lobby.py
+const FINAL = [4001, 4002]; // codes after which there is nothing to come back to, see lobby.py
 const FIRST_WAIT = 250, LONGEST_WAIT = 5000; // ms before it is tried again
 
 export class Link {
   constructor(heard) {
     this.heard = heard;
-    this.token = new URLSearchParams(location.search).get("token") ?? "";
+    const asked = new URLSearchParams(location.search);
+    this.token = asked.get("token") ?? "";
+    this.watch = asked.get("watch"); // the game that is looked on at, if this page does not play
     this.id = sessionStorage.getItem("game") ?? ""; // so that a page that is loaded anew comes back into its game
     this.wait = FIRST_WAIT;
     this.roundTrip = null;
@@ -17,8 +19,7 @@ export class Link {
   open() {
     const address = new URL("game", location.href);
     address.protocol = location.protocol === "https:" ? "wss:" : "ws:";
-    address.searchParams.set("token", this.token);
-    address.searchParams.set("id", this.id);
+    address.search = new URLSearchParams({ token: this.token, ...(this.watch ? { watch: this.watch } : { id: this.id }) });
     this.socket = new WebSocket(address);
     this.socket.onmessage = (event) => this.take(JSON.parse(event.data));
     this.socket.onclose = (event) => this.closed(event);
@@ -30,16 +31,15 @@ export class Link {
       return;
     }
     if (message.kind === "welcome") {
-      this.id = message.id;
-      sessionStorage.setItem("game", this.id);
       this.wait = FIRST_WAIT;
+      if (message.id) sessionStorage.setItem("game", (this.id = message.id));
     }
     this.heard(message);
   }
 
   closed(event) {
     this.roundTrip = null;
-    if (event.code === TAKEN_OVER) {
+    if (FINAL.includes(event.code)) {
       this.heard({ kind: "closed", reason: event.reason });
       return;
     }

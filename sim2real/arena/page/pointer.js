@@ -3,10 +3,11 @@ const KEY_SPEED = 1.2; // m/s
 const KEYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }; // on the screen
 
 export class Pointer {
-  constructor(canvas, drawing) {
+  // aimed: called with a new place and when the hand was there [ms], before the next picture
+  constructor(canvas, drawing, aimed) {
     this.drawing = drawing;
+    this.aimed = aimed;
     this.place = null;
-    this.pointed = null;
     this.down = new Set();
     canvas.addEventListener("pointermove", (event) => this.point(canvas, event));
     canvas.addEventListener("pointerdown", (event) => this.point(canvas, event));
@@ -16,8 +17,10 @@ export class Pointer {
   }
 
   point(canvas, event) {
+    if (!this.drawing.table) return;
     const box = canvas.getBoundingClientRect();
-    this.pointed = [event.clientX - box.left, event.clientY - box.top]; // until the next picture, or there is a table
+    this.place = this.inside(this.drawing.metres(event.clientX - box.left, event.clientY - box.top));
+    this.aimed(this.place, event.timeStamp);
   }
 
   key(event, pressed) {
@@ -27,11 +30,8 @@ export class Pointer {
     else this.down.delete(event.key);
   }
 
-  // Move to where was pointed, or on by the keys pressed for `seconds`; `mallet`: from where, if there is no place yet.
+  // Move on by the keys pressed for `seconds`; `mallet`: from where, if there is no place yet.
   move(seconds, mallet) {
-    if (!this.drawing.table) return;
-    if (this.pointed) this.place = this.inside(this.drawing.metres(...this.pointed));
-    this.pointed = null;
     if (!this.down.size) return;
     const [across, down] = this.drawing.pixel(this.place ?? mallet);
     const step = KEY_SPEED * seconds * this.drawing.scale;

@@ -1,5 +1,6 @@
 // The page of a recording: what was seen, beside what the simulator predicts, with a slider through time.
 import { Chart } from "./chart.js";
+import { Diagnosis } from "./diagnosis.js";
 import { Drawing } from "./drawing.js";
 import { glideAt, placeAt, trail, words } from "./timeline.js";
 
@@ -8,7 +9,7 @@ const STEP = 1 / 120; // s that an arrow key moves
 const part = (id) => document.getElementById(id);
 const drawing = new Drawing(part("table"));
 const chart = new Chart(part("chart"));
-let recording = null, time = 0, end = 0, playing = false, before = 0, drawn = null;
+let recording = null, plain = null, time = 0, end = 0, playing = false, before = 0, drawn = null;
 
 async function load() {
   const given = new URLSearchParams(location.search);
@@ -17,7 +18,11 @@ async function load() {
     part("note").textContent = await answer.text();
     return;
   }
-  recording = await answer.json();
+  recording = plain = await answer.json();
+  new Diagnosis((found) => {
+    recording = { ...plain, ...found };
+    drawn = null;
+  });
   part("name").textContent = recording.name;
   part("note").textContent = recording.note;
   end = Math.max(...[recording.puck, ...recording.mallets].map(({ t }) => t.at(-1) ?? 0));

@@ -39,7 +39,7 @@ export class Smoothing {
   }
 }
 
-const FARTHEST = 0.25; // m that anything goes between two states; what went farther was placed anew
+const FARTHEST = 0.25; // m that anything goes between two states; what went farther was placed anew, or was not seen
 
 function between(a, b, share) {
   return {
@@ -50,6 +50,6 @@ function between(a, b, share) {
 }
 
 export function mix(a, b, share) {
-  if (Math.hypot(b[0] - a[0], b[1] - a[1]) > FARTHEST) return share < 0.5 ? a : b;
+  if (!a || !b || Math.hypot(b[0] - a[0], b[1] - a[1]) > FARTHEST) return share < 0.5 ? a : b;
   return [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])];
 }

@@ -1,1 +1,1 @@
-"""Games of the arena as recordings, and recordings for its page."""
+"""Games of the arena as recordings, and recordings, with their diagnoses, for its page."""

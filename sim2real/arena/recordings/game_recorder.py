@@ -12,7 +12,7 @@ from sim2real.recording.checks import FORMAT
 from sim2real.table.recorder.draft import RecordingDraft
 
 EVERY = TICKS  # rows that are written at once
-NOT_KNOWN = float("nan")
+NOWHERE = (float("nan"), float("nan"))
 
 
 class GameRecorder:
@@ -31,9 +31,9 @@ class GameRecorder:
 
     def add(self, view: View) -> None:
         """Record what there is to see now."""
-        robot, opponent = view.mallets
-        self._frames.append((view.time, *view.puck, *opponent))
-        self._mallet.append((view.time, *robot, NOT_KNOWN, NOT_KNOWN))
+        puck, robot, opponent = (place or NOWHERE for place in (view.puck, *view.mallets))
+        self._frames.append((view.time, *puck, *opponent))
+        self._mallet.append((view.time, *robot, *NOWHERE))
         if len(self._frames) >= EVERY:
             self._write()
 

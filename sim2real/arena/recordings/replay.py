@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sim2real.arena.recordings.found import read_diagnosis
 from sim2real.compare.contacts import ContactError
 from sim2real.compare.glides import GlideError
 from sim2real.compare.predict import compare_segments
-from sim2real.recording.folder import RecordingError, read_recording
+from sim2real.recording.folder import Recording, read_recording
 from sim2real.recording.stream_csv import Stream
 from sim2real.recording.table_parameters import parameters
 from sim2real.segmentation.segments import segment
@@ -25,23 +26,40 @@ def replay_of(folder: Path) -> str:
     """A recording for the page, as JSON. RecordingError, in one line, if it cannot be read."""
     recording = read_recording(folder).from_zero()
     values = parameters(recording)
-    segments = segment(recording)
-    found = compare_segments(recording, segments, values)
-    compared = {id(one.contact): one for one in (*found.walls, *found.mallets)}
     content = {
         "name": recording.name,
         "note": str(recording.meta.get("note") or ""),
         "table": {name: values[name] for name in SIZES},
         "puck": _track(recording.frames, "puck"),
         "mallets": [_track(recording.mallet, "mallet"), _track(recording.frames, "opponent")],
-        "glides": [_glide(glide) for glide in found.glides],
-        "contacts": [
-            {"t": round(one.t, 4), "place": _rounded([one.x, one.y]), "kind": one.kind, "where": one.where}
-            | _velocities(compared.get(id(one)))
-            for one in segments.contacts
-        ],
+        **_predictions(recording, values),
     }
     return json.dumps(content, separators=(",", ":"), allow_nan=False)
+
+
+def diagnosed_replay_of(folder: Path, diagnosis: Path) -> str:
+    """What a diagnosis found in a recording, and the predictions with that in place of those of `replay_of`, as JSON.
+    RecordingError or ValueError, in one line, if either cannot be read."""
+    recording, found = read_recording(folder).from_zero(), read_diagnosis(diagnosis)
+    content = {
+        "summary": found.summary,
+        "left_out": found.left_out,
+        **_predictions(recording, parameters(recording, found.values)),
+    }
+    return json.dumps(content, separators=(",", ":"), allow_nan=False)
+
+
+def _predictions(recording: Recording, values: dict[str, float]) -> dict[str, Any]:
+    """The glides and contacts of a recording with their predictions by the simulator with these parameters."""
+    segments = segment(recording)
+    found = compare_segments(recording, segments, values)
+    compared = {id(one.contact): one for one in (*found.walls, *found.mallets)}
+    contacts = [
+        {"t": round(one.t, 4), "place": _rounded([one.x, one.y]), "kind": one.kind, "where": one.where}
+        | _velocities(compared.get(id(one)))
+        for one in segments.contacts
+    ]
+    return {"glides": [_glide(glide) for glide in found.glides], "contacts": contacts}
 
 
 def _track(stream: Stream | None, what: str) -> dict[str, Any]:
@@ -78,10 +96,12 @@ def _rounded(numbers: Any) -> list[float]:
 
 
 def main() -> int:
-    """Print the recording that is named, for the server's process. 2: it cannot be read, and one line says why."""
+    """Print the recording that is named, or what the diagnosis named after it makes of it, for the server's process. 2:
+    it cannot be read, and one line says why."""
+    folder, *diagnosis = map(Path, sys.argv[1:])
     try:
-        print(replay_of(Path(sys.argv[1])))
-    except RecordingError as error:
+        print(diagnosed_replay_of(folder, diagnosis[0]) if diagnosis else replay_of(folder))
+    except ValueError as error:
         print(error, file=sys.stderr)
         return 2
     return 0

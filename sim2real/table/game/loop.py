@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -36,7 +37,11 @@ class Loop:
     times: of the decisions; plans: number of plans sent; missed: of these, those that came too late; parked:
     seconds in which the mallet was parked because the puck was lost. TableFaultError, in one line, from every method in
     which time passes; the mallet is stopped then.
+    onlooker: takes the loop whenever it has read what came, but not between a frame and the decision that waits for it;
+    it may be set at any time.
     """
+
+    onlooker: Callable[[Loop], None] | None = None
 
     def __init__(self, backend: Backend, game: GameRecord, camera_delay: float = 0.0) -> None:
         self.backend, self.game, self._camera_delay = backend, game, camera_delay
@@ -95,6 +100,7 @@ class Loop:
         self.referee.begin_step()
         self.referee.order(0, starts_from, action)
         self.backend.show(self.game.record)
+        self._look()
         half_frame = 0.48 / self.backend.frame_rate  # a decision waits for the frame that is due
         self._watch(begin + period - half_frame)
         self.backend.wait_for_frame(begin + period + half_frame)
@@ -136,6 +142,7 @@ class Loop:
         while self.backend.now() < until - 1e-9:
             self.backend.wait_for_frame(until)
             self._take_frames()
+            self._look()
 
     def _take_frames(self) -> None:
         """Update the estimates, and show the referee each frame in which the puck is seen."""
@@ -150,6 +157,10 @@ class Loop:
             if frame.puck is not None and puck is not None:
                 robot = self.motion(frame.time - self._camera_delay)
                 self.referee.watch(frame.time, puck, robot, self.seen.opponent.motion())
+
+    def _look(self) -> None:
+        if self.onlooker is not None:
+            self.onlooker(self)
 
     def _read(self) -> Reading:
         """What came since the last time; after a plan that came too late the one before goes on."""
@@ -169,7 +180,9 @@ class Loop:
         """Drive the mallet home and wait until it stands there."""
         while self.backend.obeys:
             self._hold(self.home)
-            if not self._read().missed and self._driver.standing(self.backend.now()):
+            missed = self._read().missed
+            self._look()
+            if not missed and self._driver.standing(self.backend.now()):
                 return
 
     def _hold(self, place: Place) -> None:
@@ -189,6 +202,7 @@ class Loop:
                 )
             self._hold(place)
             self._take_frames()
+            self._look()
 
     def _await_frame(self) -> None:
         """Begin a point's decisions with a frame, as all that follow: the first period is as long as the others."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
@@ -48,6 +48,7 @@ class RobotSeat(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         slack = ROUNDING * (high - low)
         self._taken = low - slack, high + slack
         self.loop: Loop | None = None  # while connected
+        self.onlooker: Callable[[Loop], None] | None = None  # of the loop, from the next reset on
         self._stopped = False
         self._over = self._ended = True  # whether no step may follow; whether by the rules
 
@@ -70,6 +71,7 @@ class RobotSeat(gymnasium.Env[NDArray[Any], NDArray[Any]]):
                 loop.connect()
             elif self._stopped:
                 loop.clear()
+            loop.onlooker = self.onlooker
             self.loop, self._stopped = loop, False
             self.tables.reset(seed)
             loop.begin_point()

@@ -8,6 +8,11 @@ import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
+
+import sim2real
+
+PAGE = Path(sim2real.__file__).with_name("arena") / "page"
 
 
 @contextmanager

@@ -1,12 +1,14 @@
-"""`puckpilot arena` where it cannot listen."""
+"""`puckpilot arena` where it cannot do what is asked."""
 
 from __future__ import annotations
 
 import socket
+from pathlib import Path
 
 import pytest
 
 import puckpilot
+from tests.places import ROOT
 
 pytest.importorskip("aiohttp", reason="it comes with pip install '.[test]'")
 
@@ -22,3 +24,21 @@ def test_a_port_that_is_taken_and_a_host_that_is_none_are_refused_in_one_line(ca
     assert puckpilot.main(["arena", "still", "--host", "no.such.host.invalid"]) == 2
     said = capsys.readouterr().err.strip().splitlines()[-1]
     assert said.startswith("puckpilot arena: cannot listen on no.such.host.invalid:8420: ") and "Unknown" not in said
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (
+            ["--diagnosis", "none"],
+            "none: no diagnosis can be read there (No such file or directory); expected the folder",
+        ),
+        (["--concealed"], "--concealed is given with a recording; expected a player to play against"),
+    ],
+)
+def test_what_does_not_go_with_a_recording_is_refused_in_one_line(
+    options: list[str], words: str, capsys: pytest.CaptureFixture, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert puckpilot.main(["arena", str(ROOT / "sim2real" / "demo_recording"), *options]) == 2
+    assert capsys.readouterr().err.startswith(f"puckpilot arena: {words}")

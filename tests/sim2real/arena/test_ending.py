@@ -11,10 +11,10 @@ import pytest
 
 pytest.importorskip("aiohttp", reason="it comes with pip install '.[test]'")
 
+from sim2real.arena.listener import Listener
 from sim2real.arena.lobby import Lobby
 from sim2real.arena.recordings.records import Records
 from sim2real.arena.server import make_app, serve
-from sim2real.arena.session import Listener
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])

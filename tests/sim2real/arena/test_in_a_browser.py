@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from tests.places import ROOT
+from tests.sim2real.arena.recordings.made_diagnosis import LINES, write_diagnosis
 from tests.sim2real.arena.running import arena
 
 playwright = pytest.importorskip("playwright.sync_api", reason="it comes with pip install '.[test]'")
@@ -86,6 +87,34 @@ def test_one_joins_moves_and_comes_back_into_the_same_game(browser: Any) -> None
         assert shown(page) > before + 0.5  # the same game, not a new one
 
 
+def test_the_mallet_is_drawn_where_a_finger_points_from_the_other_end_of_a_phone(browser: Any) -> None:
+    with arena("still", "--seat", "1") as address:
+        page = opened(browser.new_page(viewport={"width": 390, "height": 800}), address)
+        box = page.locator("#table").bounding_box()
+        metre = box["height"] / 2.14  # the table and its margins
+        x, y = 1.6, 0.7  # far from the one who holds the phone, for player 1 is drawn above
+        page.mouse.move(box["x"] + (1.07 - y) * metre, box["y"] + (2.07 - x) * metre)
+        until(
+            page, lambda: json.loads(page.get_attribute("#table", "data-drawn"))[1:] == pytest.approx([x, y], abs=5e-3)
+        )
+        until(page, lambda: mallet_of(page) == pytest.approx((x, y), abs=5e-3))
+        page.reload()
+        until(page, lambda: shown(page) > 0.1)
+        page.mouse.move(box["x"] + (1.07 - y) * metre, box["y"] + (2.07 - 1.3) * metre)
+        until(page, lambda: json.loads(page.get_attribute("#table", "data-drawn"))[1] == pytest.approx(1.3, abs=5e-3))
+
+
+def test_a_friend_looks_on_by_the_link(browser: Any) -> None:
+    with arena("still") as address:
+        page = opened(browser.new_page(), address)
+        friend = opened(browser.new_page(), page.evaluate("document.getElementById('watch').href"))
+        assert friend.inner_text("#note") == "watching" and friend.is_hidden("#watch") and page.is_visible("#watch")
+        before = shown(page)
+        friend.keyboard.press("ArrowUp")
+        until(friend, lambda: shown(friend) > before + 0.3)
+        assert page.inner_text("#name-0") == "you" and page.inner_text("#note") == ""
+
+
 def test_the_arrow_keys_move_the_mallet(browser: Any) -> None:
     with arena("still") as address:
         page = opened(browser.new_page(), address)
@@ -139,3 +168,29 @@ def test_a_recording_is_shown_beside_the_simulator(browser: Any) -> None:
         until(page, lambda: page.evaluate(PAINTED))
         puck, expected = (json.loads(page.get_attribute("#table", f"data-{name}")) for name in ("puck", "expected"))
         assert 0.005 < abs(puck[0] - expected[0]) + abs(puck[1] - expected[1]) < 0.05  # the demo's table is tilted
+
+
+def test_what_a_diagnosis_found_is_shown_and_its_prediction_is_nearer(browser: Any, tmp_path: Path) -> None:
+    """The button finds a diagnosis that was made before, of the demo's own tilt; a narrow page has room for it."""
+    demo, tilt = ROOT / "sim2real" / "demo_recording", {"table_tilt": {"tilt_x": 0.02, "tilt_y": -0.012}}
+    with arena(str(demo), "--out", str(tmp_path)) as address:
+        page = replayed(browser.new_page(viewport={"width": 390, "height": 800}), address, 14.0)
+        until(page, lambda: page.is_visible("#diagnose"))
+        assert not page.is_visible("#findings") and not page.is_visible("#law")
+        before = distance(page)
+        write_diagnosis(tmp_path / "diagnoses" / "demo_recording", tilt)
+        page.click("#diagnose")
+        until(page, lambda: page.is_visible("#law"), 120.0)
+        assert page.inner_text("#found") == "\n".join(LINES) and not page.is_visible("#diagnose")
+        assert distance(page) == before
+        page.select_option("#law", "after")
+        until(page, lambda: distance(page) < 0.3 * before)
+        page.select_option("#law", "before")
+        until(page, lambda: distance(page) == before)
+        assert page.evaluate("document.documentElement.scrollWidth") <= 390
+
+
+def distance(page: Any) -> float:
+    """How far the puck is from where it is expected [m], along both axes together."""
+    puck, expected = (json.loads(page.get_attribute("#table", f"data-{name}")) for name in ("puck", "expected"))
+    return abs(puck[0] - expected[0]) + abs(puck[1] - expected[1])

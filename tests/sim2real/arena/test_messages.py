@@ -55,7 +55,7 @@ def test_whatever_comes_is_a_message_or_refused(text: str) -> None:
 
 
 def test_a_state_is_as_short_as_it_is_exact() -> None:
-    text = state(View(1.23456, (0.123456, 0.5), ((0.3, 0.4), (1.7, 0.6)), (1, 2), 178.76, ""), 5.0)
+    text = state(View(1.23456, (0.123456, 0.5), ((0.3, 0.4), (1.7, 0.6)), (1, 2), 178.76, ""), {"aim": 5.0})
     assert json.loads(text) == {
         "kind": "state", "time": 1.2346, "puck": [0.1235, 0.5], "mallets": [[0.3, 0.4], [1.7, 0.6]], "score": [1, 2],
         "left": 178.8, "ending": "", "aim": 5.0,

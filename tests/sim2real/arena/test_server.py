@@ -19,10 +19,10 @@ import sim2real  # noqa: E402
 from baselines.players.goalie import Goalie  # noqa: E402
 from sim2real.arena import lobby as lobby_module  # noqa: E402
 from sim2real.arena.game import PERSON  # noqa: E402
+from sim2real.arena.listener import BURST as MOST_SAID  # noqa: E402
 from sim2real.arena.lobby import Lobby  # noqa: E402
 from sim2real.arena.recordings.records import Records  # noqa: E402
 from sim2real.arena.server import PAGE, make_app  # noqa: E402
-from sim2real.arena.session import MOST_SAID  # noqa: E402
 
 TOKEN = "a-token"
 Check = Callable[[Any, Lobby], Awaitable[None]]
@@ -207,7 +207,7 @@ def test_all_watch_one_game_of_two_players() -> None:
     async def check(client: Any, lobby: Lobby) -> None:
         one, other = await joined(client), await joined(client)
         first, second = await heard(one, "welcome"), await heard(other, "welcome")
-        assert first == second and first["seat"] is None and first["names"] == ["still", "goalie"]
+        assert first == second and "id" not in first and first["seat"] is None and first["names"] == ["still", "goalie"]
         while (await heard(one, "state"))["time"] < 0.1:
             pass
 

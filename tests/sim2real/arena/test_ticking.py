@@ -7,10 +7,12 @@ import asyncio
 import pytest
 
 from sim2real.arena import ticking
-from sim2real.arena.ticking import Ticking
+from sim2real.arena.ticking import Lateness, Ticking
 
 
-def played(monkeypatch: pytest.MonkeyPatch, costs: list[float], rate: float = 100.0) -> list[float]:
+def played(
+    monkeypatch: pytest.MonkeyPatch, costs: list[float], rate: float = 100.0, lateness: Lateness | None = None
+) -> list[float]:
     """When each step came [s], if the n-th takes `costs[n]` [s] and nothing else any time."""
     clock, came = [0.0], []
 
@@ -29,7 +31,7 @@ def played(monkeypatch: pytest.MonkeyPatch, costs: list[float], rate: float = 10
 
     monkeypatch.setattr(ticking.asyncio, "get_running_loop", Loop)
     monkeypatch.setattr(ticking.asyncio, "sleep", sleep)
-    ticks = Ticking(step, rate)
+    ticks = Ticking(step, rate, lateness)
     with pytest.raises(asyncio.CancelledError):
         ticks.run().send(None)
     return came
@@ -43,3 +45,10 @@ def test_a_slow_step_is_made_up_for(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_machine_that_slept_does_not_race(monkeypatch: pytest.MonkeyPatch) -> None:
     came = played(monkeypatch, [10.0, 0.001, 0.001, 0.0])
     assert came == pytest.approx([0.0, 10.0, 10.01, 10.02])
+
+
+def test_it_is_counted_how_late_steps_were(monkeypatch: pytest.MonkeyPatch) -> None:
+    lateness = Lateness()
+    played(monkeypatch, [0.001, 0.025, 0.001, 10.0, 0.001, 0.0], lateness=lateness)
+    assert lateness.steps == 6 and lateness.late == 2  # by 15 and 9996 ms; the one between by 6
+    assert lateness.latest == pytest.approx(9.996) == lateness.lost

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import json
+import shutil
+import threading
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, cast
@@ -14,7 +16,10 @@ import pytest
 pytest.importorskip("aiohttp", reason="it comes with pip install '.[test]'")
 
 from baselines.matches.played_games import read_pairs
+from sim2real.arena import session as session_module
 from sim2real.arena.game import PERSON, Game
+from sim2real.arena.recordings import records as records_module
+from sim2real.arena.recordings.game_recorder import GameRecorder
 from sim2real.arena.recordings.records import GAMES, Records
 from sim2real.arena.session import Session
 from sim2real.recording.folder import read_recording
@@ -77,7 +82,7 @@ def left(folder: Path, after: Callable[[], object] = lambda: None) -> None:
         while session.game.ticks < 30:
             await asyncio.sleep(0.01)
         after()
-        session.close()
+        await session.close()
 
     asyncio.run(play())
 
@@ -98,6 +103,64 @@ def test_a_game_that_is_left_is_kept_as_far_as_it_was_played(tmp_path: Path) -> 
     (meta,) = tmp_path.glob("*/meta.json")
     recording = read_recording(meta.parent)
     assert recording.frames is not None and recording.frames.rows >= 30 and not (tmp_path / GAMES).exists()
+
+
+def test_where_there_is_no_room_play_goes_on_unrecorded_and_says_so_once(
+    tmp_path: Path, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    name, _ = played(Records(tmp_path), 5)
+    size = sum(file.stat().st_size for file in (tmp_path / name).iterdir())
+    for most, free, why in ((size - 1, 0.0, "of recordings; remove some"), (size, 1e18, "GB free; make room")):
+        monkeypatch.setattr(records_module, "MOST", most)
+        monkeypatch.setattr(records_module, "LEAST_FREE", free)
+        left(tmp_path)  # plays 30 ticks
+        said = capsys.readouterr().err
+        assert said.startswith("puckpilot arena: a game is not recorded, ") and why in said and said.count("\n") == 1
+        assert [path.name for path in tmp_path.glob("*/")] == [name] and not list(tmp_path.glob(".*"))
+    monkeypatch.setattr(records_module, "LEAST_FREE", 0.0)
+    left(tmp_path)
+    assert len(list(tmp_path.glob("*/"))) == 2
+    for made in tmp_path.glob("*/"):
+        shutil.rmtree(made)
+    records = Records(tmp_path)
+    played(records, 300)
+    with pytest.raises(ValueError, match="remove some"):
+        records.begin(Game(("interceptor", "still"), 1), 1)  # by what it recorded itself
+
+
+def test_a_disk_that_is_full_in_the_midst_of_a_game_stops_the_recording_alone(
+    tmp_path: Path, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(self: object, view: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(session_module.GameRecorder, "add", full)
+    monkeypatch.setattr(session_module.Records, "begin", lambda self, game, seed: object.__new__(GameRecorder))
+    left(tmp_path)
+    said = capsys.readouterr().err
+    assert said.count("a game is not recorded, [Errno 28] No space left on device") == 1 == said.count("\n")
+
+
+def test_a_game_that_is_completed_holds_up_no_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Completing it waits here for the loop to go on."""
+    gone_on = threading.Event()
+
+    def finish(self: GameRecorder) -> bool:
+        assert gone_on.wait(10.0)
+        return False
+
+    async def play() -> None:
+        session = Session(("interceptor", "still"), 3, Records(tmp_path))
+        session.listeners.add(cast(Any, type("Looker", (), {"show": lambda self, state: None})()))
+        while session.game.ticks < 5:
+            await asyncio.sleep(0.01)
+        closing = asyncio.create_task(session.close())
+        await asyncio.sleep(0.01)
+        gone_on.set()
+        await closing
+
+    monkeypatch.setattr(GameRecorder, "finish", finish)
+    asyncio.run(play())
 
 
 def test_what_a_killed_server_left_is_finished_by_the_next(tmp_path: Path) -> None:
