@@ -50,7 +50,7 @@ OPTIONS = {
         "--json",
     ],
     "export": ["--out"],
-    "arena": ["--seat", "--host", "--port", "--out", "--name", "--seed", "--concealed", "--diagnosis"],
+    "arena": ["--seat", "--host", "--port", "--out", "--name", "--seed", "--concealed", "--quick", "--diagnosis"],
     "benchmark run": ["--list", "--tasks", "--seeds", "--steps", "--out", "--workers", "--cluster", "--json"],
     "benchmark report": ["--json"],
     "benchmark enter": ["--name", "--trained", "--tasks", "--out"],

@@ -1,6 +1,7 @@
 """The arena: games in a browser, of people and players.
 
-- `game`, `seats`: a match of one table, and who sits at it: a player by name, or a person's pointer.
+- `game`, `seats`: a match of one table, and who sits at it: a player by name, or a person's pointer; `quick_mallet`:
+  without the gantry's limits.
 - `ticking`: steps on absolute deadlines of a monotonic clock; `health`: how late they were.
 - `messages`: what a page may send, and what the server sends.
 - `session`, `listener`, `lobby`: a game, the pages that see it, and all games, within limits.

@@ -35,15 +35,19 @@ class View:
 class Game:
     """A match between two of whom each is a player's name or PERSON."""
 
-    def __init__(self, names: tuple[str, str], seed: int, concealed: Concealed | None = None) -> None:
-        """concealed: what is in the table beyond the variant. ValueError, in one line, for an unknown player."""
+    def __init__(
+        self, names: tuple[str, str], seed: int, concealed: Concealed | None = None, quick: bool = False
+    ) -> None:
+        """concealed: what is in the table beyond the variant; quick: a person's mallet is without the gantry's limits.
+        ValueError, in one line, for an unknown player."""
         variant, self.concealed = find_variant(VARIANT), concealed
+        self.is_rated = concealed is None and not quick  # whether it is a match as the others are
         parameters = concealed.parameters if concealed else None
         self.tables = Tables(variant, 1, seed=seed, period=1.0 / TICKS, autoreset=False, parameters=parameters)
         held = round(TICKS * variant.period)
         self.chairs: tuple[Chair, Chair] = (
-            _chair(names[0], self.tables, 0, held, seed),
-            _chair(names[1], self.tables, 1, held, seed + 1),
+            _chair(names[0], self.tables, 0, held, seed, quick),
+            _chair(names[1], self.tables, 1, held, seed + 1, quick),
         )
         self.names, self.ticks, self.over = names, 0, False
         self._match_time = float(self.tables.variant.rules()[0]["match_time"])
@@ -78,10 +82,10 @@ class Game:
         return View(self.ticks / TICKS, (x, y), (one, two), score, left, ending)
 
 
-def concealed_game(names: tuple[str, str], seed: int) -> Game:
+def concealed_game(names: tuple[str, str], seed: int, quick: bool = False) -> Game:
     """A match on a table that is drawn by the seed, of `concealed.TABLES`. ValueError as of `Game`."""
-    return Game(names, seed, draw(seed))
+    return Game(names, seed, draw(seed), quick)
 
 
-def _chair(name: str, tables: Tables, seat: int, ticks: int, seed: int) -> Chair:
-    return PersonChair(name, tables, seat) if name == PERSON else PlayerChair(name, tables, ticks, seed)
+def _chair(name: str, tables: Tables, seat: int, ticks: int, seed: int, quick: bool) -> Chair:
+    return PersonChair(name, tables, seat, quick) if name == PERSON else PlayerChair(name, tables, ticks, seed)

@@ -14,6 +14,7 @@ from puckpilot_env.batch.motion import mallet_motion
 from puckpilot_env.game import mirror
 from puckpilot_env.physics.gantry.plan import SMALLEST_VOLTAGE
 from puckpilot_env.tables import Tables
+from sim2real.arena.quick_mallet import QUICKER, quicken
 
 JUMP = 0.06  # m in a 120th of a second, twice what the gantry can: a mallet that went farther was placed anew
 CONSTANTS = ("slow_rate", "fast_rate", "rest_gain", "slow_gain", "fast_gain")  # of an axis
@@ -50,8 +51,12 @@ class PlayerChair:
 class PersonChair:
     """A person's pointer, in the table's frame; the mallet goes there as fast as the gantry may."""
 
-    def __init__(self, name: str, tables: Tables, seat: int) -> None:
-        """`law`: by what a page moves the mallet; see `_law`."""
+    def __init__(self, name: str, tables: Tables, seat: int, quick: bool = False) -> None:
+        """quick: without the gantry's limits; `law`: by what a page moves the mallet, see `_law`."""
+        self._jump = JUMP
+        if quick:
+            quicken(tables, seat)
+            self._jump *= QUICKER
         self.name, self._seat, self._tables = name, seat, tables
         self._low, self._high = tables.action_bounds
         self._size = np.array([tables.params["length"][0], tables.params["width"][0]])
@@ -80,7 +85,7 @@ class PersonChair:
         """The action of `action` was played."""
         self._age += 1
         before, self._place = self._place, self._now()
-        self._placed += math.dist(before, self._place) > JUMP
+        self._placed += math.dist(before, self._place) > self._jump
 
     def _now(self) -> tuple[float, float]:
         x, y = mallet_motion(self._tables.states[0])[self._seat, :2].tolist()

@@ -14,6 +14,7 @@ from __future__ import annotations
 import argparse
 import os
 import re
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
@@ -47,6 +48,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="play on tables with an effect that is drawn by --seed, and shown once the recording is diagnosed",
     )  # fmt: skip
     parser.add_argument(
+        "--quick",
+        action="store_true",
+        help="lift the gantry's limits: your mallet is four times as quick, and not rated",
+    )
+    parser.add_argument(
         "--diagnosis", type=Path, metavar="DIR", help="of the recording, as puckpilot diagnose --out DIR wrote it"
     )
 
@@ -67,10 +73,13 @@ def run(args: argparse.Namespace) -> NoReturn:
         raise ValueError(f"--name is {args.name!r}; expected up to 30 letters, digits, _ and -")
     recordings, names = _recordings(args.players), (PERSON, OPPONENT)
     diagnoses = _diagnoses(args.diagnosis, recordings)
-    if recordings and args.concealed:
-        raise ValueError("--concealed is given with a recording; expected a player to play against")
+    if recordings and (args.concealed or args.quick):
+        option = "--concealed" if args.concealed else "--quick"
+        raise ValueError(f"{option} is given with a recording; expected a player to play against")
     if not recordings:
         names = _seated(args.players or [OPPONENT], args.seat)
+        if args.quick and PERSON not in names:
+            raise ValueError("--quick is given where you do not play; expected one player to play against")
         for one in {names, *pairwise(args.players)}:
             Game(one, seed_number(args.seed)).tick()  # compiles before anyone waits for it
     token, records = secrets.token_urlsafe(12), Records(args.out, recordings, args.name)
@@ -132,7 +141,7 @@ def _begin(args: argparse.Namespace, names: tuple[str, str], records: Records) -
     from sim2real.arena.tournament.tour import Tour
 
     if len(args.players) <= 2:
-        make_game = concealed_game if args.concealed else Game
+        make_game = partial(concealed_game if args.concealed else Game, quick=args.quick)
         return lambda seed, lateness: Session(names, seed, records, lateness, make_game)
     if args.concealed:
         raise ValueError(f"--concealed is given with {len(args.players)} players; expected one to play against, or two")

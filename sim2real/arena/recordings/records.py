@@ -47,10 +47,10 @@ class Records:
         return recorder
 
     def keep(self, recorder: GameRecorder, game: Game, seed: int) -> None:
-        """Complete the recording of a match that is over, and note how it ended, but of one on a concealed table, which
-        is no match of the ratings. RecordingError or OSError if that cannot be."""
+        """Complete the recording of a match that is over, and note how it ended, unless that is no match of the
+        ratings. RecordingError or OSError if that cannot be."""
         self.leave(recorder)
-        if game.concealed is not None:
+        if not game.is_rated:
             return
         view, ended = game.view(), time.strftime("%Y-%m-%dT%H:%M:%S%z")
         add_game(

@@ -34,6 +34,7 @@ def test_a_port_that_is_taken_and_a_host_that_is_none_are_refused_in_one_line(ca
             "none: no diagnosis can be read there (No such file or directory); expected the folder",
         ),
         (["--concealed"], "--concealed is given with a recording; expected a player to play against"),
+        (["--quick"], "--quick is given with a recording; expected a player to play against"),
     ],
 )
 def test_what_does_not_go_with_a_recording_is_refused_in_one_line(
@@ -42,3 +43,20 @@ def test_what_does_not_go_with_a_recording_is_refused_in_one_line(
     monkeypatch.chdir(tmp_path)
     assert puckpilot.main(["arena", str(ROOT / "sim2real" / "demo_recording"), *options]) == 2
     assert capsys.readouterr().err.startswith(f"puckpilot arena: {words}")
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["still", "goalie", "--quick"], "--quick is given where you do not play; expected one player to play against"),
+        (
+            ["still", "goalie", "random", "--concealed"],
+            "--concealed is given with 3 players; expected one to play against",
+        ),
+    ],
+)
+def test_what_does_not_go_with_players_is_refused_in_one_line(
+    words: list[str], said: str, capsys: pytest.CaptureFixture, tmp_path: Path
+) -> None:
+    assert puckpilot.main(["arena", *words, "--out", str(tmp_path)]) == 2
+    assert f"puckpilot arena: {said}" in capsys.readouterr().err

@@ -46,6 +46,23 @@ def test_a_persons_mallet_comes_to_the_pointer_and_stays_in_its_half(seat: int) 
     assert y == pytest.approx(0.75, abs=2e-3) and (there < 0.5 * length) == (seat == 0)
 
 
+@pytest.mark.parametrize("seat", [0, 1])
+def test_a_quick_mallet_goes_four_times_as_far_in_the_same_time(seat: int) -> None:
+    """The gantry's law is linear in the volts, and in one over its coefficients."""
+    names = (PERSON, "still") if seat == 0 else ("still", PERSON)
+    gone = []
+    for game in (Game(names, 1), Game(names, 1, quick=True)):
+        before = mallet_motion(game.tables.states)[0, :, :2]
+        assert game.person is not None and game.is_rated == (len(gone) == 0)
+        game.person.aim(0.5, before[seat, 1] + 0.4)
+        for _ in range(6):
+            game.tick()
+        after = mallet_motion(game.tables.states)[0, :, :2]
+        np.testing.assert_allclose(after[1 - seat], before[1 - seat], atol=1e-6)
+        gone.append(after[seat, 1] - before[seat, 1])
+    assert gone[1] == pytest.approx(4.0 * gone[0], rel=1e-3) and gone[0] > 0.01
+
+
 def test_a_goal_is_counted_and_the_match_ends_once() -> None:
     """The champion scores against one who does not move."""
     game = Game((PERSON, "policy:champion"), 3)

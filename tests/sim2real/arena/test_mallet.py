@@ -49,8 +49,8 @@ def page() -> Iterator[Any]:
         browser.close()
 
 
-def seated(seat: int) -> tuple[Game, PersonChair]:
-    game = Game((PERSON, "still") if seat == 0 else ("still", PERSON), 1)
+def seated(seat: int, quick: bool = False) -> tuple[Game, PersonChair]:
+    game = Game((PERSON, "still") if seat == 0 else ("still", PERSON), 1, quick=quick)
     assert game.person is not None
     return game, game.person
 
@@ -59,10 +59,10 @@ def place_of(game: Game, seat: int) -> list[float]:
     return mallet_motion(game.tables.states[0])[seat, :2].tolist()
 
 
-@pytest.mark.parametrize("seat", [0, 1])
-def test_it_moves_as_the_simulators(page: Any, seat: int) -> None:
+@pytest.mark.parametrize(("seat", "quick"), [(0, False), (1, False), (0, True)])
+def test_it_moves_as_the_simulators(page: Any, seat: int, quick: bool) -> None:
     """Aims anywhere, inside and outside of the half, some for a tick and some until the mallet rests."""
-    game, person = seated(seat)
+    game, person = seated(seat, quick)
     rng, aim, places = random.Random(3), [1.0, 0.5], []
     played: list[list[Any]] = [["take", {**person.followed(), "aim": 0}, 0.0]]
     for tick in range(600):
