@@ -1,4 +1,5 @@
-"""`python -m results run|page|check`: make runs, write the page of figures, hold the documents against the outputs.
+"""`python -m results run|page|check|screenshots`: make runs, write the page of figures, hold the documents against the
+outputs, and take pictures for them.
 
 Ends with 0, with 1 where `check` finds what does not agree, and with 2 where something could not be done.
 """
@@ -15,6 +16,7 @@ from results.check import problems
 from results.page import write_page
 from results.rows import read_rows
 from results.run import chosen, run_all
+from results.screenshots import take
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -28,6 +30,9 @@ def main(words: Sequence[str] | None = None, root: Path = ROOT) -> int:
             return 2 if run_all(root, rows) else 0
         if asked.command == "page":
             print(write_page(root).relative_to(root))
+            return 0
+        if asked.command == "screenshots":
+            print(*(file.relative_to(root) for file in take(root, asked.name)), sep="\n")
             return 0
         found = problems(root)
         print(*found, sep="\n", end="\n" if found else "")
@@ -46,6 +51,8 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("id", nargs="*", help="a row of runs.toml; default: all without output, or of another command")
     run.add_argument("--minutes", type=float, default=math.inf, metavar="M", help="without ids: only rows of at most M")
     commands.add_parser("page", help="write docs/results.md from the outputs")
+    pictures = commands.add_parser("screenshots", help="take pictures of the arena for the documents, in a browser")
+    pictures.add_argument("name", nargs="*", help="of the picture; default: all")
     commands.add_parser("check", help="say which figure does not agree with the outputs; 1 if there is one")
     return parser
 
