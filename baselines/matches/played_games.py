@@ -11,6 +11,7 @@ from puckpilot_env.files import small_file
 
 Game = tuple[tuple[str, str], tuple[int, int]]
 """Who played, by seat, and the goals of each."""
+MOST_BYTES = 1 << 26  # of a file: hundreds of thousands of matches
 KEYS = ("recording", "players", "score", "ending", "seed", "ended")
 
 
@@ -27,7 +28,7 @@ def read_games(file: Path) -> list[Game]:
     """All matches, in the order of the file. ValueError, in one line, for a file that is none; OSError if it cannot be
     read."""
     games = []
-    for number, line in enumerate(small_file.read_text(file).splitlines(), 1):
+    for number, line in enumerate(small_file.read_text(file, MOST_BYTES).splitlines(), 1):
         try:
             (first, second), (goals, conceded) = (json.loads(line)[key] for key in ("players", "score"))
             games.append(((str(first), str(second)), (int(goals), int(conceded))))

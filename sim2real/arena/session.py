@@ -26,6 +26,7 @@ class Session:
     those who look on."""
 
     again = True  # whether a page may ask for another match
+    failure = WSCloseCode.INTERNAL_ERROR  # with which pages are let go where a player failed: they come back
 
     def __init__(
         self,
@@ -72,7 +73,7 @@ class Session:
             state = self._state()
             for listener in self.listeners:
                 listener.show(state)
-        if self.game.over and self._recorder is not None:
+        if self.game.over:
             self._do(self._keep(self._recorder, self.game, self._seed))
 
     def _state(self) -> str:
@@ -96,13 +97,13 @@ class Session:
             self._recorder = None
             _lost(error)
 
-    async def _keep(self, recorder: GameRecorder, game: Game, seed: int) -> None:
-        """Complete the recording of a match that is over, and say where it is."""
+    async def _keep(self, recorder: GameRecorder | None, game: Game, seed: int) -> None:
+        """Note how a match ended that is over, complete its recording if there is one, and say where it is."""
         try:
             await asyncio.to_thread(self._records.keep, recorder, game, seed)
         except (OSError, ValueError) as error:
             return _lost(error)
-        if game is self.game:
+        if recorder is not None and game is self.game:
             self._recorded = recorder.name
             for listener in self.listeners:
                 listener.tell(messages.encode("recorded", name=recorder.name))
@@ -119,7 +120,7 @@ class Session:
             return
         print(f"puckpilot arena: a game stopped, {type(error).__name__}: {error}", file=sys.stderr, flush=True)
         self.failed = True
-        self.dismiss(self.listeners, WSCloseCode.INTERNAL_ERROR, "a player failed")
+        self.dismiss(self.listeners, self.failure, "a player failed")
 
     def dismiss(self, listeners: set[Listener], code: int, why: str) -> None:
         """Let pages go."""
@@ -173,6 +174,7 @@ class Session:
         self._looked, self._recorded = False, ""
         for each in self.listeners:
             each.tell(self._welcome(each))
+            each.show(self._state())  # in place of the last one of the match before
 
     def _greeting(self, listener: Listener) -> list[str]:
         """What a page that comes is sent before the first state."""
@@ -181,9 +183,10 @@ class Session:
 
     def _welcome(self, listener: Listener) -> str:
         own, person = {}, self.game.person
+        again = self.again and (person is None or listener is self._player)
         if listener is self._player and person is not None:
             own = {"seat": self.names.index(PERSON), "id": self.id, "watch": self.watched_as, "law": person.law}
-        return messages.welcome(self.game.tables.params[0], self.names, self.again, **own)
+        return messages.welcome(self.game.tables.params[0], self.names, again, **own)
 
     async def close(self) -> None:
         """End the game; what was played of it is a recording."""

@@ -81,7 +81,7 @@ def run(args: argparse.Namespace) -> NoReturn:
         if args.quick and PERSON not in names:
             raise ValueError("--quick is given where you do not play; expected one player to play against")
         for one in {names, *pairwise(args.players)}:
-            Game(one, seed_number(args.seed)).tick()  # compiles before anyone waits for it
+            Game(one, seed_number(args.seed), quick=args.quick).tick()  # compiles before anyone waits for it
     token, records = secrets.token_urlsafe(12), Records(args.out, recordings, args.name)
     app = make_app(Lobby(names, args.seed, records, _begin(args, names, records)), records, token, diagnoses)
     page = f"replay?name={quote(recordings[0].resolve().name)}&token={token}" if recordings else f"?token={token}"

@@ -49,7 +49,7 @@ async def measure(player: str, leaps: int, seconds: float, seed: int, progress: 
                 for k, delay in enumerate(DELAYS):
                     progress(k, len(DELAYS) + 1)
                     result["lines"].append(await _line(opened, address, delay, leaps, seed + k))
-        except LookupError as error:
+        except pictures.NoBrowserError as error:
             result["no_browser"] = str(error)
     with arena(player) as address:
         progress(len(DELAYS), len(DELAYS) + 1)
@@ -70,6 +70,8 @@ async def _line(opened: Any, address: str, delay: float, leaps: int, seed: int) 
     async with bad_line(port, delay, LOSS, seed) as entry:
         seen = await pictures.watched(opened, address.replace(f":{port}/", f":{entry}/"), leaps, seed)
     delays = seen.delays()
+    if not delays:
+        raise ValueError(f"none of {leaps} leaps was seen in a picture; give more --leaps")
     jump, farthest = await asyncio.to_thread(seen.beyond)
     return {
         "delay_s": delay, "leaps": len(delays), "pictures": len(seen.pictures),

@@ -36,6 +36,10 @@ requestAnimationFrame(function look() { requestAnimationFrame(look); painted.por
 """
 
 
+class NoBrowserError(Exception):
+    """There is nothing to show pages in; the text says in a line what."""
+
+
 @dataclass
 class Seen:
     """What a page did: `moves` [s] of the pointer that leapt; `pictures` (n, 4) of when [s] they were painted, the
@@ -45,13 +49,14 @@ class Seen:
     pictures: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 4)))
     aims: list[Aim] = field(default_factory=list)
     placed: list[float] = field(default_factory=list)
+    over: float = math.inf  # when [s] the match ended, after which the mallet stands
 
     def delays(self) -> list[float]:
         """From each leap until a picture showed it [s]."""
         found = []
         for move in self.moves:
             k = int(np.searchsorted(self.pictures[:, 1], move))
-            if k == 0 or any(-0.5 < move - at < SETTLES for at in self.placed):
+            if k == 0 or move > self.over or any(-0.5 < move - at < SETTLES for at in self.placed):
                 continue
             gone = np.hypot(*(self.pictures[k:, 2:] - self.pictures[k - 1, 2:]).T) > SHOWS
             if gone.any():
@@ -62,7 +67,11 @@ class Seen:
         """`(largest jump between two pictures, farthest)` [m] of the mallet beyond its own motion."""
         times = self.pictures[:, 1]
         off = self.pictures[:, 2:] - OwnMotion().places(self.aims, times.tolist())
-        calm = (times > self.aims[0][0] + SETTLES) & np.all([~_within(times, at) for at in self.placed or [-99.0]], 0)
+        calm = (
+            (times > self.aims[0][0] + SETTLES)
+            & (times < self.over)
+            & np.all([~_within(times, at) for at in self.placed or [-99.0]], 0)
+        )
         jumps = np.hypot(*np.diff(off, axis=0).T)[calm[1:] & calm[:-1]]
         return float(jumps.max(initial=0.0)), float(np.hypot(*off.T)[calm].max(initial=0.0))
 
@@ -73,14 +82,14 @@ def _within(times: NDArray[np.float64], at: float) -> NDArray[np.bool_]:
 
 @asynccontextmanager
 async def browser() -> AsyncIterator[Any]:
-    """A headless Chromium. LookupError, in one line, if there is none."""
+    """A headless Chromium. NoBrowserError, in one line, if there is none."""
     path = next(filter(None, map(shutil.which, BROWSERS)), None)
     if path is None:
-        raise LookupError("there is no Chromium")
+        raise NoBrowserError("there is no Chromium")
     try:
         from playwright.async_api import async_playwright
     except ImportError:
-        raise LookupError("there is no playwright, which drives Chromium") from None
+        raise NoBrowserError("there is no playwright, which drives Chromium") from None
     async with async_playwright() as started:
         found = await started.chromium.launch(executable_path=path, args=["--no-sandbox"])
         try:
@@ -131,7 +140,7 @@ async def _circle(page: Any, middle: tuple[float, float], metre: float) -> None:
 
 
 def _listen(socket: Any, seen: Seen, page: Any) -> None:
-    """Note the aims that a page sends, and when its mallet was placed anew."""
+    """Note the aims that a page sends, when its mallet was placed anew, and when the match ended."""
     known = [0]
 
     def sent(text: str | bytes) -> None:
@@ -144,6 +153,8 @@ def _listen(socket: Any, seen: Seen, page: Any) -> None:
         if message["kind"] == "state" and message["placed"] != known[0]:
             known[0] = message["placed"]
             seen.placed.append(seen.aims[-1][0] if seen.aims else 0.0)
+        if message["kind"] == "state" and message["ending"]:
+            seen.over = min(seen.over, seen.aims[-1][0] if seen.aims else 0.0)
 
     socket.on("framesent", sent)
     socket.on("framereceived", received)

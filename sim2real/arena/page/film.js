@@ -16,11 +16,16 @@ form.onsubmit = async (event) => {
   const given = new URLSearchParams(location.search);
   const [name, from, to] = [given.get("name"), part("from").value, part("to").value];
   part("making").textContent = "is being made";
-  const answer = await fetch(`film?${new URLSearchParams({ name, from, to, token: given.get("token") })}`);
-  part("making").textContent = answer.ok ? "" : await answer.text();
-  if (!answer.ok) return;
   const link = document.createElement("a");
-  link.href = URL.createObjectURL(await answer.blob());
+  try {
+    const answer = await fetch(`film?${new URLSearchParams({ name, from, to, token: given.get("token") })}`);
+    part("making").textContent = answer.ok ? "" : await answer.text();
+    if (!answer.ok) return;
+    link.href = URL.createObjectURL(await answer.blob());
+  } catch (error) {
+    part("making").textContent = `the server does not answer (${error.message})`;
+    return;
+  }
   link.download = `${name}_${from}-${to}s.mp4`;
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 60000); // once it is surely saved

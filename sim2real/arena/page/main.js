@@ -34,7 +34,7 @@ const hear = {
   state(message) {
     newest = message;
     mallet?.take(message, performance.now() / 1000);
-    if (message.aim !== acted && message.aim) [acted, lag] = [message.aim, performance.now() - message.aim];
+    if (seat !== null && message.aim && message.aim !== acted) [acted, lag] = [message.aim, performance.now() - message.aim];
     smoothing.add(message, performance.now() / 1000);
     part("score").textContent = message.score.join(" : ");
     const left = Math.ceil(message.left);

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import hashlib
 import os
 import sys
 from collections.abc import Mapping
@@ -12,6 +13,7 @@ from pathlib import Path
 from sim2real.arena.recordings.found import DIAGNOSIS
 
 COMMAND = (sys.executable, "-m", "puckpilot", "diagnose")
+META = "meta.json"  # of a recording
 LOWEST_PRIORITY = 19
 MOST_CHARACTERS = 500  # of the line that says why there is none
 
@@ -31,20 +33,29 @@ class Diagnoser:
         self._failed: dict[str, str] = {}
         self._one = asyncio.Lock()
 
-    def find(self, name: str) -> Path | None:
-        """The folder of the diagnosis of a recording, None before there is one."""
-        folder = self._given.get(name, self._folder / name)
-        return folder if (folder / DIAGNOSIS).is_file() else None
+    def find(self, name: str, recording: Path) -> Path | None:
+        """The folder of the diagnosis of a recording, None before there is one, and where the recording is newer."""
+        if name in self._given:
+            return self._given[name]
+        made, of = self._place(name, recording) / DIAGNOSIS, recording / META
+        return made.parent if made.is_file() and made.stat().st_mtime >= of.stat().st_mtime else None
+
+    def _place(self, name: str, recording: Path) -> Path:
+        """Where its diagnosis is kept; there may be others of the same name elsewhere."""
+        place = recording.resolve()
+        if place.parent == self._folder.parent.resolve():
+            return self._folder / name
+        return self._folder / f"{name}-{hashlib.sha256(bytes(place)).hexdigest()[:8]}"
 
     def begin(self, name: str, recording: Path) -> None:
         """Diagnose a recording, unless that is done or goes on."""
-        if self.find(name) is None and name not in self._going:
+        if self.find(name, recording) is None and name not in self._going:
             self._failed.pop(name, None)
             self._going[name] = asyncio.create_task(self._diagnose(name, recording))
 
-    def state(self, name: str) -> dict[str, str]:
+    def state(self, name: str, recording: Path) -> dict[str, str]:
         """How far the diagnosis of a recording is: `state` is none, going, failed or there, and `words` say more."""
-        if self.find(name) is not None:
+        if self.find(name, recording) is not None:
             return {"state": "there", "words": ""}
         if name in self._going:
             return {"state": "going", "words": self._how_long(name)}
@@ -60,7 +71,7 @@ class Diagnoser:
         try:
             async with self._one:
                 self._begun[name] = asyncio.get_running_loop().time()
-                await _run(recording, self._folder / name)
+                await _run(recording, self._place(name, recording))
         except (NoDiagnosisError, OSError) as error:
             self._failed[name] = str(error)[:MOST_CHARACTERS]
         finally:

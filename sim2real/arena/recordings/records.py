@@ -46,16 +46,17 @@ class Records:
             concealed.keep(self.folder, recorder.name, game.concealed)
         return recorder
 
-    def keep(self, recorder: GameRecorder, game: Game, seed: int) -> None:
-        """Complete the recording of a match that is over, and note how it ended, unless that is no match of the
-        ratings. RecordingError or OSError if that cannot be."""
-        self.leave(recorder)
+    def keep(self, recorder: GameRecorder | None, game: Game, seed: int) -> None:
+        """Complete the recording of a match that is over, if there is one, and note how it ended, unless that is no
+        match of the ratings. RecordingError or OSError if that cannot be."""
+        if recorder is not None:
+            self.leave(recorder)
         if not game.is_rated:
             return
         view, ended = game.view(), time.strftime("%Y-%m-%dT%H:%M:%S%z")
         add_game(
             self.folder / GAMES, self._named(game), view.score,
-            recording=recorder.name, ending=view.ending, seed=seed, ended=ended,
+            recording=recorder.name if recorder else "", ending=view.ending, seed=seed, ended=ended,
         )  # fmt: skip
 
     def leave(self, recorder: GameRecorder) -> None:

@@ -40,8 +40,8 @@ async def _recording(request: web.Request) -> web.Response:
 
 async def _diagnosis(request: web.Request) -> web.Response:
     """How far the diagnosis of a recording is; once it is there, what was concealed in the game besides."""
-    name, _ = _asked(request)
-    state: dict[str, object] = {**request.app[DIAGNOSER].state(name)}
+    name, folder = _asked(request)
+    state: dict[str, object] = {**request.app[DIAGNOSER].state(name, folder)}
     if state["state"] == "there":
         state["concealed"] = revealed(request.app[RECORDS].folder, name)
     return web.json_response(state, headers=HEADERS)
@@ -56,7 +56,7 @@ async def _diagnose(request: web.Request) -> web.Response:
 async def _diagnosed(request: web.Request) -> web.Response:
     """What was found in a recording, and what that makes of the predictions."""
     name, folder = _asked(request)
-    diagnosis = request.app[DIAGNOSER].find(name)
+    diagnosis = request.app[DIAGNOSER].find(name, folder)
     if diagnosis is None:
         raise web.HTTPNotFound(text=f"there is no diagnosis of {name[:80]!r} yet")
     return _json(await _read(request, folder, diagnosis))

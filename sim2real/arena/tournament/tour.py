@@ -10,6 +10,7 @@ from baselines.matches.played_games import Game as Played
 from sim2real.arena import messages
 from sim2real.arena.game import Game
 from sim2real.arena.listener import Listener
+from sim2real.arena.lobby import GONE
 from sim2real.arena.recordings.game_recorder import GameRecorder
 from sim2real.arena.recordings.records import Records
 from sim2real.arena.session import Session
@@ -25,6 +26,7 @@ class Tour(Session):
     match is added."""
 
     again = False
+    failure = GONE  # what is deterministic fails again, so nobody comes back by itself
 
     def __init__(
         self, players: Sequence[str], games: list[Played], seed: int, records: Records, lateness: Lateness | None = None
@@ -46,7 +48,7 @@ class Tour(Session):
     def _greeting(self, listener: Listener) -> list[str]:
         return [*super()._greeting(listener), self._standings]
 
-    async def _keep(self, recorder: GameRecorder, game: Game, seed: int) -> None:
+    async def _keep(self, recorder: GameRecorder | None, game: Game, seed: int) -> None:
         await super()._keep(recorder, game, seed)
         self._games.append((game.names, game.view().score))
         self._standings = await asyncio.to_thread(self._computed)

@@ -68,6 +68,8 @@ def test_delays_and_jumps_of_made_up_pictures() -> None:
     places[:, 0], places[150, 1] = 0.25, 0.508
     still = Seen([], pictures(0.0), [(0.0, 0.25, 0.5)])
     assert still.beyond() == pytest.approx((0.008, 0.008), abs=1e-4)
+    still.over, seen.over = 1.49, 1.5
+    assert still.beyond() == pytest.approx((0.0, 0.0), abs=1e-4) and seen.delays() == []
 
 
 @pytest.mark.parametrize(

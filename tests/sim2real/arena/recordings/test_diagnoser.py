@@ -103,6 +103,10 @@ def test_a_diagnosis_that_fails_says_why_and_can_be_asked_for_again(tmp_path: Pa
     served(check, Records(tmp_path / "out", [broken, DEMO]))
 
 
+def begun_in(folder: Path) -> list[Path]:
+    return list((folder / "out").glob("diagnoses/*/pid"))
+
+
 def test_they_go_on_one_at_a_time_and_end_with_the_server(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     instead(monkeypatch, "out.mkdir(parents=True); (out / 'pid').write_text(f'{os.getpid()} '); time.sleep(600)")
     (other := tmp_path / "other").mkdir()
@@ -112,16 +116,16 @@ def test_they_go_on_one_at_a_time_and_end_with_the_server(tmp_path: Path, monkey
     async def check(client: Any) -> None:
         for name in (DEMO.name, DEMO.name, "other"):
             await asked(client, name, "POST")
-        written = tmp_path / "out" / "diagnoses" / DEMO.name / "pid"
-        while not (written.exists() and written.read_text().endswith(" ")):
+        while not (found := [path for path in begun_in(tmp_path) if path.read_text().endswith(" ")]):
             await asyncio.sleep(0.02)
-        begun.append(int(written.read_text()))
+        begun.append(int(found[0].read_text()))
         assert os.getpriority(os.PRIO_PROCESS, begun[0]) == diagnoser.LOWEST_PRIORITY
         assert (await asked(client, DEMO.name))["words"].startswith("diagnosing for ")
         assert (await asked(client, "other"))["words"] == "waiting for another diagnosis"
 
     served(check, Records(tmp_path / "out", [DEMO, other]))
-    assert [path.parent.name for path in (tmp_path / "out").glob("diagnoses/*/pid")] == [DEMO.name]
+    (only,) = begun_in(tmp_path)
+    assert only.parent.name.startswith(f"{DEMO.name}-")
     with pytest.raises(ProcessLookupError):
         os.kill(begun[0], 0)
 
@@ -142,7 +146,7 @@ def test_what_was_concealed_is_said_after_the_diagnosis_alone(tmp_path: Path, mo
     made = write_diagnosis(tmp_path / "made", EFFECTS)
     go_on = tmp_path / "go on"
     wait = f"go_on = pathlib.Path({str(go_on)!r})\nwhile not go_on.exists(): time.sleep(0.02)\n"
-    instead(monkeypatch, f"import shutil\n{wait}shutil.copytree({str(made)!r}, out)")
+    instead(monkeypatch, f"import shutil\n{wait}shutil.copytree({str(made)!r}, out, copy_function=shutil.copy)")
     records = Records(tmp_path / "out")
     seed = next(seed for seed in range(100) if draw(seed).mechanism == "table_tilt")
     name = concealed(records, seed)
@@ -181,3 +185,18 @@ def test_a_concealed_table_is_played_on_and_the_seed_draws_it() -> None:
     (_, down), (_, level) = (puck_motion(game.tables.states[0])[:2] for game in (tilted, plain))
     assert down < level - 0.01
     assert {draw(seed).words for seed in range(200)} == {table.words for table in TABLES}
+
+
+def test_a_diagnosis_is_of_one_recording_and_no_newer_one(tmp_path: Path) -> None:
+    """Two recordings of one name, as `play --record` makes them; and one that was made anew."""
+    found = diagnoser.Diagnoser(tmp_path / "out" / "diagnoses", {})
+    for place in (one := tmp_path / "monday" / "game_1", other := tmp_path / "friday" / "game_1"):
+        place.mkdir(parents=True)
+        (place / "meta.json").write_text("{}")
+    assert found.find("game_1", one) is None
+    (made := found._place("game_1", one)).mkdir(parents=True)
+    (made / "diagnosis.json").write_text("{}")
+    assert found.find("game_1", one) == made and found.find("game_1", other) is None
+    later = (made / "diagnosis.json").stat().st_mtime + 1.0
+    os.utime(one / "meta.json", (later, later))
+    assert found.find("game_1", one) is None

@@ -17,6 +17,7 @@ from aiohttp.test_utils import TestClient, TestServer  # noqa: E402
 from baselines.matches.played_games import Game, pairs_of, read_games  # noqa: E402
 from baselines.ratings.rating import fit_ratings_from_pairs  # noqa: E402
 from sim2real.arena.lobby import Lobby  # noqa: E402
+from sim2real.arena.recordings import records as records_module  # noqa: E402
 from sim2real.arena.recordings.records import GAMES, Records  # noqa: E402
 from sim2real.arena.server import make_app  # noqa: E402
 from sim2real.arena.tournament import tour as tour_module  # noqa: E402
@@ -76,10 +77,13 @@ async def heard(line: Any, kind: str) -> dict[str, Any]:
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("room", [1e9, -1.0])
 def test_the_next_match_begins_by_itself_and_all_see_the_standings(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    room: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """With room for recordings, and without."""
     monkeypatch.setattr(tour_module, "PAUSE", 0.2)
+    monkeypatch.setattr(records_module, "MOST", room)
     games: list[Game] = []
 
     async def run() -> None:
