@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from baselines.matches.played_games import add_game
 from sim2real.arena.recordings.records import GAMES
@@ -35,7 +35,7 @@ class Screenshot:
     words: tuple[str, ...]
     act: Callable[[Any], None]
     size: tuple[int, int] = WIDE
-    scheme: str = "light"
+    scheme: Literal["light", "dark"] = "light"
     query: str = ""
 
 
@@ -97,8 +97,8 @@ def take(root: Path, names: Sequence[str]) -> list[Path]:
         for name in names or SCREENSHOTS:
             one, file = SCREENSHOTS[name], root / FOLDER / f"arena_{name}.jpg"
             with _arena(root, one.words) as address:
-                size = dict(zip(("width", "height"), one.size, strict=True))
-                page = chromium.new_page(viewport=size, color_scheme=one.scheme)
+                width, height = one.size
+                page = chromium.new_page(viewport={"width": width, "height": height}, color_scheme=one.scheme)
                 page.goto(address + one.query)
                 one.act(page)
                 page.screenshot(path=file, type="jpeg", quality=QUALITY)
