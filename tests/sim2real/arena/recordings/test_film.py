@@ -32,9 +32,7 @@ def written(folder: Path) -> Path:
     """A recording of two seconds, in which the puck goes along the table at 0.6 m/s from x 0.3 and y 0.7 m."""
     t = np.arange(0.0, 2.0, 1.0 / RATE)
     y, far = np.full(len(t), 0.7), np.full(len(t), 1.8)
-    columns = dict(
-        zip(("t", "puck_x", "puck_y", "opponent_x", "opponent_y"), (t, 0.3 + 0.6 * t, y, far, y), strict=True)
-    )
+    columns: dict[str, np.ndarray] = {"t": t, "puck_x": 0.3 + 0.6 * t, "puck_y": y, "opponent_x": far, "opponent_y": y}
     write_recording(folder, Recording(folder.name, META, frames=Stream(columns)))
     return folder
 
