@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 import subprocess
 import sys
@@ -11,9 +12,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
-
-from baselines.matches.played_games import add_game
-from sim2real.arena.recordings.records import GAMES
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 FOLDER = Path("docs") / "assets"
@@ -112,8 +110,8 @@ def take(root: Path, names: Sequence[str]) -> list[Path]:
 def _arena(root: Path, words: Sequence[str]) -> Iterator[str]:
     """The address of an arena with some matches behind it."""
     with tempfile.TemporaryDirectory() as folder:
-        for one, two, *score in PLAYED:
-            add_game(Path(folder) / GAMES, (one, two), score, recording="", ending="points", seed=0, ended="")
+        lines = [json.dumps({"players": [one, two], "score": score}) for one, two, *score in PLAYED]
+        (Path(folder) / "games.jsonl").write_text("".join(f"{line}\n" for line in lines))
         command = [sys.executable, "-m", "puckpilot", "arena", *words, "--port", "0", "--out", folder]
         with subprocess.Popen(command, cwd=root, stdout=subprocess.PIPE, text=True) as process:
             assert process.stdout is not None
