@@ -172,13 +172,14 @@ def test_a_recording_is_shown_beside_the_simulator(browser: Any) -> None:
 
 def test_what_a_diagnosis_found_is_shown_and_its_prediction_is_nearer(browser: Any, tmp_path: Path) -> None:
     """The button finds a diagnosis that was made before, of the demo's own tilt; a narrow page has room for it."""
-    demo, tilt = ROOT / "sim2real" / "demo_recording", {"table_tilt": {"tilt_x": 0.02, "tilt_y": -0.012}}
+    demo = Path(shutil.copytree(ROOT / "sim2real" / "demo_recording", tmp_path / "demo"))
+    tilt = {"table_tilt": {"tilt_x": 0.02, "tilt_y": -0.012}}
     with arena(str(demo), "--out", str(tmp_path)) as address:
         page = replayed(browser.new_page(viewport={"width": 390, "height": 800}), address, 14.0)
         until(page, lambda: page.is_visible("#diagnose"))
         assert not page.is_visible("#findings") and not page.is_visible("#law")
         before = distance(page)
-        write_diagnosis(tmp_path / "diagnoses" / "demo_recording", tilt)
+        write_diagnosis(tmp_path / "diagnoses" / "demo", tilt)
         page.click("#diagnose")
         until(page, lambda: page.is_visible("#law"), 120.0)
         assert page.inner_text("#found") == "\n".join(LINES) and not page.is_visible("#diagnose")

@@ -24,8 +24,8 @@ import sys, puckpilot
 from sim2real.arena import game
 from sim2real.arena.tournament import tour
 tour.PAUSE = 1.0
-def short(self, names, seed, made=game.Game.__init__):
-    made(self, names, seed)
+def short(self, names, seed, made=game.Game.__init__, **choices):
+    made(self, names, seed, **choices)
     self.tables.states["steps"] = 180 * 120 - 120
 game.Game.__init__ = short
 sys.exit(puckpilot.main(sys.argv[1:]))
