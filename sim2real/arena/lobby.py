@@ -17,7 +17,8 @@ MOST_SESSIONS = 8
 MOST_WATCHERS = 64
 # Codes with which a page is let go that does not come back: another page has its game, or it ended
 TAKEN_OVER, GONE = 4001, 4002
-Begin = Callable[[int, Lateness], Session]  # with a seed; steps are counted with those of the other games
+# With a seed, in any thread; steps are counted with those of the other games
+Begin = Callable[[int, Lateness], Session]
 KEPT = 30.0  # s that a game waits for its person to come back
 
 
@@ -37,6 +38,7 @@ class Lobby:
         self._names, self._seed = names, seed
         self._begin = begin or (lambda seed, lateness: Session(names, seed, records, lateness))
         self._sessions: dict[str, Session] = {}
+        self._making = asyncio.Lock()  # one session at a time, so that all who watch find the same
         self._ending: set[asyncio.Task[None]] = set()
         self.lateness = Lateness()  # of all games
 
@@ -50,7 +52,7 @@ class Lobby:
         plays = PERSON in self._names and not watch
         if not plays and self.watchers >= MOST_WATCHERS:
             raise RefusedError(WSCloseCode.TRY_AGAIN_LATER, "the arena is full")
-        session = self._watched(watch) if watch else self._session(known)
+        session = self._watched(watch) if watch else await self._session(known)
         if plays:
             session.free_seat(TAKEN_OVER, "this game goes on in another page")
         await session.serve(socket, transport, plays)
@@ -71,16 +73,18 @@ class Lobby:
                 return session
         raise RefusedError(GONE, "there is no such game any more")
 
-    def _session(self, known: str) -> Session:
-        for session in self._sessions.values():
-            if session.id == known or PERSON not in self._names:
-                return session
-        if len(self._sessions) >= MOST_SESSIONS:
-            raise RefusedError(WSCloseCode.TRY_AGAIN_LATER, "the arena is full")
-        self._seed = (self._seed + 1000) % (1 << 63)
-        session = self._begin(self._seed, self.lateness)
-        self._sessions[session.id] = session
-        return session
+    async def _session(self, known: str) -> Session:
+        async with self._making:
+            for session in self._sessions.values():
+                if session.id == known or PERSON not in self._names:
+                    return session
+            if len(self._sessions) >= MOST_SESSIONS:
+                raise RefusedError(WSCloseCode.TRY_AGAIN_LATER, "the arena is full")
+            self._seed = (self._seed + 1000) % (1 << 63)
+            session = await asyncio.to_thread(self._begin, self._seed, self.lateness)  # while the others play
+            session.start()
+            self._sessions[session.id] = session
+            return session
 
     def _forget(self) -> None:
         """End games whose person did not come back."""

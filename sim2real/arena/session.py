@@ -23,7 +23,7 @@ MakeGame = Callable[[tuple[str, str], int], Game]  # of both names and a seed
 
 class Session:
     """A game, its clock and its listeners; `id` is known to the page that plays, and lets it come back; `watched_as` to
-    those who look on."""
+    those who look on. Its game can be made in any thread, all else happens in the loop's, from `start` on."""
 
     again = True  # whether a page may ask for another match
     failure = WSCloseCode.INTERNAL_ERROR  # with which pages are let go where a player failed: they come back
@@ -47,9 +47,16 @@ class Session:
         self._recorder: GameRecorder | None = None
         self._looked = False  # whether there is a recorder, or room for none
         self._recorded = ""  # the name of the recording, once it is complete
-        self._task = asyncio.create_task(Ticking(self._tick, TICKS, lateness).run())
-        self._task.add_done_callback(self._stopped)
+        self._ticking = Ticking(self._tick, TICKS, lateness)
+        self._task: asyncio.Task[None] | None = None
         self._beside: set[asyncio.Task[None]] = set()
+        self._making = False  # whether another match is being made
+        self._closed = False
+
+    def start(self) -> None:
+        """Let the clock go, from now on."""
+        self._task = asyncio.create_task(self._ticking.run())
+        self._task.add_done_callback(self._stopped)
 
     @property
     def is_seen(self) -> bool:
@@ -115,9 +122,11 @@ class Session:
         task.add_done_callback(self._beside.discard)
 
     def _stopped(self, task: asyncio.Task[None]) -> None:
-        """Say why the game stopped, if a player failed in it, and let the pages go."""
-        if task.cancelled() or (error := task.exception()) is None:
-            return
+        if not task.cancelled() and (error := task.exception()) is not None:
+            self._fail(error)
+
+    def _fail(self, error: BaseException) -> None:
+        """Say why the game stopped, for a player failed in it, and let the pages go."""
         print(f"puckpilot arena: a game stopped, {type(error).__name__}: {error}", file=sys.stderr, flush=True)
         self.failed = True
         self.dismiss(self.listeners, self.failure, "a player failed")
@@ -164,13 +173,23 @@ class Session:
         elif isinstance(said, messages.Aim) and self.game.person is not None:
             self.game.person.aim(said.x, said.y, said.sent)
         elif isinstance(said, messages.Again) and self.game.over and self.again:
-            self._begin(self.names, self._seed + 1)
+            self._do(self._begin(self.names, self._seed + 1))
 
-    def _begin(self, names: tuple[str, str], seed: int) -> None:
-        """Begin another match."""
+    async def _begin(self, names: tuple[str, str], seed: int) -> None:
+        """Begin another match, unless one is being made; other games go on meanwhile."""
+        if self._making:
+            return
+        self._making = True
+        try:
+            game = await asyncio.to_thread(self._make_game, names, seed)
+        except Exception as error:
+            return self._fail(error)
+        finally:
+            self._making = False
+        if self._closed:
+            return game.tables.close()
         self.game.tables.close()
-        self.names, self._seed = names, seed
-        self.game, self._recorder = self._make_game(names, seed), None
+        self.names, self._seed, self.game, self._recorder = names, seed, game, None
         self._looked, self._recorded = False, ""
         for each in self.listeners:
             each.tell(self._welcome(each))
@@ -189,8 +208,10 @@ class Session:
         return messages.welcome(self.game.tables.params[0], self.names, again, **own)
 
     async def close(self) -> None:
-        """End the game; what was played of it is a recording."""
-        self._task.cancel()
+        """End the game; what was played of it is a recording, and no other match begins."""
+        self._closed = True
+        if self._task is not None:
+            self._task.cancel()
         try:
             if self._recorder is not None and not self.game.over:
                 await asyncio.to_thread(self._records.leave, self._recorder)

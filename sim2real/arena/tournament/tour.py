@@ -33,7 +33,6 @@ class Tour(Session):
     ) -> None:
         """ValueError, in one line, for an unknown player."""
         self._players, self._games, self._first_seed = players, games, seed
-        self._ended = False
         self._standings = self._computed()
         super().__init__(*self._next(), records, lateness)
 
@@ -55,10 +54,5 @@ class Tour(Session):
         for listener in self.listeners:
             listener.tell(self._standings)
         await asyncio.sleep(PAUSE)
-        if not self._ended:
-            self._begin(*self._next())
-
-    async def close(self) -> None:
-        """See `Session.close`; no other match begins."""
-        self._ended = True
-        await super().close()
+        if not self._closed:
+            await self._begin(*self._next())

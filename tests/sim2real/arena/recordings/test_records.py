@@ -78,6 +78,7 @@ def left(folder: Path, after: Callable[[], object] = lambda: None) -> None:
 
     async def play() -> None:
         session = Session(("interceptor", "still"), 3, Records(folder))
+        session.start()
         session.listeners.add(cast(Any, type("Looker", (), {"show": lambda self, state: None})()))
         while session.game.ticks < 30:
             await asyncio.sleep(0.01)
@@ -151,6 +152,7 @@ def test_a_game_that_is_completed_holds_up_no_other(tmp_path: Path, monkeypatch:
 
     async def play() -> None:
         session = Session(("interceptor", "still"), 3, Records(tmp_path))
+        session.start()
         session.listeners.add(cast(Any, type("Looker", (), {"show": lambda self, state: None})()))
         while session.game.ticks < 5:
             await asyncio.sleep(0.01)
