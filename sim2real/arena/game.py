@@ -58,6 +58,12 @@ class Game:
         """The seat of a person, None where two players play."""
         return next((chair for chair in self.chairs if isinstance(chair, PersonChair)), None)
 
+    @property
+    def robot(self) -> np.void:
+        """The mallet of seat 0, a `mallet.MALLET`: its modes now, and its plan from the tick's begin on."""
+        mallet: np.void = self.tables.states[0]["mallets"][0]
+        return mallet
+
     def tick(self) -> None:
         """Play a 120th of a second; nothing once the match is over."""
         if self.over:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Coroutine
 from aiohttp import WSCloseCode, web
 
 from sim2real.arena import messages
-from sim2real.arena.game import PERSON, TICKS, Game, View
+from sim2real.arena.game import PERSON, TICKS, Game
 from sim2real.arena.listener import Listener
 from sim2real.arena.recordings.game_recorder import GameRecorder
 from sim2real.arena.recordings.records import Records
@@ -74,8 +74,7 @@ class Session:
         if not self._looked:
             self._begin_recording()
         self.game.tick()
-        view = self.game.view()
-        self._record(view)
+        self._record()
         if self.game.ticks % STATE_EVERY == 0 or self.game.over:
             state = self._state()
             for listener in self.listeners:
@@ -95,11 +94,11 @@ class Session:
         except (OSError, ValueError) as error:
             _lost(error)
 
-    def _record(self, view: View) -> None:
+    def _record(self) -> None:
         """Record what there is to see, as long as that can be: the game goes on in any case."""
         try:
             if self._recorder is not None:
-                self._recorder.add(view)
+                self._recorder.add(self.game)
         except (OSError, ValueError) as error:
             self._recorder = None
             _lost(error)

@@ -6,12 +6,15 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from puckpilot_env.files import small_file
 from puckpilot_env.files.toml_file import refuse_unknown, section
 from puckpilot_env.options import profile_file
 from puckpilot_env.options.draws_file import FORMAT as DRAWS_FORMAT
 from puckpilot_env.options.effects_file import FORMAT as EFFECTS_FORMAT
 from puckpilot_env.parameters import TABLE, checked
+from sim2real.recording.checks import FORMAT
 from sim2real.recording.folder import Recording
 
 FROM_META = {
@@ -34,6 +37,14 @@ def stated_sizes(recording: Recording) -> dict[str, float]:
     """The sizes that the recording states, by parameter name."""
     stated = {name: recording.nominal(section, key) for name, (section, key) in FROM_META.items()}
     return {name: value for name, value in stated.items() if value is not None}
+
+
+def recording_meta(p: np.void, frame_rate: float, note: str) -> dict[str, Any]:
+    """The content of meta.json for a table of these parameters, whose camera has so many frames a second."""
+    meta: dict[str, Any] = {"format": FORMAT}
+    for name, (part, key) in FROM_META.items():
+        meta.setdefault(part, {})[key] = float(p[name])
+    return meta | {"camera": {"rate_hz": frame_rate, "position_std_m": None, "place_std_m": None}, "note": note}
 
 
 def read_baseline(path: Path) -> dict[str, float]:

@@ -1,4 +1,4 @@
-"""A game of the arena as a recording: what a perfect camera and the encoders of seat 0 would have seen."""
+"""A game of the arena as a recording: what a perfect camera and the encoders of seat 0 see, and the gantry's orders."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import re
 import time
 from pathlib import Path
 
-from puckpilot_env.tables import Tables
-from sim2real.arena.game import TICKS, Game, View
-from sim2real.recording.checks import FORMAT
+from sim2real.arena.game import TICKS, Game
+from sim2real.arena.recordings.orders import Orders
+from sim2real.recording.table_parameters import recording_meta
 from sim2real.table.recorder.draft import RecordingDraft
 
 EVERY = TICKS  # rows that are written at once
@@ -24,16 +24,21 @@ class GameRecorder:
     def __init__(self, folder: Path, game: Game, names: tuple[str, str], seed: int) -> None:
         self.name = _name(folder, names)
         note = f"arena: {names[0]} (the robot's seat) and {names[1]}, seed {seed}; exact positions"
-        self._draft = RecordingDraft(folder / self.name, meta_of(game.tables, note))
+        self._draft = RecordingDraft(folder / self.name, recording_meta(game.tables.params[0], TICKS, note))
         self._frames: list[tuple[float, ...]] = []
         self._mallet: list[tuple[float, ...]] = []
-        self.add(game.view())
+        self._commands: list[tuple[float, ...]] = []
+        self._orders = Orders(1.0 / TICKS)
+        self.add(game)
 
-    def add(self, view: View) -> None:
-        """Record what there is to see now."""
+    def add(self, game: Game) -> None:
+        """Record what there is to see now, and by which orders the robot's mallet came there."""
+        view = game.view()
         puck, robot, opponent = (place or NOWHERE for place in (view.puck, *view.mallets))
         self._frames.append((view.time, *puck, *opponent))
         self._mallet.append((view.time, *robot, *NOWHERE))
+        if game.ticks and (row := self._orders.row((game.ticks - 1) / TICKS, game.robot)) is not None:
+            self._commands.append(row)
         if len(self._frames) >= EVERY:
             self._write()
 
@@ -45,20 +50,8 @@ class GameRecorder:
     def _write(self) -> None:
         self._draft.add("frames", self._frames)
         self._draft.add("mallet", self._mallet)
-        self._frames, self._mallet = [], []
-
-
-def meta_of(tables: Tables, note: str) -> dict[str, object]:
-    """The content of meta.json for a recording of the first of these tables."""
-    p = tables.params[0]
-    return {
-        "format": FORMAT,
-        "table": {"length_m": float(p["length"]), "width_m": float(p["width"]), "goal_width_m": float(p["goal_width"])},
-        "puck": {"radius_m": float(p["puck_radius"])},
-        "mallet": {"radius_m": float(p["mallet_radius"])},
-        "camera": {"rate_hz": float(TICKS), "position_std_m": None},
-        "note": note,
-    }
+        self._draft.add("commands", self._commands)
+        self._frames, self._mallet, self._commands = [], [], []
 
 
 def _name(folder: Path, names: tuple[str, str]) -> str:

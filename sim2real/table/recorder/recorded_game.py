@@ -6,9 +6,10 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from sim2real.recording.table_parameters import recording_meta
 from sim2real.table.game.robot_seat import RobotSeat
 from sim2real.table.recorder.draft import RecordingDraft
-from sim2real.table.recorder.recorded_table import DRIVE_NOTE, RecordedTable, recording_meta
+from sim2real.table.recorder.recorded_table import DRIVE_NOTE, RecordedTable
 
 
 @contextmanager

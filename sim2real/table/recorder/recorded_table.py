@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
 from puckpilot_env.physics.gantry.mallet import axis_coefficients
 from sim2real.link.board_clock import MICRO
-from sim2real.recording.checks import FORMAT
-from sim2real.recording.table_parameters import FROM_META
 from sim2real.table.backend import Backend, Motion, Place, Reading, SeenFrame, SeenMallet
 from sim2real.table.mallet_driver import MalletPlan, operating_volts
 from sim2real.table.plan_fates import SAID_WITHIN
@@ -131,14 +128,6 @@ class RecordedTable(Backend):
                 self._draft.add("commands", (_command(one, self._zero, self._p) for one in plans))
         finally:  # the disk may be full
             self._table.close()
-
-
-def recording_meta(p: np.void, frame_rate: float, note: str) -> dict[str, Any]:
-    """The content of meta.json for a table of these parameters, whose camera has so many frames a second."""
-    meta: dict[str, Any] = {"format": FORMAT}
-    for name, (section, key) in FROM_META.items():
-        meta.setdefault(section, {})[key] = float(p[name])
-    return meta | {"camera": {"rate_hz": frame_rate, "position_std_m": None, "place_std_m": None}, "note": note}
 
 
 def _frame(frame: SeenFrame, zero: float) -> tuple[float, ...]:

@@ -136,7 +136,7 @@ def concealed(records: Records, seed: int) -> str:
     recorder = records.begin(game, seed)
     for _ in range(30):
         game.tick()
-        recorder.add(game.view())
+        recorder.add(game)
     records.keep(recorder, game, seed)
     return recorder.name
 

@@ -32,7 +32,7 @@ def played(records: Records, ticks: int, names: tuple[str, str] = ("interceptor"
     for tick in range(ticks + 1):
         if tick:
             game.tick()
-            recorder.add(game.view())
+            recorder.add(game)
         table = game.tables.states[0]
         axes = [table["mallets"][k][axis] for k in (0, 1) for axis in ("x", "y")]
         mallets = [float(axis["rest"] + axis["slow"] + axis["fast"]) for axis in axes]  # the three parts of its motion
@@ -171,7 +171,7 @@ def test_what_a_killed_server_left_is_finished_by_the_next(tmp_path: Path) -> No
     recorder = records.begin(game, 1)
     for _ in range(150):
         game.tick()
-        recorder.add(game.view())
+        recorder.add(game)
     assert records.find(recorder.name) is None
     Records(tmp_path)  # the first still has it
     assert records.find(recorder.name) is None

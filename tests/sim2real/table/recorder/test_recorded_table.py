@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from sim2real.recording.folder import RecordingError, read_recording
-from sim2real.recording.table_parameters import stated_sizes
+from sim2real.recording.table_parameters import recording_meta, stated_sizes
 from sim2real.table.backend import Backend, Motion, Place, Reading, SeenFrame, SeenMallet
 from sim2real.table.game.game_record import GameRecord
 from sim2real.table.game.robot_seat import RobotSeat
 from sim2real.table.mallet_driver import MalletDriver, MalletPlan
 from sim2real.table.recorder.draft import RecordingDraft
 from sim2real.table.recorder.recorded_game import recorded
-from sim2real.table.recorder.recorded_table import RecordedTable, recording_meta
+from sim2real.table.recorder.recorded_table import RecordedTable
 
 HOME = (0.25, 0.5)
 BEGIN = 100.0  # s of the host's clock
