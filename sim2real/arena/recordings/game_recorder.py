@@ -28,7 +28,7 @@ class GameRecorder:
         self._frames: list[tuple[float, ...]] = []
         self._mallet: list[tuple[float, ...]] = []
         self._commands: list[tuple[float, ...]] = []
-        self._orders = Orders(1.0 / TICKS)
+        self._orders = Orders(1.0 / TICKS, game.robot)
         self.add(game)
 
     def add(self, game: Game) -> None:

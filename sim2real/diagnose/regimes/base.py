@@ -6,6 +6,7 @@ the results of other regimes only through `known`, so `after` determines the ord
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -136,6 +137,11 @@ class Regime:
         """Rms difference [m] between the predictions of two laws with listed parameters, over the recordings."""
         rows = [problem.residuals(one.all_values, (), found.clusters).r for one in (found, other)]
         return problem.noise_m * float(np.sqrt(np.mean((rows[0] - rows[1]) ** 2)))
+
+    def left_over(self, problem: Problem, rms: float) -> float:
+        """What residuals of `rms` times the noise leave unexplained [m], if they can be held against `least_size`;
+        infinite if not, where a refitted start hides a part of an effect."""
+        return math.inf
 
     def mismatch(self, problem: Problem, found: SearchResult) -> Mismatch:
         """The residuals before and after the fit, for the report."""

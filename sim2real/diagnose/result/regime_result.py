@@ -34,7 +34,9 @@ def regime_result(regime: Regime, problem: Problem, chosen: Selection, defaults:
     findings = _findings(problem, chosen)
     refuted = bool(chosen.rejected and not findings)
     large_residuals = not findings and _has_large_residuals(problem, found, validation.launches)
-    misfit = found.misfit or refuted or large_residuals or (found.inconclusive is not None and not findings)
+    suspected = found.misfit or refuted or large_residuals or (found.inconclusive is not None and not findings)
+    left = regime.left_over(problem, after)
+    misfit = suspected and left >= regime.least_size
     return RegimeResult(
         problem.regime,
         findings,
@@ -44,7 +46,7 @@ def regime_result(regime: Regime, problem: Problem, chosen: Selection, defaults:
         undetermined=MISFIT if misfit else "",
         next_recording=advice(problem, found, findings, found.clusters),
         doubt=_doubt(chosen),
-        minor=_minor(regime, chosen),
+        minor=_minor(regime, chosen.small, left if suspected and not misfit else None),
         misfit=misfit,
         better=len(validation.launches) >= IDENTIFICATION.fewest_launches
         and validation.loss(without_laws(found)).sum()
@@ -110,9 +112,12 @@ def _coefficients(found: SearchResult, law: Law) -> Mapping[str, Estimate]:
     }
 
 
-def _minor(regime: Regime, chosen: Selection) -> str:
-    laws = [f"{name} is significant, but its effect is only {1e3 * size:.2g} mm" for name, size in chosen.small.items()]
-    return f"{'; '.join(laws)}; effects below {1e3 * regime.least_size:g} mm are not reported" if laws else ""
+def _minor(regime: Regime, small: Mapping[str, float], left: float | None) -> str:
+    """What is too small to report: the sizes [m] of `small` laws by name, and what is `left` unexplained."""
+    words = [f"{name} is significant, but its effect is only {1e3 * size:.2g} mm" for name, size in small.items()]
+    if left is not None:
+        words.append(f"what no law explains is only {1e3 * left:.2g} mm")
+    return f"{'; '.join(words)}; effects below {1e3 * regime.least_size:g} mm are not reported" if words else ""
 
 
 def _doubt(chosen: Selection) -> str:
