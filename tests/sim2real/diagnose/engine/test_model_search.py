@@ -6,6 +6,7 @@ import pytest
 from sim2real.diagnose.engine.cross_validation import select
 from sim2real.diagnose.engine.model_search import search_model
 from sim2real.diagnose.pipeline import Diagnosis
+from sim2real.diagnose.regimes.contact.base import ContactRegime
 from sim2real.diagnose.result.regime_result import regime_result
 from sim2real.diagnose.result.result import Proof, RegimeResult
 from tests.sim2real.diagnose.engine.linear_problem import DEFAULTS, LAUNCHES, LinearProblem, LinearRegime
@@ -115,6 +116,26 @@ def test_an_unexplained_misfit_is_no_agreement():
     diagnosis = Diagnosis((found,))
     assert diagnosis.verdict == "undetermined"
     assert any("an effect is missing" in remark for remark in diagnosis.remarks)
+
+
+class ResidualsAsSizes(LinearRegime):
+    """Residuals say how large what is missing is, as those of contacts do."""
+
+    left_over = ContactRegime.left_over
+
+
+@pytest.mark.parametrize(("noise_m", "left"), [(1e-4, "0.23"), (1e-3, "")])
+def test_a_misfit_smaller_than_any_effect_that_is_reported_is_none(noise_m, left):
+    """The residuals are 2.5 times the noise: sqrt(2.5^2 - 1) = 2.29 of them are unexplained."""
+    problem = LinearProblem({}, 2.5)
+    problem.noise_m = noise_m
+    chosen = select(problem, search_model(problem, DEFAULTS, USE))
+    found = regime_result(ResidualsAsSizes(), problem, chosen, DEFAULTS)
+    assert found.misfit is not bool(left) and found.defaults is bool(left)
+    said = f"what no law explains is only {left} mm; effects below 0.5 mm are not reported"
+    assert found.minor == (said if left else "")
+    assert Diagnosis((found,)).verdict == ("agrees" if left else "undetermined")
+    assert regime_result(LinearRegime(), problem, chosen, DEFAULTS).misfit  # where a refitted start may hide more
 
 
 def test_a_regime_with_too_little_data_is_reported_and_does_not_affect_the_verdict():
