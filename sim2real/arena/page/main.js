@@ -97,7 +97,8 @@ function frame() {
   if (state) drawing.draw(state, seat === null ? null : pointer.place);
   part("latency").textContent = link.roundTrip === null ? "" : latency();
   if (!state) return; // as between a welcome and its first state
-  [canvas.dataset.shown, canvas.dataset.mallet] = [newest.time, JSON.stringify(newest.mallets[seat ?? 0])];
+  const shown = { shown: newest.time, puck: newest.puck, mallet: newest.mallets[seat ?? 0] };
+  for (const [name, value] of Object.entries(shown)) canvas.dataset[name] = JSON.stringify(value);
   canvas.dataset.drawn = JSON.stringify([now, ...state.mallets[seat ?? 0]]);
 }
 requestAnimationFrame(frame);

@@ -67,6 +67,12 @@ def mallet_of(page: Any) -> tuple[float, float]:
     return x, y
 
 
+def puck_of(page: Any) -> tuple[float, float]:
+    """Where the puck is [m], by the newest state that the page has."""
+    x, y = page.evaluate("JSON.parse(document.getElementById('table').dataset.puck)")
+    return x, y
+
+
 def test_one_joins_moves_and_comes_back_into_the_same_game(browser: Any) -> None:
     with arena("goalie") as address:
         page, connections = browser.new_page(viewport={"width": 1000, "height": 640}), []
@@ -102,6 +108,20 @@ def test_the_mallet_is_drawn_where_a_finger_points_from_the_other_end_of_a_phone
         until(page, lambda: shown(page) > 0.1)
         page.mouse.move(box["x"] + (1.07 - y) * metre, box["y"] + (2.07 - 1.3) * metre)
         until(page, lambda: json.loads(page.get_attribute("#table", "data-drawn"))[1] == pytest.approx(1.3, abs=5e-3))
+
+
+def test_a_person_hits_the_puck(browser: Any) -> None:
+    """With this seed the puck comes to the person's side and lies down there; nobody else moves it."""
+    with arena("still", "--seed", "7") as address:
+        page = opened(browser.new_page(viewport={"width": 1000, "height": 640}), address)
+        box = page.locator("#table").bounding_box()
+        until(page, lambda: shown(page) > 3.0)
+        x, y = puck_of(page)
+        assert x < 0.9
+        metre = box["width"] / 2.14  # the table and its margins
+        page.mouse.move(box["x"] + (0.07 + x) * metre, box["y"] + (1.07 - y) * metre)
+        until(page, lambda: puck_of(page)[0] > x + 0.5)  # farther than it could roll by itself
+        assert page.inner_text("#score") in ("0 : 0", "1 : 0")
 
 
 def test_a_friend_looks_on_by_the_link(browser: Any) -> None:
