@@ -13,7 +13,7 @@ import pytest
 
 from tests.places import ROOT
 from tests.sim2real.arena.running import arena
-from tests.sim2real.arena.test_in_a_browser import BROWSER, browser, replayed, shown, until  # noqa: F401
+from tests.sim2real.arena.test_in_a_browser import BROWSER, browser, chromium, replayed, shown, until  # noqa: F401
 
 playwright = pytest.importorskip("playwright.sync_api", reason="it comes with pip install '.[test]'")
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(BROWSER is None, reason="no Chromium is installed")]
