@@ -66,11 +66,12 @@ def lines_of(result: dict[str, Any]) -> list[str]:
     server, states = load["server"], load["states_a_second"]
     memory = "" if server["most_memory"] is None else f", {server['most_memory'] / 2**20:.0f} MB of memory at most"
     busy = "" if result["machine_load"] is None else f", the machine's load was {result['machine_load']:.1f}"
+    stolen = "" if load["stolen_s"] is None else f"; its host took {load['stolen_s']:g} s of this machine meanwhile"
     return [
         *lines,
         f"{load['games']} games and {load['watchers']} who look on, {load['seconds']:g} s: to each page "
         f"{states['median']:.1f} states a second, {states['least']:.1f} at least",
         f"the latest of {server['ticks']} ticks {1e3 * server['latest_s']:.1f} ms behind its deadline, "
-        f"{server['late_ticks']} over a tick, {server['lost_s']:g} s lost",
+        f"{server['late_ticks']} over a tick, {server['lost_s']:g} s lost{stolen}",
         f"the server took {load['cores']:.2f} of a core{memory}{busy}",
     ]

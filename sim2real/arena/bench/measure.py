@@ -9,6 +9,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -53,15 +54,26 @@ async def measure(player: str, leaps: int, seconds: float, seed: int, progress: 
             result["no_browser"] = str(error)
     with arena(player) as address:
         progress(len(DELAYS), len(DELAYS) + 1)
+        before = _stolen()
         rates, core = await load.rates(address, GAMES, WATCHERS, seconds)
+        after = _stolen()
         result["load"] = {
             "games": GAMES, "watchers": WATCHERS, "seconds": seconds,
             "states_a_second": {"median": float(np.median(rates)), "least": min(rates)},
-            "cores": core,
+            "cores": core, "stolen_s": None if before is None or after is None else round(after - before, 2),
             "server": await load.health(address),
         }  # fmt: skip
     result["machine_load"] = os.getloadavg()[0] if hasattr(os, "getloadavg") else None
     return result
+
+
+def _stolen() -> float | None:
+    """Processor time [s] until now that the machine's host gave to others while it was wanted here; None where the
+    system does not say."""
+    try:
+        return int(Path("/proc/stat").read_text().split(maxsplit=9)[8]) / os.sysconf("SC_CLK_TCK")
+    except (OSError, IndexError, ValueError):
+        return None
 
 
 async def _line(opened: Any, address: str, delay: float, leaps: int, seed: int) -> dict[str, Any]:
