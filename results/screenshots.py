@@ -69,11 +69,19 @@ def _diagnosed(page: Any) -> None:
     page.wait_for_timeout(300)
 
 
+def _concealed(page: Any) -> None:
+    """Watch a match to its end, and let its recording be diagnosed, which then says what was concealed."""
+    _until(page, "!document.getElementById('replay').hidden")
+    page.goto(page.evaluate("document.getElementById('replay').href"))
+    _diagnosed(page)
+
+
 SCREENSHOTS = {
     "play": Screenshot(("interceptor",), _play),
     "phone": Screenshot(("interceptor", "veteran"), _watch, NARROW, "dark"),
     "tournament": Screenshot(("goalie", "interceptor", "veteran"), _ratings),
     "replay": Screenshot((DEMO,), _replay, query="&at=13.8"),
+    "concealed": Screenshot(("veteran", "interceptor", "--concealed", "--seed", "SEED"), _concealed, (960, 800)),
     "diagnosed": Screenshot((DEMO,), _diagnosed, (960, 760), query="&at=13.8"),
 }
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any, Protocol
 
 import numpy as np
@@ -10,13 +9,12 @@ from numpy.typing import NDArray
 
 from baselines import make_player
 from baselines.player import Seat
-from puckpilot_env.batch.motion import mallet_motion
 from puckpilot_env.game import mirror
 from puckpilot_env.physics.gantry.plan import SMALLEST_VOLTAGE
 from puckpilot_env.tables import Tables
-from sim2real.arena.quick_mallet import QUICKER, quicken
+from sim2real.arena.placement import Placement
+from sim2real.arena.quick_mallet import quicken
 
-JUMP = 0.06  # m in a 120th of a second, twice what the gantry can: a mallet that went farther was placed anew
 CONSTANTS = ("slow_rate", "fast_rate", "rest_gain", "slow_gain", "fast_gain")  # of an axis
 MODES = ("rest", "slow", "fast")
 
@@ -53,16 +51,14 @@ class PersonChair:
 
     def __init__(self, name: str, tables: Tables, seat: int, quick: bool = False) -> None:
         """quick: without the gantry's limits; `law`: by what a page moves the mallet, see `_law`."""
-        self._jump = JUMP
         if quick:
             quicken(tables, seat)
-            self._jump *= QUICKER
         self.name, self._seat, self._tables = name, seat, tables
         self._low, self._high = tables.action_bounds
         self._size = np.array([tables.params["length"][0], tables.params["width"][0]])
         self._target = np.array([0.25 * self._size[0], 0.5 * self._size[1]])
         self._stamp, self._acted, self._age = 0.0, 0.0, 0  # of the aim; of that acted on, and for how many ticks
-        self._place, self._placed = self._now(), 0
+        self._placement, self._placed = Placement(self._mallet(), tables.variant.period), 0
         self.law = _law(tables, seat)
 
     def aim(self, x: float, y: float, stamp: float = 0.0) -> None:
@@ -84,17 +80,16 @@ class PersonChair:
     def ticked(self) -> None:
         """The action of `action` was played."""
         self._age += 1
-        before, self._place = self._place, self._now()
-        self._placed += math.dist(before, self._place) > self._jump
+        self._placed += self._placement.ticked(self._mallet())
 
-    def _now(self) -> tuple[float, float]:
-        x, y = mallet_motion(self._tables.states[0])[self._seat, :2].tolist()
-        return x, y
+    def _mallet(self) -> np.void:
+        mallet: np.void = self._tables.states[0]["mallets"][self._seat]
+        return mallet
 
     def followed(self) -> dict[str, Any]:
         """What a page needs to correct the mallet that it moves by itself: the stamp of the aim that was acted on, for
         how many ticks, the modes [m] of x and y, and how often the mallet was placed anew."""
-        axes = self._tables.states[0]["mallets"][self._seat]
+        axes = self._mallet()
         own = [[round(float(axes[axis][mode]), 6) for mode in MODES] for axis in "xy"]
         return {"aim": self._acted, "age": self._age, "own": own, "placed": self._placed}
 

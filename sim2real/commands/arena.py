@@ -153,12 +153,11 @@ def _begin(args: argparse.Namespace, names: tuple[str, str], records: Records) -
 def _serve(app: web.Application, host: str, port: int, page: str) -> int:
     """Serve, and print a page's address; the signal that ended it. ValueError, in one line, if it cannot listen."""
     import asyncio
-    import gc
 
     from sim2real.arena.server import serve
+    from sim2real.arena.ticking import let_nothing_hold_up
 
-    gc.collect()
-    gc.freeze()  # a full collection of all that was imported takes a tenth of a second, and would hold up every game
+    let_nothing_hold_up()
 
     def say(port: int) -> None:
         print(f"http://{f'[{host}]' if ':' in host else host}:{port}/{page}    Ctrl-C ends", flush=True)

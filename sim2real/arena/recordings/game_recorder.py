@@ -23,7 +23,8 @@ class GameRecorder:
 
     def __init__(self, folder: Path, game: Game, names: tuple[str, str], seed: int) -> None:
         self.name = _name(folder, names)
-        note = f"arena: {names[0]} (the robot's seat) and {names[1]}, seed {seed}; exact positions"
+        by = "" if game.concealed else f", seed {seed}"  # from which what is concealed could be computed
+        note = f"arena: {names[0]} (the robot's seat) and {names[1]}{by}; exact positions"
         self._draft = RecordingDraft(folder / self.name, recording_meta(game.tables.params[0], TICKS, note))
         self._frames: list[tuple[float, ...]] = []
         self._mallet: list[tuple[float, ...]] = []

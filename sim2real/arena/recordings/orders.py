@@ -10,12 +10,12 @@ import math
 
 import numpy as np
 
-AXES = ("x", "y")
+from sim2real.arena.placement import AXES, Placement
+
 COLUMNS = ("rest2", "volts", "t1", "t2")  # of an axis, in the order of commands.csv: rest2 is the target [m]
 NOTHING = (math.nan,) * 8  # the orders of a row
 LEAST_TIME = 1e-7  # s; a shorter part of a plan is rounding
 LEAST_CHANGE = 2e-6  # V, or s of a switch
-LEAST_DISTANCE = 1e-6  # m that no plan explains
 
 
 class Orders:
@@ -24,15 +24,13 @@ class Orders:
 
     def __init__(self, period: float, mallet: np.void) -> None:
         self._period = period
-        self._rests = _rests(mallet)
+        self._placement = Placement(mallet, period)
         self._plan: np.void | None = None  # of the newest row; None: it is a blank one, or none yet
         self._began = 0.0
 
     def row(self, begin: float, mallet: np.void) -> tuple[float, ...] | None:
         """The row of the tick that began at `begin` [s], from the mallet after it; None: no row."""
-        before, self._rests = self._rests, _rests(mallet)
-        led = [rest + self._moved(mallet[axis]) for rest, axis in zip(before, AXES, strict=True)]
-        if _differ(led, self._rests, LEAST_DISTANCE):  # it was placed anew
+        if self._placement.ticked(mallet):
             self._plan = None
             return begin, *NOTHING
         if self._plan is not None and self._is_followed(begin - self._began, mallet):
@@ -46,26 +44,12 @@ class Orders:
         assert self._plan is not None
         for axis in AXES:
             before, now = (self._volts(*one) for one in ((self._plan[axis], since), (mallet[axis], 0.0)))
-            if _differ(before, now, LEAST_CHANGE):
+            if len(before) != len(now) or max(abs(a - b) for a, b in zip(before, now, strict=True)) > LEAST_CHANGE:
                 return False
         return True
-
-    def _moved(self, axis: np.void) -> float:
-        """How far the rest mode goes in a tick of its plan [m]: `rest_gain` times the volts, see `gantry.mallet`."""
-        first, second = (min(float(axis[name]), self._period) for name in ("t1", "t2"))
-        return float(axis["rest_gain"] * axis["volts"]) * (2.0 * first - second)
 
     def _volts(self, axis: np.void, since: float) -> list[float]:
         """The volts [V] of a plan at `since` [s], and the times [s] until they change within the tick."""
         left = [float(axis[name]) - since for name in ("t1", "t2")]
         sign = 1.0 if left[0] > LEAST_TIME else -1.0 if left[1] > LEAST_TIME else 0.0
         return [sign * float(axis["volts"]), *(one for one in left if LEAST_TIME < one < self._period)]
-
-
-def _rests(mallet: np.void) -> list[float]:
-    """Where the axes would come to rest without volts [m]."""
-    return [float(mallet[axis]["rest"]) for axis in AXES]
-
-
-def _differ(one: list[float], other: list[float], least: float) -> bool:
-    return len(one) != len(other) or max(abs(a - b) for a, b in zip(one, other, strict=True)) > least

@@ -78,3 +78,18 @@ def test_a_goal_is_counted_and_the_match_ends_once() -> None:
 def test_an_unknown_player_is_refused() -> None:
     with pytest.raises(ValueError, match="unknown player 'goaly'"):
         Game((PERSON, "goaly"), 0)
+
+
+def test_a_mallet_that_was_placed_a_little_off_is_noticed_and_no_other() -> None:
+    """After a goal or a foul mallets stand at home, which may be near to where they were."""
+    game = Game((PERSON, "still"), 3)
+    assert game.person is not None
+    for tick in range(240):
+        game.person.aim(0.4 + 0.001 * tick, 0.5, tick)
+        game.tick()
+    assert game.person.followed()["placed"] == 0
+    game.tables.states[0]["mallets"][0]["x"]["rest"] += 0.02
+    game.tick()
+    assert game.person.followed()["placed"] == 1
+    game.tick()
+    assert game.person.followed()["placed"] == 1
