@@ -81,7 +81,7 @@ SCREENSHOTS = {
     "phone": Screenshot(("interceptor", "veteran"), _watch, NARROW, "dark"),
     "tournament": Screenshot(("goalie", "interceptor", "veteran"), _ratings),
     "replay": Screenshot((DEMO,), _replay, query="&at=13.8"),
-    "concealed": Screenshot(("veteran", "interceptor", "--concealed", "--seed", "SEED"), _concealed, (960, 800)),
+    "concealed": Screenshot(("veteran", "interceptor", "--concealed", "--seed", "13"), _concealed, (960, 800)),
     "diagnosed": Screenshot((DEMO,), _diagnosed, (960, 760), query="&at=13.8"),
 }
 
