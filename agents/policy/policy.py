@@ -186,13 +186,14 @@ def find_policy_player(name: str) -> Callable[[Seat], Player]:
     policy cannot be loaded.
     """
     file = policy_file(name)
-    if file.suffix != ONNX:
-        load_policy(file)  # so that a broken file is refused before any game
-    return partial(_make_player, file)
+    policy = None if file.suffix == ONNX else load_policy(file)  # so that a broken file is refused before any game
+    return partial(_make_player, file, policy)
 
 
-def _make_player(file: Path, seat: Seat) -> Player:
+def _make_player(file: Path, policy: Policy | None, seat: Seat) -> Player:
     own = variant_file(file, seat.variant)
+    if own == file and policy is not None:
+        return PolicyPlayer(policy, seat)
     if own.suffix == ONNX:
         from agents.policy.onnx_player import OnnxPlayer
 

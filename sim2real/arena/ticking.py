@@ -9,14 +9,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 MOST_BEHIND = 0.25  # s; what lags farther behind is not made up for, so that a machine that slept does not race
-
-SWITCH = 5e-4  # s after which a thread of work beside the games lets a tick go first
+SWITCH = 1e-4  # s after which a thread of work beside the games lets a tick go first
 
 
 def let_nothing_hold_up() -> None:
     """Keep the interpreter from holding ticks up, once all that they need was imported: a full collection of it takes a
-    tenth of a second, and a thread that works beside them keeps the interpreter for 5 ms at a time by
-    default."""
+    tenth of a second, and by default a thread that works beside them keeps the interpreter for 5 ms, of which a tick
+    needs it several times."""
     gc.collect()
     gc.freeze()
     sys.setswitchinterval(SWITCH)

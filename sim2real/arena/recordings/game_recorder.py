@@ -46,7 +46,7 @@ class GameRecorder:
     def finish(self) -> bool:
         """Put the recording in its place; False, and nothing is left, if nothing was played."""
         self._write()
-        return self._draft.finish()
+        return self._draft.finish(read_back=False)  # for which other games would wait
 
     def _write(self) -> None:
         self._draft.add("frames", self._frames)

@@ -7,8 +7,6 @@ import os
 import subprocess
 import sys
 from importlib.util import find_spec
-from types import TracebackType
-from typing import Self
 
 ENDING = 5.0  # s that the server may take to say goodbye to its pages
 
@@ -54,11 +52,3 @@ class Feed:
             process.kill()
             process.wait()
         process.stdout.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()

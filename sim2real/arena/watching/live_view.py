@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 
 from puckpilot_env.game import rules
 from sim2real.arena import messages
@@ -91,7 +91,7 @@ def watched(env: RobotSeat, names: tuple[str, str], port: int, held: bool) -> It
     ModuleNotFoundError as of `Feed`."""
     from sim2real.arena.watching.feed import Feed
 
-    with Feed(port) as feed:
+    with closing(Feed(port)) as feed:
         env.onlooker = LiveView(names, feed.put, Pace(held)).see
         try:
             yield feed.address

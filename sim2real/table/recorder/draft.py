@@ -11,6 +11,7 @@ import math
 import shutil
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
+from itertools import islice
 from pathlib import Path
 from typing import IO, Any
 
@@ -59,14 +60,14 @@ class RecordingDraft:
                 file.write(",".join(cells) + "\n")
         file.flush()
 
-    def finish(self) -> bool:
+    def finish(self, read_back: bool = True) -> bool:
         """Put the recording in its place; False, and nothing is left, no folder that was made for it either, if no row
         came. RecordingError, in one line, if it cannot be read back or its place was taken meanwhile; the draft stays
-        then."""
+        then. read_back: whether it is, for which a process does nothing else for some tenths of a second."""
         for file in self._files.values():
             file.close()
         try:
-            recorded = _put(self._draft, self.folder)
+            recorded = _put(self._draft, self.folder, read_back)
         finally:
             self._meta.close()  # and with it the lock
         if not recorded:
@@ -106,24 +107,30 @@ def columns(stream: str) -> tuple[str, ...]:
     return (*required, *(name for name in optional if name != "obstructed"))
 
 
-def _put(draft: Path, folder: Path) -> bool:
+def _put(draft: Path, folder: Path, read_back: bool = True) -> bool:
     """Move a complete draft to its place; False, and the draft is removed, if it has no rows. A stream without rows is
     left out."""
     for name in STREAMS:
         file = draft / f"{name}.csv"
-        if file.exists() and len(file.read_bytes().splitlines()) < 2:
+        if file.exists() and not _has_rows(file):
             file.unlink()
     if not any(draft.glob("*.csv")):
         shutil.rmtree(draft)
         return False
     try:
-        read_recording(draft)
+        if read_back:
+            read_recording(draft)
     except RecordingError as error:
         raise RecordingError(draft / error.file.name, f"{error.reason}; the draft stays", error.line) from None
     if folder.exists():
         raise RecordingError(folder, f"was made by something else meanwhile; the recording stays in {draft}")
     draft.rename(folder)
     return True
+
+
+def _has_rows(file: Path) -> bool:
+    with file.open("rb") as lines:
+        return sum(1 for _ in islice(lines, 2)) == 2
 
 
 def _finish_left(draft: Path, folder: Path) -> bool:

@@ -8,6 +8,7 @@ import socket
 import subprocess
 import sys
 import time
+from contextlib import closing
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
@@ -49,7 +50,7 @@ async def until_closed(line: Any) -> None:
 
 def test_who_knows_the_token_sees_what_is_fed_and_can_change_nothing() -> None:
     async def run() -> None:
-        with Feed(0) as feed:
+        with closing(Feed(0)) as feed:
             assert urlsplit(feed.address).hostname == "127.0.0.1"
             feed.put(WELCOME)
             feed.put(state(1.0))
