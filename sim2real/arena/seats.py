@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import lru_cache
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from baselines import make_player
-from baselines.player import Seat
+from baselines import Player, Seat, find_player
 from puckpilot_env.game import mirror
 from puckpilot_env.physics.gantry.plan import SMALLEST_VOLTAGE
 from puckpilot_env.tables import Tables
@@ -35,7 +36,7 @@ class PlayerChair:
     def __init__(self, name: str, tables: Tables, ticks: int, seed: int) -> None:
         """ticks: of one decision. ValueError, in one line, for an unknown player."""
         self.name, self._ticks = name, ticks
-        self._player = make_player(name, Seat.from_tables(tables, seed))
+        self._player = _maker(name)(Seat.from_tables(tables, seed))
         self._player.reset(np.ones(1, np.bool_))
         self._held = np.zeros(4, np.float32)
 
@@ -44,6 +45,12 @@ class PlayerChair:
         if tick % self._ticks == 0:
             self._held = self._player.act(observation[None].copy())[0]
         return self._held
+
+
+@lru_cache
+def _maker(name: str) -> Callable[[Seat], Player]:
+    """What makes the player of this name for a seat. A policy's file is read once: games would wait for that."""
+    return find_player(name)
 
 
 class PersonChair:
