@@ -55,7 +55,10 @@ class Lobby:
         session = self._watched(watch) if watch else await self._session(known)
         if plays:
             session.free_seat(TAKEN_OVER, "this game goes on in another page")
-        await session.serve(socket, transport, plays)
+        try:
+            await session.serve(socket, transport, plays)
+        finally:
+            asyncio.get_running_loop().call_later(KEPT + 1.0, self._forget)
 
     @property
     def games(self) -> int:

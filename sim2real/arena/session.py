@@ -204,7 +204,8 @@ class Session:
         again = self.again and (person is None or listener is self._player)
         if listener is self._player and person is not None:
             own = {"seat": self.names.index(PERSON), "id": self.id, "watch": self.watched_as, "law": person.law}
-        return messages.welcome(self.game.tables.params[0], self.names, again, **own)
+        names = [self._records.person if name == PERSON else name for name in self.names]
+        return messages.welcome(self.game.tables.params[0], names, again, **own)
 
     async def close(self) -> None:
         """End the game; what was played of it is a recording, and no other match begins."""

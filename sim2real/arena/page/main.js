@@ -7,6 +7,7 @@ import { Smoothing } from "./smoothing.js";
 import { Standings } from "./standings.js";
 
 const AIM_EVERY = 8; // ms between two aims at least
+const HINT = "point, or press an arrow key";
 const part = (id) => document.getElementById(id);
 const canvas = part("table");
 const drawing = new Drawing(canvas);
@@ -25,7 +26,7 @@ const hear = {
     drawing.fit();
     smoothing.clear();
     message.names.forEach((name, k) => { part(`name-${k}`).textContent = k === seat ? "you" : name; });
-    part("note").textContent = seat === null ? "watching" : "";
+    part("note").textContent = seat === null ? "watching" : HINT;
     part("again").hidden = part("replay").hidden = true;
     standings.show(false);
     canvas.style.cursor = seat === null ? "default" : "none";
@@ -73,6 +74,7 @@ function linked(id, page, query) {
 // server hears of it.
 function aimed(place, time) {
   if (seat === null || time - sent < AIM_EVERY) return;
+  if (part("note").textContent === HINT) part("note").textContent = "";
   sent = Math.max(time, before);
   mallet.aim(sent / 1000, place);
   link.say({ kind: "aim", x: place[0], y: place[1], sent });
@@ -80,7 +82,7 @@ function aimed(place, time) {
 
 // The round trip, and from where a person pointed to the first state that came of it.
 function latency() {
-  const line = `${link.roundTrip.toFixed(0)} ms`;
+  const line = `line ${link.roundTrip.toFixed(0)} ms`;
   return lag === null ? line : `${line}, pointer ${lag.toFixed(0)} ms`;
 }
 

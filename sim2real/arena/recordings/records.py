@@ -27,7 +27,7 @@ class Records:
 
     def __init__(self, folder: Path, others: Sequence[Path] = (), person: str = "guest") -> None:
         """person: the name of who plays, in records and ratings human:NAME."""
-        self._person = f"human:{person}"
+        self.person = person
         self.folder, self._others = folder, {path.resolve().name: path for path in others}
         check_folder(folder)
         finish_left_in(folder)
@@ -66,7 +66,7 @@ class Records:
 
     def _named(self, game: Game) -> tuple[str, str]:
         """Who plays, a person by name."""
-        one, two = (self._person if name == PERSON else name for name in game.names)
+        one, two = (f"human:{self.person}" if name == PERSON else name for name in game.names)
         return one, two
 
     def find(self, name: str) -> Path | None:

@@ -53,6 +53,11 @@ def test_what_does_not_go_with_a_recording_is_refused_in_one_line(
             ["still", "goalie", "random", "--concealed"],
             "--concealed is given with 3 players; expected one to play against",
         ),
+        (
+            ["out/a_recordin"],
+            "there is no folder 'out/a_recordin'; expected the folder of a recording, or a player's name",
+        ),
+        (["policy:out/a_run"], "no policy 'out/a_run'"),
     ],
 )
 def test_what_does_not_go_with_players_is_refused_in_one_line(

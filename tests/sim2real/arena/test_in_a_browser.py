@@ -133,14 +133,17 @@ def test_a_person_hits_the_puck(browser: Any) -> None:
 
 
 def test_a_friend_looks_on_by_the_link(browser: Any) -> None:
-    with arena("still") as address:
+    with arena("still", "--name", "ann") as address:
         page = opened(browser.new_page(), address)
         friend = opened(browser.new_page(), page.evaluate("document.getElementById('watch').href"))
         assert friend.inner_text("#note") == "watching" and friend.is_hidden("#watch") and page.is_visible("#watch")
         before = shown(page)
         friend.keyboard.press("ArrowUp")
         until(friend, lambda: shown(friend) > before + 0.3)
-        assert page.inner_text("#name-0") == "you" and page.inner_text("#note") == ""
+        assert page.inner_text("#name-0") == "you" and friend.inner_text("#name-0") == "ann"
+        assert page.inner_text("#note") == "point, or press an arrow key"
+        page.keyboard.press("ArrowUp")
+        until(page, lambda: page.inner_text("#note") == "")
 
 
 def test_the_arrow_keys_move_the_mallet(browser: Any) -> None:

@@ -12,6 +12,7 @@ import pytest
 pytest.importorskip("aiohttp", reason="it comes with pip install '.[test]'")
 from aiohttp.test_utils import TestClient, TestServer
 
+from sim2real.arena import lobby as lobby_module
 from sim2real.arena.game import PERSON, Game
 from sim2real.arena.lobby import Lobby
 from sim2real.arena.recordings.records import Records
@@ -105,3 +106,20 @@ def test_a_match_that_cannot_be_made_ends_the_game(tmp_path: Path, capfd: pytest
 
     asyncio.run(asyncio.wait_for(play(), 60.0))
     assert "a game stopped, RuntimeError: no more of it" in capfd.readouterr().err
+
+
+def test_a_game_that_is_left_is_completed_without_another_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    async def play() -> None:
+        app, lobby = lobby_of((PERSON, "still"), tmp_path, Game)
+        async with TestClient(TestServer(app)) as client:
+            socket = await joined(client)
+            await heard(socket, "state")
+            await socket.close()
+            for _ in range(100):
+                if not lobby.games and any(tmp_path.glob("[!.]*/frames.csv")):
+                    return
+                await asyncio.sleep(0.1)
+            pytest.fail("the game goes on")
+
+    monkeypatch.setattr(lobby_module, "KEPT", 0.2)
+    asyncio.run(asyncio.wait_for(play(), 60.0))
