@@ -48,8 +48,8 @@ def test_a_game_of_the_twin_is_watched(browser: Any) -> None:  # noqa: F811
             before, place = shown(page), page.get_attribute("#table", "data-mallet")
             until(page, lambda: shown(page) > before + 1.0 and page.get_attribute("#table", "data-mallet") != place)
             process.send_signal(signal.SIGINT)
-            until(page, lambda: page.inner_text("#note") == "the game is over")
-            assert process.wait(30.0) == 0
+            until(page, lambda: page.inner_text("#note") == "the game is over", 180.0)  # once the mallet is home
+            assert process.wait(60.0) == 0
         finally:
             process.kill()
 
