@@ -142,7 +142,7 @@ def test_a_friend_looks_on_by_the_link(browser: Any) -> None:
         until(friend, lambda: shown(friend) > before + 0.3)
         assert page.inner_text("#name-0") == "you" and friend.inner_text("#name-0") == "ann"
         assert page.inner_text("#note") == "point, or press an arrow key"
-        page.keyboard.press("ArrowUp")
+        page.keyboard.down("ArrowUp")
         until(page, lambda: page.inner_text("#note") == "")
 
 
