@@ -12,10 +12,10 @@ MOST_BEHIND = 0.25  # s; what lags farther behind is not made up for, so that a 
 SWITCH = 1e-4  # s after which a thread of work beside the games lets a tick go first
 
 
-def let_nothing_hold_up() -> None:
-    """Keep the interpreter from holding ticks up, once all that they need was imported: a full collection of it takes a
-    tenth of a second, and by default a thread that works beside them keeps the interpreter for 5 ms, of which a tick
-    needs it several times."""
+def avoid_pauses() -> None:
+    """Keep the interpreter from delaying ticks, once all that they need is imported: a full garbage collection takes a
+    tenth of a second, and by default another thread holds the interpreter's lock for 5 ms, which a tick takes several
+    times."""
     gc.collect()
     gc.freeze()
     sys.setswitchinterval(SWITCH)

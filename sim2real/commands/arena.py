@@ -176,9 +176,9 @@ def _serve(app: web.Application, host: str, port: int, page: str) -> int:
     import asyncio
 
     from sim2real.arena.server import serve
-    from sim2real.arena.ticking import let_nothing_hold_up
+    from sim2real.arena.ticking import avoid_pauses
 
-    let_nothing_hold_up()
+    avoid_pauses()
 
     def say(port: int) -> None:
         print(f"http://{f'[{host}]' if ':' in host else host}:{port}/{page}    Ctrl-C ends", flush=True)

@@ -66,7 +66,7 @@ def lines_of(result: dict[str, Any]) -> list[str]:
     server, states = load["server"], load["states_a_second"]
     memory = "" if server["most_memory"] is None else f", {server['most_memory'] / 2**20:.0f} MB of memory at most"
     busy = "" if result["machine_load"] is None else f", the machine's load was {result['machine_load']:.1f}"
-    stolen = "" if load["stolen_s"] is None else f"; its host took {load['stolen_s']:g} s of this machine meanwhile"
+    stolen = "" if load["stolen_s"] is None else f", steal time {load['stolen_s']:g} s"
     return [
         *lines,
         f"{load['games']} games and {load['watchers']} who look on, {load['seconds']:g} s: to each page "

@@ -68,8 +68,7 @@ async def measure(player: str, leaps: int, seconds: float, seed: int, progress: 
 
 
 def _stolen() -> float | None:
-    """Processor time [s] until now that the machine's host gave to others while it was wanted here; None where the
-    system does not say."""
+    """Steal time [s] until now, in which the host of a virtual machine ran others; None where that is not known."""
     try:
         return int(Path("/proc/stat").read_text().split(maxsplit=9)[8]) / os.sysconf("SC_CLK_TCK")
     except (OSError, IndexError, ValueError):

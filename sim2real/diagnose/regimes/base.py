@@ -138,9 +138,9 @@ class Regime:
         rows = [problem.residuals(one.all_values, (), found.clusters).r for one in (found, other)]
         return problem.noise_m * float(np.sqrt(np.mean((rows[0] - rows[1]) ** 2)))
 
-    def left_over(self, problem: Problem, rms: float) -> float:
-        """What residuals of `rms` times the noise leave unexplained [m], if they can be held against `least_size`;
-        infinite if not, where a refitted start hides a part of an effect."""
+    def misfit_size(self, problem: Problem, rms: float) -> float:
+        """The size [m] of a misfit with residuals of `rms` times the noise, comparable with `least_size`; infinite if
+        it is not, because refitted starts absorb a part of an effect."""
         return math.inf
 
     def mismatch(self, problem: Problem, found: SearchResult) -> Mismatch:

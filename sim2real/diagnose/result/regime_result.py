@@ -35,7 +35,7 @@ def regime_result(regime: Regime, problem: Problem, chosen: Selection, defaults:
     refuted = bool(chosen.rejected and not findings)
     large_residuals = not findings and _has_large_residuals(problem, found, validation.launches)
     suspected = found.misfit or refuted or large_residuals or (found.inconclusive is not None and not findings)
-    left = regime.left_over(problem, after)
+    left = regime.misfit_size(problem, after)
     misfit = suspected and left >= regime.least_size
     return RegimeResult(
         problem.regime,

@@ -42,8 +42,8 @@ class ContactRegime(Regime):
         moved = problem.predicted(found.all_values) - problem.predicted(other.all_values)
         return CONTACT.flight_time * float(np.sqrt(np.mean(np.sum(moved[:, :2] ** 2, axis=1))))
 
-    def left_over(self, problem: Problem, rms: float) -> float:
-        """See `Regime.left_over`: beyond the noise, of the way in `CONTACT.flight_time`."""
+    def misfit_size(self, problem: Problem, rms: float) -> float:
+        """See `Regime.misfit_size`: the excess over the noise, times `CONTACT.flight_time`."""
         return problem.noise_m * float(np.sqrt(max(rms**2 - 1.0, 0.0)))
 
 

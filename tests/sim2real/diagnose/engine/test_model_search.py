@@ -121,7 +121,7 @@ def test_an_unexplained_misfit_is_no_agreement():
 class ResidualsAsSizes(LinearRegime):
     """Residuals say how large what is missing is, as those of contacts do."""
 
-    left_over = ContactRegime.left_over
+    misfit_size = ContactRegime.misfit_size
 
 
 @pytest.mark.parametrize(("noise_m", "left"), [(1e-4, "0.23"), (1e-3, "")])
