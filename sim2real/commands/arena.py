@@ -14,13 +14,9 @@ from __future__ import annotations
 import argparse
 import os
 import re
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from functools import partial
 from itertools import pairwise
 from pathlib import Path
-from threading import Timer
 from typing import TYPE_CHECKING, NoReturn
 from urllib.parse import quote
 
@@ -33,7 +29,6 @@ if TYPE_CHECKING:
 PORT = 8420
 OPPONENT = "policy:champion"
 MOST_PLAYERS = 16
-SLOW = 5.0  # s without a word
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -85,25 +80,12 @@ def run(args: argparse.Namespace) -> NoReturn:
         names = _seated(args.players or [OPPONENT], args.seat)
         if args.quick and PERSON not in names:
             raise ValueError("--quick is given where you do not play; expected one player to play against")
-        with _said_if_slow("compiling the simulator and the players, once; it takes some minutes"):
-            for one in {names, *pairwise(args.players)}:
-                Game(one, seed_number(args.seed), quick=args.quick).tick()  # before anyone waits for it
+        for one in {names, *pairwise(args.players)}:
+            Game(one, seed_number(args.seed), quick=args.quick).tick()  # compiles before anyone waits for it
     token, records = secrets.token_urlsafe(12), Records(args.out, recordings, args.name)
     app = make_app(Lobby(names, args.seed, records, _begin(args, names, records)), records, token, diagnoses)
     page = f"replay?name={quote(recordings[0].resolve().name)}&token={token}" if recordings else f"?token={token}"
     raise KeyboardInterrupt(_serve(app, args.host, args.port, page))
-
-
-@contextmanager
-def _said_if_slow(words: str) -> Iterator[None]:
-    """Say what goes on inside, if it takes long."""
-    waiting = Timer(SLOW, print, (words,), {"file": sys.stderr, "flush": True})
-    waiting.daemon = True
-    waiting.start()
-    try:
-        yield
-    finally:
-        waiting.cancel()
 
 
 def _recordings(given: list[str]) -> list[Path]:
