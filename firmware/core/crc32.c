@@ -39,6 +39,7 @@ static const uint32_t table[256] = {
 
 uint32_t crc32(uint32_t start, const uint8_t *bytes, size_t count) {
     uint32_t crc = ~start;
+#pragma GCC unroll 4 /* a line that is full takes most of a tick */
     for (size_t i = 0; i < count; i++) {
         crc = crc >> 8 ^ table[(crc ^ bytes[i]) & 0xFF];
     }

@@ -26,6 +26,7 @@ static const struct field config_fields[] = {
     {FIELD_F32, 2, offsetof(struct config, derivative), {.real = 0.0f}, {.real = 1000.0f}},
     {FIELD_F32, 1, offsetof(struct config, off_path), {.real = 0.001f}, {.real = 1.0f}},
     {FIELD_U16, 1, offsetof(struct config, silence), {.whole = 10u}, {.whole = 1000u}},
+    {FIELD_U16, 1, offsetof(struct config, command_delay), {.whole = 0u}, {.whole = 10000u}},
 };
 
 static const struct field home_fields[] = {
@@ -81,7 +82,7 @@ static const struct field event_fields[] = {
 
 const struct layout layouts[LAYOUTS] = {
     {MESSAGE_HELLO, 5, 14, hello_fields},
-    {MESSAGE_CONFIG, 13, 82, config_fields},
+    {MESSAGE_CONFIG, 14, 84, config_fields},
     {MESSAGE_HOME, 2, 8, home_fields},
     {MESSAGE_ARM, 1, 4, arm_fields},
     {MESSAGE_DISARM, 0, 0, NULL},

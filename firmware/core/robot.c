@@ -73,9 +73,12 @@ static void catch(struct robot *robot) {
 static void choose_track(struct robot *robot) {
     struct track *playing = &robot->playing, *coming = &robot->coming;
     if (coming->there && (int32_t)(robot->now - coming->traj.apply) >= 0) {
+        if (!playing->there) {
+            setpoints_start(&robot->setpoints);
+        }
         *playing = *coming;
         coming->there = false;
-        robot->control.going = false; /* the path may leap a little, which is no speed */
+        robot->leaps = true;
     }
     if (playing->there && robot->now - playing->traj.apply > playing->traj.life) {
         playing->there = false;
@@ -83,13 +86,25 @@ static void choose_track(struct robot *robot) {
     }
 }
 
+/* Where the mallet is to be, by what the motors have obeyed by now. */
 static void follow(struct robot *robot) {
     const struct track *playing = &robot->playing;
-    uint32_t time = robot->now - playing->traj.apply;
-    for (int i = 0; i < 2; i++) {
-        robot->path[i] =
-            playing->there ? path_place(&playing->paths[i], &robot->axes[i], time) : robot->place[i];
+    struct setpoint due = {{robot->place[0], robot->place[1]}, false};
+    if (playing->there) {
+        float place[2];
+        uint32_t time = robot->now - playing->traj.apply;
+        for (int i = 0; i < 2; i++) {
+            place[i] = path_place(&playing->paths[i], &robot->axes[i], time);
+        }
+        setpoints_add(&robot->setpoints, place, robot->leaps);
+        due = setpoint_before(&robot->setpoints, robot->config.command_delay);
     }
+    robot->leaps = false;
+    if (due.leaps) {
+        robot->control.going = false; /* a leap is no speed */
+    }
+    robot->path[0] = due.place[0];
+    robot->path[1] = due.place[1];
 }
 
 static int16_t nearest(float value) {

@@ -39,7 +39,7 @@ static const struct config gantry = {
     .c5 = {5.2955e-6f, 1.8625e-6f}, .c6 = {0.008449f, 0.002971f}, .c7 = {0.05315f, 0.05315f},
     .pulley_radius = 0.035306f, .supply = 24.0f, .most_volts = 20.0f, .x = {0.05f, 0.95f}, .y = {0.05f, 0.95f},
     .proportional = {400.0f, 400.0f}, .integral = {500.0f, 500.0f}, .derivative = {2.0f, 2.0f},
-    .off_path = 0.5f, .silence = 200,
+    .off_path = 0.5f, .silence = 200, .command_delay = 4500,
 };
 
 static void require(int holds) {

@@ -28,6 +28,7 @@ START = (0.3, 0.3)  # m
 VOLTS, SWITCHES = (8.0, -6.0), ((90_000, 60_000), (150_000, 100_000))
 PER_TICK = 100  # bytes that arrive in a tick at 1 Mbaud
 AHEAD = 12_000  # us from now to the beginning of a plan
+LATE = 4_500  # us by which motors obey late: between two ticks, which takes the board most
 
 
 def count_ticks() -> dict[str, int]:
@@ -68,7 +69,7 @@ class _Board:
         c5, c6, c7 = zip(minus, plus, strict=True)
         self.config = Config(
             c5, c6, c7, float(p["pulley_radius"]), 24.0, 20.0, (0.05, 0.95), (0.05, 0.95), (400.0, 400.0),
-            (500.0, 500.0), (2.0, 2.0), 0.3, 500,
+            (500.0, 500.0), (2.0, 2.0), 0.3, 500, LATE,
         )  # fmt: skip
         self.machine.run(40_000)
         self.telemetry = Telemetry(0, 0, 0, (0.0, 0.0), (0.0, 0.0), (0, 0), (0, 0), 0, 0, 0, 0)

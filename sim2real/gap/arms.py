@@ -21,12 +21,13 @@ from puckpilot_env.physics.effects import EFFECTS
 from puckpilot_env.variants import find_variant
 from sim2real.gap.gap_table import GapTable
 from sim2real.gap.residual_fit import write_residual
+from sim2real.table.board_config import MOST_COMMAND_DELAY
 from sim2real.table.twin.concealed import ConcealedTable
 
 CEILING, OWN = "truth", "corrected"  # names of arms
 DIAGNOSIS = "diagnosis"  # its folder in the circle's
-# Of late commands the board's feedback leaves some millimetres, and hardly a goal. In the simulator feedback does not
-# know of them: who learns with them there learns to live with far more.
+# Of late commands a loop that allows for them leaves nothing. In the simulator nothing allows for them: who learns with
+# them there learns to live with far more.
 HELD = EFFECTS["command_delay"].row_names
 SENSORS = ("camera_", "beam_", "frame_", "dropped_", "held_")  # without effect where players see the state
 
@@ -54,14 +55,26 @@ class Simulator:
 
 
 @dataclass(frozen=True)
+class Delays:
+    """What a loop allows for [s]: how late stamps of frames are; how late motors obey, None for what the table's file
+    states."""
+
+    camera: float = 0.0
+    command: float | None = None
+
+
+NO_DELAYS = Delays()
+
+
+@dataclass(frozen=True)
 class Arm:
-    """words: what it does; simulator: what is learnt on, None if nothing is learnt; camera_delay: that the loop allows
-    for [s]. Both are made from the circle's folder, with before/recordings and diagnosis, and its table.
+    """words: what it does; simulator: what is learnt on, None if nothing is learnt; delays: that the loop allows for.
+    Both are made from the circle's folder, with before/recordings and diagnosis, and its table.
     of_any_table: whether it learns the same whatever the table; needs_truth: whether it takes one that is known."""
 
     words: str
     simulator: Callable[[Path, GapTable], Simulator] | None
-    camera_delay: Callable[[Path, GapTable], float] = lambda circle, table: 0.0
+    delays: Callable[[Path, GapTable], Delays] = lambda circle, table: NO_DELAYS
     of_any_table: bool = False
     needs_truth: bool = False
 
@@ -77,11 +90,20 @@ def _corrected(circle: Path, table: GapTable) -> Simulator:
     return Simulator(effect_values(circle / DIAGNOSIS / "effects.toml"), drawn if drawn["draws"] else None)
 
 
-def _found_camera_delay(circle: Path, table: GapTable) -> float:
-    """By how much a diagnosis found stamps later than exposures; 0 if it did not."""
+def _found_delays(circle: Path, table: GapTable) -> Delays:
+    """By how much a diagnosis found stamps later than exposures, and motors than orders, as far as a board can allow
+    for it."""
     content = json.loads((circle / DIAGNOSIS / "diagnosis.json").read_text(encoding="utf-8"))
-    late = [one for one in content["findings"] if one["mechanism"] == "camera_delay"]
-    return sum(float(one["parameters"]["delay_s"]["value"]) for one in late)
+    late = {one["mechanism"]: one["parameters"] for one in content["findings"]}
+    camera, command = (
+        float(late[name]["delay_s"]["value"]) if name in late else None for name in ("camera_delay", "command_delay")
+    )
+    return Delays(camera or 0.0, None if command is None else min(command, MOST_COMMAND_DELAY))
+
+
+def _true_delays(circle: Path, table: GapTable) -> Delays:
+    concealed = _concealed(table)
+    return Delays(concealed.errors.stamp_late, concealed.truth.get("command_delay"))
 
 
 def _constants(circle: Path, table: GapTable) -> Simulator:
@@ -114,16 +136,16 @@ def _concealed(table: GapTable) -> ConcealedTable:
 
 
 ARMS = {
-    "allowing": Arm("as it is; the loop allows for the camera's delay", None, _found_camera_delay),
+    "allowing": Arm("as it is; the loop allows for the delays of camera and commands", None, _found_delays),
     "unchanged": Arm("fine-tuned on the unchanged simulator", lambda circle, table: Simulator(), of_any_table=True),
     "randomized": Arm("fine-tuned on randomized tables", _randomized, of_any_table=True),
     "constants": Arm("fine-tuned with refitted constants alone, without what was named", _constants),
     "residual": Arm("fine-tuned on the simulator with a black-box network of its residuals",
                     _residual),
-    "corrected": Arm("fine-tuned with what the diagnosis found", _corrected, _found_camera_delay),
+    "corrected": Arm("fine-tuned with what the diagnosis found", _corrected, _found_delays),
     "truth": Arm("fine-tuned on the concealed truth: the ceiling",
                  lambda circle, table: Simulator(_concealed(table).truth),
-                 lambda circle, table: _concealed(table).errors.stamp_late, needs_truth=True),
+                 _true_delays, needs_truth=True),
 }  # fmt: skip
 
 

@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from puckpilot_env.files.whole_file import write_text_whole
-from sim2real.gap.arms import ARMS, DIAGNOSIS
+from sim2real.gap.arms import ARMS, DIAGNOSIS, NO_DELAYS, Delays
 from sim2real.gap.gap_table import PERSON, PHYSICAL, GapTable, find_gap_table
 from sim2real.table.meetings import Meeting
 
@@ -123,10 +123,10 @@ class CircleFolder:
 
     def meetings_after(self, arm: str) -> list[Meeting]:
         """Those of an arm's player. ValueError, in one line, if it has not learnt yet."""
-        return self._meetings(self.player(arm), ARMS[arm].camera_delay(self.path, self.conditions.gap_table))
+        return self._meetings(self.player(arm), ARMS[arm].delays(self.path, self.conditions.gap_table))
 
-    def _meetings(self, player: str, camera_delay: float = 0.0) -> list[Meeting]:
-        """A player's games, with a delay [s] that its loop allows for. The first are recorded, of every player: what
+    def _meetings(self, player: str, delays: Delays = NO_DELAYS) -> list[Meeting]:
+        """A player's games, with the delays that its loop allows for. The first are recorded, of every player: what
         records takes time at a face-off, so that games of a seed would else differ in more than the player."""
         c = self.conditions
         return [
@@ -140,7 +140,8 @@ class CircleFolder:
                 concealed="" if c.physical else c.table,
                 clears=not c.physical,
                 recorded=game < c.recorded,
-                camera_delay=camera_delay,
+                camera_delay=delays.camera,
+                command_delay=delays.command,
                 table=c.table if c.physical else "",
             )
             for game in range(c.games)

@@ -11,7 +11,7 @@ from typing import ClassVar, Self
 import numpy as np
 
 from sim2real.camera.frame_monitor import Trouble
-from sim2real.table.mallet_driver import MalletPlan
+from sim2real.table.mallet_driver import AHEAD, MalletPlan
 
 Place = tuple[float, float]  # m, in the table's frame
 Motion = tuple[float, float, float, float]  # x, y [m], vx, vy [m/s]
@@ -73,7 +73,7 @@ class Backend(ABC):
 
     `observes` and `takes` say what `read` gives and `send` takes, with units, before anything is connected.
     `obeys`: whether the mallet goes where plans send it; `patience`: how long putting the puck down may take [s];
-    `frame_rate`: of its camera [Hz].
+    `frame_rate`: of its camera [Hz]; `command_delay`: by which its motors obey late [s], as its board allows for.
 
     >>> with make_backend("twin", ...) as table:
     ...     table.connect(home)
@@ -98,6 +98,12 @@ class Backend(ABC):
     obeys: bool = True
     patience: float = 1.0
     frame_rate: float
+    command_delay: float = 0.0
+
+    @property
+    def ahead(self) -> float:
+        """Time from sending a plan until it acts [s]."""
+        return AHEAD + self.command_delay
 
     @abstractmethod
     def seed(self, seed: int) -> None:
@@ -139,8 +145,8 @@ class Backend(ABC):
 
     @abstractmethod
     def send(self, plan: MalletPlan) -> MalletPlan:
-        """Send a plan, which acts at its `begin`, and return it as it was sent, rounded to the protocol's numbers.
-        TableFaultError, with the mallet stopped, if it cannot be sent."""
+        """Send a plan, which acts at its `begin`, and return it as it was sent: earlier by the delay of the motors, and
+        rounded to the protocol's numbers. TableFaultError, with the mallet stopped, if it cannot be sent."""
 
     @abstractmethod
     def stop(self) -> None:

@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Protocol, TypeVar
 
 import numpy as np
 
 from sim2real.link.wire.messages import Config
 from sim2real.table.backend import Backend, Place, Reading, SeenFrame
+from sim2real.table.board_config import US
 from sim2real.table.board_line import POLL, BoardLine
 from sim2real.table.faults import Cause, TableFaultError
 from sim2real.table.mallet_driver import MalletPlan
@@ -53,6 +55,7 @@ class LiveTable(Backend):
 
     def __init__(self, config: Config, frame_rate: float) -> None:
         self.config, self.frame_rate = config, frame_rate
+        self.command_delay = US * config.command_delay
         self.line: BoardLine | None = None
         self.eyes: Eyes | None = None
         self.person: Person | None = None
@@ -186,7 +189,7 @@ class LiveTable(Backend):
         """See `Backend.send`."""
         self._note_served()
         try:
-            return self._opened(self.line).send(plan)
+            return self._opened(self.line).send(replace(plan, begin=plan.begin - self.command_delay))
         except TableFaultError as fault:
             self.stop()
             raise self._explained(fault) from None

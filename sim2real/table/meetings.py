@@ -45,8 +45,9 @@ class Meeting:
     seconds: of play at most; None for a whole game. again: whether another game begins where one ends within them.
     camera: the kind of the twin's, see `cameras.CAMERAS`. concealed: the twin's table, see `concealed.TABLES`; "" for
     the simulator's. clears: whether play goes on after a doubt stopped the twin. recorded: whether the game is
-    recorded, as `recordings/game_SEED` beside its result. camera_delay: that the loop allows for [s]. table: the
-    table.toml of a physical table, where a person is the opponent, and is asked whether play goes on; "" for the twin.
+    recorded, as `recordings/game_SEED` beside its result. camera_delay, command_delay: that the loop allows for [s],
+    None for what a table.toml states. table: the table.toml of a physical table, where a person is the opponent, and is
+    asked whether play goes on; "" for the twin.
     """
 
     player: str
@@ -60,6 +61,7 @@ class Meeting:
     clears: bool = False
     recorded: bool = False
     camera_delay: float = 0.0
+    command_delay: float | None = None
     table: str = ""
 
 
@@ -125,11 +127,12 @@ def _play(meeting: Meeting, recording: Path | None, onlooker: Onlooker | None = 
 
 def _seat(meeting: Meeting) -> RobotSeat:
     variant = find_variant(meeting.variant)
+    delays = {"camera_delay": meeting.camera_delay, "command_delay": meeting.command_delay}
     if meeting.table:
-        return make_robot_seat(variant, "table", camera_delay=meeting.camera_delay, table=meeting.table)
+        return make_robot_seat(variant, "table", **delays, table=meeting.table)
     options = find_table(meeting.concealed).twin_options(GameRecord(variant).p) if meeting.concealed else {}
     options |= {"opponent": meeting.opponent, "camera": meeting.camera}
-    return make_robot_seat(variant, "twin", camera_delay=meeting.camera_delay, **options)
+    return make_robot_seat(variant, "twin", **delays, **options)
 
 
 def _spoken(meeting: Meeting) -> tuple[Callable[[str], None], Callable[[TableFaultError], bool]]:

@@ -55,7 +55,7 @@ def test_the_schema_changes_with_what_a_receiver_relies_on(tmp_path: Path):
     for before, after in (
         ("", ""), ('"apply", type = "u32"', '"apply", type = "i32"'), ("high = 60.0", "high = 61.0"),
         ('name = "rest"', 'name = "slack"'), ('name = "traj"', 'name = "plan"'), ('name = "refusal"', 'name = "no"'),
-        ('["ESTOP", "the host said stop"],', ""), ("version = [1, 0]", "version = [2, 0]"),
+        ('["ESTOP", "the host said stop"],', ""), ("version = [1, 1]", "version = [2, 0]"),
     ):  # fmt: skip
         assert before in text
         (tmp_path / "protocol.toml").write_text(text.replace(before, after, 1))

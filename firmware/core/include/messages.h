@@ -5,10 +5,10 @@
 #include <stdint.h>
 
 #define PROTOCOL_MAJOR 1
-#define PROTOCOL_MINOR 0
-#define PROTOCOL_SCHEMA 0x6A25804Eu
+#define PROTOCOL_MINOR 1
+#define PROTOCOL_SCHEMA 0x447F05CFu
 #define MESSAGE_UNCHECKED 1 /* its CRC begins at 0, that of others at the schema */
-#define MESSAGE_LONGEST 82 /* bytes of a body */
+#define MESSAGE_LONGEST 84 /* bytes of a body */
 
 /* What the board may do. */
 enum state {
@@ -98,6 +98,7 @@ struct config {
     float derivative[2]; /* V s/m */
     float off_path; /* m; farther from its path the mallet stops */
     uint16_t silence; /* ms; longer without a message it brakes and stops */
+    uint16_t command_delay; /* us; from an order of volts until the motors obey */
 };
 
 struct home {

@@ -13,6 +13,7 @@
 #include "messages.h"
 #include "path.h"
 #include "robot.h"
+#include "setpoints.h"
 
 #define RADIANS 3.83495197e-4f /* of a step of an encoder: 2 pi / ENCODER_TURN */
 #define NEWS 8 /* events that wait to be sent; more of them, and the oldest are dropped */
@@ -48,7 +49,9 @@ struct robot {
     struct track playing, coming;
     struct track doubted;  /* the newest, until it was looked at */
     uint8_t vetted;        /* parts of it that were, one a tick at most */
-    float path[2];         /* m: where the path has the mallet */
+    bool leaps;            /* a path begins in this tick */
+    struct setpoints setpoints;
+    float path[2];         /* m: where the path has the mallet, whose motors obey late */
     struct control control;
     struct brake brake;    /* goes on in FAULT or IDLE, whatever the host says but estop */
     struct kept *kept;     /* holds the configuration while a motor may be driven */

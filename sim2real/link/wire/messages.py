@@ -8,8 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import IntEnum
 
-VERSION = (1, 0)
-SCHEMA = 0x6A25804E
+VERSION = (1, 1)
+SCHEMA = 0x447F05CF
 UNCHECKED = 1  # id of the message whose CRC begins at 0; that of the others at SCHEMA
 
 
@@ -96,6 +96,7 @@ class Config:
     derivative: tuple[float, float]  # V s/m
     off_path: float  # m; farther from its path the mallet stops
     silence: int  # ms; longer without a message it brakes and stops
+    command_delay: int  # us; from an order of volts until the motors obey
 
 
 @dataclass(frozen=True)
@@ -201,7 +202,7 @@ MESSAGES = (
 )
 FORMATS = {  # of a body, as Python's struct has it
     Hello: (1, "<BBIII"),
-    Config: (2, "<2f2f2ffff2f2f2f2f2ffH"),
+    Config: (2, "<2f2f2ffff2f2f2f2f2ffHH"),
     Home: (3, "<ff"),
     Arm: (4, "<I"),
     Disarm: (5, "<"),
@@ -228,6 +229,7 @@ LIMITS = {  # of the fields that have some
         "derivative": (0.0, 1000.0),
         "off_path": (0.001, 1.0),
         "silence": (10, 1000),
+        "command_delay": (0, 10000),
     },
     Home: {
         "x": (-5.0, 5.0),

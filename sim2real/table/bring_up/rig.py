@@ -12,7 +12,7 @@ from sim2real.table.backend import Place, Reading, SeenMallet
 from sim2real.table.board_line import BoardLine
 from sim2real.table.game.game_record import GameRecord
 from sim2real.table.live_table import LiveTable
-from sim2real.table.mallet_driver import AHEAD, MalletDriver
+from sim2real.table.mallet_driver import MalletDriver
 
 PUCK_SEEN_WITHIN = 60.0  # s
 LONG_AHEAD = 0.4  # s from sending a plan that must be refused to its begin: if it is not, it can still be cancelled
@@ -64,7 +64,7 @@ class Rig:
         """Move the mallet to a target [m] by so many volts on each axis [V], and return what its encoders said."""
         self.driver.stand(*self.line.place, self.table.now())
         self.table.read()
-        begin = self.table.now() + AHEAD
+        begin = self.table.now() + self.table.ahead
         plan = self.driver.plan([*target, volts, volts], begin)
         self.table.send(plan)
         self.table.wait(begin + max(plan.t2) + 0.1)

@@ -9,7 +9,7 @@ import numpy as np
 
 from sim2real.link.wire.messages import Refusal, State
 from sim2real.table.bring_up.rig import Rig, StepError, at_rest
-from sim2real.table.mallet_driver import AHEAD, operating_volts
+from sim2real.table.mallet_driver import operating_volts
 
 PINGS, ROUND_TRIP, CLOCK = 100, 10e-3, 2e-3  # pings; s of their median; s of the clock's error bound
 STOPPED = 0.05 + ROUND_TRIP  # s until a stop is confirmed: by the board's clock it takes 50 ms at most; the line adds
@@ -100,7 +100,7 @@ def stop(rig: Rig) -> str:
     """A moving mallet is stopped by the host, and can be armed again."""
     x, y = rig.line.place
     rig.driver.stand(x, y, rig.table.now())
-    begin = rig.table.now() + AHEAD
+    begin = rig.table.now() + rig.table.ahead
     rig.table.send(rig.driver.plan([x + 0.15, y, 2 * GENTLE, 2 * GENTLE], begin))
     rig.table.wait(begin + 0.06)
     rig.table.read()

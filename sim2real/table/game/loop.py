@@ -16,7 +16,7 @@ from sim2real.table.game.game_record import GameRecord, Motion
 from sim2real.table.game.loop_times import LoopTimes
 from sim2real.table.game.moving_objects import SeenTable
 from sim2real.table.game.referee import GONE, Referee
-from sim2real.table.mallet_driver import AHEAD, MalletDriver
+from sim2real.table.mallet_driver import MalletDriver
 
 HOMING_VOLTS = 5.0  # V, of the way home between points
 POINT_PAUSE = 0.02  # s between looks at whether the mallet is home
@@ -95,8 +95,8 @@ class Loop:
         begin, period = self.backend.now(), float(self.game.rule["period"])
         due = self._decided + period
         self.times.add(max(begin - due, 0.0) if np.isfinite(due) else 0.0, self._frame_age)
-        self._decided, starts_from = begin, self.motion(begin + AHEAD)
-        self._send(action, begin + AHEAD)  # what can wait comes after it
+        self._decided, starts_from = begin, self.motion(begin + self.backend.ahead)
+        self._send(action, begin + self.backend.ahead)  # what can wait comes after it
         self.referee.begin_step()
         self.referee.order(0, starts_from, action)
         self.backend.show(self.game.record)
@@ -120,7 +120,7 @@ class Loop:
     def observe(self) -> tuple[NDArray[np.float32], float]:
         """The observations (2, columns) of both players for the moment at which the next action acts; that moment
         [s]."""
-        acts_at = self.backend.now() + AHEAD
+        acts_at = self.backend.now() + self.backend.ahead
         self.game.put_mallet(0, self.motion(acts_at))
         if puck := self.seen.puck_at(acts_at + self._camera_delay):
             self.game.put_puck(puck)
@@ -187,7 +187,7 @@ class Loop:
 
     def _hold(self, place: Place) -> None:
         """Keep the mallet at a place, or on its way there, for a moment."""
-        begin = self.backend.now() + AHEAD
+        begin = self.backend.now() + self.backend.ahead
         self._send([*place, HOMING_VOLTS, HOMING_VOLTS], begin)
         self.backend.wait(begin + POINT_PAUSE)
 

@@ -15,7 +15,7 @@ from sim2real.table.board_line import POLL
 from sim2real.table.faults import Cause, TableFaultError
 from sim2real.table.latency.strokes import strokes
 from sim2real.table.live_table import LiveTable
-from sim2real.table.mallet_driver import AHEAD, MalletDriver, operating_volts
+from sim2real.table.mallet_driver import MalletDriver, operating_volts
 from sim2real.table.recorder.motor_log import Duties, MotorLog
 
 SETTLING = 1.0  # s of pings before the first stroke
@@ -60,7 +60,7 @@ def measure(table: LiveTable, p: np.void, home: Place, seconds: float) -> Measur
     assert line is not None
     table.wait(table.now() + SETTLING)
     session = line.session
-    ahead = AHEAD + max(session.pings.round_trips)
+    ahead = table.ahead + max(session.pings.round_trips)
     driver.stand(*table.place(), table.now())
     table.read()
     watched, errors, end = _Watched(table.now(), p), [], table.now() + seconds

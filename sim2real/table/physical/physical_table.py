@@ -29,16 +29,16 @@ SIZE_ERROR = 0.01  # m by which a calibration and the stated table may differ
 
 class PhysicalTable(RealTimeTable):
     """See `Backend`. table: a table.toml (`table_file.py`). ValueError, in one line, for a file that cannot be used, or
-    one whose parameters are not the game's."""
+    one whose parameters are not the game's. command_delay: of the motors [s], in place of the file's."""
 
-    def __init__(self, game: GameRecord, table: str | PathLike[str]) -> None:
+    def __init__(self, game: GameRecord, table: str | PathLike[str], command_delay: float | None = None) -> None:
         self._file = read_table_file(table)
         _refuse_other_parameters(self._file.parameters, game)
         camera, board = self._file.camera, self._file.board
         _refuse_other_table(camera, game)
         frame_reader(camera)  # refuses what cannot be used, before anything is opened
         super().__init__(
-            board_config(game.p, board.gains),
+            board_config(game.p, board.gains, board.command_delay if command_delay is None else command_delay),
             camera.settings.rate or RATE,
             lambda: SerialPort(board.port, board.baud, wait=0.0),
             lambda: live_eyes(camera),

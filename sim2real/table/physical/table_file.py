@@ -18,7 +18,7 @@ from sim2real.camera.region import RegionOfInterest
 from sim2real.camera.settings import CameraSettings
 from sim2real.link import BAUD
 from sim2real.link.wire.messages import LIMITS, Config
-from sim2real.table.board_config import Gains
+from sim2real.table.board_config import MOST_COMMAND_DELAY, Gains
 from sim2real.vision.target_ranges import target_number
 
 FORMAT = "puckpilot-table/1"
@@ -48,6 +48,7 @@ supply = 24.0                   # V
 # pulley_radius = 0.0353        # m, once `puckpilot calibrate gantry` has found it
 # offsets = [0.51, -1.22]       # rad, of the shafts' encoders, of the same; left out, the home is where the jig is
 proportional = [400.0, 400.0]   # V/m, of axes x and y; and so integral [V/m/s], derivative [V s/m]
+# command_delay = 0.003         # s by which motors obey late, which is allowed for; or [latency] has it, as `command`
 
 # [gantry]                      # once `puckpilot identify gantry` has made one; until then the simulator's hold
 # profile = "gantry.toml"
@@ -59,7 +60,7 @@ SETTINGS = (*NUMBERS, "trigger_line", "pixel_format")
 TARGETS = {"level": "level", "ring_height": "ring_height", "film_radius": "puck_radius"}  # keys by fields of `Targets`
 GAINS = ("proportional", "integral", "derivative")
 CAMERA = ("source", "calibration", "setup", "region", "delay", *TARGETS, *SETTINGS)
-BOARD = ("port", "baud", "supply", "pulley_radius", "offsets", *GAINS)
+BOARD = ("port", "baud", "supply", "pulley_radius", "offsets", "command_delay", *GAINS)
 LATENCY = ("delay", "camera", "camera_drift", "frame", "line", "command", "follow", "total")  # see `puckpilot latency`
 Pair = tuple[float, float]
 MOST = sys.float_info.max
@@ -87,6 +88,7 @@ class BoardPart:
     baud: int = BAUD
     offsets: Pair | None = None
     gains: Gains = field(default_factory=Gains)
+    command_delay: float = 0.0  # s
 
 
 @dataclass(frozen=True)
@@ -109,7 +111,7 @@ def read_table_file(path: str | PathLike[str]) -> TableFile:
 
 def _table(content: Mapping[str, Any], folder: Path) -> TableFile:
     check_format(content, FORMAT, ("parameters", "camera", "board", "gantry", "latency"))
-    board, gantry = section(content, "board"), section(content, "gantry")
+    board, gantry = dict(section(content, "board")), section(content, "gantry")
     refuse_unknown(board, BOARD, "key of board")
     refuse_unknown(gantry, ("profile",), "key of gantry")
     given = dict(section(content, "parameters"))
@@ -133,6 +135,10 @@ def _table(content: Mapping[str, Any], folder: Path) -> TableFile:
         camera["delay"] = latency["delay"]
     elif latency and "delay" not in camera:
         raise ValueError("[latency] has no delay of the camera; measure it again, or state delay under [camera]")
+    if "command" in latency:
+        if "command_delay" in board:
+            raise ValueError("command_delay is given under [board], and command under [latency]; keep the newer one")
+        board["command_delay"] = max(latency["command"], 0.0)
     return TableFile(parameters, _camera(camera, folder), _board(board))
 
 
@@ -164,7 +170,8 @@ def _board(board: Mapping[str, Any]) -> BoardPart:
     baud = board.get("baud", BAUD)
     if not isinstance(baud, int) or baud < 1:
         raise ValueError(f"board.baud is {in_short(baud)}; expected a whole number above 0")
-    return BoardPart(_text(board, "port", "board"), baud, offsets, Gains(**gains))
+    late = _number(board, "command_delay", "board", MOST_COMMAND_DELAY) if "command_delay" in board else 0.0
+    return BoardPart(_text(board, "port", "board"), baud, offsets, Gains(**gains), late)
 
 
 def _text(row: Mapping[str, Any], key: str, where: str) -> str:
@@ -174,10 +181,11 @@ def _text(row: Mapping[str, Any], key: str, where: str) -> str:
     return row[key]
 
 
-def _number(row: Mapping[str, Any], key: str, where: str) -> float:
+def _number(row: Mapping[str, Any], key: str, where: str, most: float = MOST) -> float:
     number = real_number(row[key])
-    if not 0.0 <= number < float("inf"):
-        raise ValueError(f"{where}.{key} is {in_short(row[key])}; expected a number, 0 or more")
+    if not 0.0 <= number <= most:
+        span = "0 or more" if most == MOST else f"0 to {most:g}"
+        raise ValueError(f"{where}.{key} is {in_short(row[key])}; expected a number, {span}")
     return number
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from puckpilot_env.game import mirror
 from sim2real.table.backend import Backend, Place
-from sim2real.table.mallet_driver import AHEAD, MalletDriver, planned_volts
+from sim2real.table.mallet_driver import MalletDriver, planned_volts
 
 VOLTS = (4.0, 7.0, 10.0, 14.0)  # V, from where friction matters to what a motor may get
 AXES = ((True, False), (False, True), (True, True))  # which axes a move drives
@@ -79,7 +79,7 @@ def excite_gantry(
     for move in excitation(p, table.place(), volts, seed):
         if table.now() >= begin + seconds:
             break
-        table.send(driver.plan([*move.place, *move.volts], table.now() + AHEAD))
+        table.send(driver.plan([*move.place, *move.volts], table.now() + table.ahead))
         count += 1
         while not driver.standing(table.now()):
             _pass(table, driver, SLICE)

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from sim2real.table.backend import Backend, Place
-from sim2real.table.mallet_driver import AHEAD, MalletDriver
+from sim2real.table.mallet_driver import MalletDriver
 from sim2real.table.recorder.launch_coverage import Launch, LaunchCoverage
 from sim2real.table.recorder.launch_watcher import LaunchWatcher
 
@@ -44,7 +44,7 @@ def record_launches(
         watcher.begin(table.now())
         known, seen, end = len(coverage.launches), False, table.now() + table.patience
         while table.now() < min(end, begin + seconds):
-            table.send(driver.plan([*place, HOLDING_VOLTS, HOLDING_VOLTS], table.now() + AHEAD))
+            table.send(driver.plan([*place, HOLDING_VOLTS, HOLDING_VOLTS], table.now() + table.ahead))
             table.wait(table.now() + HOLD)
             reading = table.read()
             if reading.missed:

@@ -34,7 +34,7 @@ class Twin(LiveTable):
 
     game: whose table it is; opponent: a player, by name or itself; law: physics of the plant, as the game's parameters
     say by default; errors: of the camera; camera: "places" or "pictures"; board_errors: of the board's clock and
-    line. ValueError, in one line, for an unknown name.
+    line; command_delay: of the motors, that the board allows for [s]. ValueError, in one line, for an unknown name.
     onlooker: takes the plant as it is, whenever the camera exposes a frame; it may be set at any time.
     """
 
@@ -48,13 +48,14 @@ class Twin(LiveTable):
         errors: CameraErrors | None = None,
         camera: str = "places",
         board_errors: BoardErrors | None = None,
+        command_delay: float | None = None,
     ) -> None:
         for name, given, kind in (("law", law, Law), ("errors", errors, CameraErrors),
                                   ("board_errors", board_errors, BoardErrors)):  # fmt: skip
             if given is not None and not isinstance(given, kind):
                 raise ValueError(f"{name} is {in_short(given)}; expected a {kind.__name__} of {kind.__module__}")
         errors, self._seed = errors or CameraErrors(), 0
-        super().__init__(board_config(game.p), errors.rate)
+        super().__init__(board_config(game.p, command_delay=command_delay or 0.0), errors.rate)
         self._make_camera = camera_maker(camera, game.p, errors)
         refuse_unmodelled(game.given)
         self.p, self._law, self._board_errors = game.p, law or law_of(game.p), board_errors

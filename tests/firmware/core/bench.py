@@ -74,13 +74,15 @@ class Axis:
 
 @dataclass
 class Bench:
-    """The core on its bench. `wires`: which encoder and motor are on which plug, and turned round how."""
+    """The core on its bench. `wires`: which encoder and motor are on which plug, and turned round how; `late`: time by
+    which the motors obey late [us]."""
 
     config: messages.Config = field(default_factory=config)
     now: int = 1_000_000
     start: tuple[float, float] = CORNER
     wires: tuple[tuple[int, int], tuple[int, int]] = ((0, 1), (1, 1))
     blocked: bool = False
+    late: int = 0
     heard: list = field(default_factory=list)
     waiting: bytes = b""
     sequence: int = 0
@@ -92,6 +94,7 @@ class Bench:
         constants = [axis_constants(c.c5[i], c.c6[i], c.c7[i], c.pulley_radius) for i in range(2)]
         self.axes = [Axis(constants[i], self.start[i]) for i in range(2)]
         self.pwm, self.commands = (0, 0), (0, 0)
+        self.orders = [(0, 0)] * (2 + self.late // 1000)  # of the motors, the newest first
         self.telemetry: messages.Telemetry | None = None
 
     def send(self, *what: object) -> None:
@@ -122,9 +125,12 @@ class Bench:
     def _move(self) -> None:
         if self.blocked:
             return
-        volts = [self.config.supply * duty / FULL for duty in self.pwm]
-        for axis, u in zip(self.axes, (volts[0] - volts[1], -volts[0] - volts[1]), strict=True):
-            axis.go_on(u, 1e-3)
+        self.orders = [self.pwm, *self.orders[:-1]]
+        first = self.late % 1000
+        for order, lasts in ((self.orders[-1], first), (self.orders[-2], 1000 - first)):
+            volts = [self.config.supply * duty / FULL for duty in order]
+            for axis, u in zip(self.axes, (volts[0] - volts[1], -volts[0] - volts[1]), strict=True):
+                axis.go_on(u, 1e-6 * lasts)
 
     def _answers(self) -> tuple[int, int]:
         radius = self.config.pulley_radius

@@ -65,7 +65,7 @@ def config(**changed: object) -> messages.Config:
     numbers = {
         "c5": (5.2955e-6, 1.8625e-6), "c6": (0.008449, 0.002971), "c7": (0.05315, 0.05315), "pulley_radius": 0.035306,
         "supply": 24.0, "most_volts": 24.0, "x": (0.05, 0.95), "y": (0.05, 0.95), "proportional": (400.0, 400.0),
-        "integral": (500.0, 500.0), "derivative": (2.0, 2.0), "off_path": 0.05, "silence": 100,
+        "integral": (500.0, 500.0), "derivative": (2.0, 2.0), "off_path": 0.05, "silence": 100, "command_delay": 0,
     }  # fmt: skip
     return messages.Config(**{**numbers, **changed})
 

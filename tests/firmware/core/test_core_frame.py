@@ -77,7 +77,7 @@ def test_it_says_what_python_reads():
     for tick in range(60):
         sent += core.step(1000 * tick, ANGLE, frame(hello(token=99)) if tick == 50 else b"").sent
     found = read(sent)
-    assert messages.Hello(1, 0, messages.SCHEMA, 99, 77) in found
+    assert messages.Hello(*messages.VERSION, messages.SCHEMA, 99, 77) in found
     telemetry = [one for one in found if isinstance(one, messages.Telemetry)]
     assert len(telemetry) == 30 and telemetry[-1].angle == ANGLE
     events = [one for one in found if isinstance(one, messages.Event)]

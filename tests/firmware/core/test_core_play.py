@@ -46,6 +46,29 @@ def test_feedback_brings_a_wrong_gantry_to_its_target():
     assert bench.place == pytest.approx(TARGET, abs=1e-3)
 
 
+@pytest.mark.parametrize("late", [1_000, 4_300, 10_000])
+def test_where_motors_obey_late_the_mallet_goes_as_it_would_so_much_later(late: int):
+    """Feedback that allows for the delay has nothing to do, in a second trajectory neither."""
+    usual, other = Bench().armed(), Bench(config(command_delay=late), late=late).armed()
+    places: list[tuple[float, float]] = []
+    for number in range(900):
+        new = [usual.trajectory(to) for at, to in ((0, TARGET), (400, (0.2, 0.8))) if number == at]
+        for bench in (usual, other):
+            bench.send(Ping(number), *new)
+            bench.tick()
+        places.append(usual.place)
+        then = max(number - late / 1000, 0.0)
+        expected = [np.interp(then, range(len(places)), column) for column in zip(*places, strict=True)]
+        assert other.place == pytest.approx(expected, abs=5e-4), number
+    assert other.state == State.ARMED and not other.refusals
+
+
+def test_feedback_that_does_not_allow_for_a_delay_works_against_it():
+    bench = Bench(late=5_000).armed()
+    bench.send(bench.trajectory(TARGET))
+    assert np.abs(play(bench, 600)).max() > 2e-3
+
+
 def test_the_newest_trajectory_wins_in_mid_flight():
     bench = Bench().armed()
     bench.send(bench.trajectory(TARGET))

@@ -11,8 +11,9 @@ from puckpilot_env import Tables
 from puckpilot_env.options.at_table import AT_TABLE
 from puckpilot_env.options.draws_file import read_draws
 from puckpilot_env.options.effects_file import as_content, effect_values
-from sim2real.gap.arms import ARMS, HELD, simulator_of, write_simulator
+from sim2real.gap.arms import ARMS, HELD, Delays, simulator_of, write_simulator
 from sim2real.gap.gap_table import TWIN, GapTable, find_gap_table
+from sim2real.table.board_config import MOST_COMMAND_DELAY
 from sim2real.table.twin.concealed import TABLES
 
 EFFECTS = """format = "puckpilot-effects/1"
@@ -43,8 +44,11 @@ def twin(table: str) -> GapTable:
 
 @pytest.fixture
 def circle(tmp_path: Path) -> Path:
-    late = {"mechanism": "camera_delay", "parameters": {"delay_s": {"value": 0.01}}}
-    found = {"baseline": {"parameters": {"friction": {"value": 0.1}}}, "findings": [late]}
+    late = [
+        {"mechanism": name, "parameters": {"delay_s": {"value": value}}}
+        for name, value in (("camera_delay", 0.01), ("command_delay", 0.004))
+    ]
+    found = {"baseline": {"parameters": {"friction": {"value": 0.1}}}, "findings": late}
     (tmp_path / "diagnosis").mkdir()
     (tmp_path / "before" / "recordings" / "game_0").mkdir(parents=True)
     for name, text in (("effects.toml", EFFECTS), ("draws.toml", DRAWS), ("diagnosis.json", json.dumps(found))):
@@ -52,15 +56,23 @@ def circle(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_the_corrected_arm_has_what_was_found_and_its_loop_allows_for_the_camera_s_delay(circle: Path) -> None:
+def test_the_corrected_arm_has_what_was_found_and_its_loop_allows_for_delays(circle: Path) -> None:
     one = simulator_of("corrected", circle, twin("none"))
     assert one is not None and one.draws is not None
     assert dict(one.values) == {"friction": 0.1, "tilt_x": 0.03, "tilt_y": 0.0, **AT_TABLE}
     assert set(one.draws["draws"]) == {"friction"}
-    allowed = {arm: row.camera_delay(circle, twin("late")) for arm, row in ARMS.items()}
-    assert {arm: delay for arm, delay in allowed.items() if delay} == {
-        "allowing": 0.01, "corrected": 0.01, "truth": TABLES["late"].errors.stamp_late,
+    allowed = {arm: row.delays(circle, twin("late")) for arm, row in ARMS.items()}
+    late = TABLES["late"]
+    assert {arm: delays for arm, delays in allowed.items() if delays != Delays()} == {
+        "allowing": Delays(0.01, 0.004), "corrected": Delays(0.01, 0.004),
+        "truth": Delays(late.errors.stamp_late, late.law["command_delay"]),
     }  # fmt: skip
+
+
+def test_a_delay_beyond_what_a_board_allows_for_is_allowed_for_as_far_as_it_can(circle: Path) -> None:
+    file = circle / "diagnosis" / "diagnosis.json"
+    file.write_text(file.read_text().replace("0.004", "0.04"))
+    assert ARMS["corrected"].delays(circle, twin("none")) == Delays(0.01, MOST_COMMAND_DELAY)
 
 
 def test_without_recordings_there_is_no_black_box(circle: Path) -> None:

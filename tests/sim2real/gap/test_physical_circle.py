@@ -55,7 +55,8 @@ def seats(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
     def make(variant: Variant, backend: str, *, camera_delay: float = 0.0, **options: Any) -> RobotSeat:
         assert backend == "table"
         made.append({"camera_delay": camera_delay, **options})
-        return make_robot_seat(variant, "twin", camera_delay=camera_delay, opponent="bank_shot")
+        delays = {"camera_delay": camera_delay, "command_delay": options["command_delay"]}
+        return make_robot_seat(variant, "twin", **delays, opponent="bank_shot")
 
     monkeypatch.setattr(meetings, "make_robot_seat", make)
     return made
@@ -70,7 +71,7 @@ def test_a_circle_at_a_physical_table(
         out, Conditions("interceptor", ("goalie",), "table", file, 2, 9.0, 1, 1.0, None, 5), 2, lambda line: None
     )
     result = made.run([], lambda done, count: None)
-    assert seats == [{"camera_delay": 0.0, "table": file}] * 2
+    assert seats == [{"camera_delay": 0.0, "command_delay": None, "table": file}] * 2
     assert [game[3] for game in result["before"]["games"]] == ["person"] * 2
     assert result["before"]["shots"]["made"] > 0 and "face-off" in capfd.readouterr().err
     assert result["in_simulator"]["before"].keys() == {"unchanged"}
@@ -80,10 +81,13 @@ def test_a_circle_at_a_physical_table(
     assert f"--backend table --table {file}" in html and "at the table a person" in html
 
     content = json.loads((out / "diagnosis" / "diagnosis.json").read_text())
-    late = [finding("camera_delay", "sensing", delay_s=0.003)]
+    late = [
+        finding("camera_delay", "sensing", delay_s=0.003),
+        finding("command_delay", "gantry", delay_s=0.002),
+    ]
     (out / "diagnosis" / "diagnosis.json").write_text(json.dumps(content | {"findings": late}))
     made.run(["allowing"], lambda done, count: None)
-    assert seats[2:] == [{"camera_delay": 0.003, "table": file}] * 2
+    assert seats[2:] == [{"camera_delay": 0.003, "command_delay": 0.002, "table": file}] * 2
     with pytest.raises(ValueError, match=r"a circle of .*table.toml has no truth to be held against; leave it out"):
         overview([result])
 

@@ -21,7 +21,7 @@ HELLO, CONFIG, HOME, ARM, DISARM, ESTOP, CLEAR, TRAJ, PING = range(1, 10)
 class FakeBoard:
     """Obeys as the protocol says, tick by tick, and keeps what it was sent."""
 
-    def __init__(self, boots: int = 7, version: tuple[int, int] = (1, 0), schema: int = SCHEMA) -> None:
+    def __init__(self, boots: int = 7, version: tuple[int, int] = (1, 1), schema: int = SCHEMA) -> None:
         self.boots, self.version, self.schema = boots, version, schema
         self.state, self.sequence, self.damaged = UNHOMED, 0, 0
         self.heard: list[tuple[int, bytes]] = []  # id and body of each message

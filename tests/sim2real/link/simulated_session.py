@@ -10,7 +10,7 @@ CONFIGURED = (
     (1e-3, 1e-3), (1e-2, 1e-2), (0.5, 0.5), 0.03, 24.0, 12.0, (0.0, 1.0), (0.0, 1.0), (1.0, 1.0), (1.0, 1.0),
     (1.0, 1.0), 0.1,
 )  # fmt: skip
-CONFIG_SENT = Config(*CONFIGURED, silence=100)
+CONFIG_SENT = Config(*CONFIGURED, silence=100, command_delay=0)
 PLAN = Traj(0, 1000, 50_000, (12.0, -6.5), (1, 2), (3, 4), (0.5, 0.25), (-0.5, 0.125), (0.0, 0.0009765625))
 
 

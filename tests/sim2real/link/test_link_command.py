@@ -36,7 +36,7 @@ def test_a_good_board(terminal, capsys):
     code = puckpilot.main(["link", "test", str(terminal.path), "--pings", "30", "--json"])
     found = json.loads(capsys.readouterr().out)
     assert found["bad"] == [] and code == 0
-    assert found["port"] == str(terminal.path) and found["protocol"] == [1, 0]
+    assert found["port"] == str(terminal.path) and found["protocol"] == [1, 1]
     assert found["answered"] == 30 and found["lost"] == 0 and found["pings"] == 30
     assert 0.0 <= found["round_trip_ms"]["median"] <= found["round_trip_ms"]["p99"]
     assert 0.0 < found["clock_error_us"] < 5000 and abs(found["drift_ppm"]) <= found["drift_error_ppm"] + 20
@@ -47,7 +47,7 @@ def test_a_good_board(terminal, capsys):
 def test_its_words(terminal, capsys):
     assert puckpilot.main(["link", "test", str(terminal.path), "--pings", "10"]) == 0
     output = capsys.readouterr().out
-    assert f"{terminal.path}: a board of protocol 1.0\n" in output and "pings: 10 answered, 0 lost\n" in output
+    assert f"{terminal.path}: a board of protocol 1.1\n" in output and "pings: 10 answered, 0 lost\n" in output
     assert "telemetry: 500 a second, 0 missing\n" in output and output.endswith("all tests passed\n")
 
 
@@ -180,7 +180,7 @@ def test_the_monitor_as_json(terminal, capsys):
     assert puckpilot.main(["link", "monitor", str(terminal.path), "--seconds", "1.3", "--json"]) == 0
     rows = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     notes = [row["note"] for row in rows if "note" in row]
-    assert notes == ["connected to a board of protocol 1.0", "the board was still armed; disarming it"]
+    assert notes == ["connected to a board of protocol 1.1", "the board was still armed; disarming it"]
     last = rows[-1]
     assert last["connected"] and last["state"] == "IDLE" and last["fault"] == "NONE"
     assert last["telemetry"]["pwm"] == [10, -20] and last["age_s"] < 1.0

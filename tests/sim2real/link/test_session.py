@@ -18,10 +18,10 @@ def test_it_says_hello_first_of_all_and_then_knows_the_board():
     number, body = board.heard[0]
     assert number == HELLO and board.count(HELLO) == 1
     major, minor, schema, _, boots = struct.unpack("<BBIII", body)
-    assert (major, minor, schema, boots) == (1, 0, SCHEMA, 0)
+    assert (major, minor, schema, boots) == (1, 1, SCHEMA, 0)
     assert session.connected and session.board is not None and session.board.boots == 7
     assert session.state == UNHOMED and session.telemetry is not None and session.telemetry.place == (0.5, -0.25)
-    assert session.take_notes() == ["connected to a board of protocol 1.0"] and session.take_notes() == []
+    assert session.take_notes() == ["connected to a board of protocol 1.1"] and session.take_notes() == []
     assert session.age == pytest.approx(0.0, abs=0.003)
     assert bench.opened == 1 and session.frame_counts.refused == 0
 
@@ -40,8 +40,8 @@ def test_hello_is_said_again_until_it_is_answered():
 @pytest.mark.parametrize(
     "board, message",
     [
-        (FakeBoard(version=(2, 0)), f"the board speaks protocol 2.0, schema {SCHEMA:08x}; this host speaks 1.0"),
-        (FakeBoard(schema=0xABC), "the board speaks protocol 1.0, schema 00000abc; this host speaks 1.0"),
+        (FakeBoard(version=(2, 0)), f"the board speaks protocol 2.0, schema {SCHEMA:08x}; this host speaks 1.1"),
+        (FakeBoard(schema=0xABC), "the board speaks protocol 1.1, schema 00000abc; this host speaks 1.1"),
     ],
 )
 def test_another_protocol_is_refused(board, message):
@@ -71,7 +71,7 @@ def test_twenty_pings_a_second():
 
 def test_pings_are_more_frequent_than_the_board_is_patient():
     bench, session, board = met()
-    session.config(Config(*CONFIGURED, silence=30))
+    session.config(Config(*CONFIGURED, silence=30, command_delay=0))
     first = board.count(PING)
     run(bench, session, 1.0)
     assert board.count(PING) - first >= 90

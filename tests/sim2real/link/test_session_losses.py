@@ -36,7 +36,7 @@ def test_a_lost_port_is_opened_again_and_nothing_is_sent_twice():
     bench.plugged = True
     run(bench, session, 2.1)
     assert session.connected and session.state == FAULT and (session.reconnects, session.resets) == (1, 0)
-    assert session.take_notes() == ["the port is back", "connected to a board of protocol 1.0"]
+    assert session.take_notes() == ["the port is back", "connected to a board of protocol 1.1"]
     assert board.count(TRAJ) == 1 and board.count(ARM) == 1 and board.count(DISARM) == 0
     assert session.traj(PLAN) == 3
     bench.plugged, lost_at, bench.tried = False, bench.time, []

@@ -87,12 +87,12 @@ def test_arming_names_the_configuration_sent_last():
     with pytest.raises(ValueError, match="cannot arm: no configuration was sent; send one first"):
         session.arm()
     for silence in (100, 101):
-        session.config(Config(*CONFIGURED, silence=silence))
+        session.config(Config(*CONFIGURED, silence=silence, command_delay=0))
     session.arm()
     run(bench, session, 0.01)
-    layout = "<ff ff ff f f f ff ff ff ff ff f H".replace(" ", "")
+    layout = "<ff ff ff f f f ff ff ff ff ff f H H".replace(" ", "")
     flat = [n for v in CONFIGURED for n in (v if isinstance(v, tuple) else (v,))]
-    crc = zlib.crc32(b"\2" + struct.pack(layout, *flat, 101), SCHEMA)
+    crc = zlib.crc32(b"\2" + struct.pack(layout, *flat, 101, 0), SCHEMA)
     assert [body for number, body in board.heard if number == ARM] == [struct.pack("<I", crc)]
 
 

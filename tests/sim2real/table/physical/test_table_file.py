@@ -30,14 +30,14 @@ def written(folder: Path, text: str) -> Path:
 
 
 def test_the_example_is_read_with_all_that_it_says(tmp_path: Path) -> None:
-    left_out = ("film_radius", "pulley_radius", "offsets")  # until they are measured
+    left_out = ("film_radius", "pulley_radius", "offsets", "command_delay")  # until they are measured
     found = read_table_file(written(tmp_path, EXAMPLE))
-    assert found.board.offsets is None and found.camera.film_radius is None
+    assert found.board.offsets is None and found.camera.film_radius is None and found.board.command_delay == 0.0
     text = EXAMPLE
     for name in left_out:
         text = text.replace(f"# {name}", name)
     found = read_table_file(written(tmp_path, text))
-    assert found.camera.film_radius == 0.0309
+    assert found.camera.film_radius == 0.0309 and found.board.command_delay == 0.003
     assert found.parameters["length"] == 2.362 and found.parameters["max_voltage"] == 24.0
     assert found.parameters["pulley_radius"] == 0.0353 and found.board.offsets == (0.51, -1.22)
     assert found.camera.settings.region == RegionOfInterest(396, 20, 1300, 1450) and found.camera.settings.mosaic
@@ -45,9 +45,12 @@ def test_the_example_is_read_with_all_that_it_says(tmp_path: Path) -> None:
     assert found.board.gains.proportional == (400.0, 400.0) and found.board.gains.derivative == (2.0, 2.0)
 
 
-def test_the_section_that_latency_prints_gives_the_cameras_delay(tmp_path: Path) -> None:
-    text = LEAST + "[latency]\ndelay = 0.0354\ncamera = 0.0324\nframe = 0.0389\ntotal = 0.0529\n"
-    assert read_table_file(written(tmp_path, text)).camera.delay == 0.0354
+def test_the_section_that_latency_prints_gives_the_delays_of_camera_and_commands(tmp_path: Path) -> None:
+    text = LEAST + "[latency]\ndelay = 0.0354\ncamera = 0.0324\nframe = 0.0389\ntotal = 0.0529\ncommand = 0.0031\n"
+    found = read_table_file(written(tmp_path, text))
+    assert found.camera.delay == 0.0354 and found.board.command_delay == 0.0031
+    found = read_table_file(written(tmp_path, text.replace("0.0031", "-1e-5")))
+    assert found.board.command_delay == 0.0  # none, as far as it was measured
 
 
 def test_a_profile_of_a_puck_is_not_the_gantrys(tmp_path: Path) -> None:
@@ -89,6 +92,14 @@ def test_what_is_left_out_has_the_default(tmp_path: Path) -> None:
         (("[camera]", '[camera]\nexposure = "x"'), "camera.exposure is 'x'; expected a number, 0 or more"),
         (("[board]", "[latency]\nfram = 0.01\n[board]"), "unknown key of latency 'fram'; did you mean 'frame'?"),
         (("[board]", '[latency]\nframe = "nonsense"\n[board]'), "latency.frame is 'nonsense'; expected a number"),
+        (
+            ("[board]", "[latency]\ndelay = 0.01\ncommand = 0.003\n[board]\ncommand_delay = 0.003"),
+            "command_delay is given under [board], and command under [latency]; keep the newer one",
+        ),
+        (
+            ("[board]", "[board]\ncommand_delay = 0.02"),
+            "board.command_delay is 0.02; expected a number, 0 to 0.01",
+        ),
         (("[board]", "[latency]\nframe = 0.01\n[board]"), "[latency] has no delay of the camera; measure it again"),
         (
             ("[board]", "delay = 0.006\n[latency]\ndelay = 0.01\n[board]"),
