@@ -24,7 +24,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--out", default="out/tournament", metavar="DIR", help="folder for the files (default out/tournament)"
     )
     parser.add_argument(
-        "--played", type=Path, metavar="FILE", help="games.jsonl of puckpilot arena: persons are rated along"
+        "--played",
+        type=Path,
+        metavar="FILE",
+        help="games.jsonl of puckpilot arena, whose matches count too: persons are rated along",
     )
     add_options(parser)
 
@@ -51,17 +54,18 @@ def run(args: argparse.Namespace) -> int:
         print(json.dumps(tournament.as_dict(), indent=2))
         return 0
     print_physics(args)
-    _print(tournament, written)
+    _print(tournament, written, args.played)
     return 0
 
 
-def _print(tournament: Tournament, written: list[Path]) -> None:
+def _print(tournament: Tournament, written: list[Path], played: Path | None) -> None:
     from rich.console import Console
 
     from baselines.matches.payoff_table import payoff_table, rating_table
     from baselines.matches.role_table import CONCEDED, share_table
 
-    print(f"{tournament.variant}, {tournament.games} games of every two players, seed {tournament.seed}\n")
+    more = f", and those of {played}" if played else ""
+    print(f"{tournament.variant}, {tournament.games} games of every two players{more}, seed {tournament.seed}\n")
     if tournament.payoff is None or tournament.ratings is None:
         roles = [role.as_dict() for role in tournament.roles]
         tables = [share_table(roles, ending) for ending in (tournament.roles[0].job, CONCEDED)]

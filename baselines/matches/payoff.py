@@ -16,6 +16,16 @@ Results = Mapping[tuple[str, str], ArrayLike]
 puck, with the seats swapped."""
 
 
+def joined(results: Results, others: Results) -> Results:
+    """All games of both, also where the same two players met in both, in whichever order they are named."""
+    both = {players: np.asarray(rows) for players, rows in results.items()}
+    for (first, second), rows in others.items():
+        players, seen = ((second, first), -1) if (second, first) in both else ((first, second), 1)
+        more = seen * np.asarray(rows)
+        both[players] = np.concatenate([both[players], more]) if players in both else more
+    return both
+
+
 @dataclass(frozen=True, eq=False)
 class Payoff:
     """`wins[i, j]`: games that player i won against j; `draws[i, j] == draws[j, i]`: games that they drew.

@@ -11,7 +11,7 @@ from itertools import combinations
 
 from baselines import find_player
 from baselines.matches.match import MatchResult, Progress, play
-from baselines.matches.payoff import Payoff, Results, count_games
+from baselines.matches.payoff import Payoff, Results, count_games, joined
 from baselines.matches.role import Role, roles_of
 from baselines.ratings.intervals import paired_win_rate
 from baselines.ratings.rating import Ratings, fit_ratings_from_pairs
@@ -105,9 +105,9 @@ def play_tournament(
 ) -> Tournament:
     """Play `games` games, an even number, of `variant` (an id) between every two of `players` (names).
 
-    `played`: results that persons had with some of the players, with whom they are rated. The other arguments are those
-    of `match.play`. All matches start from the same pucks, so the result of a match does
-    not depend on who else takes part. ValueError, in one line, for what cannot be played.
+    `played`: results of other games of some of the players, with persons say; they count as well. The other arguments
+    are those of `match.play`. All matches start from the same pucks, so the result of a match does not depend on who
+    else takes part. ValueError, in one line, for what cannot be played.
     """
     found = find_variant(variant)
     for name in players:
@@ -144,7 +144,7 @@ def play_tournament(
     )
     if roles:
         return Tournament(found.id, seed, games, order, tuple(matches), None, None, tuple(roles))
-    results = {match.players: match.results for match in matches} | dict(played or {})
+    results = joined({match.players: match.results for match in matches}, played or {})
     payoff, ratings = count_games(results), fit_ratings_from_pairs(results, seed)
     return Tournament(found.id, seed, games, payoff.players, tuple(matches), payoff, ratings, ())
 

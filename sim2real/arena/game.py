@@ -40,7 +40,7 @@ class Game:
     ) -> None:
         """concealed: what is in the table beyond the variant; quick: a person's mallet is without the gantry's limits.
         ValueError, in one line, for an unknown player."""
-        variant, self.concealed = find_variant(VARIANT), concealed
+        variant, self.concealed, self.quick = find_variant(VARIANT), concealed, quick
         self.is_rated = concealed is None and not quick  # whether it is a match as the others are
         parameters = concealed.parameters if concealed else None
         self.tables = Tables(variant, 1, seed=seed, period=1.0 / TICKS, autoreset=False, parameters=parameters)
@@ -63,6 +63,11 @@ class Game:
         """The mallet of seat 0, a `mallet.MALLET`: its modes now, and its plan from the tick's begin on."""
         mallet: np.void = self.tables.states[0]["mallets"][0]
         return mallet
+
+    @property
+    def has_gantry(self) -> bool:
+        """Whether the mallet of seat 0 has the limits of the gantry."""
+        return not (self.quick and isinstance(self.chairs[0], PersonChair))
 
     def tick(self) -> None:
         """Play a 120th of a second; nothing once the match is over."""

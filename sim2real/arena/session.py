@@ -205,7 +205,7 @@ class Session:
         if listener is self._player and person is not None:
             own = {"seat": self.names.index(PERSON), "id": self.id, "watch": self.watched_as, "law": person.law}
         names = [self._records.person if name == PERSON else name for name in self.names]
-        return messages.welcome(self.game.tables.params[0], names, again, **own)
+        return messages.welcome(self.game.tables.params[0], names, again, notice=_notice(self.game), **own)
 
     async def close(self) -> None:
         """End the game; what was played of it is a recording, and no other match begins."""
@@ -218,6 +218,15 @@ class Session:
         except (OSError, ValueError) as error:
             _lost(error)
         self.game.tables.close()
+
+
+def _notice(game: Game) -> str:
+    """In what a match differs from others."""
+    what = [
+        *(["the table has an effect, or none: guess, and diagnose the replay"] if game.concealed else []),
+        *(["your mallet is quick"] if game.quick else []),
+    ]
+    return "; ".join([*what, "this match is not rated"]) if what else ""
 
 
 def _lost(error: Exception) -> None:

@@ -37,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "players", nargs="*", metavar="PLAYER",
         help="one to play against (policy:champion), or those to watch; or the folder of a recording",
     )  # fmt: skip
-    parser.add_argument("--seat", type=int, choices=(0, 1), default=0, help="yours (0, which is drawn at the left)")
+    parser.add_argument("--seat", type=int, choices=(0, 1), help="yours (0, which is drawn at the left)")
     parser.add_argument("--host", default="127.0.0.1", metavar="HOST", help="to listen on (127.0.0.1)")
     parser.add_argument("--port", type=int, default=PORT, metavar="PORT", help=f"({PORT}); 0: any that is free")
     parser.add_argument("--out", type=Path, default=Path("out/arena"), metavar="DIR", help="for recordings (out/arena)")
@@ -77,9 +77,9 @@ def run(args: argparse.Namespace) -> NoReturn:
         option = "--concealed" if args.concealed else "--quick"
         raise ValueError(f"{option} is given with a recording; expected a player to play against")
     if not recordings:
-        names = _seated(args.players or [OPPONENT], args.seat)
-        if args.quick and PERSON not in names:
-            raise ValueError("--quick is given where you do not play; expected one player to play against")
+        names = _seated(args.players or [OPPONENT], args.seat or 0)
+        if PERSON not in names and (given := next((one for one in ("quick", "seat") if getattr(args, one)), None)):
+            raise ValueError(f"--{given} is given where you do not play; expected one player to play against")
         for one in {names, *pairwise(args.players)}:
             Game(one, seed_number(args.seed), quick=args.quick).tick()  # compiles before anyone waits for it
     token, records = secrets.token_urlsafe(12), Records(args.out, recordings, args.name)

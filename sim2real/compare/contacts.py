@@ -21,11 +21,20 @@ INPUTS = 11
 
 
 @dataclass(frozen=True)
+class Spin:
+    """Of a puck before a contact [rad/s], and whether it is known; else it is a guess."""
+
+    value: float = 0.0
+    known: bool = False
+
+
+@dataclass(frozen=True)
 class ContactError:
     """A contact and its prediction; velocities (2,) [m/s] along the normal and the tangent.
 
     `before`, `after`: recorded velocities, relative to the mallet for a mallet contact; `predicted`: predicted velocity
-    after; `std`: standard deviation of `error` due to noise alone; `spin`: predicted spin after [rad/s].
+    after; `std`: standard deviation of `error` due to noise alone; `spin`: predicted spin after, known where
+    that before was.
     """
 
     contact: ContactEvent
@@ -33,7 +42,7 @@ class ContactError:
     after: np.ndarray
     predicted: np.ndarray
     std: np.ndarray
-    spin: float
+    spin: Spin
 
     @property
     def error(self) -> np.ndarray:
@@ -41,8 +50,8 @@ class ContactError:
         return self.after - self.predicted
 
 
-def predict_wall(jump: VelocityJump, p: np.void, map_error: MapError, spin: float = 0.0) -> ContactError:
-    """Predict the velocity after a wall contact from the velocity before, and the puck's `spin` [rad/s] before.
+def predict_wall(jump: VelocityJump, p: np.void, map_error: MapError, spin: Spin) -> ContactError:
+    """Predict the velocity after a wall contact from the velocity before, and the puck's `spin` before.
 
     `p`: the simulator's parameters, with those of effects.
     """
@@ -59,11 +68,12 @@ def predict_wall(jump: VelocityJump, p: np.void, map_error: MapError, spin: floa
     by_map = _by_map(inputs, map_error, seen_by_camera=False)
     std = _std(lambda z: axes @ (z[V_OUT] - after(z)), inputs, spread + by_map @ by_map.T)
     predicted = axes @ after(inputs)
-    return ContactError(jump.contact, axes @ jump.v_in, axes @ jump.v_out, predicted, std, float(pucks[0]["spin"]))
+    velocities, left = (axes @ jump.v_in, axes @ jump.v_out, predicted, std), float(pucks[0]["spin"])
+    return ContactError(jump.contact, *velocities, Spin(left, spin.known))
 
 
 def predict_mallet(
-    jump: VelocityJump, mallet: MalletPath, p: np.void, map_error: MapError, spin: float = 0.0
+    jump: VelocityJump, mallet: MalletPath, p: np.void, map_error: MapError, spin: Spin
 ) -> ContactError | None:
     """Predict the velocity after a mallet contact from those of puck and mallet before; all relative to the mallet.
 
@@ -92,14 +102,15 @@ def predict_mallet(
     by_map = _by_map(inputs, map_error, seen_by_camera=jump.contact.where == "opponent")
     std = _std(lambda z: axes @ (z[V_OUT] - after(z)), inputs, spread + by_map @ by_map.T)
     before, measured, predicted = (axes @ (v - velocity) for v in (jump.v_in, jump.v_out, after(inputs)))
-    return ContactError(jump.contact, before, measured, predicted, std, float(pucks[0]["spin"]))
+    left = Spin(float(pucks[0]["spin"]), spin.known)
+    return ContactError(jump.contact, before, measured, predicted, std, left)
 
 
-def _place(puck: np.void, inputs: np.ndarray, spin: float) -> None:
+def _place(puck: np.void, inputs: np.ndarray, spin: Spin) -> None:
     """Place a puck just before a contact."""
     puck["x"], puck["y"] = inputs[PLACE]
     puck["vx"], puck["vy"] = inputs[V_IN]
-    puck["spin"] = spin
+    puck["spin"] = spin.value
 
 
 def _axes(normal: np.ndarray) -> np.ndarray:

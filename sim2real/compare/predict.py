@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim2real.compare.contacts import ContactError, predict_mallet, predict_wall
+from sim2real.compare.contacts import ContactError, Spin, predict_mallet, predict_wall
 from sim2real.compare.glides import GlideError, predict_glide, why_not_usable
 from sim2real.compare.map_error import MapError
 from sim2real.diagnose.engine.problem import record_of
@@ -62,7 +62,7 @@ def _contacts(
     touched = {contact.where for contact in segments.of_kind("mallet")}
     read = {"robot": robot_path, "opponent": opponent_path}
     paths = {who: read[who](recording) for who in touched}
-    walls, mallets, p = [], [], record_of(values)
+    walls, mallets, p, after_hand = [], [], record_of(values), _hand_let_go(recording, segments)
     last: tuple[VelocityJump, ContactError] | None = None
     for contact in segments.contacts:
         jump, found = by_contact.get(id(contact)), None
@@ -72,11 +72,11 @@ def _contacts(
         elif not contact.clean or jump is None:
             unusable[contact.kind]["too few frames beside another event"] += 1
         elif contact.kind == "wall":
-            found = predict_wall(jump, p, map_error, _spin(last, jump, values))
+            found = predict_wall(jump, p, map_error, _spin(last, jump, after_hand, values))
             walls.append(found)
         else:
             path = paths[contact.where]
-            found = path and predict_mallet(jump, path, p, map_error, _spin(last, jump, values))
+            found = path and predict_mallet(jump, path, p, map_error, _spin(last, jump, after_hand, values))
             if found is None:
                 unusable["mallet"]["mallet not seen"] += 1
             else:
@@ -85,9 +85,23 @@ def _contacts(
     return walls, mallets
 
 
-def _spin(last: tuple[VelocityJump, ContactError] | None, jump: VelocityJump, values: dict[str, float]) -> float:
-    """The spin [rad/s] with which the puck comes to a contact: what the `last` one, of the same launch, left of it by
-    its prediction; none where that is not known."""
+def _hand_let_go(recording: Recording, segments: Segments) -> set[int]:
+    """The contacts, by their identity, that are the first after a hand let the puck go."""
+    found, t = set(), recording.frames.t
+    for (start, stop), let_go in zip(segments.launches, segments.let_go, strict=True):
+        within = (one for one in segments.contacts if t[start] <= one.t <= t[stop - 1])
+        first = next(within, None)
+        if let_go and first is not None:
+            found.add(id(first))
+    return found
+
+
+def _spin(
+    last: tuple[VelocityJump, ContactError] | None, jump: VelocityJump, after_hand: set[int], values: dict[str, float]
+) -> Spin:
+    """The spin with which the puck comes to a contact: what the `last` one, of the same launch, left of it by its
+    prediction; none for the first `after_hand` let the puck go; elsewhere it is not known."""
     if last is None or last[0].launch != jump.launch:
-        return 0.0
-    return last[1].spin * float(np.exp(-values["spin_decay"] * (jump.t - last[0].t)))
+        return Spin(known=id(jump.contact) in after_hand)
+    left = last[1].spin
+    return Spin(left.value * float(np.exp(-values["spin_decay"] * (jump.t - last[0].t))), left.known)

@@ -22,7 +22,7 @@ export class Chart {
     const down = (off) => height - (off / top) * (height - 2) - 1;
     for (const contact of contacts) {
       if (Math.abs(contact.t - time) > AROUND / 2) continue;
-      this.stroke([[across(contact.t), 0], [across(contact.t), height]], colour(contact.kind === "unexplained" ? "line" : "rail"), 1);
+      this.stroke([[across(contact.t), 0], [across(contact.t), height]], colour(contact.kind === "unexplained" ? "one" : "rail"), 1);
     }
     for (const { t, off_mm, noise_mm, fitted } of near) {
       const points = (values) => values.map((off, k) => [across(t[k]), down(off)]);

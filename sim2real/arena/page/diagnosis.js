@@ -7,11 +7,13 @@ export class Diagnosis {
   constructor(show) {
     this.found = null;
     part("diagnose").onclick = () => this.ask("POST");
+    this.awaited = false; // whether who looks asked for it, and waits to see what it makes of the prediction
     part("law").onchange = () => show(part("law").value === "after" ? this.found : null);
     this.ask("GET");
   }
 
   async ask(method) {
+    this.awaited ||= method === "POST";
     const answer = await this.fetched("diagnosis", method);
     if (!answer) return;
     const { state, words, concealed } = answer;
@@ -19,6 +21,7 @@ export class Diagnosis {
     part("progress").textContent = state === "failed" ? `no diagnosis: ${words}` : words;
     if (state === "going") setTimeout(() => this.ask("GET"), ASKED_EVERY);
     if (state === "there") await this.load(concealed);
+    if (state === "there" && this.awaited) this.choose("after");
   }
 
   async load(concealed) {
@@ -26,10 +29,16 @@ export class Diagnosis {
     this.found = await this.fetched("diagnosed", "GET");
     if (!this.found) return;
     part("progress").textContent = "";
+    part("report").href = `report?${new URLSearchParams(location.search)}`;
     part("found").textContent = this.found.summary.join("\n");
     part("left-out").textContent = this.found.left_out.map((what) => `not in the prediction: ${what}`).join("; ");
     part("concealed").textContent = concealed ? `concealed was ${concealed.words}` : "";
     part("findings").hidden = part("switch").hidden = false;
+  }
+
+  choose(law) {
+    part("law").value = law;
+    part("law").dispatchEvent(new Event("change"));
   }
 
   // What the server says; null where it says why not, or nothing.

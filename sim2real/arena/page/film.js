@@ -6,6 +6,7 @@ part("film").ontoggle = () => {
   const [shown, end] = [Number(part("table").dataset.shown ?? 0), Number(part("time").max)];
   part("from").value = Math.max(shown - AROUND, 0).toFixed(1);
   part("to").value = Math.min(shown + AROUND, Math.max(end, 0.1)).toFixed(1);
+  part("from").max = part("to").max = end.toFixed(1);
   part("making").textContent = "";
 };
 

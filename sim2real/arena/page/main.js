@@ -14,7 +14,7 @@ const drawing = new Drawing(canvas);
 const pointer = new Pointer(canvas, drawing, aimed);
 const smoothing = new Smoothing();
 const standings = new Standings(part("standings"), part("ratings"));
-let seat = null, mallet = null, newest = null, sent = 0, acted = 0, lag = null, again = false, before = performance.now();
+let seat = null, mallet = null, newest = null, sent = 0, acted = 0, lag = null, again = false, notice = "", hinted = false, before = performance.now();
 
 const hear = {
   welcome(message) {
@@ -25,8 +25,11 @@ const hear = {
     drawing.table = message.table;
     drawing.fit();
     smoothing.clear();
-    message.names.forEach((name, k) => { part(`name-${k}`).textContent = k === seat ? "you" : name; });
-    part("note").textContent = seat === null ? "watching" : HINT;
+    message.names.forEach((name, k) => { part(`name-${k}`).textContent = k === seat ? `you (${name})` : name; });
+    standings.playing(message.names);
+    notice = message.notice ?? "";
+    part("note").textContent = [seat === null ? "watching" : HINT, ...(notice ? [notice] : [])].join("; ");
+    hinted = seat !== null;
     part("again").hidden = part("replay").hidden = true;
     standings.show(false);
     canvas.style.cursor = seat === null ? "default" : "none";
@@ -74,7 +77,8 @@ function linked(id, page, query) {
 // server hears of it.
 function aimed(place, time) {
   if (seat === null || time - sent < AIM_EVERY) return;
-  if (part("note").textContent === HINT) part("note").textContent = "";
+  if (hinted) part("note").textContent = notice;
+  hinted = false;
   sent = Math.max(time, before);
   mallet.aim(sent / 1000, place);
   link.say({ kind: "aim", x: place[0], y: place[1], sent });

@@ -2,10 +2,11 @@
 import { Chart } from "./chart.js";
 import { Diagnosis } from "./diagnosis.js";
 import { Drawing } from "./drawing.js";
-import { glideAt, placeAt, trail, words } from "./timeline.js";
+import { contactAt, glideAt, placeAt, trail, words } from "./timeline.js";
 
 const TRAIL = 0.4; // s of the puck's path
 const STEP = 1 / 120; // s that an arrow key moves
+const MARK = 0.015; // m, radius of the ring about a contact
 const part = (id) => document.getElementById(id);
 const drawing = new Drawing(part("table"));
 const chart = new Chart(part("chart"));
@@ -16,6 +17,7 @@ async function load() {
   const answer = await fetch(`recording?${given}`);
   if (!answer.ok) {
     part("note").textContent = await answer.text();
+    document.body.classList.add("empty");
     return;
   }
   recording = plain = await answer.json();
@@ -29,7 +31,7 @@ async function load() {
   part("time").max = end;
   drawing.table = recording.table;
   drawing.fit();
-  move(Number(given.get("at") ?? 0));
+  move(Number(given.get("at")) || 0);
   requestAnimationFrame(frame);
 }
 
@@ -66,6 +68,8 @@ function show(glide) {
     drawing.line(glide.path.slice(glide.fitted - 1), "two");
     drawing.ring(expected, recording.table.puck_radius, "two");
   }
+  const contact = contactAt(recording.contacts, time);
+  if (contact) drawing.ring(contact.place, MARK, contact.kind === "unexplained" ? "one" : "ink");
   const shown = { shown: time, puck, expected, mallet: mallets[0] };
   for (const [name, value] of Object.entries(shown)) part("table").dataset[name] = JSON.stringify(value);
 }

@@ -17,7 +17,20 @@ export class Standings {
       }
       return line;
     }));
-    this.section.querySelector("p").textContent = `next: ${next.join(" against ")}`;
+    this.next = next;
+    this.tell();
+  }
+
+  // Who plays now: the match that was to come next, or one that is over.
+  playing(names) {
+    this.names = names;
+    this.tell();
+  }
+
+  tell() {
+    if (!this.next) return;
+    const now = this.next.every((name, k) => name === this.names?.[k]);
+    this.section.querySelector("p").textContent = `${now ? "now" : "next"}: ${this.next.join(" against ")}`;
   }
 
   show(shown) {

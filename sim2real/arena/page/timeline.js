@@ -1,6 +1,7 @@
 // What a recording holds at a moment: places between rows, the glide that goes on, and the last contact.
 import { mix } from "./smoothing.js";
 
+const SHOWN = 0.25; // s after it that a contact is shown
 const LONGEST_GAP = 0.1; // s between rows over which nothing is drawn
 
 // The index of the last time that is not after `t`; -1 before the first.
@@ -34,6 +35,12 @@ export function glideAt(glides, time) {
   return glide && time <= glide.t.at(-1) ? glide : undefined;
 }
 
+// The contact that was a moment ago, or undefined.
+export function contactAt(contacts, time) {
+  const contact = contacts[before(contacts.map(({ t }) => t), time)];
+  return contact && time - contact.t < SHOWN ? contact : undefined;
+}
+
 // In words, what was found last before a time.
 export function words({ glides, contacts }, time) {
   const glide = glideAt(glides, time);
@@ -45,9 +52,9 @@ export function words({ glides, contacts }, time) {
   return last ? `${off}; ${last}` : off;
 }
 
-function contactWords({ kind, where, after, predicted }) {
+function contactWords({ kind, where, after, predicted, guessed }) {
   const what = kind === "unexplained" ? `an unexplained change of motion (${where})` : `${kind} ${where}`;
   if (!after) return what;
   const speed = (pair) => pair.map((v) => v.toFixed(2)).join(", ");
-  return `${what}: (${speed(after)}) m/s after it, predicted (${speed(predicted)}), along the normal and across`;
+  return `${what}: (${speed(after)}) m/s after it, predicted (${speed(predicted)})${guessed ? " but for its spin, which is not known" : ""}, along the normal and across`;
 }

@@ -63,7 +63,7 @@ class Diagnoser:
 
     def _how_long(self, name: str) -> str:
         if name not in self._begun:
-            return "waiting for another diagnosis"
+            return "waiting for another diagnosis" if self._begun else "diagnosing"
         seconds = asyncio.get_running_loop().time() - self._begun[name]
         return f"diagnosing for {seconds:.0f} s; it takes half a minute to many minutes"
 

@@ -1,4 +1,5 @@
-"""A game of the arena as a recording: what a perfect camera and the encoders of seat 0 see, and the gantry's orders."""
+"""A game of the arena as a recording: what a perfect camera and the encoders of seat 0 see, and the orders of its
+gantry, if it has one."""
 
 from __future__ import annotations
 
@@ -29,7 +30,7 @@ class GameRecorder:
         self._frames: list[tuple[float, ...]] = []
         self._mallet: list[tuple[float, ...]] = []
         self._commands: list[tuple[float, ...]] = []
-        self._orders = Orders(1.0 / TICKS, game.robot)
+        self._orders = Orders(1.0 / TICKS, game.robot) if game.has_gantry else None
         self.add(game)
 
     def add(self, game: Game) -> None:
@@ -38,8 +39,9 @@ class GameRecorder:
         puck, robot, opponent = (place or NOWHERE for place in (view.puck, *view.mallets))
         self._frames.append((view.time, *puck, *opponent))
         self._mallet.append((view.time, *robot, *NOWHERE))
-        if game.ticks and (row := self._orders.row((game.ticks - 1) / TICKS, game.robot)) is not None:
-            self._commands.append(row)
+        if self._orders and game.ticks:
+            row = self._orders.row((game.ticks - 1) / TICKS, game.robot)
+            self._commands += [row] if row is not None else []
         if len(self._frames) >= EVERY:
             self._write()
 

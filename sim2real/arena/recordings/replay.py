@@ -54,9 +54,10 @@ def _predictions(recording: Recording, values: dict[str, float]) -> dict[str, An
     segments = segment(recording)
     found = compare_segments(recording, segments, values)
     compared = {id(one.contact): one for one in (*found.walls, *found.mallets)}
+    rubs = values["wall_mu"] > 0.0 or values["mallet_mu"] > 0.0
     contacts = [
         {"t": round(one.t, 4), "place": _rounded([one.x, one.y]), "kind": one.kind, "where": one.where}
-        | _velocities(compared.get(id(one)))
+        | _velocities(compared.get(id(one)), rubs)
         for one in segments.contacts
     ]
     return {"glides": [_glide(glide) for glide in found.glides], "contacts": contacts}
@@ -81,12 +82,14 @@ def _glide(glide: GlideError) -> dict[str, Any]:
     }
 
 
-def _velocities(error: ContactError | None) -> dict[str, Any]:
-    """Velocities [m/s] along the normal and the tangent, if the contact could be compared."""
+def _velocities(error: ContactError | None, rubs: bool) -> dict[str, Any]:
+    """Velocities [m/s] along the normal and the tangent, if the contact could be compared; and whether the prediction
+    hangs on a spin that is not known, where walls or mallets rub."""
     if error is None:
         return {}
     rows = {"before": error.before, "after": error.after, "predicted": error.predicted, "std": error.std}
-    return {name: [round(float(v), 3) for v in row] for name, row in rows.items()}
+    velocities = {name: [round(float(v), 3) for v in row] for name, row in rows.items()}
+    return {**velocities, "guessed": rubs and not error.spin.known}
 
 
 def _rounded(numbers: Any) -> list[float]:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Mapping
 from pathlib import Path
 
 from aiohttp import web
 
+from puckpilot_env.files import small_file
 from sim2real.arena.access import HEADERS, refuse_strangers
 from sim2real.arena.concealed import revealed
 from sim2real.arena.recordings.diagnoser import Diagnoser
@@ -19,6 +21,8 @@ READER = web.AppKey("reader", Reader)
 DIAGNOSER = web.AppKey("diagnoser", Diagnoser)
 FILMS = web.AppKey("films", FilmMaker)
 DIAGNOSES = "diagnoses"  # in the folder of the recordings
+REPORT, MOST_BYTES = "report.html", 1 << 26
+INERT = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"  # of a page: nothing in it runs
 
 
 def add_recordings(app: web.Application, records: Records, diagnoses: Mapping[str, Path]) -> None:
@@ -29,6 +33,7 @@ def add_recordings(app: web.Application, records: Records, diagnoses: Mapping[st
     app.router.add_get("/diagnosis", _diagnosis)
     app.router.add_post("/diagnosis", _diagnose)
     app.router.add_get("/diagnosed", _diagnosed)
+    app.router.add_get("/report", _report)
     app.router.add_get("/film", _film)
     app.on_shutdown.append(_close)
 
@@ -55,11 +60,26 @@ async def _diagnose(request: web.Request) -> web.Response:
 
 async def _diagnosed(request: web.Request) -> web.Response:
     """What was found in a recording, and what that makes of the predictions."""
+    _, folder = _asked(request)
+    return _json(await _read(request, folder, _found(request)))
+
+
+async def _report(request: web.Request) -> web.Response:
+    """The report of a diagnosis, a page without scripts."""
+    try:
+        text = await asyncio.to_thread(small_file.read_text, _found(request) / REPORT, MOST_BYTES)
+    except (OSError, ValueError) as error:
+        raise web.HTTPNotFound(text=f"the report cannot be read: {error}") from None
+    return web.Response(text=text, content_type="text/html", headers=HEADERS | {"Content-Security-Policy": INERT})
+
+
+def _found(request: web.Request) -> Path:
+    """The folder of the diagnosis of the recording that is asked for."""
     name, folder = _asked(request)
     diagnosis = request.app[DIAGNOSER].find(name, folder)
     if diagnosis is None:
         raise web.HTTPNotFound(text=f"there is no diagnosis of {name[:80]!r} yet")
-    return _json(await _read(request, folder, diagnosis))
+    return diagnosis
 
 
 async def _film(request: web.Request) -> web.Response:

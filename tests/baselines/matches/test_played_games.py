@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import puckpilot
@@ -63,3 +64,20 @@ def test_persons_who_met_none_of_the_players_cannot_be_rated(tmp_path: Path) -> 
     played = {("human:ann", "veteran"): [[1, 1]]}
     with pytest.raises(ValueError, match=r"human:ann and veteran played, of whom neither takes part"):
         play_tournament("match-v0", ["still", "goalie"], 2, 0, played=played)
+
+
+@pytest.mark.slow
+def test_matches_of_players_who_meet_anew_are_counted_as_well(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """In whichever order the file names them: its goalie won both."""
+    file = written(tmp_path / "games.jsonl", *[("goalie", "interceptor", 3, 1)] * 2)
+    words = ["tournament", "interceptor", "goalie", "--games", "20", "--out", str(tmp_path / "out")]
+    assert puckpilot.main([*words, "--json"]) == 0
+    alone = json.loads(capsys.readouterr().out)
+    assert puckpilot.main([*words, "--json", "--played", str(file)]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["players"] == alone["players"] == ["interceptor", "goalie"]
+    assert np.subtract(found["wins"], alone["wins"]).tolist() == [[0, 0], [2, 0]] and found["draws"] == alone["draws"]
+    assert puckpilot.main([*words, "--played", str(file)]) == 0
+    assert f"20 games of every two players, and those of {file}, seed 0" in capsys.readouterr().out

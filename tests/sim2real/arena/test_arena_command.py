@@ -50,6 +50,10 @@ def test_what_does_not_go_with_a_recording_is_refused_in_one_line(
     [
         (["still", "goalie", "--quick"], "--quick is given where you do not play; expected one player to play against"),
         (
+            ["still", "goalie", "--seat", "1"],
+            "--seat is given where you do not play; expected one player to play against",
+        ),
+        (
             ["still", "goalie", "random", "--concealed"],
             "--concealed is given with 3 players; expected one to play against",
         ),

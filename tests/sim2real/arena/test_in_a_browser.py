@@ -86,7 +86,7 @@ def test_one_joins_moves_and_comes_back_into_the_same_game(browser: Any) -> None
         page, connections = browser.new_page(viewport={"width": 1000, "height": 640}), []
         page.route_web_socket("**/game**", lambda side: connections.extend([side, side.connect_to_server()]))
         opened(page, address)
-        assert page.inner_text("#name-0") == "you" and page.inner_text("#name-1") == "goalie"
+        assert page.inner_text("#name-0") == "you (guest)" and page.inner_text("#name-1") == "goalie"
         box = page.locator("#table").bounding_box()
         for share in (0.2, 0.8):
             page.mouse.move(box["x"] + 0.25 * box["width"], box["y"] + share * box["height"])
@@ -140,7 +140,7 @@ def test_a_friend_looks_on_by_the_link(browser: Any) -> None:
         before = shown(page)
         friend.keyboard.press("ArrowUp")
         until(friend, lambda: shown(friend) > before + 0.3)
-        assert page.inner_text("#name-0") == "you" and friend.inner_text("#name-0") == "ann"
+        assert page.inner_text("#name-0") == "you (ann)" and friend.inner_text("#name-0") == "ann"
         assert page.inner_text("#note") == "point, or press an arrow key"
         page.keyboard.down("ArrowUp")
         until(page, lambda: page.inner_text("#note") == "")
@@ -199,6 +199,11 @@ def test_a_recording_is_shown_beside_the_simulator(browser: Any) -> None:
         until(page, lambda: page.evaluate(PAINTED))
         puck, expected = (json.loads(page.get_attribute("#table", f"data-{name}")) for name in ("puck", "expected"))
         assert 0.005 < abs(puck[0] - expected[0]) + abs(puck[1] - expected[1]) < 0.05  # the demo's table is tilted
+        page.goto(f"{address}&at=soon")
+        until(page, lambda: page.inner_text("#clock").startswith("0.00 of"), 60.0)
+        page.goto(address.replace("demo_recording", "another"))
+        until(page, lambda: "there is no recording 'another' here" in page.inner_text("#note"))
+        assert not page.is_visible("#play") and not page.is_visible("#chart")
 
 
 def test_what_a_diagnosis_found_is_shown_and_its_prediction_is_nearer(browser: Any, tmp_path: Path) -> None:
@@ -214,11 +219,13 @@ def test_what_a_diagnosis_found_is_shown_and_its_prediction_is_nearer(browser: A
         page.click("#diagnose")
         until(page, lambda: page.is_visible("#law"), 120.0)
         assert page.inner_text("#found") == "\n".join(LINES) and not page.is_visible("#diagnose")
-        assert distance(page) == before
-        page.select_option("#law", "after")
         until(page, lambda: distance(page) < 0.3 * before)
+        assert page.input_value("#law") == "after"
         page.select_option("#law", "before")
         until(page, lambda: distance(page) == before)
+        report = browser.new_page()
+        report.goto(page.evaluate("document.getElementById('report').href"))
+        assert report.inner_text("body").strip() == "what was found"
         assert page.evaluate("document.documentElement.scrollWidth") <= 390
 
 

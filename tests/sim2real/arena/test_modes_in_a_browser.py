@@ -69,6 +69,8 @@ def test_a_tournament_goes_on_to_the_next_match(browser: Any, tmp_path: Path) ->
             assert page.evaluate("document.documentElement.scrollWidth") <= 390
             page.click("#ratings")
             assert page.is_visible("#standings") and page.locator("#standings tbody tr").count() == 3
+            assert "now: goalie against still" in page.inner_text("#standings")
+            assert page.eval_on_selector("#standings", "(part) => part.scrollWidth <= part.clientWidth")
         finally:
             process.kill()
     games = [json.loads(line)["players"] for line in (tmp_path / "games.jsonl").read_text().splitlines()]

@@ -7,6 +7,7 @@ import contextlib
 import json
 import tempfile
 from collections.abc import Awaitable, Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -18,22 +19,23 @@ from aiohttp.test_utils import TestClient, TestServer  # noqa: E402
 import sim2real  # noqa: E402
 from baselines.players.goalie import Goalie  # noqa: E402
 from sim2real.arena import lobby as lobby_module  # noqa: E402
-from sim2real.arena.game import PERSON  # noqa: E402
+from sim2real.arena.game import PERSON, Game, concealed_game  # noqa: E402
 from sim2real.arena.listener import BURST as MOST_SAID  # noqa: E402
 from sim2real.arena.lobby import Lobby  # noqa: E402
 from sim2real.arena.recordings.records import Records  # noqa: E402
 from sim2real.arena.server import PAGE, make_app  # noqa: E402
+from sim2real.arena.session import MakeGame, Session  # noqa: E402
 
 TOKEN = "a-token"
 Check = Callable[[Any, Lobby], Awaitable[None]]
 
 
-def served(check: Check, names: tuple[str, str] = (PERSON, "still")) -> None:
+def served(check: Check, names: tuple[str, str] = (PERSON, "still"), make_game: MakeGame = Game) -> None:
     """Run a check against a server of the test's own."""
 
     async def run() -> None:
         records = Records(folder)
-        lobby = Lobby(names, 0, records)
+        lobby = Lobby(names, 0, records, lambda seed, late: Session(names, seed, records, late, make_game))
         async with TestClient(TestServer(make_app(lobby, records, TOKEN))) as client:
             await check(client, lobby)
 
@@ -84,6 +86,21 @@ def test_a_person_aims_and_the_state_says_by_which_aim() -> None:
         assert state["mallets"][0] == pytest.approx([0.3, 0.2], abs=0.01)
 
     served(check)
+
+
+@pytest.mark.parametrize(
+    ("make_game", "notice"),
+    [
+        (Game, ""),
+        (partial(Game, quick=True), "your mallet is quick; this match is not rated"),
+        (concealed_game, "the table has an effect, or none: guess, and diagnose the replay; this match is not rated"),
+    ],
+)
+def test_the_page_says_in_what_a_match_differs(make_game: MakeGame, notice: str) -> None:
+    async def check(client: Any, lobby: Lobby) -> None:
+        assert (await heard(await joined(client), "welcome"))["notice"] == notice
+
+    served(check, make_game=make_game)
 
 
 def test_who_comes_back_finds_the_same_game_where_it_stood() -> None:

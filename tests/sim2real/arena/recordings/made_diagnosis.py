@@ -8,6 +8,8 @@ from pathlib import Path
 
 LINES = ["The simulator lacks table_tilt (the table is not level).", "  next: no further recording is needed"]
 
+REPORT = "<p>what was found</p><script>alert()</script>"
+
 
 def write_diagnosis(folder: Path, effects: Mapping[str, Mapping[str, float]], *more: str) -> Path:
     """Write a diagnosis that found these effects, with `more` lines in its effects.toml."""
@@ -17,4 +19,5 @@ def write_diagnosis(folder: Path, effects: Mapping[str, Mapping[str, float]], *m
         lines += [f"[effects.{name}]", *(f"{key} = {value}" for key, value in numbers.items())]
     (folder / "effects.toml").write_text("\n".join([*lines, *more]) + "\n")
     (folder / "diagnosis.json").write_text(json.dumps({"format": "puckpilot-diagnosis/1", "summary": LINES}))
+    (folder / "report.html").write_text(REPORT)
     return folder

@@ -40,6 +40,12 @@ def test_the_independent_table_s_effects_explain_its_glides_and_bounces(tmp_path
         np.median([_along(one) for one in each["contacts"] if _is_compared(one)]) for each in (before, after)
     )
     assert right < 0.3 * wrong
+    compared = [one for one in after["contacts"] if _is_compared(one)]
+    guessed = [one for one in compared if one["guessed"]]  # those after a contact that could not be compared
+    known = [_along(one) for one in compared if not one["guessed"]]
+    assert 0 < len(guessed) < 0.1 * len(compared)
+    assert np.median(known) < 0.5 * np.median([_along(one) for one in guessed])
+    assert not any(one["guessed"] for one in before["contacts"] if _is_compared(one))  # where spin does nothing
 
 
 def _is_compared(contact: dict) -> bool:

@@ -24,7 +24,7 @@ from sim2real.arena.lobby import Lobby
 from sim2real.arena.recordings import diagnoser
 from sim2real.arena.recordings.records import GAMES, Records
 from sim2real.arena.server import make_app
-from tests.sim2real.arena.recordings.made_diagnosis import LINES, write_diagnosis
+from tests.sim2real.arena.recordings.made_diagnosis import LINES, REPORT, write_diagnosis
 
 TOKEN = "a-token"
 DEMO = Path(sim2real.__file__).with_name("demo_recording")
@@ -65,7 +65,7 @@ async def until(client: Any, name: str, state: str) -> dict[str, Any]:
 
 def test_strangers_and_names_that_are_none_are_refused(tmp_path: Path) -> None:
     async def check(client: Any) -> None:
-        for method, path in (("GET", "/diagnosis"), ("POST", "/diagnosis"), ("GET", "/diagnosed")):
+        for method, path in (("GET", "/diagnosis"), ("POST", "/diagnosis"), ("GET", "/diagnosed"), ("GET", "/report")):
             assert (await client.request(method, path, params={"name": DEMO.name})).status == 403
             assert (await client.request(method, path, params={"name": DEMO.name, "token": "another"})).status == 403
             for name in ("", "..", f"../{DEMO.name}", "none"):
@@ -86,6 +86,21 @@ def test_a_diagnosis_that_is_given_is_shown(tmp_path: Path) -> None:
         assert found["summary"] == LINES and len(found["glides"]) > 10 and len(found["contacts"]) > 10
 
     served(check, Records(tmp_path, [DEMO]), demo_recording=write_diagnosis(tmp_path / "found", EFFECTS))
+
+
+def test_the_report_is_shown_and_nothing_in_it_runs(tmp_path: Path) -> None:
+    found = write_diagnosis(tmp_path / "found", EFFECTS)
+
+    async def check(client: Any) -> None:
+        answer = await client.get("/report", params={"name": DEMO.name, "token": TOKEN})
+        assert answer.status == 200 and answer.content_type == "text/html" and await answer.text() == REPORT
+        policy = answer.headers["Content-Security-Policy"]
+        assert "default-src 'none'" in policy and "script-src" not in policy
+        (found / "report.html").unlink()
+        missing = await client.get("/report", params={"name": DEMO.name, "token": TOKEN})
+        assert missing.status == 404 and "report cannot be read" in await missing.text()
+
+    served(check, Records(tmp_path, [DEMO]), demo_recording=found)
 
 
 @pytest.mark.slow

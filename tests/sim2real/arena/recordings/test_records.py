@@ -52,6 +52,21 @@ def test_a_recording_holds_what_was_played(tmp_path: Path) -> None:
     assert recording.nominal("table", "length_m") == pytest.approx(2.0)
 
 
+@pytest.mark.parametrize(("names", "known"), [((PERSON, "still"), False), (("interceptor", PERSON), True)])
+def test_a_quick_mallet_obeys_no_orders_of_a_gantry(names: tuple[str, str], known: bool, tmp_path: Path) -> None:
+    """What a diagnosis would take for those of an impossible gantry."""
+    game, records = Game(names, 5, quick=True), Records(tmp_path)
+    recorder = records.begin(game, 5)
+    if game.person is not None:
+        game.person.aim(0.4, 0.2, 1.0)
+    for _ in range(60):
+        game.tick()
+        recorder.add(game)
+    records.keep(recorder, game, 5)
+    recording = read_recording(tmp_path / recorder.name)
+    assert recording.mallet is not None and (recording.commands is not None) == known
+
+
 def test_how_matches_ended_is_a_line_each_under_the_names_of_persons(tmp_path: Path) -> None:
     records = Records(tmp_path, person="ann")
     names = [played(records, 5, (PERSON, "still"))[0], played(records, 5, ("still", PERSON))[0]]
