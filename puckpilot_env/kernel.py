@@ -44,7 +44,7 @@ def _package_sources(package: str) -> list[Path]:
 
 
 def _hash_of(sources: list[Path]) -> str:
-    digest = hashlib.sha256(numba.__version__.encode())
+    digest = hashlib.sha256(f"{numba.__version__} {_ROOT}".encode())  # numba shares nothing between two copies
     for path in sources:
         digest.update(path.name.encode())
         digest.update(path.read_bytes())
