@@ -13,7 +13,6 @@
 #include "messages.h"
 #include "path.h"
 #include "robot.h"
-#include "setpoints.h"
 
 #define RADIANS 3.83495197e-4f /* of a step of an encoder: 2 pi / ENCODER_TURN */
 #define NEWS 8 /* events that wait to be sent; more of them, and the oldest are dropped */

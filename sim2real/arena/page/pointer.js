@@ -9,6 +9,7 @@ export class Pointer {
     this.aimed = aimed;
     this.place = null;
     this.down = new Set();
+    this.released = new Set(); // keys that went up since the last picture: a short tap moves by one picture's step
     canvas.addEventListener("pointermove", (event) => this.point(canvas, event));
     canvas.addEventListener("pointerdown", (event) => this.point(canvas, event));
     canvas.addEventListener("keydown", (event) => this.key(event, true));
@@ -27,7 +28,7 @@ export class Pointer {
     if (!(event.key in KEYS)) return;
     event.preventDefault();
     if (pressed) this.down.add(event.key);
-    else this.down.delete(event.key);
+    this.released[pressed ? "delete" : "add"](event.key);
   }
 
   // Move on by the keys pressed for `seconds`; `mallet`: from where, if there is no place yet.
@@ -37,6 +38,8 @@ export class Pointer {
     const step = KEY_SPEED * seconds * this.drawing.scale;
     const sum = [...this.down].map((key) => KEYS[key]).reduce((a, b) => [a[0] + b[0], a[1] + b[1]]);
     this.place = this.inside(this.drawing.metres(across + step * sum[0], down + step * sum[1]));
+    for (const key of this.released) this.down.delete(key);
+    this.released.clear();
   }
 
   inside([x, y]) {

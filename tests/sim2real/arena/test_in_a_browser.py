@@ -155,6 +155,10 @@ def test_the_arrow_keys_move_the_mallet(browser: Any) -> None:
         until(page, lambda: mallet_of(page)[1] > before[1] + 0.1)
         page.keyboard.up("ArrowUp")
         assert abs(mallet_of(page)[0] - before[0]) < 0.05
+        page.wait_for_timeout(500)
+        across = mallet_of(page)[0]
+        page.keyboard.press("ArrowLeft")  # down and up between two pictures
+        until(page, lambda: mallet_of(page)[0] < across - 0.005)
 
 
 def test_two_players_are_watched_on_a_narrow_phone(browser: Any) -> None:
