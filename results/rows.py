@@ -108,7 +108,7 @@ def _row(entry: Mapping[str, Any], shared: Mapping[str, Any]) -> Row:
 
 
 def _figure(entry: Mapping[str, Any]) -> Figure:
-    given = dict(entry, values=tuple(entry.get("values", ())))
+    given: dict[str, Any] = {**entry, "values": tuple(entry.get("values", ()))}
     if "bar" in given:
         given["bar"] = _made(Bar, given["bar"], "entry of a bar")
     return _made(Figure, given, "entry of a figure")

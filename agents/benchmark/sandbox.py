@@ -60,7 +60,10 @@ def play_in_sandbox(
     if done.returncode:
         last = (done.stderr.strip().splitlines() or [f"ended with {done.returncode}"])[-1]
         raise SandboxError(last[:200])
-    return [Against(**{**row, "goals": tuple(row["goals"])}) for row in json.loads(done.stdout)]
+    rows: list[dict[str, Any]] = json.loads(done.stdout)
+    for row in rows:
+        row["goals"] = tuple(row["goals"])
+    return [Against(**row) for row in rows]
 
 
 def _limit(limits: Limits) -> None:

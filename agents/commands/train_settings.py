@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from puckpilot_env.options.at_table import AT_TABLE
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from agents.training.run_folder import RunFolder
     from agents.training.settings import Settings
 
-DEFAULTS = {
+DEFAULTS: dict[str, Any] = {
     "variant": "match-v0", "preset": "fast", "seed": 0, "threads": 1, "device": "cpu", "effects": None, "draws": None,
     "residual": None,
 }  # fmt: skip

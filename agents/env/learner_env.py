@@ -56,7 +56,7 @@ class LearnerEnv(VecEnv):
         self.max_episode_length = tables.variant.step_limit or round(tables.variant.match_time / tables.variant.period)
         self.episode_length_buf = torch.zeros(self.num_envs, dtype=torch.long)
         self.device = "cpu"  # where the tables are
-        self.cfg: dict[str, Any] = {"variant": tables.variant.id}
+        self.cfg = {"variant": tables.variant.id}
         self._table_of_row = matchmaking.learner_rows // 2
         self._actions = np.zeros((2 * len(tables), 4), np.float32)
         mirrored = (self._table_of_row // 2) % 2 == 1 if mirror else np.zeros(self.num_envs, np.bool_)
@@ -136,5 +136,7 @@ class LearnerEnv(VecEnv):
             state = observed_state(self.tables, rows, flat[rows]) if ended else true_state(self.tables, rows)
             mirrored = self._action_signs[which, 1:2] < 0.0
             privileged.append(np.where(mirrored, STATE_MIRROR_SIGNS, 1.0).astype(np.float32) * state)
-        entries = {POLICY: torch.from_numpy(policy), PRIVILEGED: torch.from_numpy(np.hstack(privileged))}
-        return TensorDict(entries, batch_size=[len(rows)])
+        return TensorDict(
+            {POLICY: torch.from_numpy(policy), PRIVILEGED: torch.from_numpy(np.hstack(privileged))},
+            batch_size=[len(rows)],
+        )

@@ -33,7 +33,7 @@ class MultiVariantVectorEnv(VecEnv):
         self.max_episode_length = max(env.max_episode_length for env in envs)
         self.episode_length_buf = torch.zeros(self.num_envs, dtype=torch.long)
         self.device = "cpu"  # where the tables are
-        self.cfg: dict[str, Any] = {"variants": [env.tables.variant.id for env in envs]}
+        self.cfg = {"variants": [env.tables.variant.id for env in envs]}
 
     def get_observations(self) -> TensorDict:
         """The learner's current observations, `num_envs` rows."""

@@ -36,7 +36,8 @@ class TorchRLEnv(EnvBase):
         if not isinstance(tables, Tables) or not tables.autoreset:
             raise ValueError("expected Tables with autoreset=True")
         super().__init__(device="cpu", batch_size=torch.Size([len(tables)]))
-        self.tables, self._seed = tables, None
+        self.tables = tables
+        self._seed: int | None = None  # of the next reset of all tables
         self._ended = np.zeros(len(tables), np.bool_)  # tables whose episode ended in the last step
         every, seats = torch.Size([len(tables)]), torch.Size([len(tables), len(AGENTS)])
         column = torch.Size([1])
@@ -48,12 +49,13 @@ class TorchRLEnv(EnvBase):
             low, high = (torch.from_numpy(side.copy()).expand(*seats, -1) for side in bounds)
             return Bounded(low, high, seats + bounds.shape[1:], dtype=torch.float32)
 
-        self.observation_spec = of_seats(observation=bounded(tables.observation_bounds))
-        self.action_spec = of_seats(action=bounded(tables.action_bounds))
-        self.reward_spec = of_seats(reward=Unbounded(seats + column))
+        env: Any = self  # TorchRL wraps its setters, and what they take is no longer to be seen
+        env.observation_spec = of_seats(observation=bounded(tables.observation_bounds))
+        env.action_spec = of_seats(action=bounded(tables.action_bounds))
+        env.reward_spec = of_seats(reward=Unbounded(seats + column))
         done = of_seats(**{name: Binary(1, seats + column, dtype=torch.bool) for name in DONE})
         done.update({name: Binary(1, every + column, dtype=torch.bool) for name in DONE})
-        self.done_spec = done
+        env.done_spec = done
 
     def _reset(self, tensordict: TensorDictBase | None = None, **_options: Any) -> TensorDictBase:
         wanted = None if tensordict is None else tensordict.get("_reset", None)
@@ -80,12 +82,12 @@ class TorchRLEnv(EnvBase):
 
     def _entries(self, seen: np.ndarray, terminated: np.ndarray, truncated: np.ndarray) -> TensorDict:
         """What both seats see, and how their tables ended; copies."""
-        size = self.batch_size
+        count = len(self.tables)
         ends = dict(zip(DONE, (terminated | truncated, terminated, truncated), strict=True))
         of_tables = {name: torch.from_numpy(end.copy()).unsqueeze(-1) for name, end in ends.items()}
         of_seats = {name: end.unsqueeze(1).repeat(1, len(AGENTS), 1) for name, end in of_tables.items()}
-        seats = TensorDict({"observation": torch.from_numpy(seen.copy()), **of_seats}, [*size, len(AGENTS)])
-        return TensorDict({GROUP: seats, **of_tables}, size)
+        seats = TensorDict({"observation": torch.from_numpy(seen.copy()), **of_seats}, [count, len(AGENTS)])
+        return TensorDict({GROUP: seats, **of_tables}, [count])
 
     def _set_seed(self, seed: int | None) -> None:
         """The next reset of all tables starts their random streams anew."""
@@ -101,4 +103,5 @@ def torchrl_env(variant: Variant | str, num_envs: int, **options: Any) -> TorchR
     """Both seats of `num_envs` tables of an id; `options` are those of `Tables`, as `threads` and `parameters`.
     ValueError, in one line, for anything that cannot be."""
     number = whole_number(num_envs, "num_envs", 1, MOST_TABLES)
-    return TorchRLEnv(Tables(variant, number, **{"seed": fresh_seed(), **options}))
+    options = {"seed": fresh_seed(), **options}
+    return TorchRLEnv(Tables(variant, number, **options))

@@ -52,7 +52,7 @@ def rows_over_seeds(matchup_rows: Mapping[str, Sequence[Mapping[str, Any]]], see
     None there, and that row has no IQM. `seed` is that of the bootstrap.
     """
     each = list(zip(*matchup_rows.values(), strict=True))
-    rows = [
+    rows: list[dict[str, Any]] = [
         {"variant": some[0]["variant"], "opponent": some[0]["opponent"], "shares": [_share(one) for one in some]}
         for some in each
     ]

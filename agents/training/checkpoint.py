@@ -59,7 +59,7 @@ def restore_tables(tables: Tables, saved: Mapping[str, Any]) -> None:
     if variant != tables.variant.id:
         raise ValueError(f"the checkpoint is of {variant}; this run plays {tables.variant.id}")
     now = tables.snapshot()
-    arrays = {}
+    arrays: dict[str, Any] = {}
     for name in ARRAYS:
         like = getattr(now, name)
         data = saved[name].numpy()

@@ -115,7 +115,7 @@ class Training:
 
     def _make_players(self, env: LearnerEnv, members: list[Member]) -> list[Player]:
         seat = Seat.from_tables(env.tables)
-        players = []
+        players: list[Player] = []
         for block, member in zip(env.matchmaking.blocks, members, strict=True):
             own = replace(seat, tables=block.last - block.first, seed=int(self.rng.integers(2**31)))
             players.append(make_player(member.name, own) if member.policy is None else PolicyPlayer(member.policy, own))

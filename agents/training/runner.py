@@ -52,8 +52,9 @@ class Iteration:
 class SelfPlayRunner(OnPolicyRunner):
     """Collects a rollout from `env` and learns from it, one update a call. `env` must have its opponents set."""
 
-    env: MultiVariantVectorEnv
-    alg: FinalStatePPO
+    # rsl-rl's own, declared as what they are here; it sets them once
+    env: MultiVariantVectorEnv  # pyrefly: ignore[bad-override-mutable-attribute]
+    alg: FinalStatePPO  # pyrefly: ignore[bad-override-mutable-attribute]
 
     def __init__(self, env: MultiVariantVectorEnv, preset: Preset, device: str) -> None:
         with contextlib.redirect_stdout(io.StringIO()):  # rsl-rl prints its networks

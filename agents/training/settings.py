@@ -40,6 +40,7 @@ class Settings:
     def from_dict(cls, saved: Mapping[str, Any]) -> Settings:
         """The settings of an `as_dict`. ValueError, in one line, for anything else."""
         try:
-            return cls(**{**saved, "preset": read_preset(saved["preset"], "of the run")})
+            values: dict[str, Any] = {**saved, "preset": read_preset(saved["preset"], "of the run")}
+            return cls(**values)
         except (KeyError, TypeError) as error:
             raise ValueError(f"these are no settings of a run: {error}") from None

@@ -67,7 +67,7 @@ def masked(info: dict[str, Any], mask: NDArray[np.bool_]) -> dict[str, Any]:
 
     Beside each key `k` stands the mask as `_k`; the other rows are 0, or None of objects.
     """
-    rows = {}
+    rows: dict[str, Any] = {}
     for key, value in info.items():
         if isinstance(value, dict):
             rows[key] = masked(value, mask)

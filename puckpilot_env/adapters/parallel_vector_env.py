@@ -129,4 +129,5 @@ def parallel_vector_env(
     """Both seats of `num_envs` tables of an id; `options` are those of `Tables`, as `threads` and `parameters`.
     ValueError, in one line, for anything that cannot be."""
     number = whole_number(num_envs, "num_envs", 1, MOST_TABLES)
-    return ParallelVectorEnv(Tables(variant, number, **{"seed": fresh_seed(), **options}), copy=copy)
+    options = {"seed": fresh_seed(), **options}
+    return ParallelVectorEnv(Tables(variant, number, **options), copy=copy)

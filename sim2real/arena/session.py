@@ -26,7 +26,7 @@ class Session:
     those who look on. Its game can be made in any thread, all else happens in the loop's, from `start` on."""
 
     again = True  # whether a page may ask for another match
-    failure = WSCloseCode.INTERNAL_ERROR  # with which pages are let go where a player failed: they come back
+    failure: int = WSCloseCode.INTERNAL_ERROR  # with which pages are let go where a player failed: they come back
 
     def __init__(
         self,

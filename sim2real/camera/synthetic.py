@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from sim2real.camera.frame import Frame
 from sim2real.camera.playback import Playback
@@ -51,12 +52,15 @@ def of_a_recording(path: Path, exposure: float) -> Synthetic:
 
 
 def _table_of(recording: Recording) -> Table:
-    sizes = {"length": ("table", "length_m"), "width": ("table", "width_m")}
-    stated = {name: recording.nominal(*where) for name, where in sizes.items()}
-    table = Table.with_markers(**{name: size for name, size in stated.items() if size is not None})
-    radii = {"puck_radius": ("puck", "radius_m"), "mallet_radius": ("mallet", "radius_m")}
-    stated = {name: recording.nominal(*where) for name, where in radii.items()}
-    return replace(table, **{name: radius for name, radius in stated.items() if radius is not None})
+    sizes = _stated(recording, length=("table", "length_m"), width=("table", "width_m"))
+    radii = _stated(recording, puck_radius=("puck", "radius_m"), mallet_radius=("mallet", "radius_m"))
+    return replace(Table.with_markers(**sizes), **radii)
+
+
+def _stated(recording: Recording, **where: tuple[str, str]) -> dict[str, Any]:
+    """Those of the fields that the recording states."""
+    stated = {name: recording.nominal(*one) for name, one in where.items()}
+    return {name: value for name, value in stated.items() if value is not None}
 
 
 def _renderer(table: Table, exposure: float) -> Renderer:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from typing import Any
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -38,7 +39,7 @@ def run(args: argparse.Namespace) -> int:
         finally:
             env.close()
         reactions = list(table.reactions)
-    result = {
+    result: dict[str, Any] = {
         "seconds": log.seconds, "decisions": len(log.times.lateness), "overruns": log.times.overruns,
         "reactions": len(reactions),
         "stops": log.faults,

@@ -81,7 +81,7 @@ def _find(
         for done, path in enumerate(paths):
             progress(done, len(paths))
             image = read_grey(path)
-            if shape not in (None, image.shape):
+            if shape is not None and shape != image.shape:
                 raise ValueError(
                     f"{path} is {image.shape[1]}x{image.shape[0]} pixels; expected {shape[1]}x{shape[0]} as the first"
                 )

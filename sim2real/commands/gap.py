@@ -13,7 +13,7 @@ import argparse
 import hashlib
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from sim2real.gap.circle_folder import Conditions
@@ -162,7 +162,7 @@ def _circles(args: argparse.Namespace) -> dict[Path, Conditions]:
     if args.backend == PHYSICAL:
         tables = [str(Path(tables[0]).absolute())]
         digest = hashlib.sha256(Path(tables[0]).read_bytes()).hexdigest()[:12]
-    given = {
+    given: dict[str, Any] = {
         "player": args.player, "opponents": tuple(args.opponent or OPPONENTS), "backend": args.backend,
         **{name: getattr(args, name) for name in ("games", "seconds", "recorded", "steps", "seed")},
         "minutes": MINUTES if args.minutes is None and args.steps is None else args.minutes, "table_contents": digest,

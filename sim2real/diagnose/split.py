@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -62,7 +62,8 @@ def _only(one: Recording, stream: str, rows: np.ndarray) -> Recording:
     complete = getattr(one, stream)
     if complete is None:
         return one
-    return replace(one, **{stream: Stream({name: column[rows] for name, column in complete.columns.items()})})
+    kept: dict[str, Any] = {stream: Stream({name: column[rows] for name, column in complete.columns.items()})}
+    return replace(one, **kept)
 
 
 def _holdout_of_path(one: Recording, launch_of_row: np.ndarray, frames: np.ndarray) -> np.ndarray:

@@ -58,7 +58,8 @@ class Machine:
         self._boards = np.zeros(1, BOARD)
         self._address, self._state = self._boards.ctypes.data, self._boards[0]
         self._now = self._boards["timeline"]["now"]  # read much faster than the record
-        program, self._error, self._closed = read_elf(elf), None, False
+        program, self._closed = read_elf(elf), False
+        self._error: BaseException | None = None  # of a function that compiled code called
         self.cpu = CortexM(program, self._boards, self._failed)
         self.encoders = tuple(As5147(self._boards["encoders"][0, index : index + 1], self._failed) for index in (0, 1))
         self.motors = Motors(self._state["motors"], self._failed)

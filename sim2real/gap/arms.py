@@ -175,4 +175,4 @@ def simulator_of(arm: str, circle: Path, table: GapTable) -> Simulator | None:
     arm, and for one that needs a truth where none is known."""
     refuse_unknown([arm], ARMS, "arm")
     simulator = ARMS[arm].simulator
-    return simulator and simulator(circle, table).at_table(table.parameters)
+    return simulator(circle, table).at_table(table.parameters) if simulator else None

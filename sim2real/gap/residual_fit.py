@@ -58,7 +58,7 @@ def fit_residual(samples: Samples) -> tuple[Residual, dict[str, Any]]:
     residual = _fitted(samples.inputs[~held_out], samples.missed[~held_out])
     before = samples.missed[held_out]
     after = before - residual(samples.inputs[held_out])
-    report = {"format": FORMAT, "samples": int((~held_out).sum()), "held_out": int(held_out.sum())}
+    report: dict[str, Any] = {"format": FORMAT, "samples": int((~held_out).sum()), "held_out": int(held_out.sum())}
     for name, of in (
         ("rms", lambda off: np.sqrt((off**2).mean(axis=0))),
         ("median", lambda off: np.median(off, axis=0)),

@@ -105,7 +105,8 @@ def attribute(
     if len(walls) == 2 and fitting == 2:
         return [_corner_contact(event, path, wall) for wall in walls]
     if fitting > 1:
-        return [_contact(event, path, "unexplained", " or ".join(filter(None, [*walls, post, who])), None)]
+        several = " or ".join(one for one in (*walls, post, who) if one)
+        return [_contact(event, path, "unexplained", several, None)]
     if any(causes.may_be_goal(g, wall, event.place) for wall in walls):
         return [_contact(event, path, "unexplained", f"{walls[0]} or a post", None)]
     if walls:

@@ -97,7 +97,7 @@ class Learner:
         critic = {"params": self.loss.critic_network_params, "target_params": self.loss.target_critic_network_params}
         with torch.no_grad():
             self.loss.value_estimator(batch, **critic)
-        steps = batch.reshape(-1)
+        steps: Any = batch.reshape(-1)  # tensordict does not say what it is
         for _ in range(EPOCHS):
             for part in torch.randperm(len(steps)).split(MINIBATCH):
                 losses = self.loss(steps[part])

@@ -105,8 +105,8 @@ class Learner:
         centre, signs = torch.from_numpy(self._scaling.centre), torch.from_numpy(self._scaling.mirror_signs)
         middle = torch.from_numpy(0.5 * (self._scaling.low + self._scaling.high))
         image: Any = batch.clone()
-        image["observation"] = centre + signs * (batch["observation"] - centre)
-        image["action"] = middle + torch.tensor(ACTION_MIRROR_SIGNS) * (batch["action"] - middle)
+        image["observation"] = centre + signs * (image["observation"] - centre)
+        image["action"] = middle + torch.tensor(ACTION_MIRROR_SIGNS) * (image["action"] - middle)
         both: Any = torch.cat([batch, image])  # pyright: ignore[reportArgumentType] - of TensorDicts it makes one
         return both
 

@@ -24,7 +24,7 @@ def as_dict(diagnosis: Diagnosis) -> dict[str, Any]:
     """Return the diagnosis in the format puckpilot-diagnosis/1."""
     proof = diagnosis.proof
     baseline = {name: one for each in diagnosis.regime_results for name, one in each.baseline.items()}
-    entries = {
+    entries: dict[str, Any] = {
         "format": FORMAT,
         "verdict": diagnosis.verdict,
         "baseline": {"parameters": {name: _estimate(one) for name, one in baseline.items()}},

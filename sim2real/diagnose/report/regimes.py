@@ -61,7 +61,7 @@ def _null_controls(one: RegimeResult) -> list[tuple[str, ...]]:
     if not controls or one.selection is None or not one.selection.floor_m:
         return []
     before, after = (number(size / one.selection.floor_m) for size in (one.selection.before_m, one.selection.after_m))
-    rows = [("the recording", before, after, "yes")]
+    rows: list[tuple[str, ...]] = [("the recording", before, after, "yes")]
     for name, each in controls.items():
         named = NOTHING if each.named is None else f"in {each.named} of {each.of}"
         rows.append((CONTROLS[name], number(each.before), number(each.after), named))

@@ -56,12 +56,12 @@ class Motors:
         """The present duties, -1 to 1."""
         return self.log[-1][1:]
 
-    def _note(self, *change: float) -> None:
+    def _note(self, time: float, first: float, second: float) -> None:
         try:
-            if self.log[-1][0] == change[0] and len(self.log) > 1:
+            if self.log[-1][0] == time and len(self.log) > 1:
                 self.log.pop()
-            self.log.append(change)  # pyright: ignore[reportArgumentType]
+            self.log.append((time, first, second))
             for listen in self.listeners:
-                listen(*change)
+                listen(time, first, second)
         except BaseException as error:  # compiled code is between here and who handles it
             self._failed(error)

@@ -59,7 +59,7 @@ def _verdict(one: Tried) -> str:
 
 
 def _numbers(fit: Fit) -> list[tuple[str, ...]]:
-    rows = []
+    rows: list[tuple[str, ...]] = []
     for name in fit.law.free:
         one, number = fit.interval(name), NUMBERS[name]
         unit = "" if number.unit == "1" else number.unit

@@ -24,8 +24,8 @@ class Change:
     """The change of the law, the camera and the hand by a mechanism, and its parameters for the key."""
 
     law: dict[str, Any] = field(default_factory=dict)
-    camera: dict[str, float] = field(default_factory=dict)
-    hand: dict[str, float] = field(default_factory=dict)
+    camera: dict[str, Any] = field(default_factory=dict)
+    hand: dict[str, Any] = field(default_factory=dict)
     values: dict[str, float] = field(default_factory=dict)
     where: dict[str, Any] = field(default_factory=dict)
 

@@ -109,6 +109,7 @@ def read_parts(path: Path) -> Iterator[Part]:
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
         try:
             row: dict[str, Any] = json.loads(line)
-            yield Part(**{**row, "stops": [Stop(**stop) for stop in row["stops"]]})
+            row["stops"] = [Stop(**stop) for stop in row["stops"]]
+            yield Part(**row)
         except (TypeError, KeyError, ValueError):
             raise ValueError(f"{path}, line {number}, is no part of a campaign; choose another file") from None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import fields, replace
+from typing import Any
 
 import numpy as np
 
@@ -155,4 +156,5 @@ def refuse_unmodelled(parameters: Mapping[str, float]) -> None:
 
 def law_of(p: np.void) -> Law:
     """The independent table's law with the baseline's numbers as the parameters say."""
-    return replace(Law(), **{name: float(p[name]) for name in MODELLED})
+    numbers: dict[str, Any] = {name: float(p[name]) for name in MODELLED}
+    return replace(Law(), **numbers)

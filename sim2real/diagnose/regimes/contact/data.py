@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, TypeVar
 
@@ -87,7 +87,7 @@ def make_contacts(
     record: type[AnyContacts],
     rows: Sequence[dict[str, Any]],
     contact_motions: Sequence[ContactMotion],
-    shapes: dict[str, tuple[int, ...]],
+    shapes: Mapping[str, tuple[int, ...]],
 ) -> AnyContacts:
     """Make contacts of the class `record` from their fields, one dict for each contact.
 

@@ -26,7 +26,7 @@ class ObjectSearch:
     def predicted(self, time: float, room: float) -> Region | None:
         """The region round the predicted place; None if that is unknown."""
         state = self.tracker.predict(time)
-        return state and self.regions.around(state.place, room + ROOM * state.deviation)
+        return self.regions.around(state.place, room + ROOM * state.deviation) if state else None
 
     def likely(self, time: float, room: float) -> Iterator[Region]:
         """Regions to be searched one after the other, until the object is found: round its predicted place, and as far
