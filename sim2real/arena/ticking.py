@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import asyncio
-import gc
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
+
+from sim2real.garbage import spare_what_lives
 
 MOST_BEHIND = 0.25  # s; what lags farther behind is not made up for, so that a machine that slept does not race
 SWITCH = 1e-4  # s after which a thread of work beside the games lets a tick go first
 
 
 def avoid_pauses() -> None:
-    """Keep the interpreter from delaying ticks, once all that they need is imported: a full garbage collection takes a
-    tenth of a second, and by default another thread holds the interpreter's lock for 5 ms, which a tick takes several
-    times."""
-    gc.collect()
-    gc.freeze()
+    """Keep the interpreter from delaying ticks, once all that they need is imported: by garbage collection, and since
+    another thread holds the interpreter's lock for 5 ms by default, which a tick takes several times."""
+    spare_what_lives()
     sys.setswitchinterval(SWITCH)
 
 

@@ -3,7 +3,6 @@ process of its own, answers at a pseudo-terminal."""
 
 from __future__ import annotations
 
-import gc
 import math
 import multiprocessing
 import time
@@ -19,6 +18,7 @@ from sim2real.camera.live.live_source import Live
 from sim2real.camera.render.renderer import Renderer
 from sim2real.camera.render.scene_state import SceneState
 from sim2real.camera.scene_states import simulated_states
+from sim2real.garbage import spare_what_lives
 from sim2real.link.serial_port import SerialPort
 from sim2real.table.backend import Place
 from sim2real.table.board_config import board_config
@@ -138,8 +138,7 @@ def _serve_board(parent: Connection, place: Place) -> None:
     except (ImportError, OSError, ValueError) as error:
         parent.send(error)
         return
-    gc.collect()
-    gc.freeze()  # as the host does: a full collection would hold a board of real time for tens of milliseconds
+    spare_what_lives()
     with terminal() as (descriptor, name):
         parent.send(name)
         serve(machine, descriptor, lambda seconds: not parent.poll())
