@@ -102,7 +102,7 @@ def test_ratings_recover_true_strengths():
 @pytest.mark.parametrize(
     ("elo", "correlation", "highest"),
     [
-        ([300.0, 100.0, 0.0, -400.0], 0.0, 0.98),
+        pytest.param([300.0, 100.0, 0.0, -400.0], 0.0, 0.98, marks=pytest.mark.long),
         ([300.0, 100.0, 0.0, -400.0], 0.6, 0.98),
         ([900.0, 0.0, -900.0], 0.5, 1),
     ],

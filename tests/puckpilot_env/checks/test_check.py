@@ -16,7 +16,7 @@ from puckpilot_env.commands import check
 from puckpilot_env.game import mirror
 from tests.puckpilot_env.checks import broken
 
-STEPS = 120
+STEPS = 60
 CAUGHT = {
     broken.Sound: set(),
     broken.RandomFromSecondStep: {"same seed, same game"},

@@ -21,7 +21,7 @@ from tests.sim2real.diagnose.engine.linear_problem import LAUNCHES, NO_EVIDENCE,
 from tests.sim2real.diagnose.well_formed import faults
 
 NOISE = Camera(noise=0.0006, rate=150.0)
-SECONDS = 60.0
+SECONDS = 40.0
 LONG_PRACTICE = ("tilt", "other_parameters", "restitution_speed", "unlisted_vortex")
 
 
@@ -169,7 +169,7 @@ def test_a_law_is_not_reported_on_premises_with_a_misfit_if_large_residuals_rema
 @pytest.mark.slow
 def test_a_restitution_that_falls_with_time_is_reported_as_unlisted(tmp_path):
     """Both components change, as the baseline's restitution has it."""
-    found = _diagnosis(tmp_path / "warming", Law(wall_warming=-0.003, wall_restitution=0.85))
+    found = _diagnosis(tmp_path / "warming", Law(wall_warming=-0.003, wall_restitution=0.85), seconds=60.0)
     (law,) = found.findings
     assert (law.regime, law.mechanism, law.depends_on) == ("wall", "unlisted", ("time",))
     assert "both components" in law.formula

@@ -42,44 +42,40 @@ SCENES = {
 
 
 def solids(table: Table, state: SceneState):
-    """Who is at x, y, z: a name and a predicate each. The puck's side is not drawn, so that it is a thin disc here."""
+    """Who is at x, y, z: a name, a range of z and a predicate each. The puck's side is not drawn, so that it is a thin
+    disc here."""
 
-    def near(body: BodyState | None, radius):
-        return lambda x, y: np.hypot(x - body.x, y - body.y) <= radius if body else np.zeros(x.shape, bool)
+    def near(body: BodyState, radius):
+        return lambda x, y, z: (x - body.x) ** 2 + (y - body.y) ** 2 <= radius(z) ** 2
 
-    def at(z, height):
-        return (z <= height) & (z > height - 1.001 * STEP)
+    def at(height):
+        return height - 1.001 * STEP, height
 
-    cone = table.mallet_radius, table.ring_radius - table.mallet_radius
-    ring = table.ring_height
-    outer, inner = near(state.opponent, table.ring_radius), near(state.opponent, table.ring_hole)
-    yield "ring", lambda x, y, z: at(z, ring) & outer(x, y) & ~inner(x, y)
-    yield "opponent", lambda x, y, z: (z <= ring) & near(state.opponent, cone[0] + cone[1] * z / ring)(x, y)
-    yield "mallet", lambda x, y, z: (z <= table.mallet_height) & near(state.mallet, table.mallet_radius)(x, y)
-    yield "puck", lambda x, y, z: at(z, table.puck_height) & near(state.puck, table.puck_radius)(x, y)
+    if state.opponent:
+        outer, inner = (near(state.opponent, lambda _, r=r: r) for r in (table.ring_radius, table.ring_hole))
+        yield "ring", at(table.ring_height), lambda x, y, z: outer(x, y, z) & ~inner(x, y, z)
+        wider = (table.ring_radius - table.mallet_radius) / table.ring_height
+        cone = near(state.opponent, lambda z: table.mallet_radius + wider * z)
+        yield "opponent", (-np.inf, table.ring_height), cone
+    if state.mallet:
+        yield "mallet", (-np.inf, table.mallet_height), near(state.mallet, lambda _: table.mallet_radius)
+    if state.puck:
+        yield "puck", at(table.puck_height), near(state.puck, lambda _: table.puck_radius)
     if state.mallet:
         mx, my = state.mallet[:2]
         low, high = table.beam_heights
-        yield (
-            "carriage",
-            lambda x, y, z: (
-                (((z >= 0.06) & (z <= low)) | ((z >= high) & (z <= high + 0.015)))
-                & (abs(x - mx) <= 0.04)
-                & (abs(y - my) <= 0.045)
-            ),
-        )
-        yield (
-            "beam",
-            lambda x, y, z: (z >= low) & (z <= high) & (abs(x - mx) <= 0.02) & (y >= -0.12) & (y <= table.width + 0.12),
-        )
+        for plate in ((0.06, low), (high, high + 0.015)):
+            yield "carriage", plate, lambda x, y, _: (abs(x - mx) <= 0.04) & (abs(y - my) <= 0.045)
+        along = -0.12, table.width + 0.12
+        yield "beam", (low, high), lambda x, y, _: (abs(x - mx) <= 0.02) & (y >= along[0]) & (y <= along[1])
 
     def beyond(x, y):
         return np.maximum.reduce([-x, -y, x - table.length, y - table.width])
 
     height, wide = table.wall_height, table.rail_width
-    yield "rail", lambda x, y, z: at(z, height) & (beyond(x, y) > 0) & (beyond(x, y) <= wide)
-    yield "wall", lambda x, y, z: (z <= height) & (beyond(x, y) > 0) & (beyond(x, y) <= wide)
-    yield "table", lambda x, y, z: at(z, 0.0) & (beyond(x, y) <= 0)
+    yield "rail", at(height), lambda x, y, _: (beyond(x, y) > 0) & (beyond(x, y) <= wide)
+    yield "wall", (-np.inf, height), lambda x, y, _: (beyond(x, y) > 0) & (beyond(x, y) <= wide)
+    yield "table", at(0.0), lambda x, y, _: beyond(x, y) <= 0
 
 
 def first_met(view: CameraView, table: Table, state: SceneState, pixels: np.ndarray) -> np.ndarray:
@@ -89,24 +85,33 @@ def first_met(view: CameraView, table: Table, state: SceneState, pixels: np.ndar
     along = np.column_stack([rays, np.ones(len(rays))]) @ turn
     start = -turn.T @ view.shift
     met = np.full(len(pixels), NAMES.index("floor"))
-    left = np.ones(len(pixels), bool)
+    left = np.arange(len(pixels))
+    ranges = list(solids(table, state))
     for z in np.arange(0.13, -STEP, -STEP):
-        x, y, _ = (start + along * ((z - start[2]) / along[:, 2])[:, None]).T
-        for name, inside in solids(table, state):
-            hit = left & inside(x, y, z)
-            met[hit] = NAMES.index(name)
-            left &= ~hit
+        x, y = (start + along[left] * ((z - start[2]) / along[left, 2])[:, None])[:, :2].T
+        for name, (low, high), inside in ranges:
+            if low < z <= high:
+                hit = inside(x, y, z)
+                met[left[hit]] = NAMES.index(name)
+                left, x, y = left[~hit], x[~hit], y[~hit]
     return met
 
 
-@pytest.mark.parametrize("height", [STANDARD_RING, LOW_RING])
+@pytest.fixture(
+    scope="module",
+    params=[(name, height) for name in VIEWS for height in (STANDARD_RING, LOW_RING)],
+    ids=lambda one: f"{one[0]}-{one[1]}",
+)
+def renderer(request: pytest.FixtureRequest) -> Renderer:
+    name, height = request.param
+    return Renderer(Table(levels=LEVELS, ring_height=height), VIEWS[name], Sensor(blur=0.0))
+
+
 @pytest.mark.parametrize("scene", SCENES)
-@pytest.mark.parametrize("name", VIEWS)
-def test_each_pixel_shows_what_its_ray_meets_first(name: str, scene: str, height: float) -> None:
+def test_each_pixel_shows_what_its_ray_meets_first(renderer: Renderer, scene: str) -> None:
     """Pixels on a border, where the levels of 3 x 3 neighbours differ, are left out: there they are mixed."""
-    view, state = VIEWS[name], SCENES[scene]
-    table = Table(levels=LEVELS, ring_height=height)
-    light = Renderer(table, view, Sensor(blur=0.0)).light(state)
+    view, table, state = renderer.view, renderer.table, SCENES[scene]
+    light = renderer.light(state)
     shown = np.rint(np.log10(light))  # the lamp's distance makes it brighter or darker by less than half a decade
     same = cv2.dilate(light, np.ones((3, 3))) < 1.02 * cv2.erode(light, np.ones((3, 3)))
     random = np.random.default_rng(1)
