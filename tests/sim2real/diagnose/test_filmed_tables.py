@@ -18,7 +18,7 @@ from sim2real.study.independent_table.recorder.record import make_recording
 pytestmark = pytest.mark.slow
 
 DEFAULTS = {row.name: row.default for row in TABLE}
-SECONDS = 45.0
+SECONDS = 30.0
 
 
 def diagnosed(folder: Path, law: Law, scenario: str, seed: int, stated: bool = True) -> Diagnosis:

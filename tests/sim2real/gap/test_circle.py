@@ -31,7 +31,7 @@ def circle(folder: Path, **other: object) -> Circle:
 
 @pytest.fixture(autouse=True)
 def short_films(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(film, "SECONDS", 2.0)
+    monkeypatch.setattr(film, "SECONDS", 1.0)
 
 
 @pytest.mark.slow
@@ -77,7 +77,7 @@ def test_an_arm_is_fine_tuned_and_plays_games_of_the_same_seeds(
     preset = tmp_path / "tiny.toml"
     preset.write_text(TINY.replace("hidden = [16]", "hidden = [128, 128]"))
     monkeypatch.setattr(tuning, "PRESET", str(preset))
-    made = circle(tmp_path / "out", player="policy:champion", seconds=8.0, minutes=1e-4)
+    made = circle(tmp_path / "out", player="policy:champion", seconds=4.0, minutes=1e-4)
     result = made.run(["unchanged"], lambda done, count: None)
     arm = tmp_path / "out" / "unchanged"
     settings = RunFolder(arm / "training").settings()

@@ -62,9 +62,9 @@ def test_the_simulator_s_force_is_the_family_s(family):
 
 @pytest.fixture(scope="module")
 def found(tmp_path_factory):
-    """effects.toml of a diagnosis of a minute on a table with a vortex."""
+    """effects.toml of a diagnosis of half a minute on a table with a vortex."""
     folder = tmp_path_factory.mktemp("vortex")
-    make_recording(folder / "table", VORTEX, "launches", 12, 60.0, camera=Camera(noise=0.0006, rate=150.0), dt=2e-5)
+    make_recording(folder / "table", VORTEX, "launches", 12, 30.0, camera=Camera(noise=0.0006, rate=150.0), dt=5e-5)
     diagnosis = diagnose([read_recording(folder / "table")], [], {}, lambda stage, share: None)
     assert [(one.mechanism, one.depends_on) for one in diagnosis.findings] == [("unlisted", ("position",))]
     write(diagnosis, folder / "out")
