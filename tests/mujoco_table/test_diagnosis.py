@@ -19,7 +19,7 @@ WITHIN = 0.1  # of a number: MuJoCo's contacts take time, and slip in them raise
 @pytest.mark.parametrize("name", ["tilt_and_wall_friction"])
 def test_what_is_there_is_named_and_measured(tmp_path: Path, name: str) -> None:
     settings, truth = CASES[name]
-    make_recording(tmp_path / "table", settings, 1, 60.0)
+    make_recording(tmp_path / "table", settings, 1, 30.0)
     found = diagnose([read_recording(tmp_path / "table")], [], {}, lambda stage, share: None)
     assert {one.mechanism for one in found.findings} == set(truth)
     for one in found.findings:

@@ -19,9 +19,9 @@ ONE = "puckpilot/match-v0"
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(len(all_variants())))
 def test_nothing_breaks(seed):
-    found = play_batch(list(all_variants())[seed % len(all_variants())], seed)
+    found = play_batch(list(all_variants())[seed], seed)
     assert [str(breach) for breach in found.breaches] == []
     assert found.steps == TABLES * STEPS == found.times.sum()
 
@@ -50,7 +50,7 @@ def test_an_elastic_puck_between_both_mallets_on_the_middle_line_is_in_neither()
 def test_tables_are_drawn_over_their_whole_ranges():
     """Ends and what is between them, of nearly every number that a table can have; every table is one."""
     low, high, between = set(), set(), set()
-    for seed in range(40):
+    for seed in range(10):
         tables, _ = extremes.draw_tables(ONE, TABLES, seed)
         for record in tables.params:
             check_together(record)

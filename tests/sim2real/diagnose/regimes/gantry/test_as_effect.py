@@ -24,8 +24,8 @@ STEPS = 12
 
 
 def effects_of(law: Law, folder: Path) -> Path:
-    """The effects.toml of a diagnosis of 40 s of a gantry with the law."""
-    make_recording(folder / "table", law, "gantry", 1, 40.0, dt=1e-4)
+    """The effects.toml of a diagnosis of 20 s of a gantry with the law."""
+    make_recording(folder / "table", law, "gantry", 1, 20.0, dt=1e-4)
     write(diagnose([read_recording(folder / "table")], [], {}, lambda stage, share: None), folder / "out")
     return folder / "out" / "effects.toml"
 

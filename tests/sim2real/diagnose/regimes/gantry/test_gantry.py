@@ -60,7 +60,9 @@ def diagnosed(recording: Recording) -> RegimeResult:
             marks=pytest.mark.long,
         ),
         (Law(command_delay=0.012), "command_delay", "delay_s", 0.012),
-        (replace(OTHER, belt_hz=16.0, belt_zeta=0.1), "belt_compliance", "hz", 16.0),
+        pytest.param(
+            replace(OTHER, belt_hz=16.0, belt_zeta=0.1), "belt_compliance", "hz", 16.0, marks=pytest.mark.long
+        ),
         pytest.param(Law(backlash=0.001), "backlash", "gap", 0.001, marks=pytest.mark.long),
         (Law(encoder_clock=-3e-4), "clock_drift", "ppm", -300.0),
     ],
@@ -105,7 +107,7 @@ def test_an_unlisted_law_is_named_by_what_it_depends_on(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_a_log_of_the_motors_does_as_well_as_plans(tmp_path: Path) -> None:
-    found = diagnosed(recorded(tmp_path, Law(voltage_sag=0.015), "drive"))
+    found = diagnosed(recorded(tmp_path, Law(voltage_sag=0.015), "drive", seconds=12.0))
     assert [one.mechanism for one in found.findings] == ["voltage_sag"]
     assert found.findings[0].parameters["sag"].value == pytest.approx(0.015, rel=0.03)
 
