@@ -81,7 +81,7 @@ def test_a_film_of_a_recording_plays(browser: Any, tmp_path: Path) -> None:  # n
     with arena(str(ROOT / "sim2real" / "demo_recording"), "--out", str(tmp_path)) as address:
         page = replayed(browser.new_page(viewport={"width": 900, "height": 700}), address, 14.0)
         page.click("#film summary")
-        assert [page.input_value(f"#{name}") for name in ("from", "to")] == ["9.0", "19.0"]
+        until(page, lambda: [page.input_value(f"#{name}") for name in ("from", "to")] == ["9.0", "19.0"])
         page.fill("#from", "13")
         page.fill("#to", "13.5")
         with page.expect_download(timeout=180_000) as saved:
