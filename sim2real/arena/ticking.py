@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from sim2real.garbage import spare_what_lives
+from sim2real.garbage import collect_and_freeze
 
 MOST_BEHIND = 0.25  # s; what lags farther behind is not made up for, so that a machine that slept does not race
 SWITCH = 1e-4  # s after which a thread of work beside the games lets a tick go first
@@ -16,7 +16,7 @@ SWITCH = 1e-4  # s after which a thread of work beside the games lets a tick go 
 def avoid_pauses() -> None:
     """Keep the interpreter from delaying ticks, once all that they need is imported: by garbage collection, and since
     another thread holds the interpreter's lock for 5 ms by default, which a tick takes several times."""
-    spare_what_lives()
+    collect_and_freeze()
     sys.setswitchinterval(SWITCH)
 
 

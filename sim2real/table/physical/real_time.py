@@ -8,7 +8,7 @@ from collections import deque
 from collections.abc import Callable
 
 from sim2real.camera.frame_monitor import EVERY
-from sim2real.garbage import spare_what_lives
+from sim2real.garbage import collect_and_freeze
 from sim2real.link.serial_port import PortError, SerialLine
 from sim2real.link.wire.messages import Config
 from sim2real.table.backend import Place
@@ -80,7 +80,7 @@ class RealTimeTable(LiveTable):
         """See `LiveTable.arm`; after some frames were read, of which the first takes long. TableFaultError if they do
         not come, or cannot be believed."""
         self._read_frames(WARM_UP, CHECKED)
-        spare_what_lives()
+        collect_and_freeze()
         self._read_frames(1, SETTLED)  # those that came meanwhile keep the loop from its board
         super().arm()
 

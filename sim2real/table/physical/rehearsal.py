@@ -18,7 +18,7 @@ from sim2real.camera.live.live_source import Live
 from sim2real.camera.render.renderer import Renderer
 from sim2real.camera.render.scene_state import SceneState
 from sim2real.camera.scene_states import simulated_states
-from sim2real.garbage import spare_what_lives
+from sim2real.garbage import collect_and_freeze
 from sim2real.link.serial_port import SerialPort
 from sim2real.table.backend import Place
 from sim2real.table.board_config import board_config
@@ -138,7 +138,7 @@ def _serve_board(parent: Connection, place: Place) -> None:
     except (ImportError, OSError, ValueError) as error:
         parent.send(error)
         return
-    spare_what_lives()
+    collect_and_freeze()
     with terminal() as (descriptor, name):
         parent.send(name)
         serve(machine, descriptor, lambda seconds: not parent.poll())
