@@ -87,7 +87,8 @@ def _contacts(
 
 def _hand_let_go(recording: Recording, segments: Segments) -> set[int]:
     """The contacts, by their identity, that are the first after a hand let the puck go."""
-    assert recording.frames is not None
+    if recording.frames is None:
+        return set()
     found, t = set(), recording.frames.t
     for (start, stop), let_go in zip(segments.launches, segments.let_go, strict=True):
         within = (one for one in segments.contacts if t[start] <= one.t <= t[stop - 1])
