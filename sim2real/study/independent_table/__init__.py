@@ -1,6 +1,6 @@
 """An independent air hockey table in small fixed steps: the oracle for the event-driven physics.
 
-It shares no code with what it checks.
+It shares no code with what it checks, and with the product only the decorators that keep what was compiled.
 
     law = Law(tilt_x=0.02)
     trace = run(law, puck=(1.0, 0.5, -2.0, 0.3), mallets=[(0.3, 0.5)], plans=[(8.0, 0.0, 0.1, 0.0, 0.15, 0.0)])

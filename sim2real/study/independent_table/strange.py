@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from math import atan2, cos, exp, pi, sin, sqrt
 
-from numba import njit
+from puckpilot_env.kernel import kernel
 
 
-@njit(error_model="numpy")
+@kernel
 def pull(law, t, x, y):
     """Acceleration (ax, ay) [m/s^2] by place and time: a vortex, a washboard, a drifting tilt, a push for a while."""
     since = t - law.tilt_drift_from
@@ -25,7 +25,7 @@ def pull(law, t, x, y):
     return ax, ay
 
 
-@njit(error_model="numpy")
+@kernel
 def rub(law, t, x, y, vx, vy, since, friction):
     """Friction [m/s^2] by time, heading, place, speed and time since the last contact; `friction`: without these."""
     if law.breathing != 0.0:

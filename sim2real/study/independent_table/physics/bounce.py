@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from math import isnan, pi, sin
 
-from numba import njit
-
+from puckpilot_env.kernel import kernel
 from sim2real.study.independent_table.physics.puck import SINCE, SPIN, VX, VY, X, Y
 from sim2real.study.independent_table.physics.table import MALLET, POST
 
 RESTING = 1e-6  # m/s, speed of approach below which a contact is a lasting one
 
 
-@njit(error_model="numpy")
+@kernel
 def approach(which, puck, mallets, nx, ny):
     """Closing speed [m/s] of puck and obstacle along the normal; negative when they separate."""
     vx, vy = puck[VX], puck[VY]
@@ -22,7 +21,7 @@ def approach(which, puck, mallets, nx, ny):
     return -(vx * nx + vy * ny)
 
 
-@njit(error_model="numpy")
+@kernel
 def bounce(law, t, which, puck, mallets, nx, ny):
     """Apply the impulse of a contact with obstacle `which` at time t in place."""
     puck[SINCE] = 0.0
@@ -32,7 +31,7 @@ def bounce(law, t, which, puck, mallets, nx, ny):
         off_wall(law, t, which, puck, nx, ny)
 
 
-@njit(error_model="numpy")
+@kernel
 def rub(law, mu, pressure, along, spin):
     """Coulomb impulse along the tangent: it stops the slip at the rim, at most mu times the normal impulse.
 
@@ -46,7 +45,7 @@ def rub(law, mu, pressure, along, spin):
     return j, spin - j / (law.spin_inertia * law.puck_radius)
 
 
-@njit(error_model="numpy")
+@kernel
 def off_wall(law, t, which, puck, nx, ny):
     """Eq. (10): v_n -> -e v_n, v_t -> e v_t; effects are other constants and friction with spin."""
     closing = -(puck[VX] * nx + puck[VY] * ny)
@@ -77,7 +76,7 @@ def off_wall(law, t, which, puck, nx, ny):
     puck[VY] = rebound * ny + along * nx
 
 
-@njit(error_model="numpy")
+@kernel
 def off_mallet(law, t, k, puck, mallets, nx, ny):
     """Reflect the velocity relative to the mallet: normal component with e, tangential kept; see `mallet_give`, and
     `hand` of whose second mallet nothing but the baseline's is true."""

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from math import pi, sin, tanh
 
-from numba import njit
+from puckpilot_env.kernel import kernel
 
 CREEP = 0.0005  # m/s, below which dry friction is less: so a motor under few volts creeps instead of standing
 MOTOR = 6  # the first column of the motors' state, if that is separate from the mallet's
 
 
-@njit(error_model="numpy")
+@kernel
 def loss(law, hand, p, v):
     """The factor of the speed loss C7 v at position p and speed v: 1 in the baseline, and of a hand."""
     if hand:
@@ -25,7 +25,7 @@ def loss(law, hand, p, v):
     return factor
 
 
-@njit(error_model="numpy")
+@kernel
 def advance_axis(law, hand, c5, c6, c7, force, mallet, first, h, out):
     """RK4 for C5 p''' + C6 p'' + C7 p' = force (Eq. 2-3 with their dots restored); state (p, p', p'') from `first`."""
     p, v, a = mallet[first], mallet[first + 1], mallet[first + 2]
@@ -42,7 +42,7 @@ def advance_axis(law, hand, c5, c6, c7, force, mallet, first, h, out):
     out[first + 2] = a + h * (j1 + 2.0 * j2 + 2.0 * j3 + j4) / 6.0
 
 
-@njit(error_model="numpy")
+@kernel
 def follow(law, mallet, first, h, out):
     """Advance one axis of the mallet by h seconds, in which its motor moves from its state in `mallet` to that in
     `out`.
@@ -76,7 +76,7 @@ def follow(law, mallet, first, h, out):
     out[first + 2] = out[MOTOR + first + 2] if dragged else 0.0
 
 
-@njit(error_model="numpy")
+@kernel
 def rubbing(law, v_x, v_y):
     """Volts that dry friction takes from both axes at the speeds (v_x, v_y) of the motors."""
     left = law.motor_friction_left * tanh((v_x - v_y) / CREEP)
@@ -87,7 +87,7 @@ def rubbing(law, v_x, v_y):
     )
 
 
-@njit(error_model="numpy")
+@kernel
 def advance_mallets(law, mallets, volts, h, out):
     """Advance all mallets by h seconds; `mallets` (k, 6 or 12), `volts` (k, 2) at the motors."""
     half_radius = 0.5 * law.pulley_radius

@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import sqrt
 
 import numpy as np
-from numba import njit
 
+from puckpilot_env.kernel import array_kernel, kernel
 from sim2real.study.independent_table.physics.bounce import RESTING, approach, bounce
 from sim2real.study.independent_table.physics.gantry import advance_mallets
 from sim2real.study.independent_table.physics.puck import VX, VY, X, Y, advance_puck
@@ -20,7 +20,7 @@ OVERLAP = 1e-9  # m, larger overlaps are separated (a pinched puck, a lasting co
 LOG_COLUMNS = 8
 
 
-@njit(error_model="numpy")
+@array_kernel
 def march(law, puck, mallets, times, volts, clock, duration, dt, sample, out_puck, out_mallets, log):
     """Fill `out_puck` (n, 6), `out_mallets` (n, k, 6 or 12) every `sample` seconds, and `log` (rows, 8).
 
@@ -98,7 +98,7 @@ def march(law, puck, mallets, times, volts, clock, duration, dt, sample, out_puc
             now[which] = after
 
 
-@njit(error_model="numpy")
+@kernel
 def step_end(t, dt, duration, next_sample, times, change):
     """The end of the step: at most dt, the next sample, or the next change of a voltage."""
     limit = min(duration, next_sample) if next_sample > t else duration
@@ -107,7 +107,7 @@ def step_end(t, dt, duration, next_sample, times, change):
     return limit if t + 1.000001 * dt >= limit else t + dt
 
 
-@njit(error_model="numpy")
+@kernel
 def first_contact(law, t, h, puck, mallets, volts, held, next_puck, next_mallets):
     """The first obstacle in contact within h, and the time (or -1, h); sets the `next_*` states to that time."""
     first, moment = -1, h
@@ -138,7 +138,7 @@ def first_contact(law, t, h, puck, mallets, volts, held, next_puck, next_mallets
     return first, moment
 
 
-@njit(error_model="numpy")
+@kernel
 def separate_all(law, puck, mallets, held):
     """End a step: stop the closing motion of lasting contacts, and separate overlaps; walls are last.
 
@@ -155,7 +155,7 @@ def separate_all(law, puck, mallets, held):
     return pushed
 
 
-@njit(error_model="numpy")
+@kernel
 def separate(law, which, puck, mallets, held):
     """`separate_all` for one obstacle."""
     distance = gap(law, which, puck, mallets)
@@ -172,21 +172,21 @@ def separate(law, which, puck, mallets, held):
     return True
 
 
-@njit(error_model="numpy")
+@kernel
 def copy(source, target):
     """Do `target[:] = source`, which numba compiles far more slowly."""
     for i in range(source.shape[0]):
         target[i] = source[i]
 
 
-@njit(error_model="numpy")
+@kernel
 def copy_rows(source, target):
     """`copy` for the states of mallets."""
     for k in range(source.shape[0]):
         copy(source[k], target[k])
 
 
-@njit(error_model="numpy")
+@kernel
 def write_log(row, t, which, puck, closing, nx, ny):
     """Write one contact to a row of the log."""
     row[0], row[1], row[2], row[3] = t, which, puck[X], puck[Y]

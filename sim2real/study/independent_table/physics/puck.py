@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from math import sqrt
 
-from numba import njit
-
+from puckpilot_env.kernel import kernel
 from sim2real.study.independent_table import strange
 
 X, Y, VX, VY, SPIN, SINCE = range(6)  # columns of a puck state; SINCE: seconds since its last contact
 
 
-@njit(error_model="numpy")
+@kernel
 def push(law, t, x, y, vx, vy, spin):
     """Acceleration [m/s^2] without friction and drag: tilt, warp, and forces across the velocity."""
     dx = x - 0.5 * law.length
@@ -23,7 +22,7 @@ def push(law, t, x, y, vx, vy, spin):
     return ax + more_x, ay + more_y
 
 
-@njit(error_model="numpy")
+@kernel
 def grip(law, t, x, y, vx, vy, since):
     """Sliding friction per unit mass [m/s^2]: constant in the baseline (Eq. 6)."""
     friction = law.friction
@@ -37,7 +36,7 @@ def grip(law, t, x, y, vx, vy, since):
     return friction if friction > 0.0 else 0.0
 
 
-@njit(error_model="numpy")
+@kernel
 def acceleration(law, t, x, y, vx, vy, spin, since):
     """Eq. (6) per unit mass, dv/dt = -(friction + drag v^2) along v, plus `push`; a puck rests if push <= friction."""
     ax, ay = push(law, t, x, y, vx, vy, spin)
@@ -54,7 +53,7 @@ def acceleration(law, t, x, y, vx, vy, spin, since):
     return ax * (1.0 - friction / pull), ay * (1.0 - friction / pull)
 
 
-@njit(error_model="numpy")
+@kernel
 def advance_puck(law, t, puck, h, out):
     """One RK4 step of length h without contacts; a puck that friction stops within the step stays there."""
     x, y, vx, vy, spin, since = puck[X], puck[Y], puck[VX], puck[VY], puck[SPIN], puck[SINCE]

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from math import sqrt
 
-from numba import njit
-
+from puckpilot_env.kernel import kernel
 from sim2real.study.independent_table.physics.puck import X, Y
 
 POST, GOAL, MALLET = 4, 8, 10
@@ -17,7 +16,7 @@ NAMES = ("x0", "xL", "y0", "yW", "x0y0", "x0yW", "xLy0", "xLyW", "x0", "xL", "0"
 FAR = 1e3  # m, the gap to an obstacle that is out of reach
 
 
-@njit(error_model="numpy")
+@kernel
 def wall_line(law, which):
     """Place [m] of a wall along its axis at its middle, and its slope [1], against the walls' nominal directions."""
     if which == 0:
@@ -29,7 +28,7 @@ def wall_line(law, which):
     return law.width + law.wall_offset_y1, law.wall_slope_y1
 
 
-@njit(error_model="numpy")
+@kernel
 def gap(law, which, puck, mallets):
     """Distance [m] that the puck can still move towards obstacle `which` before contact."""
     x, y = puck[X], puck[Y]
@@ -52,7 +51,7 @@ def gap(law, which, puck, mallets):
     return sqrt((x - mallets[k, 0]) ** 2 + (y - mallets[k, 3]) ** 2) - law.puck_radius - law.mallet_radius
 
 
-@njit(error_model="numpy")
+@kernel
 def normal(law, which, puck, mallets):
     """Unit vector from the obstacle to the puck's centre at contact."""
     if which == GOAL:
@@ -74,7 +73,7 @@ def normal(law, which, puck, mallets):
     return dx / distance, dy / distance
 
 
-@njit(error_model="numpy")
+@kernel
 def post(law, which):
     """Corner point of the goal mouth, obstacle 4..7."""
     x = 0.0 if which < POST + 2 else law.length
