@@ -87,3 +87,17 @@ def half_open(address: str, watch: str, number: int) -> list[socket.socket]:
             line.sendall(b"GET / HTTP/1.1\r\nHost: ")
         held.append(line)
     return held
+
+
+def is_open(line: socket.socket) -> bool:
+    """Whether the server still holds a connection; one that it let go is closed here, too."""
+    line.setblocking(False)
+    try:
+        while line.recv(1 << 16):
+            pass
+    except BlockingIOError:
+        return True
+    except ConnectionError:
+        pass
+    line.close()
+    return False
