@@ -2,7 +2,8 @@
 
 numba's own cache notices edits of the decorated file but not of the functions that it calls in other files, so the
 cache folder is keyed here by a hash of every kernel source: an edit anywhere starts a fresh folder. Packages above the
-players have one each, so that an edit there leaves the simulator compiled.
+players have one each, so that an edit there leaves the simulator compiled. Wherever the same sources lie, in another
+clone or environment, they use the same folder.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from typing import Any
 
 import numba
 from numba import types
-from numba.core import config as numba_config
+from numba.core import caching as numba_caching
 from numba.core.ccallback import CFunc
 from numba.extending import intrinsic
 
@@ -44,7 +45,7 @@ def _package_sources(package: str) -> list[Path]:
 
 
 def _hash_of(sources: list[Path]) -> str:
-    digest = hashlib.sha256(f"{numba.__version__} {_ROOT}".encode())  # numba shares nothing between two copies
+    digest = hashlib.sha256(numba.__version__.encode())
     for path in sources:
         digest.update(path.name.encode())
         digest.update(path.read_bytes())
@@ -68,7 +69,6 @@ def _make_cache_folder(sources: list[Path]) -> Path:
     return folder
 
 
-_config: Any = numba_config  # its settings are made at run time
 CACHE_FOLDER = _make_cache_folder(_simulator_sources())  # of the simulator and its players
 
 
@@ -98,18 +98,34 @@ def _mend_damaged(cache: Any) -> None:
     cache.load_overload = load_overload
 
 
+_caching: Any = numba_caching  # what is asked of it has no public name
+
+
+class _ByModule(_caching._SourceFileBackedLocatorMixin, _caching._CacheLocator):
+    """Where numba keeps a compiled function: in its package's folder, by its module's name and not its file's path."""
+
+    def __init__(self, function: Callable[..., Any], file: str) -> None:
+        self._py_file, self._lineno = file, function.__code__.co_firstlineno  # which the mixin reads
+        self._path = cache_folder_of(function.__module__.partition(".")[0]) / function.__module__
+
+    def get_cache_path(self) -> str:
+        """The folder."""
+        return str(self._path)
+
+
 @contextlib.contextmanager
-def _cached_for(function: Callable[..., Any]) -> Iterator[None]:
-    """Within, numba keeps what it compiles in the folder of the function's package."""
-    before, _config.CACHE_DIR = _config.CACHE_DIR, str(cache_folder_of(function.__module__.partition(".")[0]))
+def _kept_by_module() -> Iterator[None]:
+    """Within, numba keeps what it compiles where `_ByModule` says."""
+    cache = _caching.FunctionCache._impl_class
+    before, cache._locator_classes = cache._locator_classes, [_ByModule]
     try:
         yield
     finally:
-        _config.CACHE_DIR = before
+        cache._locator_classes = before
 
 
 def _compiled(function: Callable[..., Any], **flags: Any) -> Callable[..., Any]:
-    with _cached_for(function):
+    with _kept_by_module():
         made: Any = numba.njit(cache=True, **{**_FLAGS, **flags})(function)
         _mend_damaged(made._cache)
         return made
@@ -163,7 +179,7 @@ def c_callback(signature: Any) -> Callable[[Callable[..., Any]], Any]:
     """Compile a function at once for a library in C to call; `signature` is numba's, `address` is where it is."""
 
     def compiled(function: Callable[..., Any]) -> Any:
-        with _cached_for(function):
+        with _kept_by_module():
             flags = {"error_model": _FLAGS["error_model"]}
             made: Any = CFunc(function, (signature.args, signature.return_type), {}, flags)
             made.enable_caching()

@@ -10,6 +10,7 @@ import re
 import shutil
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -37,13 +38,33 @@ COMPILED, ABOVE = compiled_in("puckpilot_env", "baselines"), compiled_in("agents
 READ_BY_KERNELS = [Path("puckpilot_env") / f"{name}.py" for name in ("kernel", "parameters", "game/state")]
 
 
-@pytest.fixture
-def copied(tmp_path, monkeypatch):
-    """The repository's packages copied to a folder, and a cache of their own."""
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+@pytest.fixture(scope="module")
+def packages(tmp_path_factory) -> Path:
+    """The repository's packages copied to a folder."""
+    folder = tmp_path_factory.mktemp("copy")
     for name in ("puckpilot_env", "baselines", "agents", "sim2real"):
-        shutil.copytree(REPOSITORY / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__"))
-    return tmp_path
+        shutil.copytree(REPOSITORY / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+    return folder
+
+
+@pytest.fixture
+def copied(packages, tmp_path, monkeypatch) -> Iterator[Path]:
+    """The copied packages, as they were after each test, and a cache of its own."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    yield packages
+    for path in EDITED:
+        shutil.copy(REPOSITORY / path, packages / path)
+    EDITED.clear()
+
+
+EDITED: list[Path] = []
+
+
+def edit(root: Path, path: Path) -> None:
+    """Write something more into a file of the copy."""
+    EDITED.append(path)
+    with (root / path).open("a") as file:
+        file.write("# edited\n")
 
 
 def cache_folder(root: Path) -> Path:
@@ -65,42 +86,51 @@ def test_the_kernels_were_found():
     assert any(path.parts[0] == "baselines" for path in COMPILED)
 
 
+@pytest.fixture(scope="module")
+def unedited(packages, tmp_path_factory) -> dict[str, str]:
+    """The name of each package's folder in the cache, before any edit of the copy."""
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
+        module = load(packages)
+        assert module.cache_folder_of("baselines") == module.CACHE_FOLDER
+        return {name: module.cache_folder_of(name).name for name in ("baselines", "agents", "sim2real")}
+
+
+def test_each_package_above_has_a_folder_of_its_own(unedited):
+    assert len(set(unedited.values())) == 3
+
+
 @pytest.mark.parametrize("path", COMPILED + READ_BY_KERNELS, ids=str)
-def test_an_edit_of_a_kernel_starts_a_fresh_folder(copied, path):
-    before = cache_folder(copied)
-    assert cache_folder(copied) == before
-    source = (copied / path).read_text()
-    (copied / path).write_text(source + "# edited\n")
+def test_an_edit_of_a_kernel_starts_a_fresh_folder(copied, unedited, tmp_path, path):
+    edit(copied, path)
     after = cache_folder(copied)
-    assert after != before and after.parent == before.parent == copied / "cache" / "puckpilot"
-    (copied / path).write_text(source)
-    assert cache_folder(copied) == before
+    assert after.name != unedited["baselines"] and after.parent == tmp_path / "cache" / "puckpilot"
+
+
+def test_an_edit_that_is_taken_back_leaves_what_was_compiled(copied, unedited):
+    assert cache_folder(copied).name == unedited["baselines"]
 
 
 @pytest.mark.parametrize("path", [*ABOVE, Path("sim2real/vision/track/blobs.py")], ids=str)
-def test_an_edit_above_the_players_starts_a_fresh_folder_for_its_package_alone(copied, path):
-    package, other = path.parts[0], "agents" if path.parts[0] == "sim2real" else "sim2real"
-    before = load(copied)
-    folders = {name: before.cache_folder_of(name) for name in (package, other, "baselines")}
-    assert len(set(folders.values())) == 3 and folders["baselines"] == before.CACHE_FOLDER
-    with (copied / path).open("a") as file:
-        file.write("# edited\n")
+def test_an_edit_above_the_players_starts_a_fresh_folder_for_its_package_alone(copied, unedited, path):
+    edit(copied, path)
     after = load(copied)
-    assert after.cache_folder_of(package) != folders[package]
-    assert all(after.cache_folder_of(name) == folders[name] for name in (other, "baselines"))
-    with (copied / "puckpilot_env" / "game" / "state.py").open("a") as file:
-        file.write("# edited\n")
-    assert load(copied).cache_folder_of(other) != folders[other]
+    changed = {name for name, folder in unedited.items() if after.cache_folder_of(name).name != folder}
+    assert changed == {path.parts[0]}
+
+
+def test_an_edit_of_the_simulator_starts_a_fresh_folder_for_all(copied, unedited):
+    edit(copied, Path("puckpilot_env/game/state.py"))
+    after = load(copied)
+    assert all(after.cache_folder_of(name).name != folder for name, folder in unedited.items())
 
 
 @pytest.mark.parametrize(
     "name", ["rendering/drawing", "documentation/page", "adapters/parallel_env", "commands/bench", "checks/walk"]
 )
-def test_other_edits_keep_what_was_compiled(copied, name):
-    before = cache_folder(copied)
-    with (copied / "puckpilot_env" / f"{name}.py").open("a") as file:
-        file.write("# edited\n")
-    assert cache_folder(copied) == before
+def test_other_edits_keep_what_was_compiled(copied, unedited, name):
+    edit(copied, Path(f"puckpilot_env/{name}.py"))
+    assert cache_folder(copied).name == unedited["baselines"]
 
 
 def test_another_numba_starts_a_fresh_folder(copied, monkeypatch):
@@ -109,10 +139,10 @@ def test_another_numba_starts_a_fresh_folder(copied, monkeypatch):
     assert cache_folder(copied) != before
 
 
-def test_unwritable_cache_falls_back_to_a_temporary_folder(copied, monkeypatch):
+def test_unwritable_cache_falls_back_to_a_temporary_folder(copied, tmp_path, monkeypatch):
     """A file in the way is what no one can write into, not even root."""
-    (copied / "file").write_text("")
-    monkeypatch.setenv("XDG_CACHE_HOME", str(copied / "file"))
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
     folder = cache_folder(copied)
     assert folder.is_dir() and folder.name.startswith("puckpilot-kernels-")
     assert cache_folder(copied) != folder  # shared by no two processes
