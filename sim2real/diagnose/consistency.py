@@ -14,7 +14,7 @@ import numpy as np
 
 from puckpilot_env.parameters import BY_NAME
 from sim2real.diagnose.engine.law import Model
-from sim2real.diagnose.engine.least_squares import LeastSquaresFit, fit
+from sim2real.diagnose.engine.least_squares import LeastSquaresFit, fit, launch_losses
 from sim2real.diagnose.engine.linear import normal_equations
 from sim2real.diagnose.engine.model_search import SearchResult, search_model
 from sim2real.diagnose.engine.problem import Problem
@@ -68,6 +68,17 @@ class _Fits:
             self.made[key] = fit(self.problem, values, free, clusters)
         return self.made[key]
 
+    def better(self, others: Sequence[LeastSquaresFit], clusters: np.ndarray) -> LeastSquaresFit:
+        """Return the fit to `clusters` again, or one of less loss that starts from `others`, of the same parameters.
+
+        A robust loss has more minima than one: contacts that a fit took for outliers do not lead it to where they
+        would fit. From then on `of` returns this one.
+        """
+        key = (others[0].free, clusters.tobytes())
+        again = [fit(self.problem, other.values, other.free, clusters) for other in others]
+        self.made[key] = min([self.made[key], *again], key=lambda made: made.loss)
+        return self.made[key]
+
 
 def _enough(problem: Problem, clusters: np.ndarray) -> bool:
     return (
@@ -82,6 +93,8 @@ def _differ_in_parameters(
     none.
 
     No two recordings lose more by common parameters than all of them together do: each fit starts from the common one.
+    Where these lose much, that is tried from where each recording leads, too, and each recording from there. One launch
+    may have been disturbed: two tables differ without the one that speaks most for it, too.
     """
     every = np.concatenate([part.clusters for part in parts])
     common = fits.of(found.law.values, found.law.free, every)
@@ -89,17 +102,48 @@ def _differ_in_parameters(
     def fitted(*some: RecordingPart) -> LeastSquaresFit:
         return fits.of(common.values, found.law.free, np.concatenate([part.clusters for part in some]))
 
-    if common.loss - sum(fitted(part).loss for part in parts) < CONSISTENCY.harm:
+    def is_shared() -> bool:
+        return common.loss - sum(fitted(part).loss for part in parts) < CONSISTENCY.harm
+
+    if is_shared():
+        return None
+    common = fits.better([fitted(part) for part in parts], every)
+    for part in parts:
+        fits.better([common], part.clusters)
+    if is_shared():
         return None
     for one, other in combinations(parts, 2):
-        separate = fitted(one).loss + fitted(other).loss
-        freedom = sum(fits.problem.freedom[part.clusters].sum() for part in (one, other)) - 2 * len(found.law.free)
-        if fitted(one, other).loss - separate < CONSISTENCY.harm * max(separate / max(freedom, 1.0), 1.0):
-            continue
-        why = _largest_difference(fitted(one), fitted(other))
+        pair = one.clusters, other.clusters
+        why = _difference(fits, common, *pair)
+        if why:
+            disturbed = _speaks_most(fits, common, *pair)
+            why = _difference(fits, common, *(clusters[clusters != disturbed] for clusters in pair))
         if why:
             return one.name, other.name, why
     return None
+
+
+def _difference(fits: _Fits, common: LeastSquaresFit, one: np.ndarray, other: np.ndarray) -> str | None:
+    """Return how the parameters differ between the launches of two recordings, None if not significantly; `common`:
+    where the fits start."""
+    own = [fits.of(common.values, common.free, clusters) for clusters in (one, other)]
+    both = np.concatenate([one, other])
+    separate = sum(each.loss for each in own)
+    freedom = fits.problem.freedom[both].sum() - 2 * len(common.free)
+    harm = fits.of(common.values, common.free, both).loss - separate
+    if harm < CONSISTENCY.harm * max(separate / max(freedom, 1.0), 1.0):
+        return None
+    return _largest_difference(*own)
+
+
+def _speaks_most(fits: _Fits, common: LeastSquaresFit, one: np.ndarray, other: np.ndarray) -> int:
+    """Return the launch of two recordings whose loss is reduced most by parameters of their own."""
+
+    def losses(*some: np.ndarray) -> np.ndarray:
+        clusters = np.concatenate(some)
+        return launch_losses(fits.problem, fits.of(common.values, common.free, clusters).values, clusters)
+
+    return int(np.argmax(losses(one, other) - losses(one) - losses(other)))
 
 
 def _largest_difference(one: LeastSquaresFit, other: LeastSquaresFit) -> str | None:

@@ -130,6 +130,16 @@ def robust_loss(problem: Fittable, found: Residuals) -> tuple[float, np.ndarray]
     return float(group_loss(squares, freedom).sum()), np.sqrt(group_weights(squares, freedom))[found.unit]
 
 
+def launch_losses(problem: Fittable, values: Mapping[str, float], clusters: np.ndarray) -> np.ndarray:
+    """Return the part (all clusters,) that each launch of `clusters` has in the robust loss at parameters `values`."""
+    found = problem.residuals(values, (), clusters)
+    if found.unit is None:
+        return np.bincount(found.cluster, found.r**2, problem.clusters)
+    freedom = problem.units.freedom
+    squares = np.bincount(found.unit, found.r**2, len(freedom))
+    return np.bincount(problem.units.cluster, group_loss(squares, freedom), problem.clusters)
+
+
 def _step(
     equations: NormalEquations, damping: float, at: np.ndarray, low: np.ndarray, high: np.ndarray, clusters: np.ndarray
 ) -> np.ndarray:
