@@ -13,6 +13,7 @@ import pytest
 from puckpilot import main
 from sim2real.diagnose import consistency
 from sim2real.diagnose.consistency import check_consistency
+from sim2real.diagnose.engine.problem import Residuals, Units
 from sim2real.diagnose.input_checks import UndeterminedError
 from sim2real.diagnose.pipeline import diagnose
 from sim2real.diagnose.regimes.base import RecordingPart
@@ -170,6 +171,56 @@ def test_a_single_disturbed_launch_makes_no_other_table(monkeypatch, losses, une
     problem = SimpleNamespace(freedom=np.full(len(losses), 6.0))
     monkeypatch.setattr(consistency, "_own_loss", lambda fits, found, some: float(np.array(losses)[some].sum()))
     assert consistency._is_unexplained(consistency._Fits(problem), None, np.arange(len(losses))) is unexplained
+
+
+class MeasuredOften:
+    """A problem in which each launch measures a wall's restitution e six times, in units of its noise. Launches of ten
+    of the first recording say 0.7; `second`: what each of the second's says, by e, zero where it agrees."""
+
+    regime, base, NAME = "wall", ("wall_restitution",), "wall_restitution"
+
+    def __init__(self, *second):
+        self.says = [lambda e: 3e3 * (e - 0.7)] * 10 + list(second)
+        self.clusters = len(self.says)
+        self.freedom = np.full(self.clusters, 6.0)
+        self.units = Units(np.arange(self.clusters), self.freedom)
+
+    def residuals(self, values, free, clusters):
+        e, which = values[self.NAME], np.repeat(clusters, 6)
+        r = np.array([self.says[k](e) for k in which])
+        slopes = np.array([(self.says[k](e + 1e-6) - self.says[k](e - 1e-6)) / 2e-6 for k in which])
+        return Residuals(r, slopes[:, None] if free else np.zeros((len(r), 0)), which, which)
+
+
+def vague(e):
+    return 3.0 * (e - 0.7)
+
+
+def disturbed(e):
+    return 3e3 * (e - 0.9)
+
+
+def agrees_twice(e):
+    return 3e3 * (e - 0.7) * (e - 0.9)
+
+
+@pytest.mark.parametrize(
+    ("second", "start", "differ"),
+    [
+        ([disturbed, *[vague] * 9], 0.7, False),
+        ([disturbed, disturbed, *[vague] * 8], 0.7, True),
+        ([disturbed] * 10, 0.7, True),
+        ([agrees_twice] * 10, 0.9, False),
+        ([vague] * 10, 0.7, False),
+    ],
+    ids=["one disturbed launch", "two", "another table", "a fit that starts in another minimum", "none"],
+)
+def test_parameters_are_of_two_tables_only_where_no_fit_and_no_single_launch_explains_it(second, start, differ):
+    problem = MeasuredOften(*second)
+    parts = [RecordingPart("one", np.arange(10)), RecordingPart("other", np.arange(10, problem.clusters))]
+    law = SimpleNamespace(values={problem.NAME: start}, free=(problem.NAME,))
+    found = consistency._differ_in_parameters(consistency._Fits(problem), SimpleNamespace(law=law), parts)
+    assert bool(found) is differ
 
 
 @pytest.mark.parametrize(
